@@ -1,0 +1,36 @@
+# The two commands of the README, and what is long. Set-up included: both work on a fresh Debian 12.
+SHELL := /bin/bash
+BUILD := build/release
+OUT ?= out
+JOBS ?= $(shell nproc)
+
+.PHONY: demo test check nightly setup build asan clean
+.DEFAULT_GOAL := build
+
+setup:
+	@tools/setup
+
+build: setup
+	@test -f $(BUILD)/build.ninja || cmake --preset release > /dev/null
+	@cmake --build $(BUILD) -j $(JOBS)
+
+demo: build
+	@tools/demo $(BUILD)/apps/surefoot/surefoot $(OUT)/demo
+
+test: build
+	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+
+# Readers and gate under AddressSanitizer and UndefinedBehaviorSanitizer.
+asan: setup
+	@test -f build/asan-ubsan/build.ninja || cmake --preset asan-ubsan > /dev/null
+	@cmake --build build/asan-ubsan -j $(JOBS) --target core_test io_test gate_test grid_test
+	ctest --test-dir build/asan-ubsan -j $(JOBS) --output-on-failure -R '^(core|io|gate|grid)\.'
+
+check:
+	@tools/check
+
+nightly: build
+	@tools/nightly
+
+clean:
+	rm -rf build

@@ -1,0 +1,22 @@
+# Everything comes from Debian 12 (tools/setup names the packages).
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+include(${CMAKE_CURRENT_LIST_DIR}/opencv_modules.cmake)
+find_package(Ceres 2.1 REQUIRED)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+if(SUREFOOT_DEVELOPER)
+  find_package(CLI11 REQUIRED)
+  find_package(nlohmann_json REQUIRED)
+  find_package(spdlog REQUIRED)
+  find_package(GTest REQUIRED)
+  find_package(benchmark REQUIRED)
+  include(GoogleTest)
+endif()
+
+# surefoot_opencv(TARGET module...): links single OpenCV modules privately.
+function(surefoot_opencv target)
+  foreach(module IN LISTS ARGN)
+    target_link_libraries(${target} PRIVATE surefoot_opencv::${module})
+  endforeach()
+endfunction()

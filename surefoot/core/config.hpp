@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <type_traits>
+
+namespace surefoot {
+
+/// Walks over the fields of a configuration. Every config struct describes itself once
+/// (`void describe(ConfigVisitor&)`: key, range, comment; the default is the member's initialiser);
+/// readers, writers, `surefoot config` and the range checks are visitors.
+class ConfigVisitor {
+  public:
+    virtual ~ConfigVisitor() = default;
+
+    virtual void begin_group(const char* name) = 0;
+    virtual void end_group() = 0;
+    /// `key` ends in its unit; a value outside [min, max] or not finite is an error.
+    virtual void number(
+        const char* key, double& value, double min, double max, const char* comment) = 0;
+    virtual void integer(const char* key, int& value, int min, int max, const char* comment) = 0;
+    virtual void boolean(const char* key, bool& value, const char* comment) = 0;
+    /// One of `names`; `value` is the position in it.
+    virtual void choice(const char* key,
+                        int& value,
+                        std::span<const char* const> names,
+                        const char* comment) = 0;
+
+    /// An enum whose enumerators count from 0 in the order of `names`.
+    template <typename Enum>
+    void enumeration(const char* key,
+                     Enum& value,
+                     std::span<const char* const> names,
+                     const char* comment) {
+        static_assert(std::is_enum_v<Enum>);
+        int position = static_cast<int>(value);
+        choice(key, position, names, comment);
+        value = static_cast<Enum>(position);
+    }
+    /// A nested config as a group of its own.
+    template <typename Config>
+    void group(const char* name, Config& config) {
+        begin_group(name);
+        config.describe(*this);
+        end_group();
+    }
+};
+
+}  // namespace surefoot

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+namespace surefoot {
+
+/// Runs independent pieces of work. The library starts no thread: the application makes an executor
+/// and passes it in. Results must not depend on which thread runs which index, so that any executor
+/// gives the same bytes; `Serial` is the reference.
+class Executor {
+  public:
+    virtual ~Executor() = default;
+    /// Calls `work(index)` once for each index in [0, count) and returns when all are done.
+    virtual void parallel_for(int count, const std::function<void(int)>& work) = 0;
+    /// How many indices may run at the same time (for choosing block sizes of equal results).
+    [[nodiscard]] virtual int width() const noexcept = 0;
+};
+
+/// One after the other, in order, on the calling thread.
+class Serial final : public Executor {
+  public:
+    void parallel_for(int count, const std::function<void(int)>& work) override {
+        for (int index = 0; index < count; ++index) work(index);
+    }
+    [[nodiscard]] int width() const noexcept override { return 1; }
+};
+
+}  // namespace surefoot

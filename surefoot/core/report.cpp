@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/core/report.hpp"
+
+namespace surefoot {
+
+const char* to_string(Health health) noexcept {
+    switch (health) {
+        case Health::ok: return "OK";
+        case Health::degraded: return "DEGRADED";
+        case Health::lost: return "LOST";
+    }
+    return "LOST";
+}
+
+const char* to_string(HealthReason reason) noexcept {
+    switch (reason) {
+        case HealthReason::none: return "none";
+        case HealthReason::first_frame: return "first_frame";
+        case HealthReason::few_tracks: return "few_tracks";
+        case HealthReason::poor_geometry: return "poor_geometry";
+        case HealthReason::blur: return "blur";
+        case HealthReason::large_residual: return "large_residual";
+        case HealthReason::time_gap: return "time_gap";
+    }
+    return "unknown";
+}
+
+const char* to_string(Stage stage) noexcept {
+    switch (stage) {
+        case Stage::rectify: return "rectify";
+        case Stage::odometry: return "odometry";
+        case Stage::stereo: return "stereo";
+        case Stage::ground: return "ground";
+        case Stage::fuse: return "fuse";
+        case Stage::traversability: return "traversability";
+    }
+    return "unknown";
+}
+
+FusionCounts& FusionCounts::operator+=(const FusionCounts& other) noexcept {
+    points += other.points;
+    gated_range += other.gated_range;
+    gated_height += other.gated_height;
+    gated_confidence += other.gated_confidence;
+    gated_density += other.gated_density;
+    outside += other.outside;
+    cells_measured += other.cells_measured;
+    cells_new += other.cells_new;
+    cells_fused += other.cells_fused;
+    cells_inflated += other.cells_inflated;
+    return *this;
+}
+
+}  // namespace surefoot

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace surefoot {
+
+/// Seeded generator with the same numbers on every platform: xoshiro256** (Blackman and Vigna
+/// 2018), state filled by splitmix64. Always passed in, never global.
+class Rng {
+  public:
+    explicit Rng(std::uint64_t seed) noexcept;
+
+    [[nodiscard]] std::uint64_t next_u64() noexcept;
+    /// Uniform in [0, 1) with 53 random bits.
+    [[nodiscard]] double uniform() noexcept;
+    [[nodiscard]] double uniform(double low, double high) noexcept;
+    /// Uniform integer in [0, n), n > 0, without modulo bias.
+    [[nodiscard]] std::uint64_t below(std::uint64_t n) noexcept;
+    /// Standard normal (Marsaglia's polar method).
+    [[nodiscard]] double normal() noexcept;
+
+  private:
+    std::uint64_t state_[4];
+    double spare_normal_ = 0.0;
+    bool has_spare_normal_ = false;
+};
+
+/// Mixes a seed with a stream number, so that parallel parts draw independent numbers.
+[[nodiscard]] std::uint64_t mix_seed(std::uint64_t seed, std::uint64_t stream) noexcept;
+
+}  // namespace surefoot

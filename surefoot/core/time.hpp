@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace surefoot {
+
+/// Time is int64 nanoseconds everywhere; seconds appear only in files and printed text.
+inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
+[[nodiscard]] constexpr double seconds_from_ns(std::int64_t time_ns) noexcept {
+    return static_cast<double>(time_ns) * 1e-9;
+}
+/// Rounds to the nearest nanosecond.
+[[nodiscard]] constexpr std::int64_t ns_from_seconds(double time_s) noexcept {
+    const double scaled = time_s * 1e9;
+    return static_cast<std::int64_t>(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
+}
+
+}  // namespace surefoot

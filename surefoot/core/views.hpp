@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "surefoot/core/assert.hpp"
+
+namespace surefoot {
+
+/// Rows of pixels that somebody else owns; valid only during the call it is passed to.
+template <typename T>
+struct ImageView {
+    T* data = nullptr;
+    int width = 0;
+    int height = 0;
+    int stride = 0;  ///< elements from one row to the next
+
+    [[nodiscard]] T* row(int v) const noexcept {
+        return data + static_cast<std::ptrdiff_t>(v) * stride;
+    }
+    [[nodiscard]] T& at(int u, int v) const {
+        SUREFOOT_ASSERT(u >= 0 && v >= 0 && u < width && v < height);
+        return row(v)[u];
+    }
+    [[nodiscard]] bool empty() const noexcept { return width == 0 || height == 0; }
+};
+
+/// Dense image, row-major without padding; `u` counts columns to the right, `v` rows downward.
+template <typename T>
+class Image {
+  public:
+    Image() = default;
+    Image(int width, int height, T value = T{})
+        : width_(width),
+          height_(height),
+          pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {}
+
+    [[nodiscard]] int width() const noexcept { return width_; }
+    [[nodiscard]] int height() const noexcept { return height_; }
+    [[nodiscard]] bool empty() const noexcept { return pixels_.empty(); }
+    [[nodiscard]] std::size_t size() const noexcept { return pixels_.size(); }
+
+    [[nodiscard]] T* data() noexcept { return pixels_.data(); }
+    [[nodiscard]] const T* data() const noexcept { return pixels_.data(); }
+    [[nodiscard]] T* row(int v) noexcept {
+        return data() + static_cast<std::ptrdiff_t>(v) * width_;
+    }
+    [[nodiscard]] const T* row(int v) const noexcept {
+        return data() + static_cast<std::ptrdiff_t>(v) * width_;
+    }
+    [[nodiscard]] T& at(int u, int v) {
+        SUREFOOT_ASSERT(contains(u, v));
+        return row(v)[u];
+    }
+    [[nodiscard]] const T& at(int u, int v) const {
+        SUREFOOT_ASSERT(contains(u, v));
+        return row(v)[u];
+    }
+    [[nodiscard]] bool contains(int u, int v) const noexcept {
+        return u >= 0 && v >= 0 && u < width_ && v < height_;
+    }
+
+    /// Keeps the allocation when the new size fits into it.
+    void resize(int width, int height) {
+        width_ = width;
+        height_ = height;
+        pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    }
+    void fill(T value) { pixels_.assign(pixels_.size(), value); }
+
+    [[nodiscard]] ImageView<T> view() noexcept { return {data(), width_, height_, width_}; }
+    [[nodiscard]] ImageView<const T> view() const noexcept {
+        return {data(), width_, height_, width_};
+    }
+    friend bool operator==(const Image&, const Image&) = default;
+
+  private:
+    int width_ = 0;
+    int height_ = 0;
+    std::vector<T> pixels_;
+};
+
+using GreyImage = Image<std::uint8_t>;
+
+}  // namespace surefoot
