@@ -10,7 +10,6 @@ if(SUREFOOT_DEVELOPER)
   find_package(nlohmann_json REQUIRED)
   find_package(spdlog REQUIRED)
   find_package(GTest REQUIRED)
-  find_package(benchmark REQUIRED)
   include(GoogleTest)
 endif()
 

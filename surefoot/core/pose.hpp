@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -25,6 +28,13 @@ struct Pose {
     [[nodiscard]] static Pose from_matrix(const Eigen::Matrix4d& T_a_b);
     [[nodiscard]] bool all_finite() const;
 };
+
+/// Where a body was at one instant; the world frame is that of the recording or file it came from.
+struct StampedPose {
+    std::int64_t time_ns = 0;
+    Pose T_world_body;
+};
+using Trajectory = std::vector<StampedPose>;
 
 [[nodiscard]] Pose operator*(const Pose& T_a_b, const Pose& T_b_c);
 [[nodiscard]] Eigen::Vector3d operator*(const Pose& T_a_b, const Eigen::Vector3d& p_b);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "surefoot/core/assert.hpp"
@@ -25,6 +26,12 @@ struct ImageView {
         return row(v)[u];
     }
     [[nodiscard]] bool empty() const noexcept { return width == 0 || height == 0; }
+
+    operator ImageView<const T>() const noexcept
+        requires(!std::is_const_v<T>)
+    {
+        return {data, width, height, stride};
+    }
 };
 
 /// Dense image, row-major without padding; `u` counts columns to the right, `v` rows downward.

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "apps/surefoot/bench_result.hpp"
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/run_output.hpp"
+#include "apps/surefoot/run_session.hpp"
+#include "apps/surefoot/source.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "surefoot/grid/snapshot_builder.hpp"
+
+namespace surefoot::app {
+namespace {
+
+BenchResult timed(const std::string& name, int repeats, const std::function<void()>& work) {
+    work();  // warm-up: allocations, caches
+    std::vector<double> times_ms;
+    for (int i = 0; i < repeats; ++i) {
+        const std::int64_t start_ns = steady_now_ns();
+        work();
+        times_ms.push_back(static_cast<double>(steady_now_ns() - start_ns) * 1e-6);
+    }
+    const Percentiles p = percentiles(std::move(times_ms));
+    return {name, p.median, p.p99, std::nullopt};
+}
+
+/// Whole frames of the simulated stairs, stage by stage.
+Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Executor& executor) {
+    const auto settings = load_settings(common);
+    if (!settings) return settings.error();
+    auto source = open_source({"sim:demo_stairs", "", 0.0, 40, common.seed}, executor);
+    if (!source) return source.error();
+    auto pipeline = pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor, steady_now_ns);
+    if (!pipeline) return pipeline.error();
+    RunSession session(*pipeline, **source, 1);
+    session.drive();
+    const RunRecord& record = session.record();
+    if (record.error) return *record.error;
+    std::vector<BenchResult> results;
+    for (int i = 0; i < kStageCount; ++i) {
+        const Percentiles p = stage_percentiles(record, static_cast<Stage>(i));
+        results.push_back({fmt::format("chain/{}", to_string(static_cast<Stage>(i))), p.median, p.p99, std::nullopt});
+    }
+    const Percentiles frame = frame_percentiles(record);
+    results.push_back({"chain/whole_frame", frame.median, frame.p99, std::nullopt});
+    return results;
+}
+
+/// A gently waved floor with holes, 240 x 240 cells of 25 mm.
+grid::Layer waved_floor() {
+    constexpr int kSide = 240;
+    grid::Layer height_m(kSide, kSide);
+    for (int iy = 0; iy < kSide; ++iy) {
+        for (int ix = 0; ix < kSide; ++ix) {
+            const bool hole = (ix * 7 + iy * 13) % 41 == 0;
+            height_m.at(ix, iy) = hole ? std::nanf("") : 0.01F * std::sin(0.1F * static_cast<float>(ix + iy));
+        }
+    }
+    return height_m;
+}
+
+Result<std::vector<BenchResult>> bench_traversability(const CommonOptions& common, Executor& executor) {
+    const auto settings = load_settings(common);
+    if (!settings) return settings.error();
+    const grid::Layer height_m = waved_floor();
+    traversability::Traversability rater(settings->pipeline.traversability);
+    traversability::TraversabilityLayers layers;
+    return std::vector<BenchResult>{timed("traversability/240x240", 20, [&] {
+        rater.rate(height_m.view(), settings->pipeline.elevation.resolution_m, executor, layers);
+    })};
+}
+
+Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
+    const auto machine = load_machine("rex");
+    if (!machine) return machine.error();
+    constexpr int kSide = 240;
+    const grid::Layer floor_m(kSide, kSide, 0.0F);
+    const grid::Layer variance_m2(kSide, kSide, 9e-6F);
+    const grid::Layer drift_m(kSide, kSide, 0.001F);
+    grid::SnapshotInput input;
+    input.geometry = {0.025, kSide, kSide, {-3.0, -3.0}};
+    input.height_m = floor_m.view();
+    input.variance_m2 = variance_m2.view();
+    input.drift_m = drift_m.view();
+    input.T_odom_body.translation_m.z() = 0.99;
+    input.gravity_source = grid::GravitySource::plane;
+    input.health = grid::SnapshotHealth::ok;
+    const auto snapshot = std::make_unique<grid::MapSnapshot>();
+    if (auto status = grid::build_snapshot(input, *snapshot); !status) return status.error();
+    gate::GateHealth health;
+    health.state = gate::GateState::ready;
+    constexpr std::uint8_t kForward = 9;
+    const gate::Query query = gate::query_at_body(kForward, *snapshot);
+    gate::Verdict verdict;
+    std::vector<BenchResult> results{timed("gate/decide", 2000, [&] {
+        verdict = gate::decide(machine->value().machine, query, *snapshot, health, snapshot->frame_time_ns);
+    })};
+    if (verdict.decision != gate::Decision::ok) {
+        return input_error("bench gate: the flat floor was not OK; the timing would mean nothing");
+    }
+    return results;
+}
+
+}  // namespace
+
+int bench(const BenchOptions& options) {
+    const auto executor = make_executor(options.common);
+    using Group = Result<std::vector<BenchResult>> (*)(const CommonOptions&, Executor&);
+    const std::pair<const char*, Group> groups[] = {
+        {"chain", bench_chain}, {"traversability", bench_traversability}, {"gate", bench_gate}};
+    std::vector<BenchResult> all;
+    for (const auto& [name, group] : groups) {
+        if (!options.group.empty() && options.group != name) continue;
+        const auto results = group(options.common, *executor);
+        if (!results) return report(results.error());
+        all.insert(all.end(), results->begin(), results->end());
+    }
+    if (options.common.json) {
+        fmt::print("{}\n", bench_json(all));
+        return kExitOk;
+    }
+    fmt::print("{:<28}{:>12}{:>12}\n", "what", "median ms", "p99 ms");
+    for (const BenchResult& r : all) fmt::print("{:<28}{:>12.3f}{:>12.3f}\n", r.name, r.median_ms, r.p99_ms);
+    return kExitOk;
+}
+
+}  // namespace surefoot::app

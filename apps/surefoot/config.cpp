@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "io/config_yaml.hpp"
+
+namespace surefoot::app {
+
+int config(const ConfigOptions& options) {
+    const auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
+    if (options.check_only) {
+        fmt::print("the settings are valid\n");
+    } else if (options.common.json) {
+        fmt::print("{}\n", settings_json(io::list_config_of(*settings)));
+    } else {
+        fmt::print("{}", io::format_config_of(*settings));
+    }
+    return kExitOk;
+}
+
+}  // namespace surefoot::app

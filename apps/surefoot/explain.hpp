@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "surefoot/core/machine.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+
+namespace surefoot::app {
+
+/// Picture of the heights around the machine with its present and landing feet, the swept body and
+/// the cell that decided.
+[[nodiscard]] Status write_explanation(const std::string& file,
+                                       const Machine& machine,
+                                       const gate::Query& query,
+                                       const grid::MapSnapshot& map,
+                                       const gate::Verdict& verdict,
+                                       const std::string& text);
+
+}  // namespace surefoot::app

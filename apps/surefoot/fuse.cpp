@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/resources.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "io/config_yaml.hpp"
+#include "io/dem_file.hpp"
+#include "io/file.hpp"
+#include "io/raw_floats.hpp"
+#include "io/text.hpp"
+#include "surefoot/elevation/ancestor.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// The settings of this verb: those of the ancestor's update under "ancestor".
+struct FuseSettings {
+    elevation::AncestorConfig ancestor;
+    void describe(ConfigVisitor& visitor) { visitor.group("ancestor", ancestor); }
+};
+
+Result<elevation::AncestorConfig> load(const CommonOptions& options) {
+    FuseSettings settings;
+    const auto describe = io::describe_config(settings);
+    if (options.preset != "ethz") {
+        return usage_error(fmt::format("fuse --preset '{}': 'ethz' is the update that this verb compares with",
+                                       options.preset));
+    }
+    if (!options.config_file.empty()) {
+        if (auto status = io::read_config(options.config_file, describe); !status) return status.error();
+    }
+    if (auto status = io::override_config_in(settings, options.settings); !status) return status.error();
+    return settings.ancestor;
+}
+
+Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& path) {
+    const auto values = io::read_floats(path);
+    if (!values) return values.error();
+    if (values->size() % 4 != 0) {
+        return input_error(fmt::format("{}: {} values are no whole number of points (x, y, z, variance)", path,
+                                       values->size()));
+    }
+    std::vector<elevation::AncestorPoint> points(values->size() / 4);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const float* v = values->data() + 4 * i;
+        points[i] = {v[0], v[1], v[2], v[3]};
+    }
+    return points;
+}
+
+/// "K time T move_to X Y ..." per step; indented lines are remarks. Cloud K is cloudK.f32 beside the file.
+Result<elevation::FuseStep> parse_step(std::string_view line, const std::string& where, const std::string& folder) {
+    std::vector<std::string_view> words;
+    for (const std::string_view word : io::split(line, " \t")) {
+        if (!word.empty()) words.push_back(word);
+    }
+    if (words.size() < 6 || words[1] != "time" || words[3] != "move_to") {
+        return input_error(fmt::format("{}: 'K time T move_to X Y' is expected, found '{}'", where, line));
+    }
+    const auto index = io::parse_int64(words[0]);
+    const auto time_s = io::parse_double(words[2]);
+    const auto x_m = io::parse_double(words[4]);
+    const auto y_m = io::parse_double(words[5]);
+    if (!index || !time_s || !x_m || !y_m) {
+        return input_error(fmt::format("{}: one of '{}', '{}', '{}', '{}' is no number", where, words[0], words[2],
+                                       words[4], words[5]));
+    }
+    auto cloud = read_points(fmt::format("{}/cloud{}.f32", folder, *index));
+    if (!cloud) return cloud.error();
+    return elevation::FuseStep{*time_s, *x_m, *y_m, std::move(cloud).value()};
+}
+
+Result<std::vector<elevation::FuseStep>> read_steps(const std::string& path) {
+    const auto text = io::read_file(path);
+    if (!text) return text.error();
+    std::vector<elevation::FuseStep> steps;
+    int line_number = 0;
+    for (const std::string_view line : io::split(*text, "\n")) {
+        ++line_number;
+        if (line.empty() || line.front() == ' ' || line.front() == '#') continue;
+        auto step = parse_step(line, fmt::format("{}:{}", path, line_number), io::folder_of(path));
+        if (!step) return step.error();
+        steps.push_back(std::move(step).value());
+    }
+    if (steps.empty()) return input_error(fmt::format("{}: holds no step", path));
+    return steps;
+}
+
+}  // namespace
+
+int fuse(const FuseOptions& options) {
+    const auto config = load(options.common);
+    if (!config) return report(config.error());
+    const auto steps = read_steps(options.steps);
+    if (!steps) return report(steps.error());
+    if (auto status = io::make_folder(options.out_dir); !status) return report(status.error());
+    const auto results = elevation::run_fuse_steps(*config, *steps);
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        const auto& result = results[k];
+        const std::pair<const char*, const grid::Layer*> layers[] = {
+            {"elevation", &result.elevation_m}, {"variance", &result.variance_m2}, {"time", &result.time_s}};
+        for (const auto& [name, layer] : layers) {
+            const std::string file = fmt::format("{}/step{}_{}.asc", options.out_dir, k, name);
+            if (auto status = io::write_esri_grid(file, result.geometry, *layer); !status) return report(status.error());
+        }
+    }
+    fmt::print("{} steps fused, layers of each in {}/\n", results.size(), options.out_dir);
+    return kExitOk;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+// Only here is nlohmann-json included (it costs six seconds a translation unit).
+#include "apps/surefoot/json_output.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/surefoot/run_output.hpp"
+
+namespace surefoot::app {
+namespace {
+
+// Keys keep the order in which they are written: the same run gives the same bytes.
+using Json = nlohmann::ordered_json;
+
+constexpr double kTenthMm_m = 1e-4;
+constexpr double kDegPerRad = 180.0 / M_PI;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+const char* name_of(grid::GravitySource source) {
+    switch (source) {
+        case grid::GravitySource::imu: return "imu";
+        case grid::GravitySource::plane: return "plane";
+        case grid::GravitySource::assumed: return "assumed";
+    }
+    return "assumed";
+}
+
+Json counts_json(const FusionCounts& f) {
+    return {{"points", f.points},
+            {"gated_range", f.gated_range},
+            {"gated_height", f.gated_height},
+            {"gated_confidence", f.gated_confidence},
+            {"gated_density", f.gated_density},
+            {"outside", f.outside},
+            {"cells_measured", f.cells_measured},
+            {"cells_new", f.cells_new},
+            {"cells_fused", f.cells_fused},
+            {"cells_inflated", f.cells_inflated}};
+}
+
+Json elevation_json(const eval::ElevationErrors& e) {
+    return {{"median_abs_m", number(e.median_abs_m)}, {"p90_abs_m", number(e.p90_abs_m)},
+            {"mean_m", number(e.mean_m)},             {"rmse_m", number(e.rmse_m)},
+            {"share_over_50mm", number(e.share_over_50mm)}, {"count", e.count}};
+}
+
+Json traversability_json(const eval::TraversabilityErrors& t) {
+    return {{"false_safe", number(t.false_safe)},   {"false_unsafe", number(t.false_unsafe)},
+            {"true_safe", number(t.true_safe)},     {"true_unsafe", number(t.true_unsafe)},
+            {"unknown", number(t.unknown)}};
+}
+
+Json errors_json(const eval::TrajectoryErrors& e) {
+    return {{"ate_rmse_m", number(e.ate_rmse_m)},
+            {"rpe_trans_rmse_m", number(e.rpe_trans_rmse_m)},
+            {"rpe_rot_rmse_deg", number(e.rpe_rot_rmse_deg)},
+            {"drift_percent", number(e.drift_percent)},
+            {"matched", e.matched},
+            {"path_length_m", number(e.path_length_m)}};
+}
+
+Json truth_json(const TruthFigures& t) {
+    const DepthFigures& d = t.depth;
+    return {{"elevation", elevation_json(t.elevation)},
+            {"elevation_away_from_edges", elevation_json(t.elevation_away_from_edges)},
+            {"coverage_within_2_5_m", number(t.coverage_within_2_5_m)},
+            {"traversability", traversability_json(t.traversability)},
+            {"trajectory", errors_json(t.trajectory)},
+            {"depth",
+             {{"pixels", d.pixels},
+              {"within_1_sigma", number(d.within_1_sigma)},
+              {"within_3_sigma", number(d.within_3_sigma)},
+              {"median_abs_error_px", number(d.median_abs_error_px)},
+              {"sigma_at_1_m_m", number(d.sigma_at_1_m_m)},
+              {"sigma_at_2_m_m", number(d.sigma_at_2_m_m)},
+              {"doubtful_share", number(d.doubtful_share)}}}};
+}
+
+Json timing_json(const RunRecord& record) {
+    Json stages = Json::object();
+    for (int i = 0; i < kStageCount; ++i) {
+        const auto stage = static_cast<Stage>(i);
+        const Percentiles p = stage_percentiles(record, stage);
+        stages[to_string(stage)] = {{"median_ms", p.median}, {"p99_ms", p.p99}};
+    }
+    const Percentiles frame = frame_percentiles(record);
+    return {{"stages", stages},
+            {"frame_median_ms", frame.median},
+            {"frame_p99_ms", frame.p99},
+            {"frames_per_s", frame.median > 0.0 ? number(1e3 / frame.median) : Json(nullptr)},
+            {"wall_s", record.wall_s},
+            {"peak_memory_mb", peak_memory_mb()}};
+}
+
+Json health_json(const RunRecord& record) {
+    int counts[3] = {};
+    for (const FrameReport& frame : record.frames) ++counts[static_cast<int>(frame.motion.health)];
+    return {{"OK", counts[0]}, {"DEGRADED", counts[1]}, {"LOST", counts[2]}};
+}
+
+Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
+    const pipeline::Alignment& alignment = pipeline.alignment();
+    const auto& geometry = pipeline.map().geometry();
+    Json object = {{"source", {{"kind", record.source.kind}, {"path", record.source.path}}},
+                   {"frames", record.frames.size()},
+                   {"complete", record.complete()},
+                   {"error", record.error ? Json(record.error->message) : Json(nullptr)},
+                   {"gravity_source", name_of(alignment.gravity_source)},
+                   {"gravity_reason", alignment.reason},
+                   {"ground_height_m", alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
+                   {"health", health_json(record)},
+                   {"counts", counts_json(record.fusion)},
+                   {"map",
+                    {{"known_cells", pipeline.map().known_cells()},
+                     {"cells", geometry.nx * geometry.ny},
+                     {"resolution_m", geometry.resolution_m},
+                     {"reason", empty_map_reason(record, pipeline)}}}};
+    if (record.truth) object["truth"] = truth_json(*record.truth);
+    object["timing"] = timing_json(record);
+    return object;
+}
+
+Json frame_json(const FrameReport& frame) {
+    return {{"index", frame.index},
+            {"time_ns", frame.time_ns},
+            {"health", to_string(frame.motion.health)},
+            {"reason", to_string(frame.motion.reason)},
+            {"tracks", frame.motion.tracks},
+            {"inliers", frame.motion.inliers},
+            {"residual_px", number(frame.motion.residual_px)},
+            {"depth_pixels", frame.depth_pixels},
+            {"known_cells", frame.known_cells},
+            {"ground_accepted", frame.ground.accepted},
+            {"counts", counts_json(frame.fusion)}};
+}
+
+constexpr int kIndent = 2;
+
+}  // namespace
+
+std::string report_json(const RunRecord& record, const pipeline::Pipeline& pipeline, const Status& written) {
+    Json object = run_object(record, pipeline);
+    if (!written) object["output_error"] = written.error().message;
+    Json frames = Json::array();
+    for (const FrameReport& frame : record.frames) frames.push_back(frame_json(frame));
+    object["per_frame"] = frames;
+    return object.dump(kIndent);
+}
+
+std::string run_json(const RunRecord& record, const pipeline::Pipeline& pipeline) {
+    return run_object(record, pipeline).dump(kIndent);
+}
+
+std::string verdict_json(const gate::Verdict& verdict,
+                         const std::string& text,
+                         const std::vector<std::string>& assumed) {
+    Json reasons = Json::array();
+    for (int i = 0; i < gate::kReasonCount; ++i) {
+        const auto reason = static_cast<gate::Reason>(i);
+        if (verdict.reasons.contains(reason)) reasons.push_back(to_string(reason));
+    }
+    const gate::Evidence& e = verdict.evidence;
+    Json evidence = {{"primary", to_string(verdict.primary)},
+                     {"worst_cell_m", e.has_worst_cell ? Json{kTenthMm_m * static_cast<double>(e.worst_x_tenth_mm),
+                                                              kTenthMm_m * static_cast<double>(e.worst_y_tenth_mm)}
+                                                       : Json(nullptr)},
+                     {"value_m", kTenthMm_m * static_cast<double>(e.value_tenth_mm)},
+                     {"limit_m", kTenthMm_m * static_cast<double>(e.limit_tenth_mm)},
+                     {"stance_height_m",
+                      e.stance_known ? Json(kTenthMm_m * static_cast<double>(e.stance_height_tenth_mm)) : Json(nullptr)},
+                     {"height_delta_m", kTenthMm_m * static_cast<double>(e.height_delta_tenth_mm)},
+                     {"max_tilt_deg", number(std::atan(std::sqrt(e.max_tilt_tan_sq)) * kDegPerRad)},
+                     {"max_patch_sigma_m", number(kTenthMm_m * std::sqrt(e.max_patch_sigma_sq_tenth_mm2))},
+                     {"max_drift_m", kTenthMm_m * static_cast<double>(e.max_drift_tenth_mm)},
+                     {"cells", e.cells},
+                     {"known_cells", e.known_cells},
+                     {"vouched_cells", e.vouched_cells}};
+    const Json object = {{"verdict", to_string(verdict.decision)},
+                         {"reasons", reasons},
+                         {"text", text},
+                         {"evidence", evidence},
+                         {"assumed", assumed},
+                         {"command", verdict.command},
+                         {"map_version", verdict.map_version},
+                         {"config_hash", fmt::format("{:016x}", verdict.config_hash)}};
+    return object.dump(kIndent);
+}
+
+std::string trajectory_json(const eval::TrajectoryErrors& errors) { return errors_json(errors).dump(kIndent); }
+
+std::string maps_json(const eval::ElevationErrors& all,
+                      const eval::ElevationErrors& away_from_edges,
+                      const eval::TraversabilityErrors& traversability,
+                      double coverage) {
+    const Json object = {{"elevation", elevation_json(all)},
+                         {"elevation_away_from_edges", elevation_json(away_from_edges)},
+                         {"traversability", traversability_json(traversability)},
+                         {"coverage", number(coverage)}};
+    return object.dump(kIndent);
+}
+
+std::string ground_json(const ground::GroundSighting& sighting) {
+    const GroundObservation& o = sighting.observation;
+    const Json object = {{"accepted", o.accepted},
+                         {"reason", to_string(sighting.reason)},
+                         {"tilt_deg", number(sighting.tilt_rad * kDegPerRad)},
+                         {"height_m", number(o.height_m)},
+                         {"inlier_ratio", number(o.inlier_ratio)},
+                         {"rms_m", number(o.rms_m)},
+                         {"normal", {number(o.normal.x()), number(o.normal.y()), number(o.normal.z())}}};
+    return object.dump(kIndent);
+}
+
+std::string settings_json(const std::vector<io::ConfigEntry>& entries) {
+    Json list = Json::array();
+    for (const auto& entry : entries) {
+        list.push_back({{"key", entry.key}, {"value", entry.value}, {"range", entry.range}, {"comment", entry.comment}});
+    }
+    return Json{{"settings", list}}.dump(kIndent);
+}
+
+std::string scenes_json(const std::vector<sim::SceneInfo>& scenes) {
+    Json list = Json::array();
+    for (const auto& scene : scenes) list.push_back({{"name", scene.name}, {"description", scene.description}});
+    return Json{{"scenes", list}}.dump(kIndent);
+}
+
+std::string recording_json(const io::RecordingInfo& info) {
+    const Json object = {{"kind", info.kind},
+                         {"frames", info.frames},
+                         {"duration_s", info.duration_s},
+                         {"rate_hz", info.rate_hz},
+                         {"gaps", info.gaps},
+                         {"longest_gap_s", info.longest_gap_s},
+                         {"unpaired", info.unpaired},
+                         {"missing_images", info.missing_images},
+                         {"bad_stamps", info.bad_stamps},
+                         {"bytes", info.bytes},
+                         {"imu_samples", info.imu_samples},
+                         {"imu_rate_hz", info.imu_rate_hz},
+                         {"has_truth", info.has_truth},
+                         {"width", info.rig.left.width},
+                         {"height", info.rig.left.height},
+                         {"baseline_m", info.rig.T_left_right.translation_m.norm()}};
+    return object.dump(kIndent);
+}
+
+std::string bench_json(const std::vector<BenchResult>& results) {
+    Json list = Json::array();
+    for (const auto& result : results) {
+        list.push_back({{"name", result.name},
+                        {"median_ms", result.median_ms},
+                        {"p99_ms", result.p99_ms},
+                        {"peer_ms", result.peer_ms ? Json(*result.peer_ms) : Json(nullptr)}});
+    }
+    return Json{{"benchmarks", list}}.dump(kIndent);
+}
+
+}  // namespace surefoot::app

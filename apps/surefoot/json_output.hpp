@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/bench_result.hpp"
+#include "apps/surefoot/run_session.hpp"
+#include "eval/maps.hpp"
+#include "eval/trajectory.hpp"
+#include "io/config_yaml.hpp"
+#include "io/recorder.hpp"
+#include "sim/scenes.hpp"
+#include "surefoot/core/machine.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/ground/ground_observation.hpp"
+
+// Every JSON object of the command line; the names are a contract (README). NaN is written as null.
+namespace surefoot::app {
+
+[[nodiscard]] std::string report_json(const RunRecord& record,
+                                      const pipeline::Pipeline& pipeline,
+                                      const Status& written);
+/// The same without the list of frames, for stdout.
+[[nodiscard]] std::string run_json(const RunRecord& record, const pipeline::Pipeline& pipeline);
+[[nodiscard]] std::string verdict_json(const gate::Verdict& verdict,
+                                       const std::string& text,
+                                       const std::vector<std::string>& assumed);
+[[nodiscard]] std::string trajectory_json(const eval::TrajectoryErrors& errors);
+[[nodiscard]] std::string maps_json(const eval::ElevationErrors& all,
+                                    const eval::ElevationErrors& away_from_edges,
+                                    const eval::TraversabilityErrors& traversability,
+                                    double coverage);
+[[nodiscard]] std::string ground_json(const ground::GroundSighting& sighting);
+[[nodiscard]] std::string settings_json(const std::vector<io::ConfigEntry>& entries);
+[[nodiscard]] std::string scenes_json(const std::vector<sim::SceneInfo>& scenes);
+[[nodiscard]] std::string recording_json(const io::RecordingInfo& info);
+[[nodiscard]] std::string bench_json(const std::vector<BenchResult>& results);
+
+}  // namespace surefoot::app

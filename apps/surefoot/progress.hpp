@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace surefoot::app {
+
+/// One line on stderr that counts frames; silent when stderr is no terminal.
+class Progress {
+  public:
+    Progress(std::string label, std::optional<int> total);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+    void advance(int done);
+
+  private:
+    std::string label_;
+    std::optional<int> total_;
+    bool visible_;
+    int last_percent_ = -1;
+};
+
+/// True once the user pressed Ctrl-C (or SIGTERM came); the first call installs the handlers.
+[[nodiscard]] bool interrupted();
+void watch_for_interrupts();
+
+}  // namespace surefoot::app

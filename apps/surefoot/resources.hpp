@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::app {
+
+/// A file of the repository that travels inside the program.
+struct Resource {
+    std::string_view name;  ///< "presets/rex_zed.yaml"
+    std::string_view text;
+};
+[[nodiscard]] const std::vector<Resource>& resources();
+
+/// Text of `folder/name.yaml`; an unknown name is a usage error that lists the known ones.
+[[nodiscard]] Result<std::string> find_resource(std::string_view folder, std::string_view name);
+
+}  // namespace surefoot::app

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/run_output.hpp"
+#include "apps/surefoot/run_session.hpp"
+#include "apps/surefoot/source.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "io/file.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// RGB-D cameras bring the Kinect's error model unless the user chose one.
+void choose_sensor_model(const camera::StereoRig& rig, Settings& settings) {
+    auto& model = settings.pipeline.elevation.sensor.model;
+    if (!rig.right && model == elevation::SensorModel::matcher) model = elevation::SensorModel::kinect;
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+    auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
+    const auto machine = load_machine(options.machine);
+    if (!machine) return report(machine.error());
+    const auto executor = make_executor(options.common);
+    auto source = open_source({options.source, options.rig_file, options.rate_hz, options.max_frames, options.common.seed},
+                              *executor);
+    if (!source) return report(source.error());
+    const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);
+    choose_sensor_model(rig, *settings);
+    auto pipeline = pipeline::Pipeline::make(settings->pipeline, rig, *executor, steady_now_ns);
+    if (!pipeline) return report(pipeline.error());
+    if (const auto status = io::make_folder(options.out_dir); !status) return report(status.error());
+
+    RunSession session(*pipeline, **source, options.depth_every);
+    session.drive();
+    const RunRecord& record = session.record();
+
+    const Status written = write_results(options, *settings, *machine, *pipeline, record);
+    if (options.common.json) {
+        fmt::print("{}\n", run_json(record, *pipeline));
+    } else {
+        fmt::print("{}", run_summary(record, *pipeline, options.out_dir));
+    }
+    // Both may have failed; each is said once, the run's own error decides the exit code.
+    if (!written) log_error(written.error().message);
+    if (!record.complete()) return report(*record.error);
+    return written ? kExitOk : kExitFailed;
+}
+
+}  // namespace surefoot::app

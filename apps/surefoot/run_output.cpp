@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/run_output.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/run_report.hpp"
+#include "io/config_yaml.hpp"
+#include "io/dem_file.hpp"
+#include "io/file.hpp"
+#include "io/point_cloud.hpp"
+#include "io/snapshot_file.hpp"
+#include "io/trajectory_file.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Remembers the first failure of many writes.
+class Writes {
+  public:
+    void operator+=(Status status) {
+        if (!status && first_.ok()) first_ = std::move(status);
+    }
+    [[nodiscard]] const Status& first() const noexcept { return first_; }
+
+  private:
+    Status first_;
+};
+
+Trajectory trajectory_of(const RunRecord& record, const Pose& T_body_frame) {
+    Trajectory trajectory;
+    for (const FrameReport& frame : record.frames) {
+        trajectory.push_back({frame.time_ns, frame.motion.T_odom_body * T_body_frame});
+    }
+    return trajectory;
+}
+
+/// One point per known cell with its variance and rating.
+io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
+    const grid::GridGeometry& geometry = pipeline.map().geometry();
+    const auto& layers = pipeline.map().layers();
+    const grid::Layer& rating = pipeline.rating().traversability;
+    io::PointCloud cloud;
+    io::CloudScalar variance{.name = "variance_m2", .values = {}};
+    io::CloudScalar traversability{.name = "traversability", .values = {}};
+    for (int iy = 0; iy < geometry.ny; ++iy) {
+        for (int ix = 0; ix < geometry.nx; ++ix) {
+            const float z_m = layers.height_m.at(ix, iy);
+            if (std::isnan(z_m)) continue;
+            const Eigen::Vector2d center_m = geometry.center_m({ix, iy});
+            cloud.points_m.emplace_back(center_m.x(), center_m.y(), z_m);
+            variance.values.push_back(layers.height_var_m2.at(ix, iy));
+            traversability.values.push_back(rating.empty() ? std::nanf("") : rating.at(ix, iy));
+        }
+    }
+    cloud.width = static_cast<int>(cloud.points_m.size());
+    cloud.scalars = {std::move(variance), std::move(traversability)};
+    return cloud;
+}
+
+grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry) {
+    return layer.empty() ? grid::Layer(geometry.nx, geometry.ny, std::nanf("")) : layer;
+}
+
+void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline, Writes& writes) {
+    const grid::GridGeometry& geometry = pipeline.map().geometry();
+    const auto& map = pipeline.map().layers();
+    const auto& rating = pipeline.rating();
+    const std::pair<const char*, const grid::Layer*> layers[] = {
+        {"drift", &map.horizontal_drift_m}, {"highest", &map.highest_m},  {"lowest", &map.lowest_m},
+        {"normal_x", &rating.normal_x},     {"normal_y", &rating.normal_y}, {"normal_z", &rating.normal_z},
+        {"slope", &rating.slope},           {"step", &rating.step},       {"roughness", &rating.roughness},
+    };
+    for (const auto& [name, layer] : layers) {
+        writes += io::write_esri_grid(fmt::format("{}/{}.asc", out, name), geometry, or_unknown(*layer, geometry));
+    }
+}
+
+}  // namespace
+
+Status write_results(const RunOptions& options,
+                     const Settings& settings,
+                     const std::optional<io::MachineFile>& machine,
+                     const pipeline::Pipeline& pipeline,
+                     const RunRecord& record) {
+    const std::string& out = options.out_dir;
+    const grid::GridGeometry& geometry = pipeline.map().geometry();
+    const auto& layers = pipeline.map().layers();
+    Writes writes;
+    writes += io::write_config_of(out + "/config.yaml", settings);
+    writes += io::write_tum_trajectory(out + "/trajectory.tum", trajectory_of(record, Pose{}));
+    writes += io::write_tum_trajectory(out + "/trajectory_camera.tum",
+                                       trajectory_of(record, record.rig.body_from_left()));
+    writes += io::write_esri_grid(out + "/elevation.asc", geometry, layers.height_m);
+    writes += io::write_esri_grid(out + "/variance.asc", geometry, layers.height_var_m2);
+    writes += io::write_esri_grid(out + "/traversability.asc", geometry,
+                                  or_unknown(pipeline.rating().traversability, geometry));
+    if (options.all_layers) write_all_layers(out, pipeline, writes);
+    writes += io::write_ply(out + "/map.ply", map_cloud(pipeline));
+
+    const auto snapshot = std::make_unique<grid::MapSnapshot>();
+    Status sealed = pipeline.snapshot(hash_of(settings), *snapshot);
+    writes += sealed.ok() ? io::write_snapshot(out + "/map.snapshot", *snapshot) : std::move(sealed);
+
+    writes += write_pictures_and_report(options, settings, machine, pipeline, record);
+    writes += io::write_file(out + "/report.json", report_json(record, pipeline, writes.first()) + "\n");
+    return writes.first();
+}
+
+std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& pipeline) {
+    if (pipeline.map().known_cells() > 0) return "";
+    const FusionCounts& f = record.fusion;
+    const auto& config = pipeline.config().elevation;
+    if (f.points == 0) return "no frame had any depth: see the counts of each frame";
+    const std::pair<std::int64_t, std::string> causes[] = {
+        {f.outside, fmt::format("lie beyond the map (elevation.length_m = {:g}, centred on base_link)", config.length_m)},
+        {f.gated_range, "are nearer or farther than elevation.prefilter allows"},
+        {f.gated_height, "are above or below the height cut of elevation.prefilter"},
+        {f.gated_confidence, "are at depth edges, seen too flat, or likely outliers (elevation.pixels)"},
+        {f.gated_density, "have too few neighbours (elevation.prefilter)"},
+    };
+    const auto& worst = *std::max_element(std::begin(causes), std::end(causes),
+                                          [](const auto& a, const auto& b) { return a.first < b.first; });
+    return fmt::format("{} of {} depth points {}", worst.first, f.points, worst.second);
+}
+
+Percentiles percentiles(std::vector<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    const auto at = [&](double share) {
+        return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+    };
+    return {at(0.5), at(0.99), values.size()};
+}
+
+Percentiles stage_percentiles(const RunRecord& record, Stage stage) {
+    std::vector<double> values;
+    for (const FrameReport& frame : record.frames) {
+        if (frame.work == Work::full || stage == Stage::odometry) {
+            values.push_back(frame.stage_ms[static_cast<std::size_t>(stage)]);
+        }
+    }
+    return percentiles(std::move(values));
+}
+
+Percentiles frame_percentiles(const RunRecord& record) {
+    std::vector<double> values;
+    for (const FrameReport& frame : record.frames) {
+        if (frame.work != Work::full) continue;
+        double sum_ms = 0.0;
+        for (const double ms : frame.stage_ms) sum_ms += ms;
+        values.push_back(sum_ms);
+    }
+    return percentiles(std::move(values));
+}
+
+double peak_memory_mb() {
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports kB
+}
+
+std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline, const std::string& out_dir) {
+    const Percentiles frame = frame_percentiles(record);
+    std::string text = fmt::format("{} frames, {:.1f} ms a full frame (median), {} cells known\n{}\n",
+                                   record.frames.size(), frame.median, pipeline.map().known_cells(),
+                                   pipeline.alignment().reason);
+    if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
+        text += fmt::format("the map is empty: {}\n", reason);
+    }
+    if (record.truth) {
+        const TruthFigures& t = *record.truth;
+        text += fmt::format(
+            "against the truth, nothing aligned: elevation median |error| {:.1f} mm, 90 % within {:.1f} mm; away from "
+            "edges {:.2f} % above 50 mm; {:.1f} % of the cells visible within 2.5 m known; trajectory {:.1f} mm rmse; "
+            "{:.1f} % of depths within 3 sigma\n",
+            1e3 * t.elevation.median_abs_m, 1e3 * t.elevation.p90_abs_m,
+            100.0 * t.elevation_away_from_edges.share_over_50mm, 100.0 * t.coverage_within_2_5_m,
+            1e3 * t.trajectory.ate_rmse_m, 100.0 * t.depth.within_3_sigma);
+    }
+    return text + fmt::format("results in {}/, start with {}/report.html\n", out_dir, out_dir);
+}
+
+}  // namespace surefoot::app

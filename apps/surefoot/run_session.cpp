@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/run_session.hpp"
+
+#include <fmt/format.h>
+
+#include "apps/surefoot/progress.hpp"
+#include "surefoot/core/time.hpp"
+
+namespace surefoot::app {
+
+RunSession::RunSession(pipeline::Pipeline& pipeline, camera::FrameSource& source, int depth_every)
+    : pipeline_(pipeline), source_(source), depth_every_(depth_every), truth_(source) {
+    record_.source = source.info();
+    record_.rig = source.rig();
+}
+
+void RunSession::drive() {
+    const std::int64_t start_ns = steady_now_ns();
+    watch_for_interrupts();
+    Progress progress("run", record_.source.frames);
+    const std::vector<StereoFrame> buffered = first_frames();
+    if (!buffered.empty()) pipeline_.align(buffered);
+    for (const StereoFrame& frame : buffered) {
+        process(frame);
+        progress.advance(static_cast<int>(record_.frames.size()));
+    }
+    while (!record_.error) {
+        const auto frame = next_frame();
+        if (!frame) break;
+        process(*frame);
+        progress.advance(static_cast<int>(record_.frames.size()));
+    }
+    if (record_.frames.empty() && !record_.error) {
+        record_.error = input_error(fmt::format("{}: the source holds no frame", record_.source.path));
+    }
+    record_.truth = truth_.figures(pipeline_, record_.frames);
+    record_.wall_s = seconds_from_ns(steady_now_ns() - start_ns);
+}
+
+std::vector<StereoFrame> RunSession::first_frames() {
+    std::vector<StereoFrame> frames;
+    while (frames.size() < pipeline::Pipeline::kAlignmentFrames) {
+        auto frame = next_frame();
+        if (!frame) break;
+        frames.push_back(std::move(*frame));
+    }
+    return frames;
+}
+
+std::optional<StereoFrame> RunSession::next_frame() {
+    if (interrupted()) {
+        record_.error = Error{ErrorCode::interrupted, "interrupted by the user; the results up to here are kept"};
+        return std::nullopt;
+    }
+    auto frame = source_.next();
+    if (!frame) {
+        record_.error = frame.error();
+        return std::nullopt;
+    }
+    if (frame->has_value()) truth_.remember_depth(**frame);
+    return std::move(frame).value();
+}
+
+void RunSession::process(const StereoFrame& frame) {
+    const bool full = frame.index % depth_every_ == 0;
+    const FrameReport report = pipeline_.process(frame, full ? Work::full : Work::odometry);
+    if (full) truth_.compare_depth(frame, pipeline_);
+    record_.fusion += report.fusion;
+    record_.frames.push_back(report);
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/sim_truth.hpp"
+#include "io/machine_file.hpp"
+#include "surefoot/camera/frame_source.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::app {
+
+/// What a run did, frame by frame, and how it ended.
+struct RunRecord {
+    camera::SourceInfo source;
+    camera::StereoRig rig;
+    std::vector<FrameReport> frames;
+    FusionCounts fusion;               ///< summed over all frames
+    std::optional<Error> error;        ///< why it ended early
+    GreyImage last_left;               ///< rectified, for the report
+    camera::DepthImage last_depth;
+    std::optional<TruthFigures> truth;  ///< simulated sources only
+    double wall_s = 0.0;
+
+    [[nodiscard]] bool complete() const noexcept { return !error.has_value(); }
+};
+
+/// Drives a pipeline over a source: buffers the first frames for the alignment, then processes every
+/// frame. Stops at the first error of the source or when the user interrupts; what was computed before
+/// stays in `record` and in the pipeline's map.
+class RunSession {
+  public:
+    RunSession(pipeline::Pipeline& pipeline, camera::FrameSource& source, int depth_every);
+    /// Returns when the source ends, fails or is interrupted.
+    void drive();
+    [[nodiscard]] RunRecord& record() noexcept { return record_; }
+
+  private:
+    [[nodiscard]] std::optional<StereoFrame> next_frame();
+    [[nodiscard]] std::vector<StereoFrame> first_frames();
+    void process(const StereoFrame& frame);
+
+    pipeline::Pipeline& pipeline_;
+    camera::FrameSource& source_;
+    int depth_every_;
+    SimTruth truth_;
+    RunRecord record_;
+};
+
+}  // namespace surefoot::app

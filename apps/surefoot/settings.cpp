@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/settings.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "apps/surefoot/resources.hpp"
+#include "apps/surefoot/thread_pool.hpp"
+#include "io/config_yaml.hpp"
+
+namespace surefoot::app {
+
+void Settings::describe(ConfigVisitor& visitor) {
+    pipeline.describe(visitor);
+    visitor.begin_group("eval");
+    visitor.group("maps", maps);
+    visitor.end_group();
+}
+
+Result<Settings> load_settings(const CommonOptions& options) {
+    Settings settings;
+    const auto describe = io::describe_config(settings);
+    if (!options.preset.empty()) {
+        const auto text = find_resource("presets", options.preset);
+        if (!text) return text.error();
+        if (auto status = io::parse_config(*text, fmt::format("preset {}", options.preset), describe); !status) {
+            return status.error();
+        }
+    }
+    if (!options.config_file.empty()) {
+        if (auto status = io::read_config(options.config_file, describe); !status) {
+            return usage_error(status.error().message);
+        }
+    }
+    if (auto status = io::override_config_in(settings, options.settings); !status) return status.error();
+    if (const auto problem = settings.pipeline.problem()) return usage_error(*problem);
+    return settings;
+}
+
+std::uint64_t hash_of(const Settings& settings) {
+    std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a, 64 bit
+    for (const char c : io::format_config_of(settings)) {
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+    }
+    return hash;
+}
+
+std::unique_ptr<Executor> make_executor(const CommonOptions& options) {
+    const int threads =
+        options.threads > 0 ? options.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    if (threads == 1) return std::make_unique<Serial>();
+    return std::make_unique<ThreadPool>(threads);
+}
+
+std::int64_t steady_now_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+}  // namespace surefoot::app

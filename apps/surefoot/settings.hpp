@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "apps/surefoot/verbs.hpp"
+#include "eval/maps.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/pipeline/pipeline_config.hpp"
+
+namespace surefoot::app {
+
+/// Every setting of the program.
+struct Settings {
+    pipeline::PipelineConfig pipeline;
+    eval::EvalMapsConfig maps;
+
+    void describe(ConfigVisitor& visitor);
+};
+
+/// Defaults, then the preset, then the file, then each --set: later ones win.
+[[nodiscard]] Result<Settings> load_settings(const CommonOptions& options);
+
+/// Hash of every setting, as the map snapshot and the verdict carry it.
+[[nodiscard]] std::uint64_t hash_of(const Settings& settings);
+
+/// As many threads as asked for, or as the machine has.
+[[nodiscard]] std::unique_ptr<Executor> make_executor(const CommonOptions& options);
+
+/// Steady clock for stage times [ns].
+[[nodiscard]] std::int64_t steady_now_ns();
+
+}  // namespace surefoot::app

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/sim_truth.hpp"
+
+#include <cmath>
+
+#include "sim/truth.hpp"
+#include "surefoot/traversability/traversability.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr double kErrorBin_px = 0.01;
+constexpr float kDoubtful = 0.5F;
+constexpr double kVisibleRange_m = 2.5;
+
+double median_of(const std::vector<std::int64_t>& histogram, std::int64_t total) {
+    std::int64_t below = 0;
+    for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+        below += histogram[bin];
+        if (2 * below >= total) return (static_cast<double>(bin) + 0.5) * kErrorBin_px;
+    }
+    return static_cast<double>(histogram.size()) * kErrorBin_px;
+}
+
+double share(std::int64_t part, std::int64_t whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : std::nan("");
+}
+
+sim::Lattice lattice_of(const grid::GridGeometry& geometry) {
+    return {geometry.origin_m, geometry.nx, geometry.ny, geometry.resolution_m};
+}
+
+/// How true heights are rated: the same chain with the same settings as the live map.
+grid::Layer rated(const pipeline::Pipeline& pipeline, const grid::Layer& height_m) {
+    Serial serial;
+    traversability::TraversabilityLayers layers;
+    const double resolution_m = pipeline.map().geometry().resolution_m;
+    traversability::rate(pipeline.config().traversability.widened_to(resolution_m), height_m.view(), resolution_m,
+                         serial, layers);
+    return layers.traversability;
+}
+
+}  // namespace
+
+SimTruth::SimTruth(camera::FrameSource& source) : scene_(dynamic_cast<const sim::SceneSource*>(&source)) {}
+
+void SimTruth::remember_depth(const StereoFrame& frame) {
+    if (scene_ != nullptr && scene_->rig().rectified) depths_.emplace_back(frame.index, scene_->last_depth_m());
+}
+
+void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline) {
+    while (!depths_.empty() && depths_.front().first < frame.index) depths_.pop_front();
+    if (depths_.empty() || depths_.front().first != frame.index) return;
+    const Image<float>& truth_m = depths_.front().second;
+    const camera::DepthImage& depth = pipeline.depth();
+    const double fb_px_m = pipeline.rig().depth_to_disparity_px_m();
+    for (std::size_t i = 0; i < truth_m.size(); ++i) {
+        const double disparity_px = depth.disparity_px.data()[i];
+        const double true_z_m = truth_m.data()[i];
+        if (!(disparity_px > 0.0) || !(true_z_m > 0.0)) continue;
+        if (depth.outlier_probability.data()[i] > kDoubtful) {
+            ++doubtful_;
+            continue;
+        }
+        const double error_px = std::abs(disparity_px - fb_px_m / true_z_m);
+        const double sigma_px = depth.sigma_px.data()[i];
+        ++compared_;
+        within_3_sigma_ += error_px <= 3.0 * sigma_px ? 1 : 0;
+        within_1_sigma_ += error_px <= sigma_px ? 1 : 0;
+        const auto bin = static_cast<std::size_t>(error_px / kErrorBin_px);
+        ++error_histogram_[std::min(bin, error_histogram_.size() - 1)];
+        const double z_m = fb_px_m / disparity_px;
+        const double sigma_z_m = z_m * sigma_px / disparity_px;
+        RangeMean* range = std::abs(z_m - 1.0) <= 0.05 ? &near_ : std::abs(z_m - 2.0) <= 0.1 ? &far_ : nullptr;
+        if (range != nullptr) {
+            range->sum_m += sigma_z_m;
+            ++range->count;
+        }
+    }
+}
+
+std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline,
+                                              const std::vector<FrameReport>& frames) const {
+    if (scene_ == nullptr || frames.empty()) return std::nullopt;
+    TruthFigures figures;
+    const grid::GridGeometry& geometry = pipeline.map().geometry();
+    const grid::Layer& live_m = pipeline.map().layers().height_m;
+    const eval::EvalMapsConfig config;
+    const sim::Lattice lattice = lattice_of(geometry);
+    sim::SceneTruth truth = scene_->truth();
+    truth.trajectory.resize(std::min(truth.trajectory.size(), frames.size()));
+
+    figures.truth_height_m = sim::dem(truth.scene, lattice);
+    figures.error_m = eval::height_error(live_m, figures.truth_height_m);
+    figures.elevation = eval::elevation_errors(live_m, figures.truth_height_m, {}, config);
+    figures.elevation_away_from_edges = eval::elevation_errors(
+        live_m, figures.truth_height_m, eval::away_from_edges(figures.truth_height_m, config), config);
+    Serial serial;
+    const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kVisibleRange_m}, serial);
+    figures.coverage_within_2_5_m = eval::coverage(live_m, figures.truth_height_m, visible);
+    figures.calls = eval::classify(pipeline.rating().traversability, rated(pipeline, figures.truth_height_m),
+                                   config.safe_threshold);
+    figures.traversability = eval::traversability_errors(figures.calls, visible);
+
+    Trajectory estimate;
+    for (const FrameReport& frame : frames) estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
+    for (const auto& pose : truth.trajectory) figures.truth_trajectory.push_back({pose.time_ns, pose.T_world_body});
+    if (const auto errors = eval::evaluate_trajectory(estimate, figures.truth_trajectory,
+                                                      {.align = eval::Alignment::none})) {
+        figures.trajectory = *errors;
+    }
+
+    figures.depth.pixels = compared_;
+    figures.depth.within_3_sigma = share(within_3_sigma_, compared_);
+    figures.depth.within_1_sigma = share(within_1_sigma_, compared_);
+    figures.depth.median_abs_error_px = median_of(error_histogram_, compared_);
+    figures.depth.sigma_at_1_m_m = near_.sum_m / static_cast<double>(near_.count);
+    figures.depth.sigma_at_2_m_m = far_.sum_m / static_cast<double>(far_.count);
+    figures.depth.doubtful_share = share(doubtful_, doubtful_ + compared_);
+    return figures;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "eval/maps.hpp"
+#include "eval/trajectory.hpp"
+#include "sim/scene_source.hpp"
+#include "surefoot/camera/frame_source.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::app {
+
+/// Reported depth against exact depth, over all pixels that the matcher does not itself call doubtful.
+struct DepthFigures {
+    std::int64_t pixels = 0;
+    double within_3_sigma = 0.0;       ///< share of |error| <= 3 sigma_z
+    double within_1_sigma = 0.0;
+    double median_abs_error_px = 0.0;  ///< of the disparity
+    double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m
+    double sigma_at_2_m_m = 0.0;       ///< at 1.9-2.1 m
+    double doubtful_share = 0.0;       ///< pixels with an outlier probability above one half
+};
+
+/// A simulated run against the truth; nothing was aligned before the comparison.
+struct TruthFigures {
+    eval::ElevationErrors elevation;
+    eval::ElevationErrors elevation_away_from_edges;
+    double coverage_within_2_5_m = 0.0;  ///< share known of the cells that both eyes saw within 2.5 m
+    eval::TraversabilityErrors traversability;
+    eval::TrajectoryErrors trajectory;   ///< alignment none
+    DepthFigures depth;
+    grid::Layer truth_height_m;          ///< on the live map's cells
+    grid::Layer error_m;
+    Image<eval::Call> calls;
+    Trajectory truth_trajectory;
+};
+
+/// Collects the truth beside a run. Inert when the source is not simulated.
+class SimTruth {
+  public:
+    explicit SimTruth(camera::FrameSource& source);
+
+    /// Keeps the exact depth of a frame that was just rendered until it is compared.
+    void remember_depth(const StereoFrame& frame);
+    void compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline);
+    [[nodiscard]] std::optional<TruthFigures> figures(const pipeline::Pipeline& pipeline,
+                                                      const std::vector<FrameReport>& frames) const;
+
+  private:
+    struct RangeMean {
+        double sum_m = 0.0;
+        std::int64_t count = 0;
+    };
+    const sim::SceneSource* scene_ = nullptr;
+    std::deque<std::pair<int, Image<float>>> depths_;  ///< frame index, exact depth
+    std::int64_t compared_ = 0;
+    std::int64_t doubtful_ = 0;
+    std::int64_t within_3_sigma_ = 0;
+    std::int64_t within_1_sigma_ = 0;
+    RangeMean near_;
+    RangeMean far_;
+    std::vector<std::int64_t> error_histogram_ = std::vector<std::int64_t>(400, 0);  ///< 0.01 px bins
+};
+
+}  // namespace surefoot::app

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/surefoot/verbs.hpp"
+#include "io/machine_file.hpp"
+#include "surefoot/camera/frame_source.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::app {
+
+struct SourceRequest {
+    std::string source;  ///< path, or sim:SCENE
+    std::string rig_file;
+    double rate_hz = 0.0;  ///< 0 = the source's own
+    int max_frames = 0;    ///< 0 = all
+    std::uint64_t seed = 1;
+};
+
+/// Opens a recording, video or simulated scene.
+[[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& request,
+                                                                       Executor& executor);
+
+/// A machine file by path or by built-in name; nothing for an empty choice.
+[[nodiscard]] Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_name);
+
+/// The source's rig; where it does not know its own body, the machine's mount.
+[[nodiscard]] camera::StereoRig mounted_rig(const camera::StereoRig& rig,
+                                            const std::optional<io::MachineFile>& machine);
+
+}  // namespace surefoot::app

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/thread_pool.hpp"
+
+namespace surefoot::app {
+
+ThreadPool::ThreadPool(int threads) {
+    for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { run_worker(); });
+}
+
+ThreadPool::~ThreadPool() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stopping_ = true;
+    }
+    wake_.notify_all();
+    for (auto& worker : workers_) worker.join();
+}
+
+void ThreadPool::parallel_for(int count, const std::function<void(int)>& work) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    work_ = &work;
+    count_ = count;
+    next_ = 0;
+    if (count > 1) wake_.notify_all();
+    take_indices(lock);
+    done_.wait(lock, [this] { return running_ == 0; });
+    work_ = nullptr;
+}
+
+void ThreadPool::take_indices(std::unique_lock<std::mutex>& lock) {
+    while (work_ != nullptr && next_ < count_) {
+        const int index = next_++;
+        const auto* work = work_;
+        ++running_;
+        lock.unlock();
+        (*work)(index);
+        lock.lock();
+        if (--running_ == 0 && next_ >= count_) done_.notify_all();
+    }
+}
+
+void ThreadPool::run_worker() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!stopping_) {
+        take_indices(lock);
+        wake_.wait(lock, [this] { return stopping_ || (work_ != nullptr && next_ < count_); });
+    }
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace surefoot::app {
+
+/// Exit codes of every verb but `gate`.
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitUsage = 2;
+/// `gate` answers with its exit code, so that `surefoot gate ... && step` cannot fail open.
+inline constexpr int kExitNotTraversable = 3;
+inline constexpr int kExitGateError = 4;
+
+/// Options that every verb understands.
+struct CommonOptions {
+    std::string config_file;
+    std::vector<std::string> settings;  ///< key=value
+    std::string preset;
+    bool json = false;
+    int threads = 0;  ///< 0 = as many as the machine has cores
+    std::uint64_t seed = 1;
+};
+
+struct RunOptions {
+    CommonOptions common;
+    std::string source;
+    std::string out_dir;
+    std::string rig_file;
+    std::string machine;
+    double rate_hz = 0.0;
+    int max_frames = 0;
+    int depth_every = 1;
+    bool all_layers = false;
+};
+int run(const RunOptions& options);
+
+struct SimOptions {
+    CommonOptions common;
+    std::string scene;
+    std::string out_dir;
+    bool list = false;
+    bool depth = false;
+    int frames = 0;
+    double rate_hz = 0.0;
+};
+int simulate(const SimOptions& options);
+
+struct RateOptions {
+    CommonOptions common;
+    std::string dem;
+    std::string out_dir;
+    double scale_m_per_px = 0.0;
+    double height_m = 0.0;
+};
+int rate(const RateOptions& options);
+
+struct FuseOptions {
+    CommonOptions common;
+    std::string steps;
+    std::string out_dir;
+};
+int fuse(const FuseOptions& options);
+
+struct GroundOptions {
+    CommonOptions common;
+    std::string cloud;
+    std::string frame;  ///< optical | body | "" = by the cloud
+};
+int ground(const GroundOptions& options);
+
+struct GateOptions {
+    CommonOptions common;
+    std::string map_dir;
+    std::string pose;  ///< x,y,yaw
+    int command = 0;
+    std::string machine = "rex";
+    std::string explain_file;
+    bool vouch = true;
+};
+int gate(const GateOptions& options);
+
+struct EvalTrajectoryOptions {
+    CommonOptions common;
+    std::string estimate;
+    std::string truth;
+    std::string align = "se3";
+    double rate_hz = 0.0;
+};
+int eval_trajectory(const EvalTrajectoryOptions& options);
+
+struct EvalMapsOptions {
+    CommonOptions common;
+    std::string live_dir;
+    std::string truth_dir;
+};
+int eval_maps(const EvalMapsOptions& options);
+
+struct ConfigOptions {
+    CommonOptions common;
+    bool check_only = false;
+};
+int config(const ConfigOptions& options);
+
+struct DoctorOptions {
+    CommonOptions common;
+    std::string rig_file;
+    std::string machine;
+};
+int doctor(const DoctorOptions& options);
+
+struct BenchOptions {
+    CommonOptions common;
+    std::string group;
+};
+int bench(const BenchOptions& options);
+
+struct RecordOptions {
+    CommonOptions common;
+    std::string source;
+    std::string out_dir;
+    std::string rig_file;
+    double rate_hz = 0.0;
+    int max_frames = 0;
+};
+int record(const RecordOptions& options);
+
+struct ReplayOptions {
+    CommonOptions common;
+    std::string source;
+    std::string rig_file;
+    double speed = 1.0;
+};
+int replay(const ReplayOptions& options);
+
+struct InfoOptions {
+    CommonOptions common;
+    std::string source;
+    std::string rig_file;
+};
+int info(const InfoOptions& options);
+
+}  // namespace surefoot::app

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace surefoot::eval {
+
+/// One pixel, sRGB.
+struct Rgb8 {
+    std::uint8_t r = 0;
+    std::uint8_t g = 0;
+    std::uint8_t b = 0;
+    friend bool operator==(const Rgb8&, const Rgb8&) = default;
+};
+
+/// Colour maps that stay readable with every common colour vision deficiency. Sequential maps grow
+/// monotonically in lightness; diverging maps are lightest in the middle. `safety` jumps from
+/// orange to blue there: each colour belongs to one side of the limit.
+enum class ColorMap : std::uint8_t {
+    viridis,  ///< sequential (Smith and van der Walt 2015)
+    cividis,  ///< sequential (Nunez, Anderton and Renslow 2018)
+    magma,    ///< sequential (Smith and van der Walt 2015)
+    grey,     ///< sequential, black to white
+    safety,   ///< diverging: orange = unsafe, blue = safe (Okabe and Ito 2008 hues)
+    balance,  ///< diverging: red below, blue above
+};
+
+/// Colour at position s in [0, 1]; outside is clamped. s must be a number.
+[[nodiscard]] Rgb8 color_at(ColorMap map, double s);
+[[nodiscard]] bool is_diverging(ColorMap map) noexcept;
+
+/// CIE 1976 lightness L* of a colour, 0 (black) to 100 (white).
+[[nodiscard]] double lightness(Rgb8 color);
+
+/// (1 - weight) * a + weight * b, rounded.
+[[nodiscard]] Rgb8 mixed(Rgb8 a, Rgb8 b, double weight);
+
+/// Values to colours: low and high are the ends; a diverging map has its middle at `centre`.
+struct ColorScale {
+    ColorMap map = ColorMap::viridis;
+    double low = 0.0;
+    double high = 1.0;
+    double centre = 0.5;  ///< diverging maps only
+    [[nodiscard]] Rgb8 operator()(double value) const;
+};
+
+/// The fixed colours of all pictures and reports (Okabe and Ito 2008, where they name a thing).
+namespace palette {
+inline constexpr Rgb8 kInk{28, 30, 34};
+inline constexpr Rgb8 kSoftInk{96, 100, 108};
+inline constexpr Rgb8 kPaper{255, 255, 255};
+inline constexpr Rgb8 kFaint{222, 224, 228};
+inline constexpr Rgb8 kBlack{0, 0, 0};
+inline constexpr Rgb8 kSafe{0, 114, 178};
+inline constexpr Rgb8 kUnsafe{213, 94, 0};
+inline constexpr Rgb8 kGreen{0, 158, 115};
+inline constexpr Rgb8 kPink{204, 121, 167};
+inline constexpr Rgb8 kYellow{240, 228, 66};
+}  // namespace palette
+
+}  // namespace surefoot::eval

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/html_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace surefoot::eval {
+namespace {
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
+/// The first thing that is wrong with the nesting of tags and the use of '<' and '&', or nothing.
+std::string structure_problem(const std::string& html) {
+    static const std::set<std::string> kVoid = {
+        "meta", "img", "rect", "line", "polyline", "!DOCTYPE"};
+    std::vector<std::string> open;
+    for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at + 1)) {
+        const std::size_t end = html.find('>', at);
+        if (end == std::string::npos) return "a tag without end";
+        const std::string tag = html.substr(at + 1, end - at - 1);
+        if (tag.find('<') != std::string::npos) return "'<' inside <" + tag;
+        const bool closes = tag[0] == '/';
+        const std::string name = tag.substr(closes, tag.find_first_of(" /", closes) - closes);
+        if (kVoid.count(name) != 0) continue;
+        if (!closes) {
+            open.push_back(name);
+            if (name == "style") at = html.find("</style>", at) - 1;
+        } else if (open.empty() || open.back() != name) {
+            return "</" + name + "> closes " + (open.empty() ? "nothing" : open.back());
+        } else {
+            open.pop_back();
+        }
+    }
+    return open.empty() ? "" : "never closed: " + open.back();
+}
+
+std::vector<FrameReport> frames(int count) {
+    std::vector<FrameReport> reports;
+    for (int k = 0; k < count; ++k) {
+        FrameReport report;
+        report.time_ns = k * 100'000'000LL;
+        report.index = k;
+        report.motion.health = k == 0 ? Health::lost : k == 3 ? Health::degraded : Health::ok;
+        report.motion.reason = k == 0   ? HealthReason::first_frame
+                               : k == 3 ? HealthReason::blur
+                                        : HealthReason::none;
+        report.stage_ms = {1.0, 8.0 + k, k % 2 == 0 ? 10.0 : 0.0, 0.0, 3.0, 2.0};
+        report.fusion.points = 1000;
+        report.fusion.gated_range = 250;
+        report.fusion.cells_measured = 2000;
+        reports.push_back(report);
+    }
+    return reports;
+}
+
+ReportContent full_content() {
+    ReportContent content;
+    content.title = "Run of <sim> & \"more\"";
+    content.summary = {"One line.", "5 > 3 & 2 < 4"};
+    content.pictures = {
+        {"first", {1, 2, 3}, true}, {"second <b>", {4, 5, 6, 7}, false}, {"third", {9}, false}};
+    content.figures = {{"ATE", "0.08", "m", "51 matched"}};
+    content.reasons = {"The map is empty: floor < 6 m is not seen."};
+    content.tables = {{"Numbers", {"a", "b"}, {{"1", "<2>"}}}};
+    content.configuration = {"", {"key", "value"}, {{"stereo.disparities", "64"}}};
+    content.footer = "end";
+    add_frames(content, frames(20));
+    return content;
+}
+
+TEST(HtmlReport, Base64OfTheStandard) {
+    const auto encode = [](const std::string& text) {
+        return base64(std::vector<std::uint8_t>(text.begin(), text.end()));
+    };
+    EXPECT_EQ(encode(""), "");  // RFC 4648 section 10
+    EXPECT_EQ(encode("f"), "Zg==");
+    EXPECT_EQ(encode("fo"), "Zm8=");
+    EXPECT_EQ(encode("foo"), "Zm9v");
+    EXPECT_EQ(encode("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(base64(std::vector<std::uint8_t>{0xfb, 0xff, 0xfe}), "+//+");
+}
+
+TEST(HtmlReport, TextIsEscaped) {
+    EXPECT_EQ(escaped("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
+    EXPECT_EQ(escaped(std::string("a\0b\x01", 4)), "a b ");
+    EXPECT_EQ(escaped("Stra\xc3\x9f"
+                      "e"),
+              "Stra\xc3\x9f"
+              "e");
+}
+
+TEST(HtmlReport, IsWellNestedAndSelfContained) {
+    const std::string html = render_html(full_content());
+    EXPECT_EQ(structure_problem(html), "");
+    EXPECT_EQ(count_of(html, "http"), 0u);
+    EXPECT_EQ(count_of(html, "<script"), 0u);
+    EXPECT_EQ(count_of(html, "<link"), 0u);
+    EXPECT_EQ(count_of(html, "url("), 0u);
+    EXPECT_EQ(count_of(html, "src="), count_of(html, "src=\"data:image/png;base64,"));
+}
+
+TEST(HtmlReport, HoldsEveryPictureOnceAndFirst) {
+    const ReportContent content = full_content();
+    const std::string html = render_html(content);
+    std::size_t last = 0;
+    for (const ReportPicture& picture : content.pictures) {
+        EXPECT_EQ(count_of(html, "base64," + base64(picture.png) + "\""), 1u) << picture.caption;
+        EXPECT_GT(html.find(base64(picture.png) + "\""), last);
+        last = html.find(base64(picture.png) + "\"");
+    }
+    EXPECT_LT(last, html.find("Key figures"));
+    EXPECT_EQ(count_of(html, "figure class=\"wide\""), 1u);
+}
+
+TEST(HtmlReport, ShowsEveryPart) {
+    const std::string html = render_html(full_content());
+    for (const char* part : {"Run of &lt;sim&gt; &amp; &quot;more&quot;",
+                             "5 &gt; 3",
+                             "0.08",
+                             "51 matched",
+                             "The map is empty",
+                             "odometry",
+                             "stereo",
+                             "Health of the motion estimate",
+                             "first frame",
+                             "blur",
+                             "&lt;2&gt;",
+                             "stereo.disparities",
+                             "too near or too far",
+                             "(25.0 %)",
+                             "20\u202f000",
+                             "end</footer>"}) {
+        EXPECT_NE(html.find(part), std::string::npos) << part;
+    }
+    EXPECT_EQ(count_of(html, "<svg"), 3u);
+    EXPECT_EQ(count_of(html, "nan"), 0u);
+    EXPECT_EQ(count_of(html, "inf"), 0u);
+}
+
+TEST(HtmlReport, EmptyPartsLeaveNoHeading) {
+    ReportContent content;
+    content.title = "empty";
+    const std::string html = render_html(content);
+    EXPECT_EQ(structure_problem(html), "");
+    EXPECT_EQ(count_of(html, "<h2>"), 0u);
+    add_frames(content, {});
+    EXPECT_EQ(render_html(content), html);
+    add_frames(content, frames(1));
+    EXPECT_EQ(structure_problem(render_html(content)), "");
+    EXPECT_EQ(count_of(render_html(content), "nan"), 0u);
+}
+
+TEST(HtmlReport, FramesBecomeTimesAndHealth) {
+    ReportContent content;
+    add_frames(content, frames(20));
+    ASSERT_EQ(content.stages.size(), std::size_t{kStageCount});
+    EXPECT_EQ(content.stages[1].ms.size(), 20u);
+    EXPECT_EQ(content.stages[2].ms.size(), 10u);  // frames in which it did not run do not count
+    EXPECT_EQ(content.stages[3].ms.size(), 0u);
+    EXPECT_DOUBLE_EQ(content.frame_ms[2], 1.0 + 10.0 + 10.0 + 3.0 + 2.0);
+    EXPECT_NEAR(content.frame_limit_ms, 100.0, 1e-9);
+    EXPECT_EQ(content.health.size(), 20u);
+    EXPECT_DOUBLE_EQ(content.health[3].time_s, 0.3);
+}
+
+TEST(SvgPlot, ASpikeSurvivesThinning) {
+    std::vector<double> ms(10'000, 5.0);
+    ms[7'777] = 50.0;
+    const std::string svg = frame_times_svg(ms, 0.0);
+    EXPECT_EQ(count_of(svg, "limit"), 0u);
+    // The axis reaches 1.05 times the spike, whose point is therefore at 190 - 180 / 1.05.
+    EXPECT_EQ(count_of(svg, ",18.6 "), 1u);
+}
+
+TEST(SvgPlot, StageBarsAreToScale) {
+    const std::string svg = stage_bars_svg({{"a", {10.0, 10.0}}, {"none", {}}, {"b", {5.0}}});
+    // The plot is 600 - 100 - 174 wide.
+    EXPECT_EQ(count_of(svg, "width=\"326.0\" height=\"18.0\" class=\"median\""), 1u) << svg;
+    EXPECT_EQ(count_of(svg, "width=\"163.0\" height=\"18.0\" class=\"median\""), 1u);
+    EXPECT_EQ(count_of(svg, "none"), 0u);
+    EXPECT_TRUE(stage_bars_svg({}).empty());
+}
+
+TEST(SvgPlot, HealthBandsCoverTheRun) {
+    const std::string svg = health_svg({{0.0, Health::ok, {}},
+                                        {1.0, Health::ok, {}},
+                                        {2.0, Health::lost, HealthReason::blur},
+                                        {3.0, Health::ok, {}}});
+    EXPECT_EQ(count_of(svg, "<title>"), 3u);
+    EXPECT_EQ(count_of(svg, "x=\"0.0\" y=\"0.0\" width=\"610.0\" height=\"34.0\" class=\"ok\""), 1u)
+        << svg;
+    EXPECT_EQ(count_of(svg, "x=\"610.0\" y=\"0.0\" width=\"305.0\" height=\"34.0\" class=\"lost\""),
+              1u);
+    EXPECT_NE(svg.find("75.0 % (3 frames)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surefoot::eval

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/map_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/ticks.hpp"
+
+namespace surefoot::eval {
+namespace {
+
+constexpr int kTickLength_px = 6;
+constexpr double kSmallestBody_px = 30.0;
+constexpr double kBodyLength_m = 0.35;
+
+TextStyle label_style(TextAnchor anchor) {
+    TextStyle style;
+    style.cap_height_px = layout::kTextCap_px;
+    style.anchor = anchor;
+    return style;
+}
+
+int tick_count(int length_px) {
+    return std::max(2, length_px / 110);
+}
+
+/// The plot alone, so that nothing is drawn over its border.
+Picture cut_out(const Picture& picture, const RectPx& rect) {
+    Picture part(rect.width, rect.height);
+    paste(part, picture, -rect.left, -rect.top);
+    return part;
+}
+
+std::vector<PointPx> to_px(const MapView& view, const std::vector<Eigen::Vector2d>& points_m) {
+    std::vector<PointPx> points;
+    for (const Eigen::Vector2d& p_m : points_m) {
+        if (p_m.allFinite()) points.push_back(view.to_px(p_m));
+    }
+    return points;
+}
+
+void draw_body(Picture& picture, const MapView& view, const Pose& T_odom_body) {
+    const double yaw = yaw_rad(T_odom_body);
+    const PointPx forward{-std::sin(yaw), -std::cos(yaw)};  // +x is up, +y is left
+    draw_body_symbol(picture,
+                     view.to_px(T_odom_body.translation_m.head<2>()),
+                     forward,
+                     std::max(kSmallestBody_px, kBodyLength_m * view.px_per_m));
+}
+
+void draw_mark(Picture& picture, const MapView& view, const Mark& mark) {
+    const PointPx center = view.to_px(mark.point_m);
+    draw_mark_symbol(picture, center);
+    TextStyle style = label_style(TextAnchor::left);
+    style.halo = true;
+    style.bold = true;
+    const double width = text_width_px(mark.label, style);
+    const bool fits_right = center.u + 20.0 + width < view.plot.right() - 8.0;
+    if (!fits_right) style.anchor = TextAnchor::right;
+    draw_text(picture, {center.u + (fits_right ? 20.0 : -20.0), center.v}, mark.label, style);
+}
+
+}  // namespace
+
+void draw_axes(Picture& picture, const MapView& view) {
+    const RectPx& plot = view.plot;
+    draw_rect(picture, plot, 2, palette::kInk);
+    const Ticks x_ticks = nice_ticks(view.x_min_m(), view.x_max_m, tick_count(plot.height));
+    for (const double x_m : x_ticks.values) {
+        const double v = view.to_px({x_m, 0.0}).v;
+        draw_line(
+            picture, {plot.left - 2.0 - kTickLength_px, v}, {plot.left - 2.0, v}, 2, palette::kInk);
+        draw_text(
+            picture, {plot.left - 14.0, v}, x_ticks.label(x_m), label_style(TextAnchor::right));
+    }
+    const Ticks y_ticks = nice_ticks(view.y_min_m(), view.y_max_m, tick_count(plot.width));
+    for (const double y_m : y_ticks.values) {
+        const double u = view.to_px({0.0, y_m}).u;
+        draw_line(picture,
+                  {u, plot.bottom() + 2.0},
+                  {u, plot.bottom() + 2.0 + kTickLength_px},
+                  2,
+                  palette::kInk);
+        draw_text(picture,
+                  {u, plot.bottom() + 24.0},
+                  y_ticks.label(y_m),
+                  label_style(TextAnchor::centre));
+    }
+    TextStyle name = label_style(TextAnchor::centre);
+    name.color = palette::kSoftInk;
+    draw_text(picture, {plot.left + 0.5 * plot.width, plot.bottom() + 60.0}, "y (left) [m]", name);
+    name.upward = true;
+    draw_text(picture, {28.0, plot.top + 0.5 * plot.height}, "x (forward) [m]", name);
+}
+
+void draw_scale_bar(Picture& picture, const MapView& view) {
+    const double plot_width_m = view.plot.width / view.px_per_m;
+    const bool metre_fits = view.px_per_m >= 60.0 && plot_width_m >= 2.5;
+    const double length_m = metre_fits ? 1.0 : nice_below(0.2 * plot_width_m);
+    const int length_px = static_cast<int>(std::lround(length_m * view.px_per_m));
+    Ticks format;
+    format.step = nice_below(length_m);
+    format.decimals = std::max(0, static_cast<int>(-std::floor(std::log10(length_m) + 1e-9)));
+    const std::string label = format.label(length_m) + " m";
+    const int text_px = static_cast<int>(text_width_px(label, label_style(TextAnchor::left)));
+    const int box_px = std::max(length_px, text_px) + 28;
+    if (box_px + 28 > view.plot.width || view.plot.height < 82) return;
+    const RectPx box{view.plot.left + 14, view.plot.bottom() - 14 - 54, box_px, 54};
+    fill_rect(picture, box, palette::kPaper, 0.88);
+    const double middle_u = box.left + 0.5 * box.width;
+    draw_text(picture, {middle_u, box.top + 18.0}, label, label_style(TextAnchor::centre));
+    fill_rect(picture,
+              {static_cast<int>(middle_u - 0.5 * length_px), box.top + 36, length_px, 6},
+              palette::kInk);
+}
+
+void draw_path(Picture& picture,
+               const MapView& view,
+               const std::vector<Eigen::Vector2d>& points_m,
+               Rgb8 color,
+               int width_px) {
+    draw_polyline(picture, to_px(view, points_m), width_px, color);
+}
+
+void draw_overlays(Picture& picture, const MapView& view, const Overlays& overlays) {
+    Picture part = cut_out(picture, view.plot);
+    MapView inside = view;
+    inside.plot.left = 0;
+    inside.plot.top = 0;
+    if (overlays.scale_bar) draw_scale_bar(part, inside);
+    draw_path(part, inside, overlays.trajectory_m, palette::kPaper, 7);
+    draw_path(part, inside, overlays.trajectory_m, palette::kInk, 3);
+    for (const Outline& outline : overlays.outlines) {
+        const std::vector<PointPx> points = to_px(inside, outline.points_m);
+        draw_polyline(part, points, 7, palette::kPaper, true);
+        draw_polyline(part, points, 3, outline.color, true);
+    }
+    if (overlays.T_odom_body && overlays.T_odom_body->all_finite())
+        draw_body(part, inside, *overlays.T_odom_body);
+    for (const Mark& mark : overlays.marks) {
+        if (mark.point_m.allFinite()) draw_mark(part, inside, mark);
+    }
+    paste(picture, part, view.plot.left, view.plot.top);
+}
+
+std::vector<KeyEntry> key_of(const Overlays& overlays) {
+    std::vector<KeyEntry> entries;
+    if (overlays.T_odom_body) entries.push_back({Symbol::body, palette::kInk, "base_link", {}});
+    if (overlays.trajectory_m.size() > 1) {
+        entries.push_back({Symbol::line, palette::kInk, "path", {}});
+    }
+    for (const Outline& outline : overlays.outlines) {
+        const auto same = [&](const KeyEntry& entry) { return entry.label == outline.label; };
+        if (outline.label.empty() || std::any_of(entries.begin(), entries.end(), same)) continue;
+        entries.push_back({Symbol::outline, outline.color, outline.label, {}});
+    }
+    return entries;
+}
+
+}  // namespace surefoot::eval

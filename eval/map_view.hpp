@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/canvas.hpp"
+#include "eval/colormap.hpp"
+#include "eval/figure.hpp"
+#include "surefoot/core/pose.hpp"
+
+namespace surefoot::eval {
+
+/// The ground seen from above: x forward is up, y left is left.
+struct MapView {
+    RectPx plot;
+    double x_max_m = 0.0;  ///< at the upper border
+    double y_max_m = 0.0;  ///< at the left border
+    double px_per_m = 1.0;
+
+    [[nodiscard]] PointPx to_px(const Eigen::Vector2d& p_m) const {
+        return {plot.left + (y_max_m - p_m.y()) * px_per_m,
+                plot.top + (x_max_m - p_m.x()) * px_per_m};
+    }
+    [[nodiscard]] Eigen::Vector2d from_px(PointPx p) const {
+        return {x_max_m - (p.v - plot.top) / px_per_m, y_max_m - (p.u - plot.left) / px_per_m};
+    }
+    [[nodiscard]] double x_min_m() const { return x_max_m - plot.height / px_per_m; }
+    [[nodiscard]] double y_min_m() const { return y_max_m - plot.width / px_per_m; }
+};
+
+/// What is drawn over a map; coordinates of the map's frame [m].
+struct Outline {
+    std::vector<Eigen::Vector2d> points_m;
+    Rgb8 color = palette::kInk;
+    std::string label;  ///< in the key; outlines with the same label share one entry
+};
+struct Mark {
+    Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+    std::string label;  ///< beside the mark
+};
+struct Overlays {
+    std::optional<Pose> T_odom_body;
+    std::vector<Outline> outlines;  ///< footprints
+    std::vector<Eigen::Vector2d> trajectory_m;
+    std::vector<Mark> marks;
+    bool scale_bar = true;
+};
+
+/// Ticks and names of the two axes around the plot.
+void draw_axes(Picture& picture, const MapView& view);
+/// A bar of 1 m, or of the round length that fits the plot better, in its lower left corner; a plot
+/// too small for it gets none.
+void draw_scale_bar(Picture& picture, const MapView& view);
+/// Draws inside the plot only.
+void draw_overlays(Picture& picture, const MapView& view, const Overlays& overlays);
+[[nodiscard]] std::vector<KeyEntry> key_of(const Overlays& overlays);
+
+/// Draws `points_m` as a line.
+void draw_path(Picture& picture,
+               const MapView& view,
+               const std::vector<Eigen::Vector2d>& points_m,
+               Rgb8 color,
+               int width_px);
+
+}  // namespace surefoot::eval

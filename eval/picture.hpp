@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/canvas.hpp"
+#include "eval/colormap.hpp"
+#include "eval/figure.hpp"
+#include "eval/map_view.hpp"
+#include "eval/maps.hpp"
+#include "eval/trajectory.hpp"
+#include "surefoot/core/views.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::eval {
+
+struct ValueRange {
+    double low = 0.0;
+    double high = 1.0;
+};
+
+/// How numbers become colours.
+struct LayerStyle {
+    FigureText text;
+    std::string unit;  ///< on the legend
+    ColorMap map = ColorMap::viridis;
+    std::optional<ValueRange> range;  ///< nothing: 1st to 99th percentile of the known values
+    double min_span = 0.0;            ///< a range found from the values is at least this wide
+    std::optional<double> centre;     ///< middle of a diverging map; nothing: middle of the range
+    std::string low_word;             ///< diverging maps: beside the legend below the centre
+    std::string high_word;
+    double value_scale = 1.0;   ///< shown = value_scale * stored, e.g. 1000 for mm
+    bool hill_shading = false;  ///< lets heights look like ground lit from the upper left
+};
+
+/// Ready-made styles; `subtitle` may be changed afterwards.
+[[nodiscard]] LayerStyle elevation_style();
+[[nodiscard]] LayerStyle traversability_style(double safe_threshold);
+/// For one-sigma heights stored in m, shown in mm.
+[[nodiscard]] LayerStyle height_sigma_style();
+
+/// Range of the shown values by the rule of LayerStyle; {0, 1} when nothing is known.
+[[nodiscard]] ValueRange shown_range(const Image<float>& values, const LayerStyle& style);
+
+/// A map layer seen from above, x forward up and y left, one square per cell; unknown is hatched
+/// grey. Values outside the range take the colour of its end; the legend then ends in a point.
+[[nodiscard]] Picture render_layer(const grid::GridGeometry& geometry,
+                                   const grid::Layer& layer,
+                                   const LayerStyle& style,
+                                   const Overlays& overlays);
+
+/// Height error live - truth in mm: red = the map is too low (truth above it), blue = too high.
+[[nodiscard]] Picture render_error_map(const grid::GridGeometry& geometry,
+                                       const grid::Layer& error_m,
+                                       const FigureText& text,
+                                       const Overlays& overlays);
+
+/// What the live map calls safe is white, unsafe black; the dot says whether that is right: green =
+/// right, blue on white = unsafe called safe, orange on black = safe called unsafe.
+[[nodiscard]] Picture render_confusion(const grid::GridGeometry& geometry,
+                                       const Image<Call>& calls,
+                                       const FigureText& text,
+                                       const Overlays& overlays);
+
+[[nodiscard]] Picture render_camera_image(const GreyImage& image, const FigureText& text);
+
+/// Disparity [px] of the rectified left image. With `depth_times_disparity_m_px` (focal length
+/// times baseline) > 0 the legend also shows the depth in m.
+[[nodiscard]] Picture render_disparity(const Image<float>& disparity_px,
+                                       double depth_times_disparity_m_px,
+                                       const FigureText& text);
+
+/// One sigma of a per-pixel quantity in `unit`.
+[[nodiscard]] Picture render_sigma(const Image<float>& sigma,
+                                   const std::string& unit,
+                                   const FigureText& text);
+
+/// Positions seen from above. `truth` may be empty; both are drawn as they are (align before).
+[[nodiscard]] Picture render_trajectory(const Trajectory& estimate,
+                                        const Trajectory& truth,
+                                        const FigureText& text);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surefoot/core/frame.hpp"
+
+namespace surefoot::eval {
+
+/// Wall times of one stage in the frames where it ran [ms].
+struct StageTiming {
+    std::string name;
+    std::vector<double> ms;
+};
+
+struct HealthSample {
+    double time_s = 0.0;  ///< since the start of the run
+    Health health = Health::lost;
+    HealthReason reason = HealthReason::none;
+};
+
+/// `text` with the five characters that mean something in HTML and SVG replaced, and control
+/// characters that XML forbids turned into spaces.
+[[nodiscard]] std::string escaped(const std::string& text);
+
+/// Inline SVG drawings without script or outside resource; colours come from the page's style sheet
+/// (classes axis, label, value, median, tail, line, limit, ok, degraded, lost).
+
+/// One bar per stage: solid to the median, thin to the 99th percentile. Stages without samples are
+/// left out; an empty string when none is left.
+[[nodiscard]] std::string stage_bars_svg(const std::vector<StageTiming>& stages);
+
+/// Time of each frame, the largest of neighbouring frames where there are more than pixels.
+/// `limit_ms` > 0 is drawn as a line. Empty string for fewer than two frames.
+[[nodiscard]] std::string frame_times_svg(const std::vector<double>& frame_ms, double limit_ms);
+
+/// Health over time as a coloured band with its legend; samples in time order. Empty string without
+/// samples.
+[[nodiscard]] std::string health_svg(const std::vector<HealthSample>& samples);
+
+}  // namespace surefoot::eval

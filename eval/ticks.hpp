@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace surefoot::eval {
+
+/// Round numbers on an axis: multiples of 1, 2 or 5 times a power of ten.
+struct Ticks {
+    std::vector<double> values;  ///< ascending, within the range
+    double step = 1.0;
+    int decimals = 0;  ///< enough to tell neighbours apart
+    [[nodiscard]] std::string label(double value) const;
+};
+
+/// Largest 1, 2 or 5 times a power of ten that is not above `value` (> 0).
+[[nodiscard]] double nice_below(double value);
+
+/// At most about `target` + 1 round numbers in [low, high]; low < high, both finite.
+[[nodiscard]] Ticks nice_ticks(double low, double high, int target);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "surefoot/core/config.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::eval {
+
+/// The motion of the estimate's world frame that is taken away before positions are compared.
+enum class Alignment : std::uint8_t {
+    se3,   ///< rotation and translation (Umeyama 1991, without scale)
+    yaw,   ///< translation and rotation about z: both world frames have z up
+    none,  ///< both share one world frame
+};
+
+struct EvalTrajectoryConfig {
+    Alignment align = Alignment::se3;
+    double tolerance_s = 0.010;   ///< largest time between an estimate and its true pose
+    double rpe_interval_s = 0.0;  ///< 0: relative errors from one matched pose to the next
+    void describe(ConfigVisitor& visitor);
+};
+
+/// An estimated pose and its true pose, as positions in the two trajectories.
+struct PosePair {
+    std::size_t estimate = 0;
+    std::size_t truth = 0;
+    friend bool operator==(const PosePair&, const PosePair&) = default;
+};
+
+/// Pairs nearest in time, one to one: of all pairs within the tolerance the closest is taken first
+/// (ties: the earlier estimate, then the earlier truth). Sorted by the estimate's time.
+[[nodiscard]] std::vector<PosePair> associate(const Trajectory& estimate,
+                                              const Trajectory& truth,
+                                              double tolerance_s);
+
+/// T_truth_estimate that brings the columns of `estimate_m` closest to those of `truth_m` (least
+/// squares; columns correspond). Where the points leave a rotation open any best one is returned.
+[[nodiscard]] Pose align_positions(const Eigen::Matrix3Xd& estimate_m,
+                                   const Eigen::Matrix3Xd& truth_m,
+                                   Alignment align);
+
+/// Errors over the matched poses (Sturm et al. 2012 for ATE and RPE).
+struct TrajectoryErrors {
+    double ate_rmse_m = 0.0;        ///< positions after alignment
+    double rpe_trans_rmse_m = 0.0;  ///< of (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), any alignment
+    double rpe_rot_rmse_deg = 0.0;
+    /// 100 |t| / path length, t = error of the motion from the first to the last matched pose. It
+    /// needs no alignment. NaN when the true path is shorter than 1 mm.
+    double drift_percent = 0.0;
+    int matched = 0;
+    double path_length_m = 0.0;  ///< of the matched true positions
+    double end_error_m = 0.0;    ///< |t| above
+    Pose T_truth_estimate;       ///< the alignment
+    std::vector<PosePair> pairs;
+    std::vector<double> position_error_m;  ///< per pair, after alignment
+};
+
+/// Compares an estimated trajectory with the truth; both give poses of the same body. Truth without
+/// stamps (KITTI) gets the estimate's stamps from the caller.
+/// Errors: a pose that is not finite; too few poses that match in time (3 for se3, otherwise 2).
+[[nodiscard]] Result<TrajectoryErrors> evaluate_trajectory(const Trajectory& estimate,
+                                                           const Trajectory& truth,
+                                                           const EvalTrajectoryConfig& config);
+
+/// Every pose moved into the truth's world: T_truth_estimate * T_estimate_body.
+[[nodiscard]] Trajectory transformed(const Pose& T_truth_estimate, const Trajectory& estimate);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/core/config.hpp"
+#include "surefoot/core/result.hpp"
+
+/// Configuration objects <-> YAML. Works with everything that has `void describe(ConfigVisitor&)`.
+/// Strict: an unknown key, a wrong type or a value out of range is a usage error with file and
+/// line, and the object is then unchanged.
+namespace surefoot::io {
+
+/// Walks a config object with a visitor.
+using DescribeConfig = std::function<void(ConfigVisitor&)>;
+
+/// One key with its present value, flat.
+struct ConfigEntry {
+    std::string key;    ///< with its groups: "elevation.length_m"
+    std::string value;  ///< reads back to the same bits
+    std::string range;  ///< "0.1 .. 100", "true | false", "mean_nan | zero_dominates"
+    std::string comment;
+};
+
+[[nodiscard]] std::vector<ConfigEntry> list_config(const DescribeConfig& describe);
+/// Every key with value, range and comment; reads back bit-exactly.
+[[nodiscard]] std::string format_config(const DescribeConfig& describe);
+/// Takes over the values of a YAML text; keys that are not in it keep theirs. Groups may be nested
+/// or written with dots ("elevation.length_m: 6").
+[[nodiscard]] Status parse_config(std::string_view yaml,
+                                  const std::string& file,
+                                  const DescribeConfig& describe);
+/// One override "key=value" with the same checks.
+[[nodiscard]] Status override_config(std::string_view key_and_value,
+                                     const DescribeConfig& describe);
+[[nodiscard]] Status read_config(const std::string& path, const DescribeConfig& describe);
+[[nodiscard]] Status write_config(const std::string& path, const DescribeConfig& describe);
+
+template <typename Config>
+[[nodiscard]] DescribeConfig describe_config(Config& config) {
+    return [&config](ConfigVisitor& visitor) { config.describe(visitor); };
+}
+template <typename Config>
+[[nodiscard]] std::vector<ConfigEntry> list_config_of(Config config) {
+    return list_config(describe_config(config));
+}
+template <typename Config>
+[[nodiscard]] std::string format_config_of(Config config) {
+    return format_config(describe_config(config));
+}
+template <typename Config>
+[[nodiscard]] Status read_config_into(const std::string& path, Config& config) {
+    return read_config(path, describe_config(config));
+}
+template <typename Config>
+[[nodiscard]] Status override_config_in(Config& config, std::span<const std::string> overrides) {
+    for (const std::string& text : overrides) {
+        if (Status status = override_config(text, describe_config(config)); !status) return status;
+    }
+    return {};
+}
+template <typename Config>
+[[nodiscard]] Status write_config_of(const std::string& path, Config config) {
+    return write_config(path, describe_config(config));
+}
+
+}  // namespace surefoot::io

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+
+/// Whole files in and out, with the system's reason in every error.
+namespace surefoot::io {
+
+/// Nothing that we read is larger; a bigger file is an error, not a full memory.
+inline constexpr std::uint64_t kMaxFileBytes = 4ULL << 30;
+
+/// Content of a regular file (or pipe).
+[[nodiscard]] Result<std::string> read_file(const std::string& path,
+                                            std::uint64_t max_bytes = kMaxFileBytes);
+
+/// Replaces a file in one step: writes a temporary file in the same folder, then renames it, so
+/// that a reader sees the old content or the whole new one. What is no regular file (a device, a
+/// pipe) is written to directly. On failure (disk full, no permission) the old file stays as it
+/// was.
+[[nodiscard]] Status write_file(const std::string& path, std::string_view bytes);
+
+/// Makes a folder and those above it; fine when it exists.
+[[nodiscard]] Status make_folder(const std::string& path);
+
+/// Names (without folder) of the regular files in a folder whose lower-case extension is one of
+/// `extensions` (".png"), in natural order. Hidden files are left out.
+[[nodiscard]] Result<std::vector<std::string>> list_files(
+    const std::string& folder, const std::vector<std::string>& extensions);
+
+[[nodiscard]] bool is_folder(const std::string& path) noexcept;
+[[nodiscard]] bool is_file(const std::string& path) noexcept;
+/// "a/b" from "a" and "b"; `b` alone when it is absolute.
+[[nodiscard]] std::string join_path(const std::string& folder, const std::string& name);
+/// Folder part of a path, "." without one.
+[[nodiscard]] std::string folder_of(const std::string& path);
+/// Lower-case extension with its dot, or an empty string.
+[[nodiscard]] std::string extension_of(const std::string& path);
+
+/// A text file that grows line by line; every line is with the system before `append` returns, and
+/// a line that does not fit on the disk is taken back: the file always ends in a whole line.
+class AppendFile {
+  public:
+    /// Starts an empty file; what is there is replaced.
+    [[nodiscard]] static Result<AppendFile> create(const std::string& path);
+    ~AppendFile();
+    AppendFile(AppendFile&& other) noexcept;
+    AppendFile& operator=(AppendFile&& other) noexcept;
+
+    [[nodiscard]] Status append(std::string_view text);
+    [[nodiscard]] Status close();
+
+  private:
+    AppendFile(std::string path, int descriptor)
+        : path_(std::move(path)), descriptor_(descriptor) {}
+    std::string path_;
+    int descriptor_ = -1;
+    std::int64_t size_ = 0;
+};
+
+}  // namespace surefoot::io

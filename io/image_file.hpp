@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "surefoot/core/result.hpp"
+#include "surefoot/core/views.hpp"
+
+/// Image files: PNG, JPEG and PGM/PPM in, PNG out. A file is checked to be whole before it is
+/// decoded, because decoders fill the missing part of a truncated image with grey and say nothing.
+namespace surefoot::io {
+
+struct Rgb {
+    std::uint8_t r = 0;
+    std::uint8_t g = 0;
+    std::uint8_t b = 0;
+    friend bool operator==(const Rgb&, const Rgb&) = default;
+};
+using RgbImage = Image<Rgb>;
+using DepthCodes = Image<std::uint16_t>;
+
+/// Brightness of a colour: BT.601 in 15-bit fixed point (0.299, 0.587, 0.114 of 32768; sum 32768).
+[[nodiscard]] constexpr std::uint8_t grey_bt601(std::uint8_t r,
+                                                std::uint8_t g,
+                                                std::uint8_t b) noexcept {
+    return static_cast<std::uint8_t>((9798 * r + 19235 * g + 3735 * b + 16384) >> 15);
+}
+
+/// What the header of an image file says.
+struct ImageHeader {
+    int width = 0;
+    int height = 0;
+    int bits = 8;      ///< per channel, as decoded: 8 or 16
+    int channels = 1;  ///< as stored, alpha included; a palette counts as 3
+};
+
+/// Largest image that is decoded; protects the memory from a damaged header.
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
+
+/// Reads the header and checks the rest: PNG chunk by chunk with its checksums up to IEND, JPEG up
+/// to its end marker, PGM/PPM by its size. `file` only names the image in errors.
+[[nodiscard]] Result<ImageHeader> check_image(std::string_view bytes, const std::string& file);
+
+/// 8-bit image as grey; colour is weighted 0.299 R + 0.587 G + 0.114 B (BT.601), alpha ignored.
+/// 16-bit images are refused: their scale is not known.
+[[nodiscard]] Result<GreyImage> parse_grey_image(std::string_view bytes, const std::string& file);
+[[nodiscard]] Result<GreyImage> read_grey_image(const std::string& path);
+/// 8-bit image in colour; grey is repeated in all channels.
+[[nodiscard]] Result<RgbImage> parse_rgb_image(std::string_view bytes, const std::string& file);
+[[nodiscard]] Result<RgbImage> read_rgb_image(const std::string& path);
+/// 16-bit grey image, as depth cameras and disparity data sets store it. 8-bit is refused.
+[[nodiscard]] Result<DepthCodes> parse_depth_codes(std::string_view bytes, const std::string& file);
+[[nodiscard]] Result<DepthCodes> read_depth_codes(const std::string& path);
+
+[[nodiscard]] Result<std::string> format_png(const GreyImage& image);
+[[nodiscard]] Result<std::string> format_png(const RgbImage& image);
+[[nodiscard]] Result<std::string> format_png(const DepthCodes& image);
+[[nodiscard]] Status write_png(const std::string& path, const GreyImage& image);
+[[nodiscard]] Status write_png(const std::string& path, const RgbImage& image);
+[[nodiscard]] Status write_png(const std::string& path, const DepthCodes& image);
+
+}  // namespace surefoot::io

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "io/dem_file.hpp"
+#include "io/file.hpp"
+#include "io/io_testing.hpp"
+#include "io/pfm.hpp"
+
+namespace surefoot::io {
+namespace {
+
+using testing::contains;
+using testing::data_path;
+
+template <typename T>
+std::string message(const Result<T>& result) {
+    return result.ok() ? "accepted" : result.error().message;
+}
+
+template <typename Pixel>
+Image<Pixel> random_image(int width, int height, std::uint64_t seed) {
+    Rng rng(seed);
+    Image<Pixel> image(width, height);
+    for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < width; ++u) image.at(u, v) = static_cast<Pixel>(rng.next_u64());
+    }
+    return image;
+}
+
+RgbImage random_rgb(int width, int height, std::uint64_t seed) {
+    Rng rng(seed);
+    RgbImage image(width, height);
+    for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < width; ++u) {
+            const std::uint64_t bits = rng.next_u64();
+            image.at(u, v) = {static_cast<std::uint8_t>(bits),
+                              static_cast<std::uint8_t>(bits >> 8),
+                              static_cast<std::uint8_t>(bits >> 16)};
+        }
+    }
+    return image;
+}
+
+std::string jpeg_of(const GreyImage& image) {
+    GreyImage copy = image;
+    std::vector<unsigned char> bytes;
+    cv::imencode(".jpg", cv::Mat(copy.height(), copy.width(), CV_8UC1, copy.data()), bytes);
+    return {bytes.begin(), bytes.end()};
+}
+
+TEST(ImageFile, PngRoundTripsBitExactly) {
+    const testing::TemporaryFolder folder;
+    const auto grey = random_image<std::uint8_t>(31, 17, 1);
+    const auto codes = random_image<std::uint16_t>(16, 9, 2);
+    const RgbImage rgb = random_rgb(8, 5, 3);
+    ASSERT_TRUE(write_png(folder / "grey.png", grey).ok());
+    ASSERT_TRUE(write_png(folder / "codes.png", codes).ok());
+    ASSERT_TRUE(write_png(folder / "rgb.png", rgb).ok());
+    EXPECT_EQ(*read_grey_image(folder / "grey.png"), grey);
+    EXPECT_EQ(*read_depth_codes(folder / "codes.png"), codes);
+    EXPECT_EQ(*read_rgb_image(folder / "rgb.png"), rgb);
+}
+
+TEST(ImageFile, ColourBecomesGreyByBt601) {
+    const RgbImage rgb = random_rgb(64, 64, 4);
+    const auto grey = parse_grey_image(*format_png(rgb), "rgb.png");
+    ASSERT_TRUE(grey.ok());
+    for (int v = 0; v < 64; ++v) {
+        for (int u = 0; u < 64; ++u) {
+            const Rgb& p = rgb.at(u, v);
+            const double exact = 0.299 * p.r + 0.587 * p.g + 0.114 * p.b;
+            // Half a level of rounding, and weights to 15 bits: 255 * 3 * 2^-16 = 0.012.
+            ASSERT_NEAR(grey->at(u, v), exact, 0.5 + 0.012) << u << " " << v;
+        }
+    }
+}
+
+TEST(ImageFile, EveryTruncationAndBitErrorOfAPngIsFound) {
+    const std::string png = *format_png(random_image<std::uint8_t>(9, 7, 5));
+    for (std::size_t size = 0; size < png.size(); ++size) {
+        ASSERT_FALSE(parse_grey_image(std::string_view(png).substr(0, size), "cut.png").ok())
+            << size;
+    }
+    for (std::size_t bit = 0; bit < 8 * png.size(); ++bit) {
+        std::string damaged = png;
+        damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
+        ASSERT_FALSE(parse_grey_image(damaged, "flipped.png").ok()) << bit;
+    }
+    EXPECT_TRUE(contains(
+        message(parse_grey_image(std::string_view(png).substr(0, png.size() - 4), "a.png")),
+        "a.png: truncated PNG"));
+    EXPECT_EQ(message(parse_grey_image("", "a.png")),
+              "a.png: empty file where an image is expected; copy or record this image again");
+}
+
+TEST(ImageFile, TruncatedJpegIsFoundWhereverItEnds) {
+    const GreyImage image = random_image<std::uint8_t>(40, 30, 6);
+    const std::string jpeg = jpeg_of(image);
+    ASSERT_TRUE(parse_grey_image(jpeg, "a.jpg").ok());
+    ASSERT_TRUE(parse_grey_image(jpeg + std::string(100, '\0'), "padded.jpg").ok());
+    for (std::size_t size = 0; size < jpeg.size(); ++size) {
+        ASSERT_FALSE(check_image(std::string_view(jpeg).substr(0, size), "cut.jpg").ok()) << size;
+    }
+    EXPECT_TRUE(contains(message(parse_grey_image(jpeg.substr(0, jpeg.size() / 2), "a.jpg")),
+                         "a.jpg: truncated JPEG"));
+}
+
+TEST(ImageFile, WrongDepthAndFormatAreRefusedInWords) {
+    const std::string deep = *format_png(random_image<std::uint16_t>(4, 4, 7));
+    const std::string flat = *format_png(random_image<std::uint8_t>(4, 4, 8));
+    EXPECT_TRUE(contains(message(parse_grey_image(deep, "a.png")), "a.png: 16 bits per channel"));
+    EXPECT_TRUE(contains(message(parse_depth_codes(flat, "d.png")), "must be 16-bit grey"));
+    EXPECT_TRUE(contains(message(parse_grey_image("GIF89a", "a.gif")), "not a PNG, JPEG"));
+    EXPECT_TRUE(contains(message(parse_grey_image("P5 99999 99999 255\n", "a.pgm")), "outside"));
+    EXPECT_TRUE(contains(message(parse_grey_image("P5 9 9 255\nabc", "a.pgm")), "3 of 81 bytes"));
+    const auto pgm = parse_grey_image("P5\n# made by hand\n2 1\n255\nab", "a.pgm");
+    ASSERT_TRUE(pgm.ok()) << message(pgm);
+    EXPECT_EQ(pgm->at(1, 0), 'b');
+    EXPECT_TRUE(contains(write_png("/dev/full", GreyImage(3, 3)).error().message,
+                         "/dev/full: cannot write: No space left on device"));
+    EXPECT_FALSE(write_png("/tmp/never.png", GreyImage()).ok());
+}
+
+TEST(ImageFile, SurvivesDamagedFiles) {
+    const std::string jpeg = jpeg_of(random_image<std::uint8_t>(16, 16, 9));
+    const std::string png = *format_png(random_rgb(9, 7, 10));
+    const std::string pgm = "P5 4 4 255\n0123456789abcdef";
+    for (const std::string& valid : {jpeg, png, pgm}) {
+        testing::for_each_mutation(valid, 1500, 11, [](const std::string& bytes) {
+            const auto image = parse_grey_image(bytes, "damaged");
+            if (image.ok()) {
+                EXPECT_GT(image->size(), 0U);
+            }
+        });
+    }
+}
+
+TEST(ImageFile, ReadsRealImages) {
+    const struct {
+        const char* name;
+        int width, height;
+    } files[] = {{"sequences/kitti_city/image_0/000000.png", 1226, 370},
+                 {"calibration/chess_pinhole/left01.jpg", 640, 480},
+                 {"calibration/circles_symmetric/grid36-01.pgm", 0, 0},
+                 {"stereo/cones/occ_mask_left.png", 450, 375},
+                 {"stereo/cones/left.png", 450, 375}};
+    for (const auto& file : files) {
+        const std::string path = data_path(file.name);
+        if (path.empty()) continue;
+        const auto image = read_grey_image(path);
+        ASSERT_TRUE(image.ok()) << message(image);
+        if (file.width > 0) {
+            EXPECT_EQ(image->width(), file.width) << path;
+            EXPECT_EQ(image->height(), file.height) << path;
+        }
+    }
+}
+
+TEST(Pfm, RoundTripsAndKeepsUnknownUnknown) {
+    Image<float> image(5, 4, 1.5F);
+    image.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
+    image.at(4, 3) = -2.25F;
+    const std::string bytes = format_pfm(image);
+    // First pixel of the file is the lower left one; the upper left one begins the last row.
+    EXPECT_EQ(bytes.substr(bytes.size() - 20, 4), std::string("\0\0\x80\x7f", 4)) << "+inf";
+    const auto copy = parse_pfm(bytes, "a.pfm");
+    ASSERT_TRUE(copy.ok()) << message(copy);
+    EXPECT_TRUE(std::isnan(copy->at(0, 0)));
+    EXPECT_EQ(copy->at(4, 3), -2.25F);
+    EXPECT_EQ(copy->at(2, 2), 1.5F);
+    const auto big = parse_pfm(std::string("Pf 1 1 1.0\n\x3f\x80\0\0", 15), "big.pfm");
+    ASSERT_TRUE(big.ok());
+    EXPECT_EQ(big->at(0, 0), 1.0F);
+}
+
+TEST(Pfm, RefusesDamageAndSurvivesIt) {
+    EXPECT_TRUE(contains(message(parse_pfm("PF 1 1 -1\n", "a.pfm")), "colour PFM"));
+    EXPECT_TRUE(contains(message(parse_pfm("Pf 100000 100000 -1\n", "a.pfm")), "a.pfm: PFM size"));
+    EXPECT_TRUE(contains(message(parse_pfm("Pf 2 2 -1\nabc", "a.pfm")), "3 of 16 bytes"));
+    EXPECT_TRUE(contains(message(parse_pfm("Pf 2 2 0\n", "a.pfm")), "scale '0'"));
+    EXPECT_TRUE(
+        contains(write_pfm("/dev/full", Image<float>(2, 2)).error().message, "No space left"));
+    testing::for_each_mutation(
+        format_pfm(Image<float>(6, 5, 2.0F)), 3000, 12, [](const std::string& bytes) {
+            (void)parse_pfm(bytes, "damaged").ok();
+        });
+}
+
+TEST(DemFile, EsriGridRoundTripsEveryBit) {
+    Rng rng(13);
+    grid::GridGeometry geometry{0.1, 7, 5, {-0.3, 1e6 + 1.0 / 3.0}};
+    grid::Layer layer(7, 5);
+    for (int i = 0; i < 35; ++i) {
+        layer.data()[i] =
+            i % 4 == 0 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(rng.normal());
+    }
+    const auto copy = parse_esri_grid(format_esri_grid(geometry, layer), "a.asc");
+    ASSERT_TRUE(copy.ok()) << message(copy);
+    EXPECT_EQ(copy->geometry.origin_m, geometry.origin_m);
+    EXPECT_EQ(copy->geometry.resolution_m, geometry.resolution_m);
+    for (int i = 0; i < 35; ++i) {
+        const float a = layer.data()[i];
+        const float b = copy->values.data()[i];
+        EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << i << ": " << a << " " << b;
+    }
+}
+
+TEST(DemFile, FirstRowOfAnEsriGridIsTheLargestY) {
+    const auto dem = parse_esri_grid(
+        "NCOLS 2\nnrows 2\nxllcenter 10\nyllcorner 20\ncellsize 1\nNODATA_value -1\n1 2\n3 -1\n",
+        "a.asc");
+    ASSERT_TRUE(dem.ok()) << message(dem);
+    EXPECT_EQ(dem->values.at(0, 1), 1.0F);
+    EXPECT_EQ(dem->values.at(1, 1), 2.0F);
+    EXPECT_EQ(dem->values.at(0, 0), 3.0F);
+    EXPECT_TRUE(std::isnan(dem->values.at(1, 0)));
+    EXPECT_EQ(dem->geometry.origin_m, Eigen::Vector2d(9.5, 20.0));
+}
+
+TEST(DemFile, RefusesDamageInWords) {
+    const std::string head = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+    EXPECT_TRUE(
+        contains(message(parse_esri_grid(head + "1 2 3    \n", "a.asc")), "value 2 of row 2"));
+    EXPECT_TRUE(contains(message(parse_esri_grid(head + "1 2 3 x\n", "a.asc")), "is 'x'"));
+    EXPECT_TRUE(contains(message(parse_esri_grid(head + "1 2 3 4 5\n", "a.asc")), "'5' follows"));
+    EXPECT_TRUE(
+        contains(message(parse_esri_grid("ncols 2\nnrow 2\n", "a.asc")), "a.asc:2: unknown key"));
+    EXPECT_TRUE(contains(message(parse_esri_grid("ncols 2\n1 2\n", "a.asc")), "without 'nrows'"));
+    EXPECT_TRUE(contains(message(parse_esri_grid("ncols 1000000\nnrows 1000000\nxllcorner 0\n"
+                                                 "yllcorner 0\ncellsize 1\n1\n",
+                                                 "a.asc")),
+                         "do not fit"));
+    const grid::GridGeometry geometry{0.1, 2, 2, {0, 0}};
+    EXPECT_TRUE(contains(write_esri_grid("/dev/full", geometry, grid::Layer(2, 2)).error().message,
+                         "/dev/full: cannot write: No space left"));
+    EXPECT_FALSE(write_esri_grid("/tmp/never.asc", geometry, grid::Layer(3, 2)).ok());
+    testing::for_each_mutation(head + "1.5 2.5\n-9999 4\n", 4000, 14, [](const std::string& text) {
+        const auto dem = parse_esri_grid(text, "damaged.asc");
+        if (dem.ok()) {
+            EXPECT_EQ(dem->values.width(), dem->geometry.nx);
+        }
+    });
+}
+
+TEST(DemFile, HeightImagesHaveTheirHeights) {
+    const std::string path = data_path("terrain/straight_stairs_1m_1m_60cm.png");
+    if (path.empty()) return;
+    const auto dem = read_dem_image(path, 0.02, 0.6);
+    ASSERT_TRUE(dem.ok()) << message(dem);
+    EXPECT_EQ(dem->geometry.nx, 50);
+    // Column 25 of the image: 0, then 0.6 m from row 11, 179/255 and 94/255 of it further down.
+    const auto height_at_row = [&](int row) { return dem->values.at(25, 49 - row); };
+    EXPECT_FLOAT_EQ(height_at_row(5), 0.0F);
+    EXPECT_FLOAT_EQ(height_at_row(12), 0.6F);
+    EXPECT_NEAR(height_at_row(20), 0.6 * 179 / 255, 1e-6);
+    EXPECT_NEAR(height_at_row(30), 0.6 * 94 / 255, 1e-6);
+    EXPECT_TRUE(contains(message(read_dem_image(path, 0.0, 1.0)), "scale above 0"));
+}
+
+}  // namespace
+}  // namespace surefoot::io

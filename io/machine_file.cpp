@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/machine_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "io/file.hpp"
+#include "io/text.hpp"
+#include "io/yaml_tree.hpp"
+
+namespace surefoot::io {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr std::int64_t kNanosecondsPerMs = 1'000'000;
+
+double radians(double deg) {
+    return deg * std::numbers::pi / 180.0;
+}
+std::int32_t tenth_mm(double length_m) {
+    return static_cast<std::int32_t>(std::lround(length_m * 1e4));
+}
+
+/// A group of keys that must all be there, and no others. The reader keeps the first error; after
+/// it everything returns defaults.
+class Group {
+  public:
+    Group(YamlReader& reader, const YamlNode& node, std::string prefix)
+        : reader_(reader), node_(node), prefix_(std::move(prefix)) {
+        if (!node.is_mapping())
+            reader_.fail(node,
+                         prefix_.empty() ? "machine file" : prefix_,
+                         fmt::format("expected a group of keys, found {}", node.kind_name()));
+    }
+
+    double number(const char* key, double min, double max) {
+        const YamlNode* node = take(key);
+        return node != nullptr ? reader_.number(*node, path(key), min, max) : 0.0;
+    }
+    std::int32_t length(const char* key, double min_m, double max_m) {
+        return tenth_mm(number(key, min_m, max_m));
+    }
+    std::int64_t duration_ns(const char* key, int min_ms, int max_ms) {
+        return kNanosecondsPerMs * integer(key, min_ms, max_ms);
+    }
+    int integer(const char* key, int min, int max) {
+        const YamlNode* node = take(key);
+        return node != nullptr ? reader_.integer(*node, path(key), min, max) : 0;
+    }
+    bool boolean(const char* key) {
+        const YamlNode* node = take(key);
+        return node != nullptr && reader_.boolean(*node, path(key));
+    }
+    std::string text(const char* key, std::size_t max_size) {
+        const YamlNode* node = take(key);
+        std::string value = node != nullptr ? reader_.text(*node, path(key)) : std::string();
+        if (node != nullptr && (value.empty() || value.size() > max_size))
+            reader_.fail(*node, path(key), fmt::format("must have 1 to {} characters", max_size));
+        return value;
+    }
+    /// Calls `read` with the group below a key.
+    template <typename Read>
+    void group(const char* key, Read&& read) {
+        if (const YamlNode* node = take(key)) {
+            Group below(reader_, *node, path(key));
+            read(below);
+            below.finish();
+        }
+    }
+    /// Calls `read` with each group of a list.
+    template <typename Read>
+    void list(const char* key, std::size_t max_count, Read&& read) {
+        const YamlNode* node = take(key);
+        if (node == nullptr) return;
+        if (node->kind != YamlNode::Kind::sequence || node->items.size() > max_count)
+            return reader_.fail(
+                *node, path(key), fmt::format("expected a list of at most {} groups", max_count));
+        for (std::size_t i = 0; i < node->items.size(); ++i) {
+            Group item(reader_, node->items[i], fmt::format("{}[{}]", path(key), i));
+            read(item);
+            item.finish();
+        }
+    }
+    void fail(const char* key, const std::string& what) {
+        const YamlNode* node = node_.find(key);
+        reader_.fail(node != nullptr ? *node : node_, path(key), what);
+    }
+    /// To be called last: what was not asked for does not belong here. A misspelt key says more
+    /// than the missing one that it leaves behind, so it comes first.
+    void finish() {
+        reader_.only_keys(node_, prefix_.empty() ? "" : prefix_ + ".", known_);
+        for (const std::string& key : known_) {
+            if (node_.find(key) == nullptr) fail(key.c_str(), "this key is missing");
+        }
+    }
+
+  private:
+    [[nodiscard]] std::string path(const char* key) const {
+        return prefix_.empty() ? key : prefix_ + "." + key;
+    }
+    const YamlNode* take(const char* key) {
+        known_.emplace_back(key);
+        return node_.find(key);
+    }
+
+    YamlReader& reader_;
+    const YamlNode& node_;
+    std::string prefix_;
+    std::vector<std::string> known_;
+};
+
+GroundBox read_box(Group& group) {
+    GroundBox box;
+    box.center_x_tenth_mm = group.length("center_x_m", -2.0, 2.0);
+    box.center_y_tenth_mm = group.length("center_y_m", -2.0, 2.0);
+    box.length_tenth_mm = group.length("length_m", 0.01, 2.0);
+    box.width_tenth_mm = group.length("width_m", 0.01, 2.0);
+    return box;
+}
+
+/// Yaw, then pitch, then roll about the body's axes (REP-103); pitch is positive downward.
+void read_mount(Group& mount, MachineFile& out) {
+    const Eigen::Vector3d position_m(mount.number("x_m", -2.0, 2.0),
+                                     mount.number("y_m", -2.0, 2.0),
+                                     mount.number("z_m", -2.0, 2.0));
+    const double roll_deg = mount.number("roll_deg", -180.0, 180.0);
+    out.mount_pitch_deg = mount.number("pitch_deg", -90.0, 90.0);
+    const double yaw_deg = mount.number("yaw_deg", -180.0, 180.0);
+    using Eigen::AngleAxisd;
+    using Eigen::Vector3d;
+    Pose T_body_mount;
+    T_body_mount.rotation = AngleAxisd(radians(yaw_deg), Vector3d::UnitZ()) *
+                            AngleAxisd(radians(out.mount_pitch_deg), Vector3d::UnitY()) *
+                            AngleAxisd(radians(roll_deg), Vector3d::UnitX());
+    T_body_mount.translation_m = position_m;
+    out.T_body_left = T_body_mount * T_body_optical();
+}
+
+void read_body(Group& group, BodyEnvelope& body) {
+    body.box = read_box(group);
+    body.sway_tenth_mm = group.length("sway_m", 0.0, 0.5);
+    body.lower_edge_tenth_mm = group.length("lower_edge_m", 0.0001, 1.0);
+    body.height_tenth_mm = group.length("height_m", 0.0001, 3.0);
+}
+
+void read_joint(Group& group, std::vector<JointRange>& joints) {
+    JointRange joint;
+    joint.name = group.text("name", 40);
+    joint.min_deg = group.number("min_deg", -180.0, 180.0);
+    joint.max_deg = group.number("max_deg", -180.0, 180.0);
+    if (joint.min_deg > joint.max_deg)
+        group.fail("max_deg", fmt::format("{} is below min_deg {}", joint.max_deg, joint.min_deg));
+    joints.push_back(std::move(joint));
+}
+
+void read_movement(Group& group, Machine& machine) {
+    const int code = group.integer("code", 1, Machine::kMovementCodes - 1);
+    Movement movement;
+    const std::string name = group.text("name", movement.name.size() - 1);
+    std::copy_n(
+        name.begin(), std::min(name.size(), movement.name.size() - 1), movement.name.begin());
+    movement.configured = true;
+    movement.forward_tenth_mm = group.length("forward_m", -2.0, 2.0);
+    movement.left_tenth_mm = group.length("left_m", -2.0, 2.0);
+    const double turn_rad = radians(group.number("turn_deg", -30.0, 30.0));
+    movement.cos_turn = std::cos(turn_rad);
+    movement.sin_turn = std::sin(turn_rad);
+    const std::string name_of_class = group.text("class", 16);
+    if (name_of_class == "stair")
+        movement.movement_class = MovementClass::stair;
+    else if (name_of_class != "walk")
+        group.fail("class", quoted(name_of_class) + " is neither walk nor stair");
+    if (code == 0) return;  // missing or refused: reported already, or by finish()
+    Movement& slot = machine.movements[static_cast<std::size_t>(code)];
+    if (slot.configured) group.fail("code", fmt::format("{} is there twice", code));
+    slot = movement;
+}
+
+StepLimits read_step(Group& group) {
+    StepLimits limits;
+    limits.enabled = group.boolean("enabled");
+    limits.up_tenth_mm = group.length("up_m", 0.0, 0.3);
+    limits.down_tenth_mm = group.length("down_m", 0.0, 0.3);
+    return limits;
+}
+
+/// The ranges are those of Machine::problem(), in the units of the file.
+void read_limits(Group& group, GateLimits& limits) {
+    group.group("walk", [&](Group& step) { limits.step[0] = read_step(step); });
+    group.group("stair", [&](Group& step) { limits.step[1] = read_step(step); });
+    limits.min_normal_z = std::cos(radians(group.number("tilt_deg", 0.0, 11.0)));
+    limits.patch_side_tenth_mm = group.length("patch_side_m", 0.02, 0.1);
+    limits.patch_residual_tenth_mm = group.length("patch_residual_m", 0.0001, 0.05);
+    limits.patch_sigma_tenth_mm = group.length("patch_sigma_m", 0.0001, 0.01);
+    limits.sigma_factor = group.number("sigma_factor", 3.0, 10.0);
+    limits.patch_independent_cells = group.integer("patch_independent_cells", 1, 16);
+    limits.cell_sigma_tenth_mm = group.length("cell_sigma_m", 0.0001, 0.03);
+    limits.swing_clearance_tenth_mm = group.length("swing_clearance_m", 0.0001, 0.2);
+    limits.foot_margin_tenth_mm = group.length("foot_margin_m", 0.0, 0.2);
+    limits.drop_tenth_mm = group.length("drop_m", 0.0001, 0.1);
+    limits.drop_band_tenth_mm = group.length("drop_band_m", 0.05, 0.5);
+    limits.drop_evidence = static_cast<std::uint8_t>(
+        std::max(1L, std::lround(255.0 * group.number("drop_evidence", 0.004, 1.0))));
+    limits.drift_tenth_mm = group.length("drift_m", 0.0001, 0.1);
+    limits.frame_age_ns = group.duration_ns("frame_age_ms", 1, 1000);
+    limits.pose_age_ns = group.duration_ns("pose_age_ms", 1, 1000);
+    limits.future_tolerance_ns = group.duration_ns("future_tolerance_ms", 0, 100);
+    limits.verdict_ttl_ns = group.duration_ns("verdict_ttl_ms", 1, 1000);
+    limits.vouch_radius_tenth_mm = group.length("vouch_radius_m", 0.0, 2.0);
+}
+
+void read_document(Group& root, MachineFile& out) {
+    Machine& machine = out.machine;
+    out.name = root.text("name", 60);
+    machine.sole_depth_tenth_mm = root.length("sole_depth_m", 0.0001, 3.0);
+    root.group("mount", [&](Group& mount) { read_mount(mount, out); });
+    root.group("feet", [&](Group& feet) {
+        feet.group("left", [&](Group& box) { machine.left_foot = read_box(box); });
+        feet.group("right", [&](Group& box) { machine.right_foot = read_box(box); });
+    });
+    root.group("body", [&](Group& body) { read_body(body, machine.body); });
+    root.list("joints", 64, [&](Group& joint) { read_joint(joint, out.joints); });
+    root.list("movements", Machine::kMovementCodes - 1, [&](Group& movement) {
+        read_movement(movement, machine);
+    });
+    root.group("limits", [&](Group& limits) { read_limits(limits, machine.limits); });
+    root.finish();
+}
+
+std::uint64_t fnv1a(std::string_view bytes) {
+    std::uint64_t hash = 0xcbf29ce484222325ULL;
+    for (const char byte : bytes)
+        hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+    return hash;
+}
+
+}  // namespace
+
+Result<MachineFile> parse_machine(std::string_view yaml, const std::string& file) {
+    Result<YamlNode> document = parse_yaml(yaml, file);
+    if (!document) return usage_error(document.error().message);
+    YamlReader reader(file, *document);
+    MachineFile out;
+    Group root(reader, *document, "");
+    read_document(root, out);
+    if (reader.error()) return usage_error(reader.error()->message);
+    if (const char* why = out.machine.problem()) return usage_error(file + ": " + why);
+    out.hash = fnv1a(yaml);
+    return out;
+}
+
+Result<MachineFile> read_machine(const std::string& path) {
+    const Result<std::string> text = read_file(path, kMaxBytes);
+    if (!text) return text.error();
+    return parse_machine(*text, path);
+}
+
+}  // namespace surefoot::io

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/core/machine.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::io {
+
+/// Range of one joint of the machine [deg].
+struct JointRange {
+    std::string name;
+    double min_deg = 0.0;
+    double max_deg = 0.0;
+};
+
+/// What a machine file says. machines/rex.yaml shows every key.
+struct MachineFile {
+    std::string name;
+    Machine machine;               ///< what the gate needs
+    Pose T_body_left;              ///< the mount: left camera's optical frame in base_link
+    double mount_pitch_deg = 0.0;  ///< of it, downward positive
+    std::vector<JointRange> joints;
+    std::uint64_t hash = 0;  ///< FNV-1a of the file's bytes, for logs
+};
+
+/// Strict: every key must be there, once, inside its range, and no other key may be; otherwise a
+/// usage error with file, line, key, value and limit. Lengths are rounded to 0.1 mm.
+[[nodiscard]] Result<MachineFile> parse_machine(std::string_view yaml, const std::string& file);
+[[nodiscard]] Result<MachineFile> read_machine(const std::string& path);
+
+}  // namespace surefoot::io

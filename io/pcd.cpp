@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: Apache-2.0
+// PCD 0.7 of the Point Cloud Library: a text header (FIELDS SIZE TYPE COUNT WIDTH HEIGHT VIEWPOINT
+// POINTS DATA), then rows as text, packed records, or LZF over the fields one after another.
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "io/bytes.hpp"
+#include "io/file.hpp"
+#include "io/lzf.hpp"
+#include "io/point_cloud.hpp"
+#include "io/text.hpp"
+
+namespace surefoot::io {
+namespace {
+
+constexpr std::size_t kMaxFields = 256;
+constexpr std::uint64_t kMaxPoints = 1ULL << 30;
+
+struct Field {
+    std::string name;
+    std::size_t bytes = 4;
+    char type = 'F';        ///< I, U or F
+    std::size_t count = 1;  ///< values per point
+};
+
+struct Header {
+    enum class Data { ascii, binary, compressed } data = Data::ascii;
+    std::vector<Field> fields;
+    std::uint64_t width = 0;
+    std::uint64_t height = 1;
+    std::optional<std::uint64_t> points;
+    std::optional<Pose> T_cloud_sensor;
+    std::string_view body;
+    int last_line = 0;
+
+    [[nodiscard]] std::size_t stride() const {
+        std::size_t sum = 0;
+        for (const Field& field : fields) sum += field.bytes * field.count;
+        return sum;
+    }
+    [[nodiscard]] std::size_t values_per_point() const {
+        std::size_t sum = 0;
+        for (const Field& field : fields) sum += field.count;
+        return sum;
+    }
+};
+
+Error at_line(const std::string& file, int line, const std::string& what) {
+    return input_error(fmt::format("{}:{}: {}", file, line, what));
+}
+
+std::optional<std::uint64_t> parse_count(std::string_view word, std::uint64_t max) {
+    const auto value = parse_int64(word);
+    if (!value || *value < 0 || static_cast<std::uint64_t>(*value) > max) return std::nullopt;
+    return static_cast<std::uint64_t>(*value);
+}
+
+/// FIELDS, SIZE, TYPE or COUNT: one word per field.
+Status parse_field_line(const std::vector<std::string_view>& words, Header& header) {
+    if (words[0] == "FIELDS") header.fields.resize(words.size() - 1);
+    if (header.fields.empty() || header.fields.size() > kMaxFields ||
+        words.size() != header.fields.size() + 1) {
+        return input_error(fmt::format(
+            "{} names {} values for {} fields", words[0], words.size() - 1, header.fields.size()));
+    }
+    for (std::size_t i = 0; i < header.fields.size(); ++i) {
+        Field& field = header.fields[i];
+        const std::string_view word = words[i + 1];
+        if (words[0] == "FIELDS") {
+            field.name = word;
+        } else if (words[0] == "TYPE" && (word == "I" || word == "U" || word == "F")) {
+            field.type = word[0];
+        } else if (words[0] == "SIZE" &&
+                   (word == "1" || word == "2" || word == "4" || word == "8")) {
+            field.bytes = static_cast<std::size_t>(word[0] - '0');
+        } else if (const auto count = parse_count(word, 65536); words[0] == "COUNT" && count) {
+            field.count = *count;
+        } else {
+            return input_error(fmt::format("{} {} is not possible", words[0], quoted(word)));
+        }
+    }
+    return {};
+}
+
+/// VIEWPOINT tx ty tz qw qx qy qz: where the sensor was.
+Status parse_viewpoint(const std::vector<std::string_view>& words, Header& header) {
+    double v[7] = {};
+    for (std::size_t i = 0; i < 7; ++i) {
+        const auto value = words.size() == 8 ? parse_double(words[i + 1]) : std::nullopt;
+        if (!value) return input_error("VIEWPOINT must hold 7 numbers");
+        v[i] = *value;
+    }
+    const Eigen::Quaterniond rotation(v[3], v[4], v[5], v[6]);
+    // Some writers leave the quaternion at zero; such a viewpoint says nothing.
+    if (std::abs(rotation.norm() - 1.0) > 0.01) return {};
+    header.T_cloud_sensor = Pose{rotation.normalized(), {v[0], v[1], v[2]}};
+    if (!header.T_cloud_sensor->all_finite()) header.T_cloud_sensor.reset();
+    return {};
+}
+
+Status parse_data_line(const std::vector<std::string_view>& words, Header& header) {
+    const std::string_view kind = words.size() == 2 ? words[1] : std::string_view();
+    if (kind == "ascii") {
+        header.data = Header::Data::ascii;
+    } else if (kind == "binary") {
+        header.data = Header::Data::binary;
+    } else if (kind == "binary_compressed") {
+        header.data = Header::Data::compressed;
+    } else {
+        return input_error(fmt::format("unknown DATA {}", quoted(kind)));
+    }
+    return {};
+}
+
+Status parse_header_line(const std::vector<std::string_view>& words, Header& header) {
+    const std::string_view key = words[0];
+    if (key == "VERSION") return {};
+    if (key == "FIELDS" || key == "SIZE" || key == "TYPE" || key == "COUNT") {
+        return parse_field_line(words, header);
+    }
+    if (key == "VIEWPOINT") return parse_viewpoint(words, header);
+    if (key == "DATA") return parse_data_line(words, header);
+    if (key == "WIDTH" || key == "HEIGHT" || key == "POINTS") {
+        const auto value = words.size() == 2 ? parse_count(words[1], kMaxPoints) : std::nullopt;
+        if (!value) return input_error(fmt::format("{} must be 0 .. {}", key, kMaxPoints));
+        if (key == "WIDTH") header.width = *value;
+        if (key == "HEIGHT") header.height = *value;
+        if (key == "POINTS") header.points = *value;
+        return {};
+    }
+    return input_error(fmt::format("unexpected header line beginning with {}", quoted(key)));
+}
+
+Result<Header> parse_header(std::string_view bytes, const std::string& file) {
+    Header header;
+    LineReader lines(bytes);
+    while (const auto line = lines.next()) {
+        const std::vector<std::string_view> words = split(*line);
+        if (words.empty() || words[0].starts_with("#")) continue;
+        if (Status status = parse_header_line(words, header); !status) {
+            return at_line(file, lines.number(), status.error().message);
+        }
+        if (words[0] != "DATA") continue;
+        header.body = lines.rest();
+        header.last_line = lines.number();
+        const std::uint64_t cells = header.width * header.height;  // both at most 2^30
+        if (cells > kMaxPoints || header.points.value_or(cells) != cells) {
+            return at_line(file,
+                           lines.number(),
+                           fmt::format("WIDTH {} x HEIGHT {} is not POINTS {}",
+                                       header.width,
+                                       header.height,
+                                       header.points.value_or(0)));
+        }
+        header.points = cells;
+        return header;
+    }
+    return at_line(file, lines.number(), "truncated PCD header: 'DATA' is missing");
+}
+
+double load_value(const char* data, const Field& field) {
+    if (field.type == 'F') {
+        return field.bytes == 8   ? load_le<double>(data)
+               : field.bytes == 4 ? static_cast<double>(load_le<float>(data))
+                                  : std::numeric_limits<double>::quiet_NaN();
+    }
+    const bool is_signed = field.type == 'I';
+    switch (field.bytes) {
+        case 1: return is_signed ? load_le<std::int8_t>(data) : load_le<std::uint8_t>(data);
+        case 2: return is_signed ? load_le<std::int16_t>(data) : load_le<std::uint16_t>(data);
+        case 4:
+            return is_signed ? static_cast<double>(load_le<std::int32_t>(data))
+                             : static_cast<double>(load_le<std::uint32_t>(data));
+        default: break;
+    }
+    return is_signed ? static_cast<double>(load_le<std::int64_t>(data))
+                     : static_cast<double>(load_le<std::uint64_t>(data));
+}
+
+/// Colour packed as 0x00RRGGBB, as PCL stores it in the bits of a float or an integer.
+Rgb unpacked_colour(std::uint32_t bits) {
+    return {static_cast<std::uint8_t>(bits >> 16),
+            static_cast<std::uint8_t>(bits >> 8),
+            static_cast<std::uint8_t>(bits)};
+}
+
+bool is_colour(const Field& field) {
+    return (field.name == "rgb" || field.name == "rgba") && field.bytes == 4 && field.count == 1;
+}
+bool is_padding(const Field& field) {
+    return field.name == "_" || field.count != 1;
+}
+
+/// Puts one value of one field where it belongs; `bits` are those of a 4-byte value.
+struct Collector {
+    PointCloud cloud;
+    std::vector<int> roles;  ///< per field: 0..2 axis, -1 colour, -2 nothing, 3 + scalar index
+
+    explicit Collector(const Header& header) {
+        const std::size_t count = *header.points;
+        cloud.points_m.assign(count, Eigen::Vector3d::Zero());
+        for (const Field& field : header.fields) {
+            if (is_padding(field)) {
+                roles.push_back(-2);
+            } else if (is_colour(field)) {
+                roles.push_back(-1);
+                cloud.colours.assign(count, Rgb{});
+            } else if (field.name == "x" || field.name == "y" || field.name == "z") {
+                roles.push_back(field.name[0] - 'x');
+            } else {
+                roles.push_back(3 + static_cast<int>(cloud.scalars.size()));
+                cloud.scalars.push_back({field.name, std::vector<float>(count)});
+            }
+        }
+    }
+    void set(std::size_t point, std::size_t field, double value, std::uint32_t bits) {
+        const int role = roles[field];
+        if (role == -1) cloud.colours[point] = unpacked_colour(bits);
+        if (role >= 0 && role < 3) cloud.points_m[point][role] = value;
+        if (role >= 3) {
+            cloud.scalars[static_cast<std::size_t>(role - 3)].values[point] =
+                static_cast<float>(value);
+        }
+    }
+};
+
+void collect_binary(const Header& header, std::string_view data, bool by_field, Collector& out) {
+    const std::size_t count = *header.points;
+    const std::size_t stride = header.stride();
+    std::size_t offset = 0;
+    for (std::size_t f = 0; f < header.fields.size(); ++f) {
+        const Field& field = header.fields[f];
+        const std::size_t size = field.bytes * field.count;
+        // Records lie point by point; compressed data hold each field of all points in turn.
+        const std::size_t first = by_field ? offset * count : offset;
+        const std::size_t step = by_field ? size : stride;
+        for (std::size_t i = 0; i < count && out.roles[f] != -2; ++i) {
+            const char* at = data.data() + first + i * step;
+            const std::uint32_t bits = field.bytes == 4 ? load_le<std::uint32_t>(at) : 0;
+            out.set(i, f, load_value(at, field), bits);
+        }
+        offset += size;
+    }
+}
+
+Status collect_ascii(const Header& header, const std::string& file, Collector& out) {
+    LineReader lines(header.body);
+    std::size_t point = 0;
+    while (point < *header.points) {
+        const auto line = lines.next();
+        if (!line) {
+            return input_error(
+                fmt::format("{}: truncated PCD: {} of {} points", file, point, *header.points));
+        }
+        const int number = header.last_line + lines.number();
+        const std::vector<std::string_view> words = split(*line);
+        if (words.empty()) continue;
+        if (words.size() != header.values_per_point()) {
+            return at_line(
+                file,
+                number,
+                fmt::format(
+                    "{} values; {} belong to a point", words.size(), header.values_per_point()));
+        }
+        std::size_t w = 0;
+        for (std::size_t f = 0; f < header.fields.size(); ++f) {
+            for (std::size_t k = 0; k < header.fields[f].count; ++k, ++w) {
+                const auto value = parse_double(words[w]);
+                if (!value) return at_line(file, number, quoted(words[w]) + " is not a number");
+                if (out.roles[f] == -2) continue;
+                const bool fits = *value >= 0.0 && *value <= 4294967295.0;
+                const std::uint32_t bits =
+                    header.fields[f].type == 'F'
+                        ? std::bit_cast<std::uint32_t>(static_cast<float>(*value))
+                        : static_cast<std::uint32_t>(fits ? *value : 0.0);
+                out.set(point, f, *value, bits);
+            }
+        }
+        ++point;
+    }
+    return {};
+}
+
+/// The records of a binary body; the sizes have to be right before anything is allocated.
+Result<std::string> unpacked_body(const Header& header, const std::string& file) {
+    const std::uint64_t needed = *header.points * header.stride();
+    if (header.body.size() < 8) return input_error(file + ": truncated PCD: no compressed sizes");
+    const auto packed = load_le<std::uint32_t>(header.body.data());
+    const auto unpacked = load_le<std::uint32_t>(header.body.data() + 4);
+    if (unpacked != needed) {
+        return input_error(
+            fmt::format("{}: {} points of {} bytes do not make the {} bytes announced",
+                        file,
+                        *header.points,
+                        header.stride(),
+                        unpacked));
+    }
+    if (packed > header.body.size() - 8) {  // more than that is padding
+        return input_error(fmt::format(
+            "{}: truncated PCD: {} of {} compressed bytes", file, header.body.size() - 8, packed));
+    }
+    auto data = unpack_lzf(header.body.substr(8, packed), unpacked);
+    if (!data) return input_error(fmt::format("{}: damaged compressed PCD data", file));
+    return *std::move(data);
+}
+
+Status check_fields(const Header& header, const std::string& file) {
+    int axes[3] = {0, 0, 0};
+    for (const Field& field : header.fields) {
+        const bool axis = field.name == "x" || field.name == "y" || field.name == "z";
+        if (axis && field.count == 1) ++axes[field.name[0] - 'x'];
+        if (field.type == 'F' && field.bytes < 4) {
+            return input_error(
+                fmt::format("{}: field {}: F needs SIZE 4 or 8", file, quoted(field.name)));
+        }
+    }
+    if (axes[0] == 1 && axes[1] == 1 && axes[2] == 1) return {};
+    return input_error(fmt::format("{}: PCD needs exactly one field each of x, y and z", file));
+}
+
+}  // namespace
+
+Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file) {
+    const Result<Header> header = parse_header(bytes, file);
+    if (!header) return header.error();
+    if (Status status = check_fields(*header, file); !status) return status.error();
+    const bool ascii = header->data == Header::Data::ascii;
+    const std::uint64_t smallest = ascii ? 2 * header->values_per_point() : header->stride();
+    const std::uint64_t needed = *header->points * smallest;
+    std::string unpacked;
+    std::string_view data = header->body;
+    if (header->data == Header::Data::compressed) {
+        Result<std::string> body = unpacked_body(*header, file);
+        if (!body) return body.error();
+        unpacked = std::move(body).value();
+        data = unpacked;
+    } else if (needed > data.size() + 1) {
+        return input_error(fmt::format("{}: truncated PCD: {} points need {} bytes, {} are there",
+                                       file,
+                                       *header->points,
+                                       needed,
+                                       data.size()));
+    } else if (!ascii && needed > data.size()) {
+        return input_error(
+            fmt::format("{}: truncated PCD: {} of {} bytes", file, data.size(), needed));
+    }
+    Collector collector(*header);
+    if (ascii) {
+        if (Status status = collect_ascii(*header, file, collector); !status) return status.error();
+    } else {
+        collect_binary(*header, data, header->data == Header::Data::compressed, collector);
+    }
+    PointCloud cloud = std::move(collector.cloud);
+    cloud.width = static_cast<int>(header->width);
+    cloud.height = static_cast<int>(header->height);
+    if (cloud.points_m.empty()) cloud.width = 0;
+    if (cloud.points_m.empty() || cloud.height == 0) cloud.height = 1;
+    cloud.T_cloud_sensor = header->T_cloud_sensor;
+    return cloud;
+}
+
+std::string format_pcd(const PointCloud& cloud, const CloudFormat& format) {
+    std::string fields = "x y z";
+    const std::string real_size = format.double_precision ? " 8" : " 4";
+    std::string sizes = real_size + real_size + real_size;
+    std::string types = " F F F";
+    std::string counts = " 1 1 1";
+    const auto add_field = [&](const std::string& name, const char* type) {
+        fields += " " + name;
+        sizes += " 4";
+        types += type;
+        counts += " 1";
+    };
+    if (!cloud.colours.empty()) add_field("rgb", " U");
+    for (const CloudScalar& scalar : cloud.scalars) add_field(one_word(scalar.name), " F");
+    const Pose view = cloud.T_cloud_sensor.value_or(Pose{});
+    const Eigen::Vector3d& t = view.translation_m;
+    const Eigen::Quaterniond& q = view.rotation;
+    std::string out = fmt::format(
+        "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS "
+        "{}\nSIZE{}\nTYPE{}\nCOUNT{}\n"
+        "WIDTH {}\nHEIGHT {}\nVIEWPOINT {} {} {} {} {} {} {}\nPOINTS {}\nDATA {}\n",
+        fields,
+        sizes,
+        types,
+        counts,
+        cloud.width,
+        cloud.height,
+        t.x(),
+        t.y(),
+        t.z(),
+        q.w(),
+        q.x(),
+        q.y(),
+        q.z(),
+        cloud.points_m.size(),
+        format.binary ? "binary" : "ascii");
+    const auto put_number = [&](auto value) {
+        if (format.binary) {
+            store_le(out, value);
+        } else {
+            out += fmt::format("{} ", value);
+        }
+    };
+    for (std::size_t i = 0; i < cloud.points_m.size(); ++i) {
+        for (const double value : cloud.points_m[i]) {
+            format.double_precision ? put_number(value) : put_number(static_cast<float>(value));
+        }
+        if (!cloud.colours.empty()) {
+            const Rgb& c = cloud.colours[i];
+            put_number(static_cast<std::uint32_t>(c.r << 16 | c.g << 8 | c.b));
+        }
+        for (const CloudScalar& scalar : cloud.scalars) put_number(scalar.values[i]);
+        if (!format.binary) out.back() = '\n';
+    }
+    return out;
+}
+
+Status write_pcd(const std::string& path, const PointCloud& cloud, const CloudFormat& format) {
+    if (const auto problem = cloud.problem()) return output_error(path + ": " + *problem);
+    return write_file(path, format_pcd(cloud, format));
+}
+
+}  // namespace surefoot::io

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/point_cloud.hpp"
+
+#include <fmt/format.h>
+
+#include "io/file.hpp"
+
+namespace surefoot::io {
+
+const CloudScalar* PointCloud::scalar(std::string_view name) const noexcept {
+    for (const CloudScalar& candidate : scalars) {
+        if (candidate.name == name) return &candidate;
+    }
+    return nullptr;
+}
+
+std::optional<std::string> PointCloud::problem() const {
+    const std::size_t count = points_m.size();
+    if (width < 0 || height < 1 ||
+        static_cast<std::size_t>(width) * static_cast<std::size_t>(height) != count) {
+        return fmt::format("cloud of {} points cannot be {} x {}", count, width, height);
+    }
+    if (!colours.empty() && colours.size() != count) {
+        return fmt::format("{} colours for {} points", colours.size(), count);
+    }
+    for (const CloudScalar& scalar : scalars) {
+        if (scalar.values.size() != count) {
+            return fmt::format(
+                "{} values of '{}' for {} points", scalar.values.size(), scalar.name, count);
+        }
+    }
+    return std::nullopt;
+}
+
+Result<PointCloud> read_cloud(const std::string& path) {
+    const std::string extension = extension_of(path);
+    const bool text =
+        extension == ".xyz" || extension == ".asc" || extension == ".txt" || extension == ".csv";
+    if (!text && extension != ".ply" && extension != ".pcd") {
+        const char* hint = extension == ".laz"
+                               ? "LAZ has no packaged reader: convert it to PLY or PCD first"
+                               : "clouds are read from .ply .pcd .xyz .asc .txt .csv";
+        return input_error(fmt::format("{}: unknown cloud format '{}'; {}", path, extension, hint));
+    }
+    const Result<std::string> bytes = read_file(path);
+    if (!bytes) return bytes.error();
+    if (extension == ".ply") return parse_ply(*bytes, path);
+    if (extension == ".pcd") return parse_pcd(*bytes, path);
+    return parse_text_cloud(*bytes, path);
+}
+
+}  // namespace surefoot::io

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/camera/frame_source.hpp"
+#include "surefoot/core/frame.hpp"
+#include "surefoot/core/result.hpp"
+
+/// Recordings on disk: what is in them, before any image is opened. One indexer per layout; all of
+/// them give the same list, from which RecordingSource makes frames.
+namespace surefoot::io {
+
+struct OpenOptions {
+    std::optional<std::string> rig_file;  ///< instead of the recording's own calibration
+    std::optional<double> rate_hz;        ///< where the recording has no stamps of its own
+};
+
+/// One frame: where its images are.
+struct FrameEntry {
+    std::int64_t time_ns = 0;
+    std::string left;   ///< or the side-by-side image, or the colour image of RGB-D
+    std::string right;  ///< or the depth image; empty for side by side
+    std::string where;  ///< "mav0/cam0/data.csv:17", for errors about the stamp
+};
+
+struct Recording {
+    enum class Storage { pair, side_by_side, rgbd } storage = Storage::pair;
+    camera::SourceInfo info;
+    camera::StereoRig rig;
+    std::vector<FrameEntry> frames;
+    std::vector<ImuSample> imu;  ///< strictly growing stamps
+    int unpaired = 0;            ///< frames of one camera without a partner in the other's list
+};
+
+/// EuRoC ASL: `folder` is the one with cam0 and cam1 ("mav0").
+[[nodiscard]] Result<Recording> index_euroc(const std::string& folder, const OpenOptions& options);
+/// KITTI odometry: image_0 and image_1 (or image_l, image_r; colour: image_2, image_3), calib.txt,
+/// times.txt (10 Hz without).
+[[nodiscard]] Result<Recording> index_kitti(const std::string& folder, const OpenOptions& options);
+/// Images with the left eye in the left half and the right one beside it, in natural order, 15 Hz
+/// or the rig's rate; rig.yaml in the folder.
+[[nodiscard]] Result<Recording> index_side_by_side(const std::string& folder,
+                                                   const OpenOptions& options);
+/// TUM RGB-D: rgb.txt and depth.txt, associated within 20 ms; depth codes are 1/5000 m. Kinect
+/// intrinsics (525, 525, 319.5, 239.5) unless a rig says otherwise.
+[[nodiscard]] Result<Recording> index_tum_rgbd(const std::string& folder,
+                                               const OpenOptions& options);
+
+/// Whichever of the above fits the folder; says what it looked for where none does.
+[[nodiscard]] Result<Recording> index_recording(const std::string& folder,
+                                                const OpenOptions& options);
+
+/// "stamp_ns,..." rows of an EuRoC data.csv: stamp, the next field, and the line.
+struct CsvRow {
+    std::int64_t time_ns = 0;
+    std::string value;
+    int line = 0;
+};
+[[nodiscard]] Result<std::vector<CsvRow>> parse_euroc_frames(std::string_view text,
+                                                             const std::string& file);
+/// IMU rows: stamp_ns, angular velocity [rad/s], specific force [m/s^2]; stamps must grow.
+[[nodiscard]] Result<std::vector<ImuSample>> parse_euroc_imu_samples(std::string_view text,
+                                                                     const std::string& file);
+/// "stamp_s file" rows of TUM's rgb.txt and depth.txt.
+[[nodiscard]] Result<std::vector<CsvRow>> parse_tum_list(std::string_view text,
+                                                         const std::string& file);
+
+/// The rig of `options.rig_file`, else of rig.yaml in `folder`, else nothing.
+[[nodiscard]] Result<std::optional<camera::StereoRig>> read_rig_beside(const std::string& folder,
+                                                                       const OpenOptions& options);
+/// The rate to give to frames without stamps: from the options, else `otherwise_hz`.
+[[nodiscard]] Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz);
+/// Error when a rate is asked for although the recording has stamps.
+[[nodiscard]] Status refuse_rate(const OpenOptions& options, const std::string& file);
+/// Stamp of frame `index` at a constant rate, from 0.
+[[nodiscard]] std::int64_t stamp_at(int index, double rate_hz) noexcept;
+
+/// Opens the frames of an index one after the other. A frame that cannot be had (missing or damaged
+/// image, wrong size, stamp that does not grow) is an error that names it; the next call goes on
+/// with the next frame.
+class RecordingSource final : public camera::FrameSource {
+  public:
+    explicit RecordingSource(Recording recording) : recording_(std::move(recording)) {}
+
+    [[nodiscard]] const camera::StereoRig& rig() const override { return recording_.rig; }
+    [[nodiscard]] const camera::SourceInfo& info() const override { return recording_.info; }
+    [[nodiscard]] Result<std::optional<StereoFrame>> next() override;
+
+  private:
+    Status load_images(const FrameEntry& entry, StereoFrame& frame) const;
+
+    Recording recording_;
+    std::size_t next_frame_ = 0;
+    std::size_t next_imu_ = 0;
+    std::optional<std::int64_t> last_time_ns_;
+};
+
+/// A side-by-side frame cut into both eyes; `what` names it in errors.
+[[nodiscard]] Status split_side_by_side(const GreyImage& both,
+                                        const camera::StereoRig& rig,
+                                        const std::string& what,
+                                        StereoFrame& frame);
+
+/// Any recording: a folder of the layouts above, or a side-by-side video file.
+[[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_source(
+    const std::string& path, const OpenOptions& options = {});
+/// Is this the name of a video file (by its extension)?
+[[nodiscard]] bool is_video_name(const std::string& path);
+/// A side-by-side video with rig.yaml in the same folder; its own frame rate unless one is given.
+[[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
+                                                                      const OpenOptions& options);
+
+}  // namespace surefoot::io

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "surefoot/core/time.hpp"
+
+namespace surefoot::io {
+namespace {
+
+constexpr bool is_digit(char c) noexcept {
+    return c >= '0' && c <= '9';
+}
+constexpr bool is_space(char c) noexcept {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v';
+}
+
+std::string_view without_plus(std::string_view text) noexcept {
+    // from_chars knows no '+'; "+-1" stays an error.
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+    return text;
+}
+
+std::optional<double> parse_yaml_special(std::string_view text) {
+    const std::string lower = lowercase(text);
+    if (lower == ".nan") return std::numeric_limits<double>::quiet_NaN();
+    if (lower == ".inf") return std::numeric_limits<double>::infinity();
+    if (lower == "-.inf") return -std::numeric_limits<double>::infinity();
+    return std::nullopt;
+}
+
+/// Levenshtein distance in which a swap of neighbours counts as one (optimal string alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    const std::size_t columns = b.size() + 1;
+    std::vector<std::size_t> before(columns), above(columns), row(columns);
+    for (std::size_t j = 0; j < columns; ++j) above[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (std::size_t j = 1; j < columns; ++j) {
+            const std::size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+            row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + change});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                row[j] = std::min(row[j], before[j - 2] + 1);
+            }
+        }
+        std::swap(before, above);
+        std::swap(above, row);
+    }
+    return above[b.size()];
+}
+
+}  // namespace
+
+std::optional<double> parse_double(std::string_view text) noexcept {
+    text = without_plus(text);
+    double value = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc{} && stop == end && !text.empty()) return value;
+    if (error == std::errc::result_out_of_range && stop == end) {
+        // Too small for a double is zero; too large stays an error.
+        const bool tiny = text.find("e-") != text.npos || text.find("E-") != text.npos;
+        if (tiny) return 0.0;
+        return std::nullopt;
+    }
+    if (text.size() <= 5) return parse_yaml_special(text);
+    return std::nullopt;
+}
+
+std::optional<std::int64_t> parse_int64(std::string_view text) noexcept {
+    text = without_plus(text);
+    std::int64_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc{} || stop != end || text.empty()) return std::nullopt;
+    return value;
+}
+
+std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) noexcept {
+    constexpr double kMaxSeconds = 9.2e9;  // int64 holds 9.22e18 ns
+    text = without_plus(text);
+    const bool negative = !text.empty() && text[0] == '-';
+    std::string_view digits = text.substr(negative ? 1 : 0);
+    if (digits.find_first_not_of("0123456789.") != digits.npos) {  // exponent, as KITTI writes
+        const auto seconds = parse_double(text);
+        if (!seconds || !(std::abs(*seconds) < kMaxSeconds)) return std::nullopt;
+        return ns_from_seconds(*seconds);
+    }
+    const std::size_t dot = std::min(digits.find('.'), digits.size());
+    const std::string_view whole = digits.substr(0, dot);
+    const std::string_view fraction = dot < digits.size() ? digits.substr(dot + 1) : "";
+    if (whole.empty() && fraction.empty()) return std::nullopt;
+    if (fraction.find('.') != fraction.npos) return std::nullopt;
+    const auto seconds = whole.empty() ? std::optional<std::int64_t>(0) : parse_int64(whole);
+    if (!seconds || static_cast<double>(*seconds) >= kMaxSeconds) return std::nullopt;
+    std::int64_t ns = *seconds * kNanosecondsPerSecond;
+    std::int64_t unit = kNanosecondsPerSecond;
+    for (std::size_t i = 0; i < fraction.size() && i < 9; ++i) {
+        unit /= 10;
+        ns += (fraction[i] - '0') * unit;
+    }
+    if (fraction.size() > 9 && fraction[9] >= '5') ns += 1;
+    return negative ? -ns : ns;
+}
+
+std::string format_seconds(std::int64_t time_ns) {
+    // Unsigned, because the magnitude of the smallest int64 is no int64.
+    const auto magnitude =
+        time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);
+    constexpr auto kSecond = static_cast<std::uint64_t>(kNanosecondsPerSecond);
+    return fmt::format(
+        "{}{}.{:09}", time_ns < 0 ? "-" : "", magnitude / kSecond, magnitude % kSecond);
+}
+
+std::string format_double(double value) {
+    return fmt::format("{}", value);
+}
+
+std::string_view trimmed(std::string_view text) noexcept {
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+    std::vector<std::string_view> parts;
+    std::size_t begin = text.find_first_not_of(separators);
+    while (begin != text.npos) {
+        const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
+        parts.push_back(text.substr(begin, end - begin));
+        begin = text.find_first_not_of(separators, end);
+    }
+    return parts;
+}
+
+std::string lowercase(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return lower;
+}
+
+std::string one_word(std::string_view name) {
+    std::string word(name.empty() ? "_" : name);
+    for (char& c : word) {
+        if (is_space(c)) c = '_';
+    }
+    return word;
+}
+
+std::string quoted(std::string_view value) {
+    constexpr std::size_t kLongest = 40;
+    std::string text;
+    for (const char c : value.substr(0, kLongest)) {
+        text += c >= 0x20 && c < 0x7f ? c : '?';
+    }
+    if (value.size() > kLongest) text += "...";
+    return "'" + text + "'";
+}
+
+std::vector<std::string> nearest_names(std::string_view name,
+                                       std::span<const std::string> names,
+                                       std::size_t count) {
+    struct Candidate {
+        std::size_t distance;
+        const std::string* name;
+    };
+    std::vector<Candidate> candidates;
+    // A foreign key may have any length; a distance beyond its own length says nothing.
+    const std::string_view key = name.substr(0, 128);
+    for (const std::string& other : names) {
+        const std::size_t distance = edit_distance(key, other);
+        if (2 * distance <= std::max(key.size(), other.size())) {
+            candidates.push_back({distance, &other});
+        }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+        return a.distance < b.distance;
+    });
+    std::vector<std::string> nearest;
+    for (const Candidate& candidate : candidates) {
+        // What is clearly worse than the best would only distract.
+        if (candidate.distance > candidates.front().distance + 1) break;
+        if (nearest.size() < count) nearest.push_back(*candidate.name);
+    }
+    return nearest;
+}
+
+std::string did_you_mean(std::string_view name, std::span<const std::string> names) {
+    const std::vector<std::string> nearest = nearest_names(name, names);
+    if (nearest.empty()) return {};
+    std::string text = "; did you mean '" + nearest[0] + "'";
+    for (std::size_t i = 1; i < nearest.size(); ++i) {
+        text += (i + 1 == nearest.size() ? " or '" : ", '") + nearest[i] + "'";
+    }
+    return text + "?";
+}
+
+bool natural_less(std::string_view a, std::string_view b) noexcept {
+    std::size_t i = 0;
+    std::size_t j = 0;
+    const auto number = [](std::string_view text, std::size_t& position) {
+        std::size_t begin = position;
+        while (position < text.size() && is_digit(text[position])) ++position;
+        while (begin + 1 < position && text[begin] == '0') ++begin;
+        return text.substr(begin, position - begin);
+    };
+    while (i < a.size() && j < b.size()) {
+        if (is_digit(a[i]) && is_digit(b[j])) {
+            const std::string_view m = number(a, i);
+            const std::string_view n = number(b, j);
+            if (m.size() != n.size()) return m.size() < n.size();
+            if (m != n) return m < n;
+        } else {
+            if (a[i] != b[j]) return a[i] < b[j];
+            ++i;
+            ++j;
+        }
+    }
+    if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+    return a < b;  // "01" and "1": a total order all the same
+}
+
+std::optional<std::string_view> LineReader::next() noexcept {
+    if (rest_.empty()) return std::nullopt;
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    ++number_;
+    return line;
+}
+
+std::string_view WordReader::next() noexcept {
+    while (!rest_.empty() && is_space(rest_.front())) rest_.remove_prefix(1);
+    std::size_t end = 0;
+    while (end < rest_.size() && !is_space(rest_[end])) ++end;
+    const std::string_view word = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    return word;
+}
+
+}  // namespace surefoot::io

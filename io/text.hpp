@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Numbers and lines of text files, the same in every locale.
+namespace surefoot::io {
+
+/// The whole text as a number (a leading '+', nan, inf, .nan and .inf are accepted), or nothing.
+[[nodiscard]] std::optional<double> parse_double(std::string_view text) noexcept;
+/// The whole text as a decimal integer, or nothing (overflow included).
+[[nodiscard]] std::optional<std::int64_t> parse_int64(std::string_view text) noexcept;
+
+/// Seconds written as a decimal number -> nanoseconds, exact for up to 9 decimals (a double cannot
+/// hold 1403715273.262142976). Nothing for anything else, or beyond +-292 years.
+[[nodiscard]] std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) noexcept;
+/// Nanoseconds -> seconds with 9 decimals, exact.
+[[nodiscard]] std::string format_seconds(std::int64_t time_ns);
+
+/// Shortest text that reads back to the same double.
+[[nodiscard]] std::string format_double(double value);
+
+[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
+/// Non-empty parts between any of `separators`.
+[[nodiscard]] std::vector<std::string_view> split(std::string_view text,
+                                                  std::string_view separators = " \t");
+[[nodiscard]] std::string lowercase(std::string_view text);
+/// A name without white space ('_' instead), as headers of data files need it.
+[[nodiscard]] std::string one_word(std::string_view name);
+/// A value as it may appear in an error message: one line, printable, at most 40 characters.
+[[nodiscard]] std::string quoted(std::string_view value);
+
+/// Names in order of their likeness to `name` (edit distance), at most `count`, only plausible
+/// ones.
+[[nodiscard]] std::vector<std::string> nearest_names(std::string_view name,
+                                                     std::span<const std::string> names,
+                                                     std::size_t count = 3);
+/// "; did you mean 'a' or 'b'?" from nearest_names, or an empty string.
+[[nodiscard]] std::string did_you_mean(std::string_view name, std::span<const std::string> names);
+
+/// Sorts "frame2" before "frame10": runs of digits compare as numbers.
+[[nodiscard]] bool natural_less(std::string_view a, std::string_view b) noexcept;
+
+/// Lines of a text, without their line ends, counted from 1.
+class LineReader {
+  public:
+    explicit LineReader(std::string_view text) noexcept : rest_(text) {}
+
+    [[nodiscard]] std::optional<std::string_view> next() noexcept;
+    /// Number of the line that `next` returned last.
+    [[nodiscard]] int number() const noexcept { return number_; }
+    /// Everything after the line that `next` returned last.
+    [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
+
+  private:
+    std::string_view rest_;
+    int number_ = 0;
+};
+
+/// White-space separated words of a text, without copying it.
+class WordReader {
+  public:
+    explicit WordReader(std::string_view text) noexcept : rest_(text) {}
+    /// The next word, or an empty view at the end.
+    [[nodiscard]] std::string_view next() noexcept;
+
+  private:
+    std::string_view rest_;
+};
+
+}  // namespace surefoot::io

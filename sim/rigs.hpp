@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::sim {
+
+/// Height of base_link above the floor in every scene; the cameras are 0.05 m higher.
+inline constexpr double kBodyHeight_m = 0.95;
+
+/// Pose of a left camera that looks `pitch_down_rad` below the horizon, straight ahead.
+[[nodiscard]] Pose looking_down(const Eigen::Vector3d& position_body_m, double pitch_down_rad);
+
+/// Names of the rigs that need no file.
+[[nodiscard]] std::vector<std::string> rig_presets();
+
+/// A rectified rig on the left armrest of the machine, 1.0 m above the floor, 32 deg down, with an
+/// IMU beside the camera. An unknown name is a usage error that lists the names.
+[[nodiscard]] Result<camera::StereoRig> rig_preset(const std::string& name);
+
+}  // namespace surefoot::sim

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/scene_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "sim/rigs.hpp"
+
+namespace surefoot::sim {
+namespace {
+
+/// Small images, for speed.
+SceneOptions small(const std::string& scene) {
+    SceneOptions options;
+    options.scene = scene;
+    camera::StereoRig rig = rig_preset("zed_vga").value();
+    camera::PinholeRadTan lens;
+    lens.fx_px = lens.fy_px = 85.0;
+    lens.cx_px = 83.5;
+    lens.cy_px = 46.5;
+    rig.left = {lens, 168, 94};
+    rig.right = rig.left;
+    options.rig = rig;
+    return options;
+}
+
+std::vector<StereoFrame> all_frames(const SceneOptions& options) {
+    auto source = open_scene(options).value();
+    std::vector<StereoFrame> frames;
+    while (auto frame = source->next().value()) frames.push_back(std::move(*frame));
+    return frames;
+}
+
+TEST(SceneSourceTest, FramesComeInOrderWithTheirTruth) {
+    SceneOptions options = small("floor");
+    options.rate_hz = 15.0;
+    options.frames = 20;
+    auto source = open_scene(options).value();
+    EXPECT_EQ(source->info().kind, "sim");
+    EXPECT_EQ(source->info().frames, 20);
+    EXPECT_EQ(source->rig().rate_hz, 15.0);
+    ASSERT_EQ(source->truth().trajectory.size(), 20U);
+    std::int64_t previous_ns = 0;
+    int index = 0;
+    while (auto frame = source->next().value()) {
+        EXPECT_EQ(frame->index, index);
+        EXPECT_GT(frame->time_ns, previous_ns);
+        EXPECT_EQ(frame->time_ns,
+                  source->truth().trajectory[static_cast<std::size_t>(index)].time_ns);
+        EXPECT_EQ(frame->left.width(), 168);
+        EXPECT_EQ(frame->right.height(), 94);
+        EXPECT_TRUE(frame->depth_m.empty());
+        EXPECT_EQ(source->last_depth_m().width(), 168);
+        previous_ns = frame->time_ns;
+        ++index;
+    }
+    EXPECT_EQ(index, 20);
+    EXPECT_FALSE(source->next().value());  // the end stays the end
+}
+
+TEST(SceneSourceTest, TheWholePathIsTheDefault) {
+    SceneOptions options = small("floor");
+    options.rate_hz = 5.0;
+    const auto source = open_scene(options).value();
+    const auto& poses = source->truth().trajectory;
+    EXPECT_NEAR(poses.back().T_world_body.translation_m.x(), 1.5, 0.011);
+    EXPECT_EQ(*source->info().frames, static_cast<int>(poses.size()));
+}
+
+TEST(SceneSourceTest, ImuCoversTheTimeBetweenFramesAndShowsGravity) {
+    SceneOptions options = small("floor");
+    options.frames = 12;
+    const auto frames = all_frames(options);
+    std::int64_t last_ns = frames.front().time_ns - 100'000'000;
+    for (const StereoFrame& frame : frames) {
+        ASSERT_EQ(frame.imu.size(), 20U) << "frame " << frame.index;
+        for (const ImuSample& sample : frame.imu) {
+            EXPECT_EQ(sample.time_ns, last_ns + 5'000'000);
+            last_ns = sample.time_ns;
+        }
+        EXPECT_EQ(last_ns, frame.time_ns);
+    }
+    // The trolley stands for the first second. Default biases are 0.02 m/s^2 an axis: 5 sigma.
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const ImuSample& sample : frames[0].imu) mean += sample.specific_force_m_s2 / 20.0;
+    EXPECT_NEAR(mean.z(), kGravity_m_s2, 0.1);
+    EXPECT_LT(mean.head<2>().norm(), 0.1);
+    options.imu = false;
+    const auto source = open_scene(options).value();
+    EXPECT_FALSE(source->info().has_imu);
+    EXPECT_FALSE(source->rig().imu);
+    EXPECT_TRUE(source->next().value()->imu.empty());
+}
+
+TEST(SceneSourceTest, SameSeedSameBytesOtherSeedOtherImages) {
+    SceneOptions options = small("demo_stairs");
+    options.frames = 2;
+    const auto a = all_frames(options);
+    const auto same = all_frames(options);
+    options.seed = 2;
+    const auto other = all_frames(options);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_EQ(a[i].left, same[i].left);
+        EXPECT_EQ(a[i].right, same[i].right);
+        EXPECT_NE(a[i].left, other[i].left);
+    }
+    EXPECT_NE(a[0].left, a[1].left);  // noise is new in every frame
+    EXPECT_NE(a[0].left, a[0].right);
+}
+
+TEST(SceneSourceTest, WrongOptionsGetASentence) {
+    const auto message = [](const SceneOptions& options) {
+        const auto source = open_scene(options);
+        if (source) return std::string("no error");
+        EXPECT_EQ(source.error().code, ErrorCode::usage);
+        return source.error().message;
+    };
+    SceneOptions unknown_scene = small("stairs_of_penrose");
+    EXPECT_NE(message(unknown_scene).find("there are: demo_stairs"), std::string::npos);
+    SceneOptions rate = small("floor");
+    rate.rate_hz = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_NE(message(rate).find("rate_hz"), std::string::npos);
+    SceneOptions frames = small("floor");
+    frames.frames = -1;
+    EXPECT_NE(message(frames).find("frames is -1"), std::string::npos);
+    SceneOptions rig = small("floor");
+    rig.rig->right.reset();
+    EXPECT_NE(message(rig).find("right camera"), std::string::npos);
+    SceneOptions preset;
+    preset.rig_preset = "zed_42k";
+    EXPECT_NE(message(preset).find("zed_42k"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surefoot::sim

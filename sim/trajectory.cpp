@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surefoot/core/assert.hpp"
+
+namespace surefoot::sim {
+namespace {
+
+/// Way s with its derivatives by time.
+struct Progress {
+    double way_m = 0.0;
+    double speed_m_s = 0.0;
+    double acceleration_m_s2 = 0.0;
+};
+
+/// Speeding up from rest: v = V (3u^2 - 2u^3), u = t / T; after T the way is V T / 2.
+Progress speeding_up(double speed_m_s, double ramp_s, double t_s) {
+    const double u = t_s / ramp_s;
+    return {speed_m_s * ramp_s * u * u * u * (1.0 - 0.5 * u),
+            speed_m_s * u * u * (3.0 - 2.0 * u),
+            speed_m_s / ramp_s * 6.0 * u * (1.0 - u)};
+}
+
+Progress progress(double length_m, double speed_m_s, double ramp_s, double duration_s, double t_s) {
+    if (t_s < ramp_s) return speeding_up(speed_m_s, ramp_s, t_s);
+    if (t_s < duration_s - ramp_s) return {speed_m_s * (t_s - 0.5 * ramp_s), speed_m_s, 0.0};
+    const Progress mirrored = speeding_up(speed_m_s, ramp_s, duration_s - t_s);
+    return {length_m - mirrored.way_m, mirrored.speed_m_s, -mirrored.acceleration_m_s2};
+}
+
+}  // namespace
+
+Trajectory Trajectory::trolley(const std::vector<Waypoint>& waypoints,
+                               const TrolleyConfig& config) {
+    SUREFOOT_ASSERT(!waypoints.empty());
+    Trajectory trajectory;
+    trajectory.height_m_ = config.height_m;
+    trajectory.append_pause(waypoints.front());
+    for (std::size_t i = 1; i < waypoints.size(); ++i) {
+        trajectory.append_way(waypoints[i - 1], waypoints[i], config);
+        trajectory.append_pause(waypoints[i]);
+    }
+    return trajectory;
+}
+
+Trajectory Trajectory::stand(const Waypoint& place, double height_m, double duration_s) {
+    Trajectory trajectory;
+    trajectory.height_m_ = height_m;
+    Waypoint standing = place;
+    standing.pause_s = duration_s;
+    trajectory.append_pause(standing);
+    return trajectory;
+}
+
+void Trajectory::append_pause(const Waypoint& place) {
+    Segment segment;
+    segment.start_s = duration_s_;
+    segment.duration_s = place.pause_s;
+    segment.from = place;
+    segment.to = place;
+    segments_.push_back(segment);
+    duration_s_ += segment.duration_s;
+}
+
+void Trajectory::append_way(const Waypoint& from, const Waypoint& to, const TrolleyConfig& config) {
+    Segment segment;
+    segment.length_m = std::max(std::hypot(to.x_m - from.x_m, to.y_m - from.y_m),
+                                config.turn_lever_m * std::abs(to.yaw_rad - from.yaw_rad));
+    if (segment.length_m == 0.0) return;
+    segment.start_s = duration_s_;
+    // A short way never reaches the speed: it only speeds up and slows down.
+    segment.ramp_s = config.ramp_s;
+    segment.speed_m_s = std::min(config.speed_m_s, segment.length_m / config.ramp_s);
+    segment.duration_s = segment.length_m / segment.speed_m_s + config.ramp_s;
+    segment.from = from;
+    segment.to = to;
+    segments_.push_back(segment);
+    duration_s_ += segment.duration_s;
+}
+
+MotionState Trajectory::at(double time_s) const {
+    const double t_s = std::clamp(time_s, 0.0, duration_s_);
+    const auto next = std::upper_bound(
+        segments_.begin(), segments_.end(), t_s, [](double t, const Segment& segment) {
+            return t < segment.start_s;
+        });
+    const Segment& segment = *(next - 1);
+    Progress now;
+    double scale = 0.0;
+    if (segment.length_m > 0.0) {
+        const double in_segment_s = std::min(t_s - segment.start_s, segment.duration_s);
+        now = progress(
+            segment.length_m, segment.speed_m_s, segment.ramp_s, segment.duration_s, in_segment_s);
+        scale = 1.0 / segment.length_m;
+    }
+    const Eigen::Vector3d way_m(
+        segment.to.x_m - segment.from.x_m, segment.to.y_m - segment.from.y_m, 0.0);
+    const double turn_rad = segment.to.yaw_rad - segment.from.yaw_rad;
+    const double share = scale * now.way_m;
+
+    MotionState state;
+    state.T_world_body.translation_m =
+        Eigen::Vector3d(segment.from.x_m, segment.from.y_m, height_m_) + share * way_m;
+    const double half_yaw_rad = 0.5 * (segment.from.yaw_rad + share * turn_rad);
+    state.T_world_body.rotation =
+        Eigen::Quaterniond(std::cos(half_yaw_rad), 0.0, 0.0, std::sin(half_yaw_rad));
+    state.velocity_world_m_s = scale * now.speed_m_s * way_m;
+    state.acceleration_world_m_s2 = scale * now.acceleration_m_s2 * way_m;
+    state.angular_velocity_body_rad_s.z() = scale * now.speed_m_s * turn_rad;
+    state.angular_acceleration_body_rad_s2.z() = scale * now.acceleration_m_s2 * turn_rad;
+    return state;
+}
+
+}  // namespace surefoot::sim

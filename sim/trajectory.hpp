@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "surefoot/core/pose.hpp"
+
+namespace surefoot::sim {
+
+/// A place on the floor where the trolley stops, and how long it waits there.
+struct Waypoint {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double yaw_rad = 0.0;
+    double pause_s = 0.0;
+};
+
+/// Pose of base_link with its exact derivatives.
+struct MotionState {
+    Pose T_world_body;
+    Eigen::Vector3d velocity_world_m_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d acceleration_world_m_s2 = Eigen::Vector3d::Zero();
+    Eigen::Vector3d angular_velocity_body_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Vector3d angular_acceleration_body_rad_s2 = Eigen::Vector3d::Zero();
+};
+
+struct TrolleyConfig {
+    double height_m = 0.95;     ///< of base_link above z = 0
+    double speed_m_s = 0.25;    ///< between waypoints
+    double ramp_s = 1.0;        ///< time to reach that speed, and to stop
+    double turn_lever_m = 0.8;  ///< a turn by 1 rad takes as long as this way
+};
+
+/// Motion of base_link through waypoints, level, at constant height. Between two waypoints position
+/// and yaw follow one progress function s(t): speed rises as the smoothstep 3u^2 - 2u^3, stays,
+/// falls the same way, so acceleration is continuous. Before the start and after the end it stands
+/// still.
+class Trajectory {
+  public:
+    /// At least one waypoint; one alone stands for its pause.
+    static Trajectory trolley(const std::vector<Waypoint>& waypoints, const TrolleyConfig& config);
+    static Trajectory stand(const Waypoint& place, double height_m, double duration_s);
+
+    [[nodiscard]] MotionState at(double time_s) const;
+    [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
+
+  private:
+    struct Segment {
+        double start_s = 0.0;
+        double length_m = 0.0;  ///< way, or lever times turn where that is longer; 0 = pause
+        double speed_m_s = 0.0;
+        double ramp_s = 0.0;
+        double duration_s = 0.0;
+        Waypoint from;
+        Waypoint to;
+    };
+    void append_pause(const Waypoint& place);
+    void append_way(const Waypoint& from, const Waypoint& to, const TrolleyConfig& config);
+
+    std::vector<Segment> segments_;
+    double height_m_ = 0.0;
+    double duration_s_ = 0.0;
+};
+
+}  // namespace surefoot::sim

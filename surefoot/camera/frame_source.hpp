@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/frame.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::camera {
+
+struct SourceInfo {
+    std::string kind;  ///< "euroc", "kitti", "side_by_side", "tum_rgbd", "sim", ...
+    std::string path;
+    std::optional<int> frames;  ///< how many there are, where that is known beforehand
+    bool has_imu = false;
+};
+
+/// Where frames come from: a recording, a video, a camera, a simulated scene. Frames come in time
+/// order with strictly growing stamps; anything else is an error that names file and frame.
+class FrameSource {
+  public:
+    virtual ~FrameSource() = default;
+    [[nodiscard]] virtual const StereoRig& rig() const = 0;
+    [[nodiscard]] virtual const SourceInfo& info() const = 0;
+    /// The next frame, nothing at the end, or why the frame cannot be had.
+    [[nodiscard]] virtual Result<std::optional<StereoFrame>> next() = 0;
+};
+
+}  // namespace surefoot::camera

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "surefoot/camera/camera_model.hpp"
+#include "surefoot/core/pose.hpp"
+
+namespace surefoot::camera {
+
+/// An IMU that is fixed to the rig.
+struct ImuMount {
+    Pose T_body_imu;
+    double rate_hz = 200.0;
+};
+
+/// Two cameras on one body, or one camera that measures depth itself (RGB-D).
+struct StereoRig {
+    std::string name;
+    Camera left;
+    std::optional<Camera> right;  ///< empty for RGB-D
+    Pose T_left_right;            ///< right optical frame in the left one; baseline along +x
+    /// Left optical frame in base_link, where the rig knows it (EuRoC T_BS) or a machine file set
+    /// it.
+    std::optional<Pose> T_body_left;
+    std::optional<ImuMount> imu;
+    double rate_hz = 0.0;    ///< nominal frame rate, 0 = unknown
+    double readout_s = 0.0;  ///< rolling-shutter read-out time of an image, 0 = global
+    bool rectified = false;  ///< images are rectified already: rows match, no distortion
+
+    /// First reason why the rig cannot be used, with the value; or nothing.
+    [[nodiscard]] std::optional<std::string> problem() const;
+    /// base_link of this rig: `T_body_left`, else the optical frame turned to body axes.
+    [[nodiscard]] Pose body_from_left() const;
+};
+
+/// The ideal stereo camera behind rectified images: parallel optical axes, equal intrinsics.
+/// Depth along z is fx * baseline / disparity.
+struct RectifiedRig {
+    int width = 0;
+    int height = 0;
+    double fx_px = 0.0;
+    double fy_px = 0.0;
+    double cx_px = 0.0;
+    double cy_px = 0.0;
+    double baseline_m = 0.0;  ///< for RGB-D a virtual one
+    Pose T_body_camera;       ///< rectified left optical frame in base_link
+
+    [[nodiscard]] double depth_to_disparity_px_m() const noexcept { return fx_px * baseline_m; }
+    /// Point in the rectified left optical frame of a pixel with its disparity (> 0).
+    [[nodiscard]] Eigen::Vector3d point(double u_px, double v_px, double disparity_px) const {
+        const double z_m = depth_to_disparity_px_m() / disparity_px;
+        return {(u_px - cx_px) / fx_px * z_m, (v_px - cy_px) / fy_px * z_m, z_m};
+    }
+};
+
+}  // namespace surefoot::camera

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace surefoot {
+
+/// A rectangle on the ground, parallel to the axes of base_link. Lengths are integers in units of
+/// 0.1 mm ("tenth_mm") as in the map snapshot, so that a decision is the same on every machine.
+struct GroundBox {
+    std::int32_t center_x_tenth_mm = 0;  ///< forward of base_link
+    std::int32_t center_y_tenth_mm = 0;  ///< left of base_link
+    std::int32_t length_tenth_mm = 0;    ///< along x
+    std::int32_t width_tenth_mm = 0;     ///< along y
+};
+
+/// The space that the machine and its user fill. Heights count from the soles.
+struct BodyEnvelope {
+    GroundBox box;
+    std::int32_t sway_tenth_mm = 0;  ///< added on all four sides: the body rocks while stepping
+    std::int32_t lower_edge_tenth_mm = 0;  ///< below it only the feet need room
+    std::int32_t height_tenth_mm = 0;      ///< top of the user's head
+};
+
+/// How high a movement may step; flat walking and stairs have limits of their own.
+enum class MovementClass : std::uint8_t { walk = 0, stair = 1 };
+inline constexpr int kMovementClassCount = 2;
+
+/// Where one joystick code takes base_link, seen from where it is now.
+struct Movement {
+    bool configured = false;
+    MovementClass movement_class = MovementClass::walk;
+    std::array<char, 8> name{};  ///< for people and logs, zero-terminated
+    std::int32_t forward_tenth_mm = 0;
+    std::int32_t left_tenth_mm = 0;
+    double cos_turn = 1.0;  ///< of the change of yaw, left positive
+    double sin_turn = 0.0;
+};
+
+struct StepLimits {
+    bool enabled = false;
+    std::int32_t up_tenth_mm = 0;
+    std::int32_t down_tenth_mm = 0;
+};
+
+/// Limits of the step gate. None has a default that allows anything: a machine file states all.
+struct GateLimits {
+    std::array<StepLimits, kMovementClassCount> step{};
+    double min_normal_z = 1.0;                  ///< cosine of the largest tilt of a foot plane
+    std::int32_t patch_side_tenth_mm = 500;     ///< a foot is judged by the means of such patches
+    std::int32_t patch_residual_tenth_mm = 0;   ///< |residual| + sigma_factor * sigma of a patch
+    std::int32_t patch_sigma_tenth_mm = 0;      ///< above it a patch is not resolvable
+    double sigma_factor = 3.4;                  ///< one-sided 3e-4 for a normal error
+    std::int32_t patch_independent_cells = 1;   ///< most cells of a patch whose errors may average
+    std::int32_t cell_sigma_tenth_mm = 0;       ///< a cell less sure than this proves nothing
+    std::int32_t swing_clearance_tenth_mm = 0;  ///< highest thing in the way of a swinging foot
+    std::int32_t foot_margin_tenth_mm = 0;      ///< added around the path of a foot
+    std::int32_t drop_tenth_mm = 0;             ///< ground this much lower is a drop
+    std::int32_t drop_band_tenth_mm = 0;        ///< solid ground wanted beyond a landing foot
+    std::uint8_t drop_evidence = 0;             ///< evidence from here on is a drop
+    std::int32_t drift_tenth_mm = 0;            ///< 1-sigma horizontal drift since a cell was seen
+    std::int64_t frame_age_ns = 0;
+    std::int64_t pose_age_ns = 0;
+    std::int64_t future_tolerance_ns = 0;    ///< stamps later than now by more are refused
+    std::int64_t verdict_ttl_ns = 0;         ///< life of an OK
+    std::int32_t vouch_radius_tenth_mm = 0;  ///< largest area that an operator may vouch for
+};
+
+/// A walking machine as the step gate sees it: an immutable value, read from a machine file.
+struct Machine {
+    static constexpr int kMovementCodes = 27;  ///< 0 = joystick at rest, never a movement
+
+    std::int32_t sole_depth_tenth_mm = 0;  ///< soles below base_link
+    GroundBox left_foot;                   ///< where the feet stand, before and after a movement
+    GroundBox right_foot;
+    BodyEnvelope body;
+    std::array<Movement, kMovementCodes> movements{};
+    GateLimits limits;
+
+    /// First reason why the machine cannot be used, in words; nullptr when it can. Calls no libm
+    /// and allocates nothing: the gate asks before every decision.
+    [[nodiscard]] constexpr const char* problem() const noexcept;
+};
+
+namespace detail {
+
+/// False for NaN too.
+template <typename T>
+constexpr bool within(T value, T min, T max) noexcept {
+    return value >= min && value <= max;
+}
+
+constexpr const char* problem_of(const GroundBox& box) noexcept {
+    // 10 m bounds keep every product of the exact geometry far inside 64 bits.
+    if (!within(box.center_x_tenth_mm, -100'000, 100'000) ||
+        !within(box.center_y_tenth_mm, -100'000, 100'000))
+        return "a box lies farther than 10 m from base_link";
+    if (!within(box.length_tenth_mm, 100, 20'000) || !within(box.width_tenth_mm, 100, 20'000))
+        return "a box must be 0.01-2 m long and wide";
+    return nullptr;
+}
+
+constexpr const char* problem_of(const Movement& movement) noexcept {
+    if (!movement.configured) return nullptr;
+    if (!within(movement.forward_tenth_mm, -20'000, 20'000) ||
+        !within(movement.left_tenth_mm, -20'000, 20'000))
+        return "a movement is longer than 2 m";
+    const double norm_sq =
+        movement.cos_turn * movement.cos_turn + movement.sin_turn * movement.sin_turn;
+    if (!within(norm_sq, 0.999'999, 1.000'001)) return "a turn has no valid cosine and sine";
+    // The swept hull joins start and target by straight lines; up to 30 deg an arc leaves it by
+    // less than 16 mm for a corner 0.46 m from base_link, which margin and sway cover.
+    if (!(movement.cos_turn >= 0.866)) return "a turn is larger than 30 deg";
+    if (static_cast<int>(movement.movement_class) >= kMovementClassCount)
+        return "a movement has an unknown class";
+    if (movement.name.back() != '\0') return "a movement has no terminated name";
+    return nullptr;
+}
+
+constexpr const char* problem_of(const GateLimits& limits) noexcept {
+    for (const StepLimits& step : limits.step) {
+        if (!within(step.up_tenth_mm, 0, 3'000) || !within(step.down_tenth_mm, 0, 3'000))
+            return "a step limit is outside 0-0.3 m";
+    }
+    if (!within(limits.min_normal_z, 0.98, 1.0)) return "the tilt limit is outside 0-11.4 deg";
+    if (!within(limits.patch_side_tenth_mm, 200, 1'000)) return "patches must be 20-100 mm wide";
+    if (!within(limits.patch_residual_tenth_mm, 1, 500) ||
+        !within(limits.patch_sigma_tenth_mm, 1, 100) || !within(limits.cell_sigma_tenth_mm, 1, 300))
+        return "a limit of the foot plane is outside its range";
+    if (!within(limits.sigma_factor, 3.0, 10.0)) return "sigma_factor is outside 3-10";
+    if (!within(limits.patch_independent_cells, 1, 16))
+        return "patch_independent_cells is outside 1-16";
+    if (!within(limits.swing_clearance_tenth_mm, 1, 2'000) ||
+        !within(limits.foot_margin_tenth_mm, 0, 2'000))
+        return "a corridor limit is outside its range";
+    if (!within(limits.drop_tenth_mm, 1, 1'000) || !within(limits.drop_band_tenth_mm, 500, 5'000) ||
+        limits.drop_evidence == 0)
+        return "a drop limit is outside its range";
+    if (!within(limits.drift_tenth_mm, 1, 1'000)) return "the drift limit is outside 0.1-100 mm";
+    // Time limits have no value that switches them off.
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    if (!within(limits.frame_age_ns, std::int64_t{1}, kSecond_ns) ||
+        !within(limits.pose_age_ns, std::int64_t{1}, kSecond_ns) ||
+        !within(limits.verdict_ttl_ns, std::int64_t{1}, kSecond_ns) ||
+        !within(limits.future_tolerance_ns, std::int64_t{0}, kSecond_ns / 10))
+        return "a time limit is outside its range";
+    if (!within(limits.vouch_radius_tenth_mm, 0, 20'000))
+        return "the vouched radius is outside 0-2 m";
+    return nullptr;
+}
+
+}  // namespace detail
+
+constexpr const char* Machine::problem() const noexcept {
+    if (!detail::within(sole_depth_tenth_mm, 1, 30'000)) return "the soles lie outside 0-3 m depth";
+    for (const GroundBox* box : {&left_foot, &right_foot, &body.box}) {
+        if (const char* why = detail::problem_of(*box)) return why;
+    }
+    for (const GroundBox* foot : {&left_foot, &right_foot}) {
+        if (foot->length_tenth_mm > 16 * limits.patch_side_tenth_mm ||
+            foot->width_tenth_mm > 16 * limits.patch_side_tenth_mm)
+            return "a foot is longer or wider than 16 patches";
+    }
+    if (!detail::within(body.sway_tenth_mm, 0, 5'000)) return "the sway is outside 0-0.5 m";
+    if (!detail::within(body.lower_edge_tenth_mm, 1, 10'000) ||
+        !detail::within(body.height_tenth_mm, body.lower_edge_tenth_mm, 30'000))
+        return "the heights of the body envelope are outside their range";
+    if (movements[0].configured) return "code 0 is the joystick at rest and cannot be a movement";
+    for (const Movement& movement : movements) {
+        if (const char* why = detail::problem_of(movement)) return why;
+    }
+    return detail::problem_of(limits);
+}
+
+}  // namespace surefoot

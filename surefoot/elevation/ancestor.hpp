@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/config.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::elevation {
+
+/// Parameters of the elevation update that this project descends from (ANYbotics
+/// elevation_mapping); the defaults are those of the preset `ethz`.
+struct AncestorConfig {
+    double resolution_m = 0.05;
+    double length_m = 2.0;
+    double start_x_m = 0.0;
+    double start_y_m = 0.0;
+    double start_time_s = 1000.0;  ///< the time layer counts from here
+    double min_variance_m2 = 9e-6;
+    double max_variance_m2 = 0.009;
+    double mahalanobis_threshold = 2.5;
+    double multi_height_noise_m2 = 9e-6;
+    double scanning_duration_s = 0.05;
+    double increase_height_alpha = 0.0;  ///< share of the old height when a higher one replaces it
+
+    void describe(ConfigVisitor& visitor);
+};
+
+struct AncestorPoint {
+    float x_m = 0.0F;
+    float y_m = 0.0F;
+    float z_m = 0.0F;
+    float variance_m2 = 0.0F;
+};
+static_assert(sizeof(AncestorPoint) == 16, "read from files of four float32 per point");
+
+/// The ancestor's elevation update, kept apart for comparison: nothing in the live chain uses it.
+/// It differs from ElevationMap: every point updates its cell in file order and in float32, the
+/// gate compares with the cell's variance alone, a cell whose variance exceeds the maximum becomes
+/// infinite and is overwritten by its next point, and no time is set at the first measurement of a
+/// cell, so the first outlier there always adds noise. Horizontal variances do not act on heights
+/// and are left out.
+///
+/// Grids are in our order: column = ix along +x, row = iy along +y.
+class AncestorMap {
+  public:
+    explicit AncestorMap(const AncestorConfig& config);
+
+    /// Moves by whole cells, halves away from zero; cells that come into view are NaN in all
+    /// layers.
+    void move_to(double x_m, double y_m);
+    void add(std::span<const AncestorPoint> cloud, double time_s);
+
+    [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return geometry_; }
+    [[nodiscard]] const grid::Layer& elevation_m() const noexcept { return elevation_m_; }
+    [[nodiscard]] const grid::Layer& variance_m2() const noexcept { return variance_m2_; }
+    [[nodiscard]] const grid::Layer& time_s() const noexcept {
+        return time_s_;
+    }  ///< since the start
+
+  private:
+    void add_point(const AncestorPoint& point, float time_s);
+    void disagree(const AncestorPoint& point,
+                  float time_s,
+                  float& elevation_m,
+                  float& variance_m2,
+                  float cell_time_s) const;
+    void bound_variances();
+    void place(const Eigen::Vector2d& position_m);
+
+    AncestorConfig config_;
+    grid::GridGeometry geometry_;
+    Eigen::Vector2d position_m_;  ///< centre of the map
+    grid::Layer elevation_m_;
+    grid::Layer variance_m2_;
+    grid::Layer time_s_;
+};
+
+/// One line of a steps file: the map moves, then takes a cloud.
+struct FuseStep {
+    double time_s = 0.0;
+    double move_x_m = 0.0;
+    double move_y_m = 0.0;
+    std::vector<AncestorPoint> cloud;
+};
+
+/// The map after one step.
+struct FuseStepResult {
+    grid::GridGeometry geometry;
+    grid::Layer elevation_m;
+    grid::Layer variance_m2;
+    grid::Layer time_s;
+};
+
+/// Runs all steps on a fresh map and returns the map after each of them.
+[[nodiscard]] std::vector<FuseStepResult> run_fuse_steps(const AncestorConfig& config,
+                                                         std::span<const FuseStep> steps);
+
+}  // namespace surefoot::elevation

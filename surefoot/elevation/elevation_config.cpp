@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/elevation/elevation_config.hpp"
+
+#include <fmt/format.h>
+
+namespace surefoot::elevation {
+namespace {
+
+constexpr double kMaxSideCells = 4096.0;  ///< 16 million cells, about 0.7 GB of layers
+
+}  // namespace
+
+void ElevationConfig::describe(ConfigVisitor& visitor) {
+    visitor.number("resolution_m", resolution_m, 0.001, 10.0, "edge of a cell");
+    visitor.number("length_m", length_m, 0.1, 1000.0, "edge of the square map around the machine");
+    visitor.number("camera_tilt_sigma_rad",
+                   camera_tilt_sigma_rad,
+                   0.0,
+                   1.0,
+                   "error of the camera's roll and pitch in one frame: mounting, vibration");
+    fusion.describe(visitor);
+    visitor.group("reduction", reduction);
+    visitor.group("sensor", sensor);
+    visitor.group("pixels", pixels);
+    visitor.group("prefilter", prefilter);
+    visitor.group("viewpoint", viewpoint);
+}
+
+std::optional<std::string> ElevationConfig::problem() const {
+    if (!(resolution_m > 0.0 && length_m >= resolution_m)) {
+        return fmt::format(
+            "elevation.length_m = {} must be at least one cell, elevation.resolution_m = {}",
+            length_m,
+            resolution_m);
+    }
+    if (length_m / resolution_m > kMaxSideCells) {
+        return fmt::format(
+            "elevation.length_m = {} at elevation.resolution_m = {} makes {:.0f} cells per side, "
+            "more "
+            "than {:.0f}: choose a shorter map or larger cells",
+            length_m,
+            resolution_m,
+            length_m / resolution_m,
+            kMaxSideCells);
+    }
+    if (prefilter.range && !(prefilter.min_range_m < prefilter.max_range_m)) {
+        return fmt::format("elevation.prefilter.min_range_m = {} must be below max_range_m = {}",
+                           prefilter.min_range_m,
+                           prefilter.max_range_m);
+    }
+    if (prefilter.height && !(prefilter.min_height_m < prefilter.max_height_m)) {
+        return fmt::format("elevation.prefilter.min_height_m = {} must be below max_height_m = {}",
+                           prefilter.min_height_m,
+                           prefilter.max_height_m);
+    }
+    return fusion.problem();
+}
+
+}  // namespace surefoot::elevation

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "surefoot/elevation/cell_reduction.hpp"
+#include "surefoot/elevation/height_fusion.hpp"
+#include "surefoot/elevation/pixel_filter.hpp"
+#include "surefoot/elevation/prefilter.hpp"
+#include "surefoot/elevation/sensor_variance.hpp"
+#include "surefoot/elevation/viewpoint_history.hpp"
+
+namespace surefoot::elevation {
+
+/// Everything that shapes the elevation map. The keys of `fusion` stand beside `resolution_m`
+/// (`elevation.gate_sigma`), the other parts are groups of their own (`elevation.sensor.model`).
+struct ElevationConfig {
+    double resolution_m = 0.025;
+    double length_m = 6.0;
+    /// Error of the camera's roll and pitch in one frame: mounting, vibration, rolling shutter.
+    double camera_tilt_sigma_rad = 0.001;
+    FusionConfig fusion;
+    ReductionConfig reduction;
+    SensorConfig sensor;
+    PixelFilterConfig pixels;
+    PrefilterConfig prefilter;
+    ViewpointConfig viewpoint;
+
+    void describe(ConfigVisitor& visitor);
+    /// First reason why this config cannot be used, or nothing.
+    [[nodiscard]] std::optional<std::string> problem() const;
+};
+
+}  // namespace surefoot::elevation

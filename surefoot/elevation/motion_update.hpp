@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "surefoot/core/pose.hpp"
+
+namespace surefoot::elevation {
+
+/// How an uncertain motion of the body blurs remembered ground (Fankhauser 2014, section 5; here as
+/// a closed form per cell). With r = (x, y, z) from the body to a cell in odom axes, an error (dp,
+/// theta) of the relative motion displaces the cell, as seen from the body, by dp + theta x r:
+///   dz = dp_z + theta_x y - theta_y x         (translation and tilt leverage)
+///   dx = dp_x + theta_y z - theta_z y,  dy = dp_y + theta_z x - theta_x z      (yaw leverage)
+class MotionNoise {
+  public:
+    /// `relative_covariance` of the motion since the previous update: (translation, rotation),
+    /// right perturbation, in the present body frame; see pose.hpp.
+    MotionNoise(const Matrix6& relative_covariance, const Eigen::Matrix3d& R_odom_body);
+
+    /// All entries are finite. An infinite or NaN covariance says nothing about the cells any more.
+    [[nodiscard]] bool is_finite() const { return covariance_.allFinite(); }
+    [[nodiscard]] bool is_zero() const { return covariance_.isZero(0.0); }
+
+    /// Variance that the motion adds to the height of a cell, never negative.
+    [[nodiscard]] double height_var_m2(double x_m, double y_m) const noexcept;
+    /// Variance of the horizontal displacement in its worst direction: the larger eigenvalue of the
+    /// 2 x 2 covariance of (dx, dy), never negative. Sums of it bound the eigenvalue of the sum.
+    [[nodiscard]] double horizontal_var_m2(double x_m, double y_m, double z_m) const noexcept;
+
+  private:
+    Matrix6 covariance_;  ///< in odom axes, about the body
+};
+
+}  // namespace surefoot::elevation

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/elevation/pixel_filter.hpp"
+
+#include <numbers>
+
+namespace surefoot::elevation {
+
+void PixelFilterConfig::describe(ConfigVisitor& visitor) {
+    visitor.number("max_outlier_probability",
+                   max_outlier_probability,
+                   0.0,
+                   1.0,
+                   "pixels that are likelier wrong than this are not fused");
+    visitor.boolean("surface_check",
+                    surface_check,
+                    "drop pixels at disparity jumps and at grazing incidence (keys below)");
+    visitor.integer(
+        "reach_px", reach_px, 1, 20, "distance of the neighbours that a pixel is compared with");
+    visitor.number("jump_px",
+                   jump_px,
+                   0.0,
+                   100.0,
+                   "largest departure from a linear disparity between two neighbours ...");
+    visitor.number(
+        "jump_sigma", jump_sigma, 0.0, 100.0, "... plus this many sigma of the disparity");
+    visitor.number("max_incidence_deg",
+                   max_incidence_deg,
+                   1.0,
+                   90.0,
+                   "largest angle between line of sight and surface normal");
+}
+
+SurfaceCheck::SurfaceCheck(const PixelFilterConfig& config, double fx_px, double fy_px)
+    : fx_px_(static_cast<float>(fx_px)),
+      fy_px_(static_cast<float>(fy_px)),
+      per_reach_(1.0F / static_cast<float>(config.reach_px)),
+      jump_px_(static_cast<float>(config.jump_px)),
+      jump_sigma_(static_cast<float>(config.jump_sigma)),
+      min_cosine_sq_(0.0F) {
+    const double cosine = std::cos(config.max_incidence_deg * std::numbers::pi / 180.0);
+    min_cosine_sq_ = static_cast<float>(cosine * cosine);
+}
+
+}  // namespace surefoot::elevation

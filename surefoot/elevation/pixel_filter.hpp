@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "surefoot/core/config.hpp"
+
+namespace surefoot::elevation {
+
+/// Which pixels of a depth image may be trusted with a height.
+struct PixelFilterConfig {
+    double max_outlier_probability = 0.5;
+    bool surface_check = true;  ///< the three keys below; needs neighbours in the image
+    int reach_px = 3;           ///< neighbours left, right, above and below at this distance
+    double jump_px = 0.5;     ///< a plane's disparity is linear in the pixel: largest departure ...
+    double jump_sigma = 2.0;  ///< ... plus this many sigma of the disparity
+    double max_incidence_deg =
+        80.0;  ///< matchers bridge depth edges with ramps along the line of sight
+
+    void describe(ConfigVisitor& visitor);
+};
+
+/// Disparities `reach_px` away from a pixel; NaN = no match or outside of the image.
+struct Neighbours {
+    float left_px = 0.0F;
+    float right_px = 0.0F;
+    float above_px = 0.0F;
+    float below_px = 0.0F;
+};
+
+/// Decides from the disparities around a pixel whether it lies on a surface that a stereo matcher
+/// can see. Holds what is constant in a frame; cheap enough for every pixel.
+///
+/// A plane n . p = h projects to a disparity that is linear in the pixel, d = d0 + a du + b dv, and
+///   n ~ (a fx, b fy, d - a fx x - b fy y)   at the ray (x, y, 1), with n . ray ~ d,
+/// so the angle between normal and ray follows from the gradient alone.
+class SurfaceCheck {
+  public:
+    SurfaceCheck(const PixelFilterConfig& config, double fx_px, double fy_px);
+
+    /// False for a disparity jump, a pixel without neighbours in one direction, grazing incidence.
+    [[nodiscard]] bool accepts(const Neighbours& around,
+                               float disparity_px,
+                               float sigma_px,
+                               float ray_x,
+                               float ray_y) const noexcept {
+        const float limit_px = jump_px_ + jump_sigma_ * sigma_px;
+        const float a = gradient(around.left_px, around.right_px, disparity_px, limit_px) * fx_px_;
+        const float b = gradient(around.above_px, around.below_px, disparity_px, limit_px) * fy_px_;
+        const float c = disparity_px - a * ray_x - b * ray_y;
+        const float norms_sq = (a * a + b * b + c * c) * (ray_x * ray_x + ray_y * ray_y + 1.0F);
+        return disparity_px * disparity_px >= min_cosine_sq_ * norms_sq;  // false for NaN
+    }
+
+  private:
+    /// Per pixel; from one side alone where the other has no match; NaN where neither has one or
+    /// where the three do not lie on a line.
+    [[nodiscard]] float gradient(float before_px,
+                                 float after_px,
+                                 float here_px,
+                                 float limit_px) const noexcept {
+        if (std::isnan(before_px)) return (after_px - here_px) * per_reach_;
+        if (std::isnan(after_px)) return (here_px - before_px) * per_reach_;
+        const float departure_px = std::abs(0.5F * (before_px + after_px) - here_px);
+        return departure_px > limit_px ? NAN : 0.5F * (after_px - before_px) * per_reach_;
+    }
+
+    float fx_px_;
+    float fy_px_;
+    float per_reach_;
+    float jump_px_;
+    float jump_sigma_;
+    float min_cosine_sq_;
+};
+
+}  // namespace surefoot::elevation

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/foot_support.hpp"
+
+#include <algorithm>
+
+namespace surefoot::gate {
+namespace {
+
+using grid::FixedPoint;
+
+/// Exact sums over cells: x, y = doubled coordinates from the foot's middle, z over the stance.
+struct Sums {
+    std::int64_t n = 0;
+    std::int64_t x = 0, y = 0, z = 0;
+    std::int64_t xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
+    std::int64_t variance = 0;
+
+    void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
+        ++n;
+        x += p.x;
+        y += p.y;
+        z += height;
+        xx += p.x * p.x;
+        xy += p.x * p.y;
+        yy += p.y * p.y;
+        xz += p.x * height;
+        yz += p.y * height;
+        variance += sigma * sigma;
+    }
+};
+
+/// z = height + slope_x * (x - mean_x) + slope_y * (y - mean_y), units of 0.1 mm over doubled ones.
+struct FootPlane {
+    bool valid = false;
+    double mean_x = 0.0;
+    double mean_y = 0.0;
+    double height = 0.0;
+    double slope_x = 0.0;
+    double slope_y = 0.0;
+
+    [[nodiscard]] double at(double x, double y) const noexcept {
+        return height + slope_x * (x - mean_x) + slope_y * (y - mean_y);
+    }
+    /// Squared tangent of the tilt; the factor undoes the doubled coordinates.
+    [[nodiscard]] double tilt_tan_sq() const noexcept {
+        return 4.0 * (slope_x * slope_x + slope_y * slope_y);
+    }
+};
+
+/// Normal equations of the centred points. The sums are exact and only + - * / follow, none of them
+/// contracted: the same bits everywhere.
+FootPlane fit_plane(const Sums& sums) noexcept {
+    FootPlane plane;
+    if (sums.n < 3) return plane;
+    const auto n = static_cast<double>(sums.n);
+    const auto x = static_cast<double>(sums.x);
+    const auto y = static_cast<double>(sums.y);
+    const auto z = static_cast<double>(sums.z);
+    const double xx = n * static_cast<double>(sums.xx) - x * x;
+    const double xy = n * static_cast<double>(sums.xy) - x * y;
+    const double yy = n * static_cast<double>(sums.yy) - y * y;
+    const double xz = n * static_cast<double>(sums.xz) - x * z;
+    const double yz = n * static_cast<double>(sums.yz) - y * z;
+    const double determinant = xx * yy - xy * xy;
+    if (!(determinant > 0.0)) return plane;
+    plane.valid = true;
+    plane.mean_x = x / n;
+    plane.mean_y = y / n;
+    plane.height = z / n;
+    plane.slope_x = (xz * yy - yz * xy) / determinant;
+    plane.slope_y = (yz * xx - xz * xy) / determinant;
+    return plane;
+}
+
+std::int64_t rounded(double value) noexcept {
+    return static_cast<std::int64_t>(value < 0.0 ? value - 0.5 : value + 0.5);
+}
+
+/// The patches of a foot, in its own axes.
+class Patches {
+  public:
+    static constexpr std::int64_t kMaxPerSide = 16;  // Machine::problem() bounds the foot
+
+    Patches(const GroundBox& box, const FixedPose& target, std::int64_t side) noexcept
+        : pose_(target),
+          length_(box.length_tenth_mm),
+          width_(box.width_tenth_mm),
+          along_(std::clamp<std::int64_t>(length_ / side, 1, kMaxPerSide)),
+          across_(std::clamp<std::int64_t>(width_ / side, 1, kMaxPerSide)) {}
+
+    /// `p` in doubled odom coordinates from the foot's middle. Cells that only overlap the rim
+    /// count to the nearest patch: none gets lost.
+    void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
+        const std::int64_t forward = p.x * pose_.cos_yaw + p.y * pose_.sin_yaw;
+        const std::int64_t left = p.y * pose_.cos_yaw - p.x * pose_.sin_yaw;
+        const std::int64_t row = index(forward, length_, along_);
+        const std::int64_t column = index(left, width_, across_);
+        sums_[static_cast<std::size_t>(row * across_ + column)].add(p, height, sigma);
+    }
+    [[nodiscard]] std::int64_t count() const noexcept { return along_ * across_; }
+    [[nodiscard]] const Sums& operator[](std::int64_t i) const noexcept {
+        return sums_[static_cast<std::size_t>(i)];
+    }
+
+  private:
+    static std::int64_t index(std::int64_t at, std::int64_t size, std::int64_t count) noexcept {
+        const std::int64_t from_edge =
+            at + size * FixedPose::kOne;  // doubled: half a size is `size`
+        return std::clamp<std::int64_t>(
+            grid::floor_div(from_edge * count, 2 * size * FixedPose::kOne), 0, count - 1);
+    }
+
+    FixedPose pose_;
+    std::int64_t length_;
+    std::int64_t width_;
+    std::int64_t along_;
+    std::int64_t across_;
+    std::array<Sums, static_cast<std::size_t>(kMaxPerSide* kMaxPerSide)> sums_{};
+};
+
+/// Everything about one landing foot while it is judged.
+struct Landing {
+    const Scene& scene;
+    const FootSweep& foot;
+    FootPlane plane;
+    Findings& findings;
+
+    /// A finding at the cell below a point in doubled coordinates from the foot's middle.
+    [[nodiscard]] Finding at(double x,
+                             double y,
+                             std::int64_t value,
+                             std::int64_t limit) const noexcept {
+        const grid::FixedGrid& grid = scene.ground.grid();
+        const std::int64_t odom_x = foot.landing_center.x + rounded(x / 2.0);
+        const std::int64_t odom_y = foot.landing_center.y + rounded(y / 2.0);
+        return finding_at(grid::floor_div(odom_x - grid.origin_x, grid.side),
+                          grid::floor_div(odom_y - grid.origin_y, grid.side),
+                          foot.foot,
+                          value,
+                          limit);
+    }
+};
+
+void check_step(const Landing& landing) noexcept {
+    const Movement& movement = landing.scene.movement;
+    const StepLimits& limits =
+        landing.scene.machine.limits.step[static_cast<std::size_t>(movement.movement_class)];
+    const std::int64_t rise = rounded(landing.plane.at(0.0, 0.0));
+    Evidence& evidence = landing.findings.evidence;
+    const std::int64_t worst = evidence.height_delta_tenth_mm;
+    if ((rise < 0 ? -rise : rise) > (worst < 0 ? -worst : worst))
+        evidence.height_delta_tenth_mm = rise;
+    if (!(rise <= limits.up_tenth_mm))
+        landing.findings.deny(Reason::step_too_high,
+                              landing.at(0.0, 0.0, rise, limits.up_tenth_mm));
+    if (!(-rise <= limits.down_tenth_mm))
+        landing.findings.deny(Reason::step_too_low,
+                              landing.at(0.0, 0.0, -rise, limits.down_tenth_mm));
+}
+
+void check_tilt(const Landing& landing) noexcept {
+    const double tan_sq = landing.plane.tilt_tan_sq();
+    Evidence& evidence = landing.findings.evidence;
+    evidence.max_tilt_tan_sq = std::max(evidence.max_tilt_tan_sq, tan_sq);
+    // n_z = 1 / sqrt(1 + tan^2) >= limit, without the root.
+    const double min_z = landing.scene.machine.limits.min_normal_z;
+    if (!(min_z * min_z * (1.0 + tan_sq) <= 1.0)) {
+        Finding finding = landing.at(0.0, 0.0, 0, 0);
+        finding.severity = rounded(1e6 * std::min(tan_sq, 1e6));
+        landing.findings.deny(Reason::slope, finding);
+    }
+}
+
+void check_patch(const Landing& landing, const Sums& patch) noexcept {
+    if (patch.n == 0) return;  // every cell is in some patch; cells larger than patches leave gaps
+    const GateLimits& limits = landing.scene.machine.limits;
+    const auto n = static_cast<double>(patch.n);
+    const double x = static_cast<double>(patch.x) / n;
+    const double y = static_cast<double>(patch.y) / n;
+    const std::int64_t independent =
+        std::min<std::int64_t>(patch.n, limits.patch_independent_cells);
+    const double variance =
+        static_cast<double>(patch.variance) / (n * static_cast<double>(independent));
+    Evidence& evidence = landing.findings.evidence;
+    evidence.max_patch_sigma_sq_tenth_mm2 =
+        std::max(evidence.max_patch_sigma_sq_tenth_mm2, variance);
+    const auto sigma_limit = static_cast<double>(limits.patch_sigma_tenth_mm);
+    const bool resolvable = variance <= sigma_limit * sigma_limit;  // false for NaN
+    if (!resolvable) {
+        Finding finding = landing.at(x, y, 0, limits.patch_sigma_tenth_mm);
+        finding.severity = rounded(variance);
+        landing.findings.deny(Reason::not_resolvable, finding);
+    }
+    // Where the noise alone has refused the patch, the residual speaks only for itself.
+    const double noise_sq = resolvable ? limits.sigma_factor * limits.sigma_factor * variance : 0.0;
+    const double residual = static_cast<double>(patch.z) / n - landing.plane.at(x, y);
+    const double size = residual < 0.0 ? -residual : residual;
+    const double slack = static_cast<double>(limits.patch_residual_tenth_mm) - size;
+    if (!(slack >= 0.0 && noise_sq <= slack * slack))
+        landing.findings.deny(Reason::roughness,
+                              landing.at(x, y, rounded(size), limits.patch_residual_tenth_mm));
+}
+
+/// The cells under a landing foot, summed up.
+struct FootCells {
+    Sums all;
+    Patches patches;
+    std::int64_t lowest = 0;
+    std::int64_t highest = 0;
+
+    void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
+        lowest = all.n == 0 ? height : std::min(lowest, height);
+        highest = all.n == 0 ? height : std::max(highest, height);
+        all.add(p, height, sigma);
+        patches.add(p, height, sigma);
+    }
+};
+
+/// False when a cell is not known: there is no plane then.
+bool gather_cells(const Scene& scene,
+                  const FootSweep& foot,
+                  const ReachableSurfaces& reachable,
+                  Findings& findings,
+                  FootCells& cells) noexcept {
+    return grid::for_each_overlapped_cell(
+        foot.landing, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+            const GroundCell cell = scene.ground.cell(ix, iy);
+            const Finding here = finding_at(ix, iy, foot.foot, 0, 0);
+            if (!cell.known()) {
+                const bool outside = cell.knowledge == Knowledge::outside;
+                findings.deny(outside ? Reason::outside_map : Reason::unknown_cells, here);
+                return false;
+            }
+            if (cell.knowledge == Knowledge::measured && !reachable.contains(cell.component))
+                findings.deny(Reason::disconnected, here);
+            // 3 m above or below is refused by the other rules; the bound keeps the sums exact.
+            const std::int64_t height = std::clamp<std::int64_t>(
+                cell.height_tenth_mm - scene.stance_tenth_mm, -30'000, 30'000);
+            cells.add(scene.ground.doubled_center(ix, iy, foot.landing_center),
+                      height,
+                      cell.sigma_tenth_mm);
+            return true;
+        });
+}
+
+}  // namespace
+
+void check_landing(const Scene& scene,
+                   const FootSweep& foot,
+                   const GroundBox& box,
+                   const ReachableSurfaces& reachable,
+                   Findings& findings) noexcept {
+    const GateLimits& limits = scene.machine.limits;
+    FootCells cells{{}, Patches(box, scene.sweep.target, limits.patch_side_tenth_mm)};
+    if (!gather_cells(scene, foot, reachable, findings, cells)) return;
+    const Landing landing{scene, foot, fit_plane(cells.all), findings};
+    if (!landing.plane.valid) {
+        findings.deny(Reason::not_resolvable, landing.at(0.0, 0.0, 0, 0));
+        return;
+    }
+    // Some cell is then an obstacle or a drop; a plane through both levels would tell a height and
+    // a tilt that nothing there has.
+    const std::int64_t spread = cells.highest - cells.lowest;
+    const std::int64_t spread_limit = limits.swing_clearance_tenth_mm + limits.drop_tenth_mm;
+    if (spread > spread_limit) {
+        findings.deny(Reason::roughness, landing.at(0.0, 0.0, spread, spread_limit));
+        return;
+    }
+    check_step(landing);
+    check_tilt(landing);
+    for (std::int64_t i = 0; i < cells.patches.count(); ++i) check_patch(landing, cells.patches[i]);
+}
+
+}  // namespace surefoot::gate

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/footprints.hpp"
+
+#include <algorithm>
+
+namespace surefoot::gate {
+namespace {
+
+using Corners = std::array<grid::FixedPoint, 4>;
+
+/// x / 2^20 rounded to nearest, halves upward: the same for every sign of x.
+constexpr std::int64_t round_fraction(std::int64_t x) noexcept {
+    return grid::floor_div(x + FixedPose::kOne / 2, FixedPose::kOne);
+}
+
+/// |value| <= 1.001, so the product is far inside the range of the conversion.
+std::int64_t fraction(double value) noexcept {
+    const double scaled = value * static_cast<double>(FixedPose::kOne);
+    return static_cast<std::int64_t>(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
+}
+
+Corners corners_of(const GroundBox& box, const FixedPose& pose, std::int64_t margin) noexcept {
+    // Odd sizes grow by 0.1 mm: a box never shrinks by rounding.
+    const std::int64_t half_x = (box.length_tenth_mm + 1) / 2 + margin;
+    const std::int64_t half_y = (box.width_tenth_mm + 1) / 2 + margin;
+    const std::int64_t x = box.center_x_tenth_mm;
+    const std::int64_t y = box.center_y_tenth_mm;
+    return {to_odom(pose, x - half_x, y - half_y),
+            to_odom(pose, x + half_x, y - half_y),
+            to_odom(pose, x + half_x, y + half_y),
+            to_odom(pose, x - half_x, y + half_y)};
+}
+
+grid::FixedConvex hull_of(const Corners& a, const Corners& b) noexcept {
+    std::array<grid::FixedPoint, 8> points{};
+    std::copy(a.begin(), a.end(), points.begin());
+    std::copy(b.begin(), b.end(), points.begin() + 4);
+    return grid::convex_hull(points);
+}
+
+FootSweep foot_sweep(Foot foot,
+                     const GroundBox& box,
+                     const GateLimits& limits,
+                     const FixedPose& start,
+                     const FixedPose& target) noexcept {
+    FootSweep sweep;
+    sweep.foot = foot;
+    sweep.stance = grid::convex_hull(corners_of(box, start, 0));
+    sweep.landing = grid::convex_hull(corners_of(box, target, 0));
+    sweep.landing_center = to_odom(target, box.center_x_tenth_mm, box.center_y_tenth_mm);
+    sweep.corridor = hull_of(corners_of(box, start, limits.foot_margin_tenth_mm),
+                             corners_of(box, target, limits.foot_margin_tenth_mm));
+    sweep.band = grid::convex_hull(corners_of(box, target, limits.drop_band_tenth_mm));
+    return sweep;
+}
+
+}  // namespace
+
+FixedPose fixed_pose(std::int64_t x_tenth_mm,
+                     std::int64_t y_tenth_mm,
+                     double cos_yaw,
+                     double sin_yaw) noexcept {
+    return {{x_tenth_mm, y_tenth_mm}, fraction(cos_yaw), fraction(sin_yaw)};
+}
+
+grid::FixedPoint to_odom(const FixedPose& pose,
+                         std::int64_t forward_tenth_mm,
+                         std::int64_t left_tenth_mm) noexcept {
+    const std::int64_t dx = pose.cos_yaw * forward_tenth_mm - pose.sin_yaw * left_tenth_mm;
+    const std::int64_t dy = pose.sin_yaw * forward_tenth_mm + pose.cos_yaw * left_tenth_mm;
+    return {pose.position.x + round_fraction(dx), pose.position.y + round_fraction(dy)};
+}
+
+FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept {
+    const std::int64_t cos_turn = fraction(movement.cos_turn);
+    const std::int64_t sin_turn = fraction(movement.sin_turn);
+    FixedPose target;
+    target.position = to_odom(pose, movement.forward_tenth_mm, movement.left_tenth_mm);
+    target.cos_yaw = round_fraction(pose.cos_yaw * cos_turn - pose.sin_yaw * sin_turn);
+    target.sin_yaw = round_fraction(pose.sin_yaw * cos_turn + pose.cos_yaw * sin_turn);
+    return target;
+}
+
+Sweep sweep_of(const Machine& machine, const FixedPose& start, const Movement& movement) noexcept {
+    Sweep sweep;
+    sweep.target = moved(start, movement);
+    sweep.feet = {foot_sweep(Foot::left, machine.left_foot, machine.limits, start, sweep.target),
+                  foot_sweep(Foot::right, machine.right_foot, machine.limits, start, sweep.target)};
+    const BodyEnvelope& body = machine.body;
+    sweep.body = hull_of(corners_of(body.box, start, body.sway_tenth_mm),
+                         corners_of(body.box, sweep.target, body.sway_tenth_mm));
+    return sweep;
+}
+
+}  // namespace surefoot::gate

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "surefoot/core/machine.hpp"
+#include "surefoot/gate/verdict.hpp"
+#include "surefoot/grid/fixed_polygon.hpp"
+
+namespace surefoot::gate {
+
+/// A pose in the plane: position in units of 0.1 mm, cosine and sine of the yaw times 2^20.
+struct FixedPose {
+    static constexpr int kFractionBits = 20;
+    static constexpr std::int64_t kOne = std::int64_t{1} << kFractionBits;
+
+    grid::FixedPoint position;
+    std::int64_t cos_yaw = kOne;
+    std::int64_t sin_yaw = 0;
+};
+
+/// |cos|, |sin| <= 1.001 wanted.
+[[nodiscard]] FixedPose fixed_pose(std::int64_t x_tenth_mm,
+                                   std::int64_t y_tenth_mm,
+                                   double cos_yaw,
+                                   double sin_yaw) noexcept;
+/// A point of the body in odom, rounded to 0.1 mm.
+[[nodiscard]] grid::FixedPoint to_odom(const FixedPose& pose,
+                                       std::int64_t forward_tenth_mm,
+                                       std::int64_t left_tenth_mm) noexcept;
+/// Where base_link stands after the movement.
+[[nodiscard]] FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept;
+
+/// What one foot needs for a movement.
+struct FootSweep {
+    Foot foot = Foot::none;
+    grid::FixedConvex stance;   ///< where it stands
+    grid::FixedConvex landing;  ///< where it comes down
+    grid::FixedPoint landing_center;
+    grid::FixedConvex corridor;  ///< hull of both, widened by the margin
+    grid::FixedConvex band;      ///< the landing box widened by the drop band
+};
+
+/// All the ground that a movement needs, in odom.
+struct Sweep {
+    std::array<FootSweep, 2> feet;  ///< left, right
+    grid::FixedConvex body;         ///< hull of the body at start and target, widened by the sway
+    FixedPose target;
+};
+
+[[nodiscard]] Sweep sweep_of(const Machine& machine,
+                             const FixedPose& start,
+                             const Movement& movement) noexcept;
+
+}  // namespace surefoot::gate

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/gate.hpp"
+
+#include <limits>
+#include <optional>
+
+#include "surefoot/gate/findings.hpp"
+#include "surefoot/gate/foot_support.hpp"
+#include "surefoot/gate/footprints.hpp"
+#include "surefoot/gate/ground.hpp"
+#include "surefoot/gate/regions.hpp"
+
+namespace surefoot::gate {
+namespace {
+
+/// 100 km and 1 km: bounds that keep every product of the exact geometry inside 64 bits.
+constexpr std::int64_t kFarthest_tenth_mm = 1'000'000'000;
+constexpr std::int64_t kHighest_tenth_mm = 10'000'000;
+
+constexpr bool within(std::int64_t value, std::int64_t bound) noexcept {
+    return value >= -bound && value <= bound;
+}
+
+void check_process(const GateHealth& health, std::int64_t now_ns, Findings& findings) noexcept {
+    if (health.state == GateState::warmup)
+        findings.deny(Reason::warmup);
+    else if (health.state != GateState::ready)
+        findings.deny(Reason::not_ready);
+    // A steady clock is neither negative nor half way to its end.
+    if (!(now_ns >= 0 && now_ns <= std::numeric_limits<std::int64_t>::max() / 2))
+        findings.deny(Reason::clock);
+    for (int i = 0; i < kReasonCount; ++i) {
+        const auto fault = static_cast<Reason>(i);
+        if (health.faults.contains(fault))
+            findings.deny(is_error(fault) ? fault : Reason::internal);
+    }
+    if (health.faults.bits() >> static_cast<unsigned>(kReasonCount) != 0)
+        findings.deny(Reason::internal);
+}
+
+void check_numbers(const Query& query, const GateLimits& limits, Findings& findings) noexcept {
+    const double norm_sq = query.cos_yaw * query.cos_yaw + query.sin_yaw * query.sin_yaw;
+    const bool pose = within(query.x_tenth_mm, kFarthest_tenth_mm) &&
+                      within(query.y_tenth_mm, kFarthest_tenth_mm) && norm_sq > 0.999 &&
+                      norm_sq < 1.001;
+    const bool stance = query.stance_source == StanceHeight::map ||
+                        (query.stance_source == StanceHeight::given &&
+                         within(query.stance_height_tenth_mm, kHighest_tenth_mm));
+    const VouchedArea& area = query.vouched;
+    const bool vouched = !area.active || (within(area.center_x_tenth_mm, kFarthest_tenth_mm) &&
+                                          within(area.center_y_tenth_mm, kFarthest_tenth_mm) &&
+                                          area.radius_tenth_mm > 0 &&
+                                          area.radius_tenth_mm <= limits.vouch_radius_tenth_mm &&
+                                          within(area.height_tenth_mm, kHighest_tenth_mm));
+    if (!(pose && stance && vouched)) findings.deny(Reason::bad_number);
+}
+
+/// Both ends of the age: too old, and from the future. Unsigned differences cannot overflow.
+void check_stamp(std::int64_t stamp_ns,
+                 std::int64_t now_ns,
+                 std::int64_t max_age_ns,
+                 std::int64_t future_tolerance_ns,
+                 Reason stale,
+                 Findings& findings) noexcept {
+    const auto stamp = static_cast<std::uint64_t>(stamp_ns);
+    const auto now = static_cast<std::uint64_t>(now_ns);
+    if (stamp_ns > now_ns) {
+        if (stamp - now > static_cast<std::uint64_t>(future_tolerance_ns))
+            findings.deny(Reason::time_skew);
+    } else if (now - stamp > static_cast<std::uint64_t>(max_age_ns)) {
+        findings.deny(stale);
+    }
+}
+
+void check_freshness(const grid::MapSnapshot& map,
+                     const GateLimits& limits,
+                     std::int64_t now_ns,
+                     Findings& findings) noexcept {
+    const std::int64_t future_ns = limits.future_tolerance_ns;
+    check_stamp(
+        map.frame_time_ns, now_ns, limits.frame_age_ns, future_ns, Reason::frame_stale, findings);
+    check_stamp(
+        map.pose_time_ns, now_ns, limits.pose_age_ns, future_ns, Reason::pose_stale, findings);
+}
+
+void check_pose_health(grid::SnapshotHealth health, Findings& findings) noexcept {
+    if (health == grid::SnapshotHealth::degraded)
+        findings.deny(Reason::not_ready);
+    else if (health != grid::SnapshotHealth::ok)
+        findings.deny(Reason::pose_lost);
+}
+
+/// The movement behind a command code, or nullptr: code 0, codes beyond the table, codes without an
+/// entry and classes that are switched off all come out the same.
+const Movement* movement_for(const Machine& machine, std::uint8_t command) noexcept {
+    if (command == 0 || command >= Machine::kMovementCodes) return nullptr;
+    const Movement& movement = machine.movements[command];
+    const auto movement_class = static_cast<std::size_t>(movement.movement_class);
+    const bool usable = movement.configured && movement_class < machine.limits.step.size() &&
+                        machine.limits.step[movement_class].enabled;
+    return usable ? &movement : nullptr;
+}
+
+/// Everything but the terrain. Each line must hold before the ground is looked at.
+void judge_readiness(const Machine& machine,
+                     const Query& query,
+                     const grid::MapSnapshot& map,
+                     const GateHealth& health,
+                     std::int64_t now_ns,
+                     Findings& findings) noexcept {
+    findings.prove(Proof::process_ready, [&] { check_process(health, now_ns, findings); });
+    findings.prove(Proof::machine_valid, [&] {
+        if (machine.problem() != nullptr) findings.deny(Reason::config);
+    });
+    findings.prove(Proof::snapshot_intact, [&] {
+        if (!grid::is_intact(map)) findings.deny(Reason::internal);
+    });
+    findings.prove(Proof::numbers_valid, [&] { check_numbers(query, machine.limits, findings); });
+    findings.prove(Proof::stamps_fresh,
+                   [&] { check_freshness(map, machine.limits, now_ns, findings); });
+    findings.prove(Proof::gravity_known, [&] {
+        if (map.gravity_source != grid::GravitySource::plane &&
+            map.gravity_source != grid::GravitySource::imu)
+            findings.deny(Reason::plane_invalid);
+    });
+    findings.prove(Proof::pose_healthy, [&] { check_pose_health(map.health, findings); });
+    findings.prove(Proof::command_known, [&] {
+        if (movement_for(machine, query.command) == nullptr) findings.deny(Reason::unknown_command);
+    });
+}
+
+/// Surfaces under the present feet, as far as they lie at the height of the stance, and those that
+/// the vouched area touches.
+ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {
+    ReachableSurfaces reachable;
+    const std::int64_t step = scene.machine.limits.swing_clearance_tenth_mm;
+    for (const FootSweep& foot : scene.sweep.feet) {
+        grid::for_each_overlapped_cell(
+            foot.stance, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                const GroundCell cell = scene.ground.cell(ix, iy);
+                const std::int64_t rise = cell.height_tenth_mm - scene.stance_tenth_mm;
+                if (cell.knowledge == Knowledge::measured && within(rise, step))
+                    reachable.add(cell.component);
+                return true;
+            });
+    }
+    reachable.add_beside_vouched(scene.ground, scene.machine.limits.swing_clearance_tenth_mm);
+    return reachable;
+}
+
+/// The ground, region by region (safety.md 7, rule 4). Called only when all is ready.
+void judge_terrain(const Machine& machine,
+                   const Query& query,
+                   const grid::MapSnapshot& map,
+                   Findings& findings) noexcept {
+    const Movement& movement = *movement_for(machine, query.command);
+    const FixedPose start =
+        fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
+    const Sweep sweep = sweep_of(machine, start, movement);
+    const Ground ground(map, query);
+    const std::optional<std::int64_t> stance = stance_height(ground, query, sweep);
+    const Scene scene{machine, movement, ground, sweep, stance.value_or(0)};
+    findings.evidence.stance_known = stance.has_value();
+    findings.evidence.stance_height_tenth_mm = scene.stance_tenth_mm;
+
+    findings.prove(Proof::stance_known, [&] { check_stance(scene, findings); });
+    if (!stance) {  // no height to compare with: the unknown cells have been reported
+        findings.deny(Reason::unknown_cells);
+        return;
+    }
+    findings.prove(Proof::corridors_clear, [&] { check_corridors(scene, findings); });
+    findings.prove(Proof::body_clear, [&] { check_body(scene, findings); });
+    findings.prove(Proof::bands_solid, [&] { check_bands(scene, findings); });
+    const ReachableSurfaces reachable = surfaces_of_stance(scene);
+    findings.prove(Proof::left_supported, [&] {
+        check_landing(scene, sweep.feet[0], machine.left_foot, reachable, findings);
+    });
+    findings.prove(Proof::right_supported, [&] {
+        check_landing(scene, sweep.feet[1], machine.right_foot, reachable, findings);
+    });
+}
+
+void show_worst_cell(const grid::MapSnapshot& map,
+                     const Findings& findings,
+                     Reason primary,
+                     Evidence& evidence) noexcept {
+    const Finding* worst = findings.worst(primary);
+    if (worst == nullptr) return;
+    const std::int64_t side = map.resolution_tenth_mm;
+    evidence.has_worst_cell = true;
+    evidence.worst_x_tenth_mm = map.origin_x_tenth_mm + worst->cell_x * side + side / 2;
+    evidence.worst_y_tenth_mm = map.origin_y_tenth_mm + worst->cell_y * side + side / 2;
+    evidence.foot = worst->foot;
+    evidence.value_tenth_mm = worst->value_tenth_mm;
+    evidence.limit_tenth_mm = worst->limit_tenth_mm;
+}
+
+/// ERROR > NOT_TRAVERSABLE > OK, and OK only when nothing was denied and everything was proven.
+void seal(const Machine& machine,
+          const grid::MapSnapshot& map,
+          const Findings& findings,
+          Verdict& verdict) noexcept {
+    verdict.evidence = findings.evidence;
+    verdict.reasons = findings.reasons();
+    if (verdict.reasons.empty() && !findings.complete()) verdict.reasons.add(Reason::internal);
+    verdict.primary = verdict.reasons.primary();
+    if (verdict.primary == Reason::none) {
+        verdict.decision = Decision::ok;
+        verdict.valid_until_ns = verdict.decided_ns + machine.limits.verdict_ttl_ns;
+    } else if (!is_error(verdict.primary)) {
+        verdict.decision = Decision::not_traversable;
+        show_worst_cell(map, findings, verdict.primary, verdict.evidence);
+    }
+}
+
+}  // namespace
+
+Query make_query(
+    std::uint8_t command, double x_m, double y_m, double cos_yaw, double sin_yaw) noexcept {
+    constexpr double kTenthMmPerM = 1e4;
+    Query query;
+    query.command = command;
+    const double x = x_m * kTenthMmPerM;
+    const double y = y_m * kTenthMmPerM;
+    const auto bound = static_cast<double>(kFarthest_tenth_mm);
+    if (!(x >= -bound && x <= bound && y >= -bound && y <= bound)) return query;
+    query.x_tenth_mm = static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
+    query.y_tenth_mm = static_cast<std::int64_t>(y < 0.0 ? y - 0.5 : y + 0.5);
+    query.cos_yaw = cos_yaw;
+    query.sin_yaw = sin_yaw;
+    return query;
+}
+
+Query query_at_body(std::uint8_t command, const grid::MapSnapshot& map) noexcept {
+    Query query;
+    query.command = command;
+    query.x_tenth_mm = map.body_x_tenth_mm;
+    query.y_tenth_mm = map.body_y_tenth_mm;
+    query.cos_yaw = map.body_cos_yaw;
+    query.sin_yaw = map.body_sin_yaw;
+    return query;
+}
+
+Verdict decide(const Machine& machine,
+               const Query& query,
+               const grid::MapSnapshot& map,
+               const GateHealth& health,
+               std::int64_t now_ns) noexcept {
+    Verdict verdict;
+    verdict.command = query.command;
+    verdict.sequence = query.sequence;
+    verdict.map_version = map.version;
+    verdict.config_hash = map.config_hash;
+    verdict.frame_time_ns = map.frame_time_ns;
+    verdict.pose_time_ns = map.pose_time_ns;
+    verdict.decided_ns = now_ns;
+
+    Findings findings;
+    judge_readiness(machine, query, map, health, now_ns, findings);
+    if (findings.reasons().empty()) judge_terrain(machine, query, map, findings);
+    seal(machine, map, findings, verdict);
+    return verdict;
+}
+
+}  // namespace surefoot::gate

@@ -1,0 +1,714 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "surefoot/gate/gate_testing.hpp"
+#include "surefoot/gate/verdict_text.hpp"
+
+namespace surefoot::gate::testing {
+namespace {
+
+/// A refusal for the given main reason, with a place.
+void expect_refused(const Verdict& verdict, Reason primary) {
+    EXPECT_EQ(verdict.decision, Decision::not_traversable) << words(verdict);
+    EXPECT_EQ(verdict.primary, primary) << words(verdict);
+    EXPECT_TRUE(verdict.reasons.contains(primary));
+    EXPECT_TRUE(verdict.evidence.has_worst_cell) << words(verdict);
+    EXPECT_FALSE(verdict.allows_step(kNow_ns));
+}
+void expect_error(const Verdict& verdict, Reason primary) {
+    EXPECT_EQ(verdict.decision, Decision::error) << words(verdict);
+    EXPECT_EQ(verdict.primary, primary) << words(verdict);
+    EXPECT_FALSE(verdict.allows_step(kNow_ns));
+}
+void expect_ok(const Verdict& verdict) {
+    EXPECT_EQ(verdict.decision, Decision::ok) << words(verdict);
+    EXPECT_TRUE(verdict.reasons.empty()) << words(verdict);
+    EXPECT_EQ(verdict.primary, Reason::none);
+}
+
+TEST(Gate, a_default_verdict_query_and_health_inhibit) {
+    EXPECT_EQ(Verdict{}.decision, Decision::error);
+    EXPECT_FALSE(Verdict{}.allows_step(0));
+    Terrain floor;
+    const auto map = floor.snapshot();
+    expect_error(decide(rex(), Query{}, *map, kReady, kNow_ns), Reason::bad_number);
+    expect_error(decide(rex(), query_at_body(kForward, *map), *map, GateHealth{}, kNow_ns),
+                 Reason::not_ready);
+    expect_error(decide(Machine{}, query_at_body(kForward, *map), *map, kReady, kNow_ns),
+                 Reason::config);
+    const auto nothing = std::make_unique<grid::MapSnapshot>();
+    expect_error(decide(rex(), query_at_body(kForward, *map), *nothing, kReady, kNow_ns),
+                 Reason::internal);
+}
+
+TEST(Gate, given_a_flat_known_floor_then_every_configured_movement_is_ok) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    for (int code = 1; code < Machine::kMovementCodes; ++code) {
+        const Verdict verdict = ask(*map, static_cast<std::uint8_t>(code));
+        expect_ok(verdict);
+        EXPECT_EQ(verdict.evidence.known_cells, verdict.evidence.cells);
+        EXPECT_EQ(verdict.evidence.vouched_cells, 0);
+        EXPECT_EQ(verdict.evidence.height_delta_tenth_mm, 0);
+        EXPECT_EQ(verdict.map_version, 42U);
+        EXPECT_EQ(verdict.config_hash, 4711U);
+        EXPECT_EQ(verdict.valid_until_ns, kNow_ns + 300 * kMs);
+    }
+}
+
+TEST(Gate, an_ok_lives_300_ms_and_not_before_it_was_given) {
+    Terrain floor;
+    const Verdict verdict = ask(floor, kForward);
+    EXPECT_TRUE(verdict.allows_step(kNow_ns));
+    EXPECT_TRUE(verdict.allows_step(kNow_ns + 300 * kMs - 1));
+    EXPECT_FALSE(verdict.allows_step(kNow_ns + 300 * kMs));
+    EXPECT_FALSE(verdict.allows_step(kNow_ns - 1));
+}
+
+TEST(Gate, works_at_any_pose_yaw_and_cell_size) {
+    for (const double res_m : {0.0125, 0.02, 0.025, 0.05}) {
+        Terrain floor;
+        floor.geometry.resolution_m = res_m;
+        floor.geometry.origin_m.setConstant(-120.0 * res_m);
+        // One cell of 50 mm is a whole patch: nothing averages there, so it must be surer itself.
+        floor.variance.fill(res_m > 0.04 ? 6e-6F : 16e-6F);
+        const auto map = floor.snapshot();
+        for (int deg = -180; deg < 180; deg += 17) {
+            const double yaw = deg * std::numbers::pi / 180.0;
+            const Query query = make_query(kForward, 0.0131, -0.0077, std::cos(yaw), std::sin(yaw));
+            const Verdict verdict = decide(rex(), query, *map, kReady, kNow_ns);
+            expect_ok(verdict);
+            EXPECT_FALSE(HasFailure()) << "resolution " << res_m << " yaw " << deg;
+        }
+    }
+}
+
+TEST(Gate, fused_noise_of_3_to_5_mm_passes_and_20_mm_does_not_resolve) {
+    Terrain floor;
+    for (const double sigma_m : {0.003, 0.004, 0.005}) {
+        floor.variance.fill(static_cast<float>(sigma_m * sigma_m));
+        expect_ok(ask(floor, kForward));
+    }
+    floor.variance.fill(static_cast<float>(0.02 * 0.02));
+    expect_refused(ask(floor, kForward), Reason::not_resolvable);
+    // The patches are stricter than the single cells: 8 mm passes along the way, not under a foot.
+    floor.variance.fill(static_cast<float>(0.008 * 0.008));
+    const Verdict verdict = ask(floor, kForward);
+    expect_refused(verdict, Reason::not_resolvable);
+    EXPECT_EQ(verdict.evidence.limit_tenth_mm, 30);
+}
+
+TEST(Gate, finer_cells_are_no_excuse_for_averaging_more) {
+    Terrain fine;  // 12.5 mm: a patch holds 16 cells, credited as 4
+    fine.geometry.resolution_m = 0.0125;
+    fine.geometry.origin_m.setConstant(-1.5);
+    fine.variance.fill(static_cast<float>(0.005 * 0.005));
+    expect_ok(ask(fine, kForward));
+    fine.variance.fill(static_cast<float>(0.008 * 0.008));
+    expect_refused(ask(fine, kForward), Reason::not_resolvable);
+}
+
+// ---- unknown ground -----------------------------------------------------------------------------
+
+TEST(Gate, given_an_empty_map_then_nothing_is_ok) {
+    Terrain nothing;
+    nothing.height.fill(kNaN);
+    for (int code = 1; code < Machine::kMovementCodes; ++code)
+        expect_refused(ask(nothing, static_cast<std::uint8_t>(code)), Reason::unknown_cells);
+}
+
+TEST(Gate, given_one_unknown_cell_under_the_landing_foot_then_it_is_named) {
+    Terrain floor;
+    floor.paint(floor.height, 0.45, 0.474, 0.175, 0.199, static_cast<double>(kNaN));
+    const Verdict verdict = ask(floor, kForward);
+    expect_refused(verdict, Reason::unknown_cells);
+    EXPECT_EQ(verdict.evidence.worst_x_tenth_mm, 4625);
+    EXPECT_EQ(verdict.evidence.worst_y_tenth_mm, 1875);
+    EXPECT_EQ(verdict.evidence.foot, Foot::left);
+    EXPECT_LT(verdict.evidence.known_cells, verdict.evidence.cells);
+    expect_ok(ask(floor, kBackward));  // not asked for there
+}
+
+TEST(Gate, any_single_unknown_cell_of_the_swept_area_inhibits) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    const Machine machine = rex();
+    // Everything between the rear of the body at the start and the drop band beyond the toes.
+    for (double x = -0.36; x < 0.73; x += 0.025) {
+        for (const double y : {-0.3, -0.18, 0.0, 0.18, 0.3}) {
+            const std::size_t at = cell_at(*map, x, y);
+            const auto before = map->source[at];
+            map->source[at] = grid::EvidenceSource::unknown;
+            seal(*map);
+            const Verdict verdict =
+                decide(machine, query_at_body(kForward, *map), *map, kReady, kNow_ns);
+            EXPECT_EQ(verdict.primary, Reason::unknown_cells) << x << " " << y << words(verdict);
+            map->source[at] = before;
+        }
+    }
+}
+
+TEST(Gate, given_ground_never_seen_ahead_then_a_step_there_is_refused) {
+    Terrain floor;
+    floor.draw({"????????????",  //
+                "????????????",  //
+                "????????????",  //
+                "????????????",  //
+                "............",  //
+                "............",  //
+                "............",  //
+                "............",  //
+                "............",  //
+                "............",  //
+                "............",  //
+                "............"});
+    expect_refused(ask(floor, kForward), Reason::unknown_cells);
+    expect_ok(ask(floor, kBackward));
+    expect_ok(ask(floor, kLeft));
+}
+
+TEST(Gate, given_the_edge_of_the_map_ahead_then_outside_map) {
+    Terrain floor;
+    floor.input.T_odom_body.translation_m.x() = 2.4;
+    expect_refused(ask(floor, kForward), Reason::outside_map);
+    expect_ok(ask(floor, kBackward));
+    floor.input.T_odom_body.translation_m.x() = 50.0;
+    expect_refused(ask(floor, kBackward), Reason::outside_map);
+}
+
+// ---- terrain ------------------------------------------------------------------------------------
+
+TEST(Gate, given_a_table_ahead_then_the_way_is_blocked) {
+    Terrain room;
+    room.draw({"...777777...",  //
+               "...777777...",  //
+               "............",  //
+               "............",  //
+               "............",  //
+               "............",  //
+               "............",  //
+               "............",  //
+               "............",  //
+               "............",  //
+               "............",  //
+               "............"});
+    expect_ok(ask(room, kForward));  // 0.8 m away: one step stays short of it
+    room.box(0.6, 1.0, -0.6, 0.6, 0.7);
+    const Verdict blocked = ask(room, kForward);
+    expect_refused(blocked, Reason::corridor_blocked);
+    EXPECT_EQ(blocked.evidence.value_tenth_mm, 7000);
+    EXPECT_TRUE(blocked.reasons.contains(Reason::body_clearance));
+    expect_ok(ask(room, kBackward));
+}
+
+TEST(Gate, given_something_only_the_body_meets_then_body_clearance) {
+    Terrain room;
+    room.box(0.2, 0.6, 0.325, 0.5, 0.5);  // a wall beside the left foot, within the sway
+    const Verdict verdict = ask(room, kForward);
+    expect_refused(verdict, Reason::body_clearance);
+    EXPECT_FALSE(verdict.reasons.contains(Reason::corridor_blocked)) << words(verdict);
+    // A kerb there is lower than the body, and beyond the way of the foot.
+    Terrain kerb;
+    kerb.box(0.2, 0.6, 0.325, 0.5, 0.1);
+    expect_ok(ask(kerb, kForward));
+}
+
+TEST(Gate, given_a_lintel_above_then_body_clearance) {
+    Terrain door;
+    door.paint(door.clearance, 0.4, 0.6, -0.5, 0.5, 1.9);
+    const Verdict verdict = ask(door, kForward);
+    expect_refused(verdict, Reason::body_clearance);
+    EXPECT_EQ(verdict.evidence.limit_tenth_mm, 20500);
+    door.paint(door.clearance, 0.4, 0.6, -0.5, 0.5, 2.1);
+    expect_ok(ask(door, kForward));
+}
+
+TEST(Gate, given_the_top_of_a_table_then_it_is_flat_but_not_reachable) {
+    Terrain top;
+    top.box(0.26, 3.0, -3.0, 3.0, 0.7);
+    const Verdict verdict = ask(top, kForward);
+    expect_refused(verdict, Reason::step_too_high);
+    EXPECT_EQ(verdict.evidence.height_delta_tenth_mm, 7000);
+    EXPECT_TRUE(verdict.reasons.contains(Reason::disconnected)) << words(verdict);
+    EXPECT_TRUE(verdict.reasons.contains(Reason::corridor_blocked));
+}
+
+TEST(Gate, kerbs_up_and_down_are_refused_and_small_steps_are_not) {
+    struct Case {
+        double height_m;
+        Decision decision;
+        Reason primary;
+    };
+    const Case cases[] = {{0.015, Decision::ok, Reason::none},
+                          {0.025, Decision::not_traversable, Reason::step_too_high},
+                          {0.075, Decision::not_traversable, Reason::step_too_high},
+                          {-0.015, Decision::ok, Reason::none},
+                          {-0.025, Decision::not_traversable, Reason::step_too_low},
+                          {-0.075, Decision::not_traversable, Reason::drop_off}};
+    for (const Case& c : cases) {
+        Terrain street;
+        street.box(0.26, 3.0, -3.0, 3.0, c.height_m);
+        const Verdict verdict = ask(street, kForward);
+        EXPECT_EQ(verdict.decision, c.decision) << c.height_m << " " << words(verdict);
+        EXPECT_EQ(verdict.primary, c.primary) << c.height_m << " " << words(verdict);
+    }
+}
+
+TEST(Gate, given_half_a_foot_over_a_platform_edge_then_drop_off) {
+    for (const bool below_is_seen : {true, false}) {
+        Terrain platform;
+        platform.box(0.46, 3.0, -3.0, 3.0, below_is_seen ? -0.5 : static_cast<double>(kNaN));
+        const Verdict verdict = ask(platform, kForward);
+        expect_refused(verdict, below_is_seen ? Reason::drop_off : Reason::unknown_cells);
+        expect_ok(ask(platform, kBackward));
+    }
+}
+
+TEST(Gate, given_a_drop_in_the_band_beyond_the_toes_then_drop_off) {
+    Terrain platform;
+    platform.box(0.70, 3.0, -3.0, 3.0, -0.3);  // 0.06 m beyond the toes at 0.64 m
+    expect_refused(ask(platform, kForward), Reason::drop_off);
+    Terrain farther;
+    farther.box(0.80, 3.0, -3.0, 3.0, -0.3);
+    expect_ok(ask(farther, kForward));
+}
+
+TEST(Gate, given_only_the_far_side_of_a_drop_was_seen_then_its_edge_is_a_drop) {
+    Terrain platform;
+    platform.box(0.70, 1.0, -3.0, 3.0, static_cast<double>(kNaN));  // in the shadow of the edge
+    platform.box(1.0, 3.0, -3.0, 3.0, -0.3);
+    const Verdict verdict = ask(platform, kForward);
+    expect_refused(verdict, Reason::drop_off);
+    EXPECT_EQ(verdict.evidence.value_tenth_mm, 0) << "the edge shows no depth";
+    EXPECT_TRUE(verdict.reasons.contains(Reason::unknown_cells));
+}
+
+TEST(Gate, given_a_hole_under_one_foot_then_drop_off) {
+    Terrain floor;
+    floor.box(0.4, 0.5, -0.2, -0.1, -0.3);
+    const Verdict verdict = ask(floor, kForward);
+    expect_refused(verdict, Reason::drop_off);
+    EXPECT_EQ(verdict.evidence.foot, Foot::right);
+    EXPECT_EQ(verdict.evidence.value_tenth_mm, 3000);
+}
+
+TEST(Gate, given_a_table_beside_the_way_then_its_edge_is_no_drop) {
+    Terrain room;  // the table's rim carries drop evidence; the floor is where we stand
+    room.box(-1.0, 2.0, 0.40, 1.0, 0.7);
+    expect_ok(ask(room, kForward));
+}
+
+TEST(Gate, slopes_up_to_the_limit_pass_and_beyond_are_refused) {
+    const auto ramp = [](double deg) {
+        Terrain terrain;
+        for (int v = 0; v < 240; ++v) {
+            for (int u = 0; u < 240; ++u) {
+                const double y_m = terrain.geometry.center_m({u, v}).y();
+                terrain.height.at(u, v) =
+                    static_cast<float>(std::tan(deg * std::numbers::pi / 180.0) * y_m);
+            }
+        }
+        return ask(terrain, kForward);
+    };
+    // Across the walk; each foot stands 18 cm to the side, so only small angles keep the step
+    // limits.
+    expect_ok(ramp(4.0));
+    const Verdict steep = ramp(8.0);
+    EXPECT_EQ(steep.decision, Decision::not_traversable);
+    EXPECT_TRUE(steep.reasons.contains(Reason::slope)) << words(steep);
+}
+
+TEST(Gate, slope_alone_is_a_reason_of_its_own) {
+    // A wedge under the toes of the left foot: 7 deg, its middle at stance height.
+    Terrain wedge;
+    for (int v = 0; v < 240; ++v) {
+        for (int u = 0; u < 240; ++u) {
+            const Eigen::Vector2d c = wedge.geometry.center_m({u, v});
+            if (c.x() > 0.26 && c.x() < 0.66 && c.y() > 0.05 && c.y() < 0.31)
+                wedge.height.at(u, v) = static_cast<float>(std::tan(0.122) * (c.x() - 0.457));
+        }
+    }
+    const Verdict verdict = ask(wedge, kForward);
+    expect_refused(verdict, Reason::slope);
+    // tan(0.122) = 0.1226, tan(6 deg) = 0.1051; 0.124 with the cells that only touch the foot.
+    const std::string text = text_of(verdict, Query{}, rex());
+    EXPECT_NE(text.find("ground sloping 12."), text.npos) << text;
+    EXPECT_NE(text.find("(limit 10.5 %)"), text.npos) << text;
+}
+
+/// A ridge, 75 mm wide, across the middle of one landing foot: no drop, no step, no tilt.
+Verdict ridge_under(double y0, double y1, double height_m, double sigma_m) {
+    Terrain floor;
+    floor.variance.fill(static_cast<float>(sigma_m * sigma_m));
+    floor.box(0.425, 0.50, y0, y1, height_m);
+    return ask(floor, kForward);
+}
+
+TEST(Gate, given_a_ridge_under_either_foot_then_roughness) {
+    for (const bool left : {true, false}) {
+        const Verdict verdict = ridge_under(left ? 0.05 : -0.30, left ? 0.30 : -0.05, 0.038, 0.001);
+        expect_refused(verdict, Reason::roughness);
+        EXPECT_EQ(verdict.reasons, ReasonSet(Reason::roughness)) << words(verdict);
+        EXPECT_EQ(verdict.evidence.foot, left ? Foot::left : Foot::right);
+        EXPECT_GT(verdict.evidence.value_tenth_mm, 250);
+    }
+}
+
+TEST(Gate, the_noise_of_a_patch_counts_against_its_residual) {
+    // Highest patch of a 25 mm ridge: 17-25 mm over the plane; 3.4 sigma = 1.7 or 9.9 mm on top.
+    expect_ok(ridge_under(0.05, 0.30, 0.025, 0.001));
+    const Verdict noisy = ridge_under(0.05, 0.30, 0.025, 0.0058);
+    EXPECT_EQ(noisy.reasons, ReasonSet(Reason::roughness)) << words(noisy);
+    EXPECT_LE(noisy.evidence.value_tenth_mm, 250);
+}
+
+TEST(Gate, a_gentle_wedge_along_or_across_the_foot_is_a_plane_not_roughness) {
+    constexpr double kGentle = 0.0875;  // tan 5 deg
+    for (const double yaw : {0.0, std::numbers::pi / 2.0}) {
+        for (const bool along : {true, false}) {
+            Terrain wedge;
+            // In the axes of the machine: under the left landing foot, its middle at stance height.
+            for (int v = 0; v < 240; ++v) {
+                for (int u = 0; u < 240; ++u) {
+                    const Eigen::Vector2d c = wedge.geometry.center_m({u, v});
+                    const double forward = std::cos(yaw) * c.x() + std::sin(yaw) * c.y();
+                    const double left = std::cos(yaw) * c.y() - std::sin(yaw) * c.x();
+                    if (forward < 0.26 || forward > 0.66 || left < 0.05 || left > 0.31) continue;
+                    wedge.height.at(u, v) =
+                        static_cast<float>(kGentle * (along ? forward - 0.457 : left - 0.18));
+                }
+            }
+            const auto map = wedge.snapshot();
+            const Query query = make_query(kForward, 0.0, 0.0, std::cos(yaw), std::sin(yaw));
+            expect_ok(decide(rex(), query, *map, kReady, kNow_ns));
+            EXPECT_FALSE(HasFailure()) << "yaw " << yaw << (along ? " along" : " across");
+        }
+    }
+}
+
+TEST(Gate, given_one_unsure_cell_beside_the_feet_then_not_resolvable) {
+    Terrain floor;
+    floor.paint(floor.variance, 0.40, 0.425, 0.0, 0.025, 0.013 * 0.013);
+    const Verdict verdict = ask(floor, kForward);
+    expect_refused(verdict, Reason::not_resolvable);
+    EXPECT_EQ(verdict.evidence.limit_tenth_mm, 120);
+    expect_ok(ask(floor, kBackward));
+}
+
+TEST(Gate, given_an_island_at_floor_height_then_disconnected) {
+    Terrain gap;
+    const auto map = gap.snapshot();
+    for (double x = 0.26; x < 0.9; x += 0.025) {
+        for (double y = -0.5; y < 0.5; y += 0.025) map->component[cell_at(*map, x, y)] = 7;
+    }
+    seal(*map);
+    expect_refused(ask(*map, kForward), Reason::disconnected);
+    map->component[cell_at(*map, 0.0, 0.18)] = 7;  // one cell under a foot ties them together
+    seal(*map);
+    expect_ok(ask(*map, kForward));
+}
+
+TEST(Gate, given_too_much_drift_since_a_cell_was_seen_then_memory_uncertain) {
+    Terrain floor;
+    floor.drift.fill(0.024F);
+    expect_ok(ask(floor, kBackward));
+    floor.paint(floor.drift, -0.4, -0.3, -0.3, 0.3, 0.03);
+    const Verdict verdict = ask(floor, kBackward);
+    expect_refused(verdict, Reason::memory_uncertain);
+    EXPECT_EQ(verdict.evidence.value_tenth_mm, 300);
+    floor.drift.fill(kNaN);
+    expect_refused(ask(floor, kForward), Reason::memory_uncertain);
+}
+
+TEST(Gate, given_something_under_the_present_feet_then_it_counts_too) {
+    Terrain floor;
+    floor.box(0.0, 0.05, 0.15, 0.2, 0.3);
+    EXPECT_TRUE(ask(floor, kForward).reasons.contains(Reason::corridor_blocked));
+    Terrain hole;
+    hole.box(0.0, 0.05, 0.15, 0.2, -0.3);
+    EXPECT_TRUE(ask(hole, kForward).reasons.contains(Reason::drop_off));
+}
+
+TEST(Gate, the_height_of_the_stance_comes_from_the_map_or_from_the_caller) {
+    Terrain low;
+    low.height.fill(-0.2F);
+    const auto map = low.snapshot();
+    Query query = query_at_body(kForward, *map);
+    const Verdict by_map = decide(rex(), query, *map, kReady, kNow_ns);
+    expect_ok(by_map);
+    EXPECT_EQ(by_map.evidence.stance_height_tenth_mm, -2000);
+    query.stance_source = StanceHeight::given;
+    query.stance_height_tenth_mm = -1950;
+    expect_ok(decide(rex(), query, *map, kReady, kNow_ns));
+    query.stance_height_tenth_mm = 0;
+    expect_refused(decide(rex(), query, *map, kReady, kNow_ns), Reason::drop_off);
+    query.stance_source = static_cast<StanceHeight>(9);
+    expect_error(decide(rex(), query, *map, kReady, kNow_ns), Reason::bad_number);
+}
+
+// ---- the vouched start area ---------------------------------------------------------------------
+
+struct VouchedStart : ::testing::Test {
+    Terrain floor;
+    Query query;
+    std::unique_ptr<grid::MapSnapshot> map;
+
+    /// Floor known from 0.6 m ahead on, as at start-up.
+    void SetUp() override {
+        floor.box(-3.0, 0.6, -3.0, 3.0, static_cast<double>(kNaN));
+        rebuild();
+        query = query_at_body(kForward, *map);
+        query.vouched = {true, 0, 0, 8500, 0};
+    }
+    void rebuild() { map = floor.snapshot(); }
+    [[nodiscard]] Verdict ask_now() const { return decide(rex(), query, *map, kReady, kNow_ns); }
+};
+
+TEST_F(VouchedStart, is_off_by_default_and_the_first_step_is_then_refused) {
+    query.vouched.active = false;
+    expect_refused(ask_now(), Reason::unknown_cells);
+}
+
+TEST_F(VouchedStart, lets_the_first_step_go_onto_remembered_floor_and_says_so) {
+    const Verdict verdict = ask_now();
+    expect_ok(verdict);
+    EXPECT_GT(verdict.evidence.vouched_cells, 0);
+    EXPECT_LT(verdict.evidence.vouched_cells, verdict.evidence.known_cells);
+}
+
+TEST_F(VouchedStart, is_void_outside_and_too_small_where_it_does_not_reach) {
+    // All that is unknown lies in the area, but base_link has just left it.
+    Terrain spot;
+    spot.box(-0.35, -0.25, -0.05, 0.05, static_cast<double>(kNaN));
+    map = spot.snapshot();
+    query.vouched = {true, -6000, 0, 6000, 0};
+    expect_ok(ask_now());
+    query.vouched = {true, -6001, 0, 6000, 0};
+    expect_refused(ask_now(), Reason::unknown_cells);
+    rebuild();
+    query.vouched = {true, 0, 0, 3000, 0};
+    expect_refused(ask_now(), Reason::unknown_cells);
+}
+
+TEST_F(VouchedStart, never_covers_what_was_measured) {
+    floor.box(0.40, 0.45, 0.15, 0.20, 0.3);
+    rebuild();
+    EXPECT_TRUE(ask_now().reasons.contains(Reason::corridor_blocked)) << words(ask_now());
+    floor.box(0.40, 0.45, 0.15, 0.20, -0.3);
+    rebuild();
+    EXPECT_TRUE(ask_now().reasons.contains(Reason::drop_off)) << words(ask_now());
+}
+
+TEST_F(VouchedStart, does_not_tie_in_a_floor_at_another_height) {
+    query.vouched.height_tenth_mm = 450;
+    const Verdict verdict = ask_now();
+    EXPECT_EQ(verdict.decision, Decision::not_traversable);
+    EXPECT_TRUE(verdict.reasons.contains(Reason::disconnected)) << words(verdict);
+}
+
+TEST_F(VouchedStart, a_proven_drop_beats_the_word) {
+    floor.input.drop_evidence = {};
+    const std::size_t at = cell_at(*map, 0.4, 0.18);
+    map->drop_evidence[at] = 255;
+    seal(*map);
+    expect_refused(ask_now(), Reason::drop_off);
+}
+
+TEST_F(VouchedStart, must_be_bounded) {
+    query.vouched.radius_tenth_mm = 10001;
+    expect_error(ask_now(), Reason::bad_number);
+    query.vouched.radius_tenth_mm = 0;
+    expect_error(ask_now(), Reason::bad_number);
+    query.vouched = {true, std::numeric_limits<std::int64_t>::min(), 0, 8500, 0};
+    expect_error(ask_now(), Reason::bad_number);
+}
+
+// ---- readiness ----------------------------------------------------------------------------------
+
+TEST(GateReadiness, ages_are_two_sided) {
+    struct Case {
+        std::int64_t frame_age_ms;
+        std::int64_t pose_age_ms;
+        Reason primary;
+    };
+    const Case cases[] = {{200, 200, Reason::none},
+                          {201, 0, Reason::frame_stale},
+                          {0, 201, Reason::pose_stale},
+                          {-5, -5, Reason::none},
+                          {-6, 0, Reason::time_skew},
+                          {0, -6, Reason::time_skew},
+                          {4999, 10, Reason::frame_stale}};
+    for (const Case& c : cases) {
+        Terrain floor;
+        floor.input.frame_time_ns = kNow_ns - c.frame_age_ms * kMs;
+        floor.input.pose_time_ns = kNow_ns - c.pose_age_ms * kMs;
+        const Verdict verdict = ask(floor, kForward);
+        EXPECT_EQ(verdict.primary, c.primary)
+            << c.frame_age_ms << " " << c.pose_age_ms << " " << words(verdict);
+    }
+}
+
+TEST(GateReadiness, extreme_stamps_do_not_overflow) {
+    constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();
+    constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
+    for (const std::int64_t stamp : {kMin, std::int64_t{0}, kMax}) {
+        for (const std::int64_t now : {kMin, std::int64_t{-1}, kNow_ns, kMax}) {
+            Terrain floor;
+            floor.input.frame_time_ns = stamp;
+            const auto map = floor.snapshot();
+            const Verdict verdict = decide(rex(), query_at_body(kForward, *map), *map, kReady, now);
+            EXPECT_EQ(verdict.decision, Decision::error) << stamp << " " << now;
+        }
+    }
+}
+
+TEST(GateReadiness, only_ready_can_say_ok) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    for (int state = 0; state < 256; ++state) {
+        const GateHealth health{static_cast<GateState>(state), {}};
+        const Verdict verdict = decide(rex(), query_at_body(kForward, *map), *map, health, kNow_ns);
+        if (health.state == GateState::ready)
+            expect_ok(verdict);
+        else
+            expect_error(verdict,
+                         health.state == GateState::warmup ? Reason::warmup : Reason::not_ready);
+    }
+}
+
+TEST(GateReadiness, every_raised_fault_is_an_error_under_its_own_name) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    for (int i = 0; i < kReasonCount; ++i) {
+        const auto fault = static_cast<Reason>(i);
+        const GateHealth health{GateState::ready, ReasonSet(fault)};
+        const Verdict verdict = decide(rex(), query_at_body(kForward, *map), *map, health, kNow_ns);
+        expect_error(verdict, is_error(fault) ? fault : Reason::internal);
+    }
+}
+
+TEST(GateReadiness, gravity_must_be_measured) {
+    for (int source = 0; source < 5; ++source) {
+        Terrain floor;
+        floor.input.gravity_source = static_cast<grid::GravitySource>(source);
+        const Verdict verdict = ask(floor, kForward);
+        if (source == 1 || source == 2)
+            expect_ok(verdict);
+        else
+            expect_error(verdict, Reason::plane_invalid);
+    }
+}
+
+TEST(GateReadiness, odometry_must_be_healthy) {
+    Terrain floor;
+    floor.input.health = grid::SnapshotHealth::lost;
+    expect_error(ask(floor, kForward), Reason::pose_lost);
+    floor.input.health = grid::SnapshotHealth::degraded;
+    expect_error(ask(floor, kForward), Reason::not_ready);
+    floor.input.health = static_cast<grid::SnapshotHealth>(77);
+    expect_error(ask(floor, kForward), Reason::pose_lost);
+}
+
+TEST(GateReadiness, a_damaged_map_is_an_internal_error) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    map->height_tenth_mm[cell_at(*map, 2.0, 2.0)] ^= 1;  // far from the step, no matter
+    expect_error(ask(*map, kForward), Reason::internal);
+}
+
+TEST(GateReadiness, numbers_must_be_finite_and_small) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    const double nan = std::nan("");
+    const double inf = std::numeric_limits<double>::infinity();
+    const Query bad[] = {make_query(kForward, nan, 0, 1, 0),
+                         make_query(kForward, 0, inf, 1, 0),
+                         make_query(kForward, 0, 0, nan, 0),
+                         make_query(kForward, 0, 0, 1, nan),
+                         make_query(kForward, 0, 0, inf, 0),
+                         make_query(kForward, 0, 0, 0, 0),
+                         make_query(kForward, 0, 0, 0.9, 0),
+                         make_query(kForward, 0, 0, 1, 0.1),
+                         make_query(kForward, 1e300, 0, 1, 0),
+                         make_query(kForward, -1e6, 0, 1, 0)};
+    for (const Query& query : bad)
+        expect_error(decide(rex(), query, *map, kReady, kNow_ns), Reason::bad_number);
+}
+
+TEST(GateReadiness, all_256_codes_are_either_configured_or_an_error) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    Machine four = rex();
+    for (std::size_t code = 0; code < four.movements.size(); ++code) {
+        if (code != kForward && code != kRight && code != kBackward && code != kLeft)
+            four.movements[code] = Movement{};
+    }
+    for (int code = 0; code < 256; ++code) {
+        const auto command = static_cast<std::uint8_t>(code);
+        const Query query = query_at_body(command, *map);
+        const Verdict all = decide(rex(), query, *map, kReady, kNow_ns);
+        if (code >= 1 && code <= 26)
+            expect_ok(all);
+        else
+            expect_error(all, Reason::unknown_command);
+        const Verdict few = decide(four, query, *map, kReady, kNow_ns);
+        if (four.movements.size() > command && four.movements[command].configured)
+            expect_ok(few);
+        else
+            expect_error(few, Reason::unknown_command);
+    }
+}
+
+TEST(GateReadiness, a_class_that_is_off_has_no_movements) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    Machine machine = rex();
+    machine.movements[kForward].movement_class = MovementClass::stair;
+    const Query query = query_at_body(kForward, *map);
+    expect_error(decide(machine, query, *map, kReady, kNow_ns), Reason::unknown_command);
+    machine.limits.step[1].enabled = true;
+    expect_ok(decide(machine, query, *map, kReady, kNow_ns));
+}
+
+TEST(GateReadiness, an_error_hides_no_terrain_and_beats_it) {
+    Terrain nothing;
+    nothing.height.fill(kNaN);
+    nothing.input.frame_time_ns = 0;
+    expect_error(ask(nothing, kForward), Reason::frame_stale);
+}
+
+// ---- the words ----------------------------------------------------------------------------------
+
+TEST(VerdictText, says_what_where_value_and_limit) {
+    Terrain hole;
+    hole.box(0.55, 0.60, 0.15, 0.20, -0.17);
+    const auto map = hole.snapshot();
+    const Query query = query_at_body(kForward, *map);
+    const Verdict verdict = decide(rex(), query, *map, kReady, kNow_ns);
+    // The cell's centre at 0.5625 m, the toes at 0.240 m.
+    EXPECT_EQ(text_of(verdict, query, rex()),
+              "drop of 0.17 m, 0.32 m ahead of the left foot (limit 0.050 m)");
+}
+
+TEST(VerdictText, every_reason_has_a_sentence_and_a_code) {
+    for (int i = 0; i < kReasonCount; ++i) {
+        Verdict verdict;
+        verdict.primary = static_cast<Reason>(i);
+        verdict.decision = is_error(verdict.primary) ? Decision::error : Decision::not_traversable;
+        const std::string text = text_of(verdict, Query{}, rex());
+        EXPECT_GT(text.size(), 12U) << to_string(verdict.primary);
+        EXPECT_NE(text, to_string(verdict.primary));
+        for (int j = 0; j < i; ++j)
+            EXPECT_STRNE(to_string(static_cast<Reason>(j)), to_string(verdict.primary));
+    }
+    EXPECT_STREQ(to_string(static_cast<Reason>(200)), "INTERNAL");
+    EXPECT_STREQ(to_string(static_cast<Decision>(200)), "ERROR");
+}
+
+}  // namespace
+}  // namespace surefoot::gate::testing

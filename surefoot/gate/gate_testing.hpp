@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/machine.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/grid/snapshot_builder.hpp"
+
+/// What the tests of the gate share: the REX, terrain to stand on, and one call that asks.
+namespace surefoot::gate::testing {
+
+inline constexpr std::int64_t kNow_ns = 5'000'000'000;
+inline constexpr std::int64_t kMs = 1'000'000;
+inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+inline constexpr double kResolution_m = 0.025;
+
+// Joystick codes of the REX.
+inline constexpr std::uint8_t kForward = 9;
+inline constexpr std::uint8_t kRight = 13;
+inline constexpr std::uint8_t kBackward = 17;
+inline constexpr std::uint8_t kLeft = 21;
+inline constexpr std::uint8_t kTurnLeft = 25;
+inline constexpr std::uint8_t kTurnRight = 26;
+
+/// The machine of machines/rex.yaml.
+Machine rex();
+
+/// Ground of 240 x 240 cells of 25 mm around the machine, which stands at the origin of odom and
+/// looks along +x. Flat, known and fresh unless a test says otherwise.
+struct Terrain {
+    grid::GridGeometry geometry{kResolution_m, 240, 240, {-3.0, -3.0}};
+    grid::Layer height{240, 240, 0.0F};
+    grid::Layer variance{240, 240, 16e-6F};  // (4 mm)^2
+    grid::Layer drift{240, 240, 0.005F};
+    grid::Layer clearance{240, 240, kNaN};
+    grid::SnapshotInput input;
+
+    Terrain() {
+        input.T_odom_body.translation_m = {0.0, 0.0, 0.99};
+        input.frame_time_ns = kNow_ns - 50 * kMs;
+        input.pose_time_ns = kNow_ns - 10 * kMs;
+        input.gravity_source = grid::GravitySource::imu;
+        input.health = grid::SnapshotHealth::ok;
+        input.version = 42;
+        input.config_hash = 4711;
+    }
+    /// Sets a layer where a rectangle [x0, x1) x [y0, y1) in odom holds the centre of the cell.
+    Terrain& paint(grid::Layer& layer, double x0, double x1, double y0, double y1, double value) {
+        for (int v = 0; v < geometry.ny; ++v) {
+            for (int u = 0; u < geometry.nx; ++u) {
+                const Eigen::Vector2d c = geometry.center_m({u, v});
+                if (c.x() >= x0 && c.x() < x1 && c.y() >= y0 && c.y() < y1)
+                    layer.at(u, v) = static_cast<float>(value);
+            }
+        }
+        return *this;
+    }
+    Terrain& box(double x0, double x1, double y0, double y1, double height_m) {
+        return paint(height, x0, x1, y0, y1, height_m);
+    }
+    /// A map drawn as seen from above, forward = up, one character = 0.2 x 0.2 m, the machine in
+    /// the middle: '.' floor, '?' unknown, digit = tenths of a metre up, 'd' = 0.3 m down.
+    Terrain& draw(const std::vector<std::string>& rows) {
+        const double top_m = 0.1 * static_cast<double>(rows.size());
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+            const double left_m = 0.1 * static_cast<double>(rows[r].size());
+            for (std::size_t c = 0; c < rows[r].size(); ++c) {
+                const char symbol = rows[r][c];
+                const double x1 = top_m - 0.2 * static_cast<double>(r);
+                const double y1 = left_m - 0.2 * static_cast<double>(c);
+                const double value = symbol == '?'   ? static_cast<double>(kNaN)
+                                     : symbol == 'd' ? -0.3
+                                     : symbol == '.' ? 0.0
+                                                     : 0.1 * (symbol - '0');
+                box(x1 - 0.2, x1, y1 - 0.2, y1, value);
+            }
+        }
+        return *this;
+    }
+    [[nodiscard]] std::unique_ptr<grid::MapSnapshot> snapshot() {
+        input.geometry = geometry;
+        input.height_m = std::as_const(height).view();
+        input.variance_m2 = std::as_const(variance).view();
+        input.drift_m = std::as_const(drift).view();
+        input.clearance_m = std::as_const(clearance).view();
+        auto map = std::make_unique<grid::MapSnapshot>();
+        if (!build_snapshot(input, *map)) map->magic = 0;  // the gate then says INTERNAL
+        return map;
+    }
+};
+
+inline constexpr GateHealth kReady{GateState::ready, {}};
+
+/// Index of the snapshot cell that holds a point.
+std::size_t cell_at(const grid::MapSnapshot& map, double x_m, double y_m);
+
+inline void seal(grid::MapSnapshot& map) {
+    map.checksum = grid::snapshot_checksum(map);
+}
+
+inline Verdict ask(const grid::MapSnapshot& map, std::uint8_t command) {
+    return decide(rex(), query_at_body(command, map), map, kReady, kNow_ns);
+}
+inline Verdict ask(Terrain& terrain, std::uint8_t command) {
+    return ask(*terrain.snapshot(), command);
+}
+
+/// All reasons in words, for failure messages.
+inline std::string words(const Verdict& verdict) {
+    std::string text = std::string(to_string(verdict.decision)) + ":";
+    for (int i = 0; i < kReasonCount; ++i) {
+        if (verdict.reasons.contains(static_cast<Reason>(i)))
+            text += std::string(" ") + to_string(static_cast<Reason>(i));
+    }
+    return text;
+}
+
+}  // namespace surefoot::gate::testing

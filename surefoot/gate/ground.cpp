@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/ground.hpp"
+
+#include <algorithm>
+
+namespace surefoot::gate {
+namespace {
+
+constexpr std::int64_t magnitude(std::int64_t x) noexcept {
+    return x < 0 ? -x : x;
+}
+
+}  // namespace
+
+Ground::Ground(const grid::MapSnapshot& map, const Query& query) noexcept
+    : map_(map),
+      grid_{map.origin_x_tenth_mm, map.origin_y_tenth_mm, map.resolution_tenth_mm},
+      vouched_(query.vouched.active ? query.vouched : VouchedArea{}) {
+    // The word is void as soon as base_link is outside of the area.
+    const std::int64_t dx = query.x_tenth_mm - vouched_.center_x_tenth_mm;
+    const std::int64_t dy = query.y_tenth_mm - vouched_.center_y_tenth_mm;
+    const std::int64_t radius = vouched_.radius_tenth_mm;
+    vouching_ = vouched_.active && magnitude(dx) <= radius && magnitude(dy) <= radius &&
+                dx * dx + dy * dy <= radius * radius;
+}
+
+bool Ground::is_vouched(std::int64_t ix, std::int64_t iy) const noexcept {
+    if (!vouching_) return false;
+    const std::int64_t x = grid_.origin_x + ix * grid_.side - vouched_.center_x_tenth_mm;
+    const std::int64_t y = grid_.origin_y + iy * grid_.side - vouched_.center_y_tenth_mm;
+    const std::int64_t far_x = std::max(magnitude(x), magnitude(x + grid_.side));
+    const std::int64_t far_y = std::max(magnitude(y), magnitude(y + grid_.side));
+    const std::int64_t radius = vouched_.radius_tenth_mm;
+    return far_x * far_x + far_y * far_y <= radius * radius;
+}
+
+GroundCell Ground::cell(std::int64_t ix, std::int64_t iy) const noexcept {
+    GroundCell cell;
+    if (ix < 0 || iy < 0 || ix >= map_.nx || iy >= map_.ny) {
+        cell.knowledge = Knowledge::outside;
+        return cell;
+    }
+    const auto at = static_cast<std::size_t>(iy * map_.nx + ix);
+    cell.drop_evidence = map_.drop_evidence[at];
+    if (map_.source[at] == grid::EvidenceSource::measured &&
+        map_.height_tenth_mm[at] != grid::MapSnapshot::kUnknownHeight) {
+        cell.knowledge = Knowledge::measured;
+        cell.component = map_.component[at];
+        cell.sigma_tenth_mm = map_.sigma_tenth_mm[at];
+        cell.drift_tenth_mm = map_.drift_tenth_mm[at];
+        cell.clearance_tenth_mm = map_.clearance_tenth_mm[at];
+        cell.height_tenth_mm = map_.height_tenth_mm[at];
+    } else if (is_vouched(ix, iy)) {
+        cell.knowledge = Knowledge::vouched;
+        cell.height_tenth_mm = vouched_.height_tenth_mm;
+    }
+    return cell;
+}
+
+grid::FixedPoint Ground::doubled_center(std::int64_t ix,
+                                        std::int64_t iy,
+                                        grid::FixedPoint origin) const noexcept {
+    return {2 * (grid_.origin_x - origin.x) + (2 * ix + 1) * grid_.side,
+            2 * (grid_.origin_y - origin.y) + (2 * iy + 1) * grid_.side};
+}
+
+void ReachableSurfaces::add(std::uint16_t component) noexcept {
+    if (component == grid::MapSnapshot::kNoComponent) return;
+    bits_[component / 64U] |= std::uint64_t{1} << (component % 64U);
+}
+
+bool ReachableSurfaces::contains(std::uint16_t component) const noexcept {
+    return component != grid::MapSnapshot::kNoComponent &&
+           (bits_[component / 64U] >> (component % 64U) & 1U) != 0;
+}
+
+void ReachableSurfaces::add_beside_vouched(const Ground& ground,
+                                           std::int32_t step_tenth_mm) noexcept {
+    if (!ground.is_vouching()) return;
+    const VouchedArea& area = ground.vouched();
+    const grid::FixedGrid& grid = ground.grid();
+    const std::int64_t reach = area.radius_tenth_mm + grid.side;
+    const auto index = [&grid](std::int64_t p, std::int64_t origin) {
+        return grid::floor_div(p - origin, grid.side);
+    };
+    const std::int64_t last_y = index(area.center_y_tenth_mm + reach, grid.origin_y);
+    const std::int64_t last_x = index(area.center_x_tenth_mm + reach, grid.origin_x);
+    for (auto iy = index(area.center_y_tenth_mm - reach, grid.origin_y); iy <= last_y; ++iy) {
+        for (auto ix = index(area.center_x_tenth_mm - reach, grid.origin_x); ix <= last_x; ++ix) {
+            const GroundCell cell = ground.cell(ix, iy);
+            const grid::FixedPoint from_center =
+                ground.doubled_center(ix, iy, {area.center_x_tenth_mm, area.center_y_tenth_mm});
+            const std::int64_t distance_sq =
+                from_center.x * from_center.x + from_center.y * from_center.y;
+            if (cell.knowledge == Knowledge::measured && distance_sq <= 4 * reach * reach &&
+                magnitude(cell.height_tenth_mm - area.height_tenth_mm) <= step_tenth_mm)
+                add(cell.component);
+        }
+    }
+}
+
+}  // namespace surefoot::gate

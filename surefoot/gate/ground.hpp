@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/grid/fixed_polygon.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+
+namespace surefoot::gate {
+
+/// What speaks for the ground in a cell. Only `vouched` and `measured` are knowledge.
+enum class Knowledge : std::uint8_t { outside, unknown, vouched, measured };
+
+/// One cell as the gate sees it. The numbers mean something only when `known()`, but for the
+/// evidence of a drop, which an unknown cell may have too.
+struct GroundCell {
+    Knowledge knowledge = Knowledge::unknown;
+    std::uint8_t drop_evidence = 0;
+    std::uint16_t component = grid::MapSnapshot::kNoComponent;
+    std::int32_t sigma_tenth_mm = 0;
+    std::int32_t drift_tenth_mm = 0;
+    std::int32_t clearance_tenth_mm = grid::MapSnapshot::kNoCeiling;
+    std::int64_t height_tenth_mm = 0;  ///< odom z
+
+    [[nodiscard]] bool known() const noexcept {
+        return knowledge == Knowledge::vouched || knowledge == Knowledge::measured;
+    }
+};
+
+/// The map, seen through an operator's word where there is one. The only place where a cell becomes
+/// known; a cell without a measurement has no other way than to lie wholly in the vouched area.
+class Ground {
+  public:
+    Ground(const grid::MapSnapshot& map, const Query& query) noexcept;
+
+    [[nodiscard]] const grid::FixedGrid& grid() const noexcept { return grid_; }
+    [[nodiscard]] GroundCell cell(std::int64_t ix, std::int64_t iy) const noexcept;
+    /// Twice the centre of a cell relative to twice `origin`: exact for every cell size.
+    [[nodiscard]] grid::FixedPoint doubled_center(std::int64_t ix,
+                                                  std::int64_t iy,
+                                                  grid::FixedPoint origin) const noexcept;
+    [[nodiscard]] bool is_vouching() const noexcept { return vouching_; }
+    [[nodiscard]] const VouchedArea& vouched() const noexcept { return vouched_; }
+
+  private:
+    [[nodiscard]] bool is_vouched(std::int64_t ix, std::int64_t iy) const noexcept;
+
+    const grid::MapSnapshot& map_;
+    grid::FixedGrid grid_;
+    VouchedArea vouched_;
+    bool vouching_ = false;
+};
+
+/// The connected surfaces that the machine stands on.
+class ReachableSurfaces {
+  public:
+    void add(std::uint16_t component) noexcept;
+    [[nodiscard]] bool contains(std::uint16_t component) const noexcept;
+    /// Surfaces that begin in the vouched area or beside it, no more than `step_tenth_mm` above or
+    /// below it: an operator's word reaches as far as the floor it touches.
+    void add_beside_vouched(const Ground& ground, std::int32_t step_tenth_mm) noexcept;
+
+  private:
+    std::array<std::uint64_t, 1024> bits_{};  // one for each of 65536 labels
+};
+
+}  // namespace surefoot::gate

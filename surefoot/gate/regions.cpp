@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/regions.hpp"
+
+#include <algorithm>
+
+namespace surefoot::gate {
+namespace {
+
+/// A cell with its place.
+struct Place {
+    GroundCell cell;
+    std::int64_t ix = 0;
+    std::int64_t iy = 0;
+    Foot foot = Foot::none;
+};
+
+void count(const GroundCell& cell, Evidence& evidence) noexcept {
+    ++evidence.cells;
+    if (!cell.known()) return;
+    ++evidence.known_cells;
+    if (cell.knowledge == Knowledge::vouched) ++evidence.vouched_cells;
+    evidence.max_drift_tenth_mm =
+        std::max<std::int64_t>(evidence.max_drift_tenth_mm, cell.drift_tenth_mm);
+    evidence.min_clearance_tenth_mm =
+        std::min<std::int64_t>(evidence.min_clearance_tenth_mm, cell.clearance_tenth_mm);
+}
+
+void deny(Findings& findings,
+          Reason reason,
+          const Place& place,
+          std::int64_t value,
+          std::int64_t limit) noexcept {
+    findings.deny(reason, finding_at(place.ix, place.iy, place.foot, value, limit));
+}
+
+/// Knowledge, sureness and drift: what every region asks of every cell. False when the cell says
+/// nothing about the height of the ground.
+bool check_knowledge(const Place& place, const GateLimits& limits, Findings& findings) noexcept {
+    const GroundCell& cell = place.cell;
+    count(cell, findings.evidence);
+    if (cell.knowledge == Knowledge::outside) {
+        deny(findings, Reason::outside_map, place, 0, 0);
+        return false;
+    }
+    if (!cell.known()) {
+        deny(findings, Reason::unknown_cells, place, 0, 0);
+        return false;
+    }
+    if (cell.sigma_tenth_mm > limits.cell_sigma_tenth_mm)
+        deny(findings,
+             Reason::not_resolvable,
+             place,
+             cell.sigma_tenth_mm,
+             limits.cell_sigma_tenth_mm);
+    if (cell.drift_tenth_mm > limits.drift_tenth_mm)
+        deny(findings, Reason::memory_uncertain, place, cell.drift_tenth_mm, limits.drift_tenth_mm);
+    return true;
+}
+
+/// Asks every cell of a region; `test(place, rise)` sees the known ones with their height over the
+/// stance, `always(place)` all inside the map. One cell beyond the map ends the region: the rest of
+/// it out there tells nothing new.
+template <typename Test, typename Always>
+void check_region(const Scene& scene,
+                  const grid::FixedConvex& region,
+                  Foot foot,
+                  Findings& findings,
+                  Test&& test,
+                  Always&& always) noexcept {
+    grid::for_each_overlapped_cell(
+        region, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+            const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
+            if (place.cell.knowledge != Knowledge::outside) always(place);
+            if (check_knowledge(place, scene.machine.limits, findings))
+                test(place, place.cell.height_tenth_mm - scene.stance_tenth_mm);
+            return place.cell.knowledge != Knowledge::outside;
+        });
+}
+
+constexpr auto kNothing = [](const Place&) noexcept {};
+
+}  // namespace
+
+Finding finding_at(std::int64_t ix,
+                   std::int64_t iy,
+                   Foot foot,
+                   std::int64_t value_tenth_mm,
+                   std::int64_t limit_tenth_mm) noexcept {
+    return {ix, iy, value_tenth_mm, limit_tenth_mm, value_tenth_mm, foot};
+}
+
+std::optional<std::int64_t> stance_height(const Ground& ground,
+                                          const Query& query,
+                                          const Sweep& sweep) noexcept {
+    if (query.stance_source == StanceHeight::given) return query.stance_height_tenth_mm;
+    std::int64_t sum = 0;
+    std::int64_t known = 0;
+    for (const FootSweep& foot : sweep.feet) {
+        grid::for_each_overlapped_cell(
+            foot.stance, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                const GroundCell cell = ground.cell(ix, iy);
+                if (cell.known()) {
+                    sum += cell.height_tenth_mm;
+                    ++known;
+                }
+                return true;
+            });
+    }
+    if (known == 0) return std::nullopt;
+    return grid::floor_div(2 * sum + known, 2 * known);  // to nearest
+}
+
+void check_stance(const Scene& scene, Findings& findings) noexcept {
+    const std::int64_t limit = scene.machine.limits.drop_tenth_mm;
+    for (const FootSweep& foot : scene.sweep.feet) {
+        const auto test = [&](const Place& place, std::int64_t rise) {
+            if (-rise > limit) deny(findings, Reason::drop_off, place, -rise, limit);
+        };
+        check_region(scene, foot.stance, foot.foot, findings, test, kNothing);
+    }
+}
+
+void check_corridors(const Scene& scene, Findings& findings) noexcept {
+    const std::int64_t limit = scene.machine.limits.swing_clearance_tenth_mm;
+    for (const FootSweep& foot : scene.sweep.feet) {
+        const auto test = [&](const Place& place, std::int64_t rise) {
+            if (rise > limit) deny(findings, Reason::corridor_blocked, place, rise, limit);
+        };
+        check_region(scene, foot.corridor, foot.foot, findings, test, kNothing);
+    }
+}
+
+void check_body(const Scene& scene, Findings& findings) noexcept {
+    const BodyEnvelope& body = scene.machine.body;
+    const auto test = [&](const Place& place, std::int64_t rise) {
+        if (rise > body.lower_edge_tenth_mm)
+            deny(findings, Reason::body_clearance, place, rise, body.lower_edge_tenth_mm);
+        const std::int64_t ceiling = rise + place.cell.clearance_tenth_mm;
+        if (place.cell.clearance_tenth_mm != grid::MapSnapshot::kNoCeiling &&
+            ceiling < body.height_tenth_mm)
+            deny(findings, Reason::body_clearance, place, ceiling, body.height_tenth_mm);
+    };
+    check_region(scene, scene.sweep.body, Foot::none, findings, test, kNothing);
+}
+
+void check_bands(const Scene& scene, Findings& findings) noexcept {
+    const GateLimits& limits = scene.machine.limits;
+    for (const FootSweep& foot : scene.sweep.feet) {
+        const auto test = [&](const Place& place, std::int64_t rise) {
+            if (-rise > limits.drop_tenth_mm)
+                deny(findings, Reason::drop_off, place, -rise, limits.drop_tenth_mm);
+        };
+        // A drop below a table top beside the foot is no drop for a foot on the floor: evidence on
+        // a cell that was measured higher than a foot may stand belongs to somebody up there.
+        const auto evidence = [&](const Place& place) {
+            const bool above =
+                place.cell.known() && place.cell.height_tenth_mm - scene.stance_tenth_mm >
+                                          limits.swing_clearance_tenth_mm;
+            if (place.cell.drop_evidence >= limits.drop_evidence && !above)
+                deny(findings, Reason::drop_off, place, 0, limits.drop_tenth_mm);
+        };
+        check_region(scene, foot.band, foot.foot, findings, test, evidence);
+    }
+}
+
+}  // namespace surefoot::gate

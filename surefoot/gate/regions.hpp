@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "surefoot/gate/findings.hpp"
+#include "surefoot/gate/footprints.hpp"
+#include "surefoot/gate/ground.hpp"
+
+namespace surefoot::gate {
+
+/// What all tests of the terrain share.
+struct Scene {
+    const Machine& machine;
+    const Movement& movement;
+    const Ground& ground;
+    const Sweep& sweep;
+    std::int64_t stance_tenth_mm = 0;  ///< odom z of the ground under the present feet
+};
+
+/// A finding at a cell.
+[[nodiscard]] Finding finding_at(std::int64_t ix,
+                                 std::int64_t iy,
+                                 Foot foot,
+                                 std::int64_t value_tenth_mm,
+                                 std::int64_t limit_tenth_mm) noexcept;
+
+/// Height of the ground under the present feet: told by the query, else the mean of all cells
+/// there. Nothing when no cell is known.
+[[nodiscard]] std::optional<std::int64_t> stance_height(const Ground& ground,
+                                                        const Query& query,
+                                                        const Sweep& sweep) noexcept;
+
+/// The four regions of safety.md 7 (4). In each every cell must be inside the map, known (or
+/// vouched), surer than `cell_sigma` and not drifted more than `drift`; and:
+/// - under the present feet none is a drop;
+void check_stance(const Scene& scene, Findings& findings) noexcept;
+/// - in the way of a foot nothing stands higher over the stance than `swing_clearance`;
+void check_corridors(const Scene& scene, Findings& findings) noexcept;
+/// - in the way of the body nothing stands higher than its lower edge, nor hangs lower than its
+/// top;
+void check_body(const Scene& scene, Findings& findings) noexcept;
+/// - under and `drop_band` around the landing feet nothing lies lower than `drop` or shows evidence
+///   of a drop.
+void check_bands(const Scene& scene, Findings& findings) noexcept;
+
+}  // namespace surefoot::gate

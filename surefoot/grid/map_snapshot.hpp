@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace surefoot::grid {
+
+/// What supports the height of a cell.
+enum class EvidenceSource : std::uint8_t { unknown = 0, measured = 1, vouched = 2 };
+
+/// How the direction of gravity was found; `assumed` makes the gate answer ERROR.
+enum class GravitySource : std::uint8_t { assumed = 0, plane = 1, imu = 2 };
+
+/// Health of the motion estimate when the snapshot was taken (as core Health, fixed width).
+enum class SnapshotHealth : std::uint8_t { lost = 0, degraded = 1, ok = 2 };
+
+/// Everything that the step gate knows about the ground: a plain block of memory that can be copied,
+/// stored and shared between processes. Lengths are integers in units of 0.1 mm ("tenth_mm"), so that
+/// a decision is the same on every machine. Layer element = iy * nx + ix; cell (ix, iy) covers
+/// [origin + i * resolution, origin + (i + 1) * resolution) in odom.
+struct MapSnapshot {
+    static constexpr std::uint32_t kMagic = 0x54465253;  // "SRFT"
+    static constexpr std::uint32_t kLayout = 1;
+    static constexpr int kMaxSide = 256;
+    static constexpr int kMaxCells = kMaxSide * kMaxSide;
+    static constexpr std::int32_t kUnknownHeight = std::numeric_limits<std::int32_t>::min();
+    static constexpr std::uint16_t kNoCeiling = 0xffff;
+    static constexpr std::uint16_t kNoComponent = 0;
+
+    std::uint32_t magic = kMagic;
+    std::uint32_t layout = kLayout;
+    std::uint64_t version = 0;            ///< grows with every published map
+    std::uint64_t config_hash = 0;
+    std::int64_t frame_time_ns = 0;       ///< last integrated depth frame
+    std::int64_t pose_time_ns = 0;        ///< last pose
+    std::int32_t resolution_tenth_mm = 0;
+    std::int32_t nx = 0;
+    std::int32_t ny = 0;
+    std::int64_t origin_x_tenth_mm = 0;
+    std::int64_t origin_y_tenth_mm = 0;
+    /// base_link in odom.
+    std::int64_t body_x_tenth_mm = 0;
+    std::int64_t body_y_tenth_mm = 0;
+    std::int64_t body_z_tenth_mm = 0;
+    double body_cos_yaw = 1.0;
+    double body_sin_yaw = 0.0;
+    GravitySource gravity_source = GravitySource::assumed;
+    SnapshotHealth health = SnapshotHealth::lost;
+    std::array<std::uint8_t, 6> padding{};
+
+    std::array<std::int32_t, kMaxCells> height_tenth_mm{};       ///< kUnknownHeight = never measured
+    std::array<std::uint16_t, kMaxCells> sigma_tenth_mm{};       ///< one sigma of the height, saturated
+    std::array<std::uint16_t, kMaxCells> drift_tenth_mm{};       ///< 1-sigma horizontal drift since last seen
+    std::array<std::uint16_t, kMaxCells> clearance_tenth_mm{};   ///< free height above; kNoCeiling = open
+    std::array<std::uint16_t, kMaxCells> component{};            ///< label of the connected surface, 0 = none
+    std::array<std::uint8_t, kMaxCells> drop_evidence{};         ///< 0..255, 255 = a ray proved a drop here
+    std::array<EvidenceSource, kMaxCells> source{};
+
+    std::uint64_t checksum = 0;  ///< of everything above; see snapshot_checksum()
+};
+static_assert(std::is_trivially_copyable_v<MapSnapshot>);
+
+/// FNV-1a (Fowler, Noll, Vo) over every field but the checksum, taken in 64-bit words on four lanes
+/// that are folded at the end: each step is a bijection of the lane, so no single changed word goes
+/// unnoticed, and the 0.9 MB cost some ten microseconds. Padding bytes are left out.
+[[nodiscard]] std::uint64_t snapshot_checksum(const MapSnapshot& snapshot) noexcept;
+/// Magic, layout, size, finite pose and checksum are right: the snapshot may be used.
+[[nodiscard]] bool is_intact(const MapSnapshot& snapshot) noexcept;
+
+}  // namespace surefoot::grid

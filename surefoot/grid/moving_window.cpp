@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/grid/moving_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::grid {
+namespace {
+
+/// Larger moves make no difference: they empty every window. Keeps the count within an int.
+constexpr double kMaxShiftCells = 1 << 30;
+
+int nearest_cells(double way_m, double resolution_m) {
+    // std::round sends halves away from zero.
+    return static_cast<int>(
+        std::clamp(std::round(way_m / resolution_m), -kMaxShiftCells, kMaxShiftCells));
+}
+
+}  // namespace
+
+MovingWindow::MovingWindow(double length_m, double resolution_m) {
+    SUREFOOT_ASSERT(resolution_m > 0.0 && length_m > 0.0);
+    const int cells = std::max(1, static_cast<int>(std::lround(length_m / resolution_m)));
+    geometry_.resolution_m = resolution_m;
+    geometry_.nx = cells;
+    geometry_.ny = cells;
+    first_ix_ = -(cells / 2);
+    first_iy_ = first_ix_;
+    update_origin();
+}
+
+Shift MovingWindow::center_on(double x_m, double y_m) {
+    if (!std::isfinite(x_m) || !std::isfinite(y_m)) return {};
+    const double half_length_m = 0.5 * geometry_.nx * geometry_.resolution_m;
+    const Shift shift{
+        nearest_cells(x_m - (geometry_.origin_m.x() + half_length_m), geometry_.resolution_m),
+        nearest_cells(y_m - (geometry_.origin_m.y() + half_length_m), geometry_.resolution_m)};
+    first_ix_ += shift.dx;
+    first_iy_ += shift.dy;
+    update_origin();
+    return shift;
+}
+
+void MovingWindow::update_origin() {
+    // From the lattice index, never by adding up: the origin of a place does not depend on the
+    // path.
+    geometry_.origin_m = {static_cast<double>(first_ix_) * geometry_.resolution_m,
+                          static_cast<double>(first_iy_) * geometry_.resolution_m};
+}
+
+}  // namespace surefoot::grid

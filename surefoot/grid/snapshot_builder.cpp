@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/grid/snapshot_builder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace surefoot::grid {
+namespace {
+
+constexpr double kTenthMmPerM = 1e4;
+constexpr double kHighest_m = 1000.0;  ///< a height beyond it is a broken number, not ground
+
+std::int64_t tenth_mm(double length_m) {
+    return std::llround(length_m * kTenthMmPerM);
+}
+
+/// Zero or more, rounded up; NaN and what does not fit become the largest value: known to be bad.
+std::uint16_t saturated_up(double length_m) {
+    const double scaled = std::ceil(length_m * kTenthMmPerM);
+    if (!(scaled >= 0.0 && scaled < 65535.0)) return 0xffff;
+    return static_cast<std::uint16_t>(scaled);
+}
+
+/// The part of the grid that fits into a snapshot: first cell of it, and its size.
+struct Window {
+    int x = 0;
+    int y = 0;
+    int nx = 0;
+    int ny = 0;
+};
+
+Window window_around_body(const SnapshotInput& input) {
+    const auto start = [](double body_m, double origin_m, double res_m, int n, int size) {
+        const double first = std::floor((body_m - origin_m) / res_m) - size / 2.0;
+        return static_cast<int>(std::clamp(first, 0.0, static_cast<double>(n - size)));
+    };
+    const GridGeometry& g = input.geometry;
+    const Eigen::Vector3d& body_m = input.T_odom_body.translation_m;
+    Window window{
+        0, 0, std::min(g.nx, MapSnapshot::kMaxSide), std::min(g.ny, MapSnapshot::kMaxSide)};
+    window.x = start(body_m.x(), g.origin_m.x(), g.resolution_m, g.nx, window.nx);
+    window.y = start(body_m.y(), g.origin_m.y(), g.resolution_m, g.ny, window.ny);
+    return window;
+}
+
+bool has_size(ImageView<const float> layer, const GridGeometry& geometry) {
+    return layer.width == geometry.nx && layer.height == geometry.ny;
+}
+
+Status check(const SnapshotInput& input) {
+    const GridGeometry& g = input.geometry;
+    const auto refuse = [](const std::string& why) {
+        return Status(usage_error("map snapshot: " + why));
+    };
+    if (g.nx < 1 || g.ny < 1) return refuse("the map has no cells");
+    if (!(g.resolution_m >= 0.005 && g.resolution_m <= 0.2))
+        return refuse("cells of " + std::to_string(g.resolution_m) +
+                      " m; the gate works with 0.005 to 0.2 m");
+    const double cells = g.resolution_m * kTenthMmPerM;
+    if (std::abs(cells - std::round(cells)) > 1e-6)
+        return refuse("cells of " + std::to_string(g.resolution_m) +
+                      " m are no whole number of 0.1 mm; choose elevation.resolution_m so");
+    if (!g.origin_m.allFinite() || g.origin_m.cwiseAbs().maxCoeff() > 1e5 ||
+        !input.T_odom_body.all_finite() ||
+        input.T_odom_body.translation_m.cwiseAbs().maxCoeff() > 1e5)
+        return refuse("the pose is not finite or farther than 100 km from the origin of odom");
+    if (!has_size(input.height_m, g) || !has_size(input.variance_m2, g))
+        return refuse("height and variance must have the size of the map");
+    for (const auto& layer : {input.drift_m, input.clearance_m, input.drop_evidence}) {
+        if (!layer.empty() && !has_size(layer, g))
+            return refuse("an optional layer does not have the size of the map");
+    }
+    return {};
+}
+
+void write_header(const SnapshotInput& input, const Window& window, MapSnapshot& out) {
+    const GridGeometry& g = input.geometry;
+    out.magic = MapSnapshot::kMagic;
+    out.layout = MapSnapshot::kLayout;
+    out.version = input.version;
+    out.config_hash = input.config_hash;
+    out.frame_time_ns = input.frame_time_ns;
+    out.pose_time_ns = input.pose_time_ns;
+    out.resolution_tenth_mm = static_cast<std::int32_t>(tenth_mm(g.resolution_m));
+    out.nx = window.nx;
+    out.ny = window.ny;
+    out.origin_x_tenth_mm =
+        tenth_mm(g.origin_m.x()) + window.x * std::int64_t{out.resolution_tenth_mm};
+    out.origin_y_tenth_mm =
+        tenth_mm(g.origin_m.y()) + window.y * std::int64_t{out.resolution_tenth_mm};
+    const Eigen::Vector3d& t = input.T_odom_body.translation_m;
+    out.body_x_tenth_mm = tenth_mm(t.x());
+    out.body_y_tenth_mm = tenth_mm(t.y());
+    out.body_z_tenth_mm = tenth_mm(t.z());
+    const double yaw = yaw_rad(input.T_odom_body);
+    out.body_cos_yaw = std::cos(yaw);
+    out.body_sin_yaw = std::sin(yaw);
+    out.gravity_source = input.gravity_source;
+    out.health = input.health;
+    out.padding = {};
+}
+
+/// Used cells become unknown; those beyond them zero, so that equal maps are equal bytes.
+void clear_cells(MapSnapshot& out) {
+    const auto used = static_cast<std::ptrdiff_t>(out.nx) * out.ny;
+    const auto clear = [used](auto& layer, auto unknown) {
+        std::fill(layer.begin(), layer.begin() + used, unknown);
+        std::fill(layer.begin() + used, layer.end(), decltype(unknown){});
+    };
+    clear(out.height_tenth_mm, MapSnapshot::kUnknownHeight);
+    clear(out.sigma_tenth_mm, std::uint16_t{0xffff});
+    clear(out.drift_tenth_mm, std::uint16_t{0xffff});
+    clear(out.clearance_tenth_mm, MapSnapshot::kNoCeiling);
+    clear(out.component, MapSnapshot::kNoComponent);
+    clear(out.drop_evidence, std::uint8_t{0});
+    clear(out.source, EvidenceSource::unknown);
+}
+
+void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std::size_t at) {
+    const auto value = [u, v](ImageView<const float> layer) {
+        return static_cast<double>(layer.at(u, v));
+    };
+    if (!input.drop_evidence.empty()) {
+        const double evidence = value(input.drop_evidence);
+        // Absence of a drop is never taken from a broken number.
+        out.drop_evidence[at] =
+            std::isnan(evidence)
+                ? std::uint8_t{255}
+                : static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(evidence, 0.0, 1.0)));
+    }
+    const double height_m = value(input.height_m);
+    if (!(std::abs(height_m) <= kHighest_m)) return;
+    out.height_tenth_mm[at] = static_cast<std::int32_t>(tenth_mm(height_m));
+    out.sigma_tenth_mm[at] = saturated_up(std::sqrt(value(input.variance_m2)));
+    if (!input.drift_m.empty()) out.drift_tenth_mm[at] = saturated_up(value(input.drift_m));
+    if (!input.clearance_m.empty()) {
+        const double clearance_m = value(input.clearance_m);
+        // NaN = nothing was seen above. Negative cannot be: treat it as no room at all.
+        const double scaled = std::floor(std::max(clearance_m, 0.0) * kTenthMmPerM);
+        if (!std::isnan(clearance_m) && scaled < 65535.0)
+            out.clearance_tenth_mm[at] = static_cast<std::uint16_t>(scaled);
+    }
+    out.source[at] = EvidenceSource::measured;
+}
+
+/// Flood fill with an explicit stack: every cell is pushed once, and its index fits 16 bits.
+class Labeller {
+  public:
+    Labeller(MapSnapshot& map, std::int32_t step_tenth_mm) : map_(map), step_(step_tenth_mm) {}
+
+    void label_all() {
+        std::uint32_t label = 0;
+        const int count = map_.nx * map_.ny;
+        for (int at = 0; at < count; ++at) {
+            if (!is_free(at)) continue;
+            if (++label > 0xffff) return;  // the rest keeps kNoComponent, which inhibits
+            fill(at, static_cast<std::uint16_t>(label));
+        }
+    }
+
+  private:
+    [[nodiscard]] bool is_free(int at) const {
+        const auto i = static_cast<std::size_t>(at);
+        return map_.source[i] == EvidenceSource::measured &&
+               map_.component[i] == MapSnapshot::kNoComponent;
+    }
+    void push(int at, std::uint16_t label) {
+        map_.component[static_cast<std::size_t>(at)] = label;
+        stack_[size_++] = static_cast<std::uint16_t>(at);
+    }
+    void fill(int seed, std::uint16_t label) {
+        push(seed, label);
+        while (size_ > 0) {
+            const int at = stack_[--size_];
+            const int ix = at % map_.nx;
+            const int iy = at / map_.nx;
+            if (ix > 0) join(at, at - 1, label);
+            if (ix + 1 < map_.nx) join(at, at + 1, label);
+            if (iy > 0) join(at, at - map_.nx, label);
+            if (iy + 1 < map_.ny) join(at, at + map_.nx, label);
+        }
+    }
+    void join(int from, int to, std::uint16_t label) {
+        const std::int32_t rise = map_.height_tenth_mm[static_cast<std::size_t>(to)] -
+                                  map_.height_tenth_mm[static_cast<std::size_t>(from)];
+        if (is_free(to) && std::abs(rise) <= step_) push(to, label);
+    }
+
+    MapSnapshot& map_;
+    std::int32_t step_;
+    std::array<std::uint16_t, MapSnapshot::kMaxCells> stack_{};
+    std::size_t size_ = 0;
+};
+
+/// Marks the upper cells of drops along one row or column; see build_snapshot().
+void mark_drops_on_line(MapSnapshot& out,
+                        std::size_t first,
+                        std::size_t stride,
+                        int count,
+                        std::int32_t step_tenth_mm,
+                        int reach_cells) {
+    int previous = -1;
+    for (int i = 0; i < count; ++i) {
+        const std::size_t at = first + static_cast<std::size_t>(i) * stride;
+        if (out.source[at] != EvidenceSource::measured) continue;
+        if (previous >= 0 && i - previous <= reach_cells) {
+            const std::size_t before = first + static_cast<std::size_t>(previous) * stride;
+            const std::int32_t rise = out.height_tenth_mm[at] - out.height_tenth_mm[before];
+            if (rise > step_tenth_mm) out.drop_evidence[at] = 255;
+            if (rise < -step_tenth_mm) out.drop_evidence[before] = 255;
+        }
+        previous = i;
+    }
+}
+
+void mark_drops(const SnapshotInput& input, MapSnapshot& out) {
+    const auto step = static_cast<std::int32_t>(tenth_mm(input.drop_step_m));
+    const int reach = std::max(
+        1, static_cast<int>(std::lround(input.drop_reach_m / input.geometry.resolution_m)));
+    const auto nx = static_cast<std::size_t>(out.nx);
+    for (int iy = 0; iy < out.ny; ++iy)
+        mark_drops_on_line(out, static_cast<std::size_t>(iy) * nx, 1, out.nx, step, reach);
+    for (int ix = 0; ix < out.nx; ++ix)
+        mark_drops_on_line(out, static_cast<std::size_t>(ix), nx, out.ny, step, reach);
+}
+
+}  // namespace
+
+Status build_snapshot(const SnapshotInput& input, MapSnapshot& out) {
+    if (Status status = check(input); !status) {
+        out.magic = 0;
+        out.nx = out.ny = 0;
+        return status;
+    }
+    const Window window = window_around_body(input);
+    write_header(input, window, out);
+    clear_cells(out);
+    std::size_t at = 0;
+    for (int v = window.y; v < window.y + window.ny; ++v) {
+        for (int u = window.x; u < window.x + window.nx; ++u) write_cell(input, u, v, out, at++);
+    }
+    Labeller(out, static_cast<std::int32_t>(tenth_mm(input.connect_step_m))).label_all();
+    mark_drops(input, out);
+    out.checksum = snapshot_checksum(out);
+    return {};
+}
+
+}  // namespace surefoot::grid

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/ground/ground_calibration.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "surefoot/geometry/quaternion_mean.hpp"
+
+namespace surefoot::ground {
+
+const char* to_string(CalibrationReason reason) noexcept {
+    switch (reason) {
+        case CalibrationReason::accepted: return "accepted";
+        case CalibrationReason::no_observation: return "no_observation";
+        case CalibrationReason::too_few: return "too_few";
+        case CalibrationReason::disagreement: return "disagreement";
+    }
+    return "unknown";
+}
+
+Eigen::Quaterniond tilt_rotation(const Eigen::Vector3d& normal_body) {
+    // The quaternion (1 + cos, axis sin) points along (cos(angle / 2), axis sin(angle / 2)).
+    const Eigen::Vector3d axis = normal_body.cross(Eigen::Vector3d::UnitZ());
+    const double w = 1.0 + normal_body.z();
+    constexpr double kUpsideDown = 1e-12;
+    if (w < kUpsideDown) return {0.0, 1.0, 0.0, 0.0};  // half a turn: about x, as good as any
+    return Eigen::Quaterniond(w, axis.x(), axis.y(), axis.z()).normalized();
+}
+
+void GroundCalibration::add(const GroundObservation& observation_body) {
+    if (!observation_body.accepted) return;
+    if (!observation_body.normal.allFinite() || !std::isfinite(observation_body.height_m)) return;
+    window_.push_back(observation_body);
+    while (window_.size() > static_cast<std::size_t>(config_.window)) window_.pop_front();
+}
+
+bool GroundCalibration::agree(const GroundObservation& a, const GroundObservation& b) const {
+    const double angle_rad = std::atan2(a.normal.cross(b.normal).norm(), a.normal.dot(b.normal));
+    return angle_rad <= config_.max_disagreement_deg * std::numbers::pi / 180.0 &&
+           std::abs(a.height_m - b.height_m) <= config_.max_disagreement_m;
+}
+
+GroundAlignment GroundCalibration::alignment() const {
+    GroundAlignment result;
+    if (window_.empty()) return result;
+
+    // The sighting with which most others agree stands for its group; the newest wins a tie.
+    std::vector<const GroundObservation*> group;
+    for (const auto& candidate : window_) {
+        std::vector<const GroundObservation*> others;
+        for (const auto& other : window_) {
+            if (agree(candidate, other)) others.push_back(&other);
+        }
+        if (others.size() >= group.size()) group = std::move(others);
+    }
+
+    std::vector<Eigen::Quaterniond> rotations;
+    for (const GroundObservation* observation : group) {
+        rotations.push_back(tilt_rotation(observation->normal));
+        result.height_m += observation->height_m;
+    }
+    result.height_m /= static_cast<double>(group.size());
+    // Unique: the rotations lie within twice the allowed disagreement of each other.
+    const Eigen::Quaterniond mean = geometry::quaternion_mean(rotations).value_or(rotations.back());
+    result.T_ground_body = {mean, Eigen::Vector3d(0.0, 0.0, result.height_m)};
+    result.normal_body = mean.conjugate() * Eigen::Vector3d::UnitZ();
+    result.tilt_rad = std::atan2(result.normal_body.head<2>().norm(), result.normal_body.z());
+    result.agreeing = static_cast<int>(group.size());
+    result.rejected = static_cast<int>(window_.size() - group.size());
+
+    if (window_.size() < static_cast<std::size_t>(config_.min_agreeing)) {
+        result.reason = CalibrationReason::too_few;
+    } else if (result.agreeing < config_.min_agreeing || result.agreeing <= result.rejected) {
+        result.reason = CalibrationReason::disagreement;
+    } else {
+        result.reason = CalibrationReason::accepted;
+        result.accepted = true;
+    }
+    return result;
+}
+
+}  // namespace surefoot::ground

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/ground/ground_config.hpp"
+
+namespace surefoot::ground {
+
+void GroundConfig::describe(ConfigVisitor& visitor) {
+    visitor.number("voxel_m", voxel_m, 0.001, 1.0, "one point per cube of this size is used");
+    visitor.integer("max_points", max_points, 50, 1000000, "points searched at most");
+    visitor.number(
+        "max_range_m", max_range_m, 0.2, 1000.0, "points farther from the sensor are left out");
+    visitor.number("tolerance_m", tolerance_m, 0.001, 1.0, "distance of inliers from the plane");
+    visitor.number(
+        "max_tilt_deg", max_tilt_deg, 0.1, 89.0, "largest angle between normal and expected up");
+    visitor.number(
+        "min_inlier_ratio", min_inlier_ratio, 0.0, 1.0, "least share of the points on the plane");
+    visitor.number("min_area_m2", min_area_m2, 0.0, 1000.0, "least area covered by inliers");
+    visitor.number(
+        "min_extent_m", min_extent_m, 0.0, 100.0, "least one-sigma extent across the narrow side");
+    visitor.number(
+        "max_rms_m", max_rms_m, 0.0001, 1.0, "largest scatter of the inliers across the plane");
+    visitor.number(
+        "min_height_m", min_height_m, 0.0, 100.0, "least height of the sensor above the plane");
+    visitor.number(
+        "max_height_m", max_height_m, 0.0, 100.0, "largest height of the sensor above the plane");
+    visitor.integer("window", window, 1, 1000, "sightings that are averaged");
+    visitor.integer("min_agreeing", min_agreeing, 1, 1000, "agreeing sightings needed");
+    visitor.number("max_disagreement_deg",
+                   max_disagreement_deg,
+                   0.01,
+                   45.0,
+                   "sightings that differ more in tilt do not agree");
+    visitor.number("max_disagreement_m",
+                   max_disagreement_m,
+                   0.001,
+                   1.0,
+                   "sightings that differ more in height do not agree");
+}
+
+}  // namespace surefoot::ground

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+
+#include "surefoot/core/report.hpp"
+#include "surefoot/ground/ground_config.hpp"
+
+namespace surefoot::ground {
+
+/// Why a sighting of the ground is accepted or not; the first that applies.
+enum class GroundReason : std::uint8_t {
+    accepted,
+    no_hint,      ///< the expected up direction is zero or not finite
+    few_points,   ///< not enough points in range for any plane
+    no_plane,     ///< no plane within the tilt limit, below the sensor at an allowed height
+    few_inliers,  ///< inlier ratio below its limit
+    small,        ///< area or extent below its limit
+    rough,  ///< scatter of the inliers above its limit, or no surface that ends above and below
+};
+[[nodiscard]] const char* to_string(GroundReason reason) noexcept;
+
+/// The best ground plane in a set of points. If none was found, `observation` is not accepted and
+/// has its default values; a plane that fails a limit is given for diagnosis with accepted = false.
+struct GroundSighting {
+    GroundObservation observation;  ///< in the frame of the points
+    GroundReason reason = GroundReason::few_points;
+    double tilt_rad = 0.0;  ///< between normal and hint
+    double area_m2 = 0.0;   ///< occupied squares of two voxel sides, seen along the normal
+};
+
+/// Finds the ground (RANSAC within the cone of allowed normals, thesis 4.3.1). The ground is
+/// *below*: every supported plane is considered, and the lowest wins even if a table top has more
+/// points. Where two planes cross between their points (a ramp and the floor before it), the one
+/// that begins nearer to the sensor wins.
+///
+/// `points` in any frame (not finite = left out), `up_hint` roughly up in that frame,
+/// `sensor_origin` in that frame: heights are distances from it. The same input and seed give the
+/// same bytes.
+[[nodiscard]] GroundSighting sight_ground(const GroundConfig& config,
+                                          std::span<const Eigen::Vector3d> points,
+                                          const Eigen::Vector3d& up_hint,
+                                          const Eigen::Vector3d& sensor_origin,
+                                          std::uint64_t seed);
+
+/// The same for points in the body frame, with the height of the body's origin.
+[[nodiscard]] GroundObservation observe_ground(const GroundConfig& config,
+                                               std::span<const Eigen::Vector3d> points_body,
+                                               const Eigen::Vector3d& up_hint_body,
+                                               std::uint64_t seed);
+
+}  // namespace surefoot::ground

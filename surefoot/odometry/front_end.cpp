@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/odometry/front_end.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace surefoot::odometry {
+namespace {
+
+constexpr int kBlock = 32;              ///< alignments per piece of work
+constexpr double kTrackShift_px = 3.0;  ///< search radius around a followed point
+constexpr double kAgainShift_px = 5.0;  ///< search radius around a prediction
+/// A point that was followed but does not look like its patch any more is trusted less.
+constexpr double kFollowedNoise = 2.5;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr int kGiveUpAfter = 12;    ///< failures in a row before a landmark is forgotten
+constexpr double kBorder_px = 8.0;  ///< patches need this much image around them
+
+bool inside(const Eigen::Vector2d& px, ImageView<const std::uint8_t> image) {
+    return px.x() >= kBorder_px && px.y() >= kBorder_px && px.x() < image.width - kBorder_px &&
+           px.y() < image.height - kBorder_px;
+}
+
+}  // namespace
+
+/// A landmark to align: where to start, and whether Lucas-Kanade brought us there.
+struct FrontEnd::Job {
+    int slot = 0;
+    Eigen::Vector2d start_px = Eigen::Vector2d::Zero();
+    bool followed = false;
+};
+
+FrontEnd::FrontEnd(const FrontEndConfig& config, const camera::Rectifier& rectifier)
+    : config_(config), rectifier_(rectifier) {}
+
+bool FrontEnd::load(const StereoFrame& frame, Executor& executor) {
+    static_cast<void>(executor);
+    const auto& rig = rectifier_.rig();
+    tracks_.clear();
+    loaded_ = frame.left.width() == rig.width && frame.left.height() == rig.height;
+    if (!loaded_) return false;
+    left_.build(frame.left.view());
+    const bool right_fits = frame.right.width() == rig.width && frame.right.height() == rig.height;
+    right_ = right_fits ? frame.right : GreyImage();
+    const bool depth_fits =
+        frame.depth_m.width() == rig.width && frame.depth_m.height() == rig.height;
+    depth_m_ = depth_fits ? frame.depth_m : Image<float>();
+    return true;
+}
+
+void FrontEnd::clear() {
+    kept_.clear();
+    tracks_.clear();
+}
+
+void FrontEnd::follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) {
+    requests_.clear();
+    for (const Track& track : kept_) {
+        const auto start = map.predict_pixel(map.at(track.slot), camera::Side::left, T_odom_camera);
+        const bool usable = start && inside(*start, left_.image());
+        requests_.push_back(
+            {track.raw_px.cast<float>(), (usable ? *start : track.raw_px).cast<float>()});
+    }
+    track_points(left_kept_, left_, requests_, config_.klt, executor, results_);
+    tracks_.clear();
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+        if (!results_[i].found) continue;
+        Track track;
+        track.slot = kept_[i].slot;
+        track.id = kept_[i].id;
+        track.raw_px = results_[i].px.cast<double>();
+        track.noise_factor = kFollowedNoise;
+        const auto px = rectifier_.rectified_from_raw(camera::Side::left, track.raw_px);
+        if (!px) continue;
+        track.pixel_px = {px->x(), px->y(), kUnknown};
+        tracks_.push_back(track);
+    }
+}
+
+void FrontEnd::collect_jobs(const LandmarkMap& map, const Pose& T, std::vector<Job>& jobs) {
+    busy_.assign(static_cast<std::size_t>(map.slots()), 0);
+    const auto add_predicted = [&](int slot) {
+        const auto px = map.predict_pixel(map.at(slot), camera::Side::left, T);
+        if (!px || !inside(*px, left_.image())) return false;
+        busy_[static_cast<std::size_t>(slot)] = 1;
+        jobs.push_back({slot, *px, false});
+        return true;
+    };
+    for (const Track& track : tracks_) {
+        busy_[static_cast<std::size_t>(track.slot)] = 1;
+        jobs.push_back({track.slot, track.raw_px, true});
+    }
+    for (const Track& track : kept_)
+        if (busy_[static_cast<std::size_t>(track.slot)] == 0) add_predicted(track.slot);
+    int attempts =
+        std::min(config_.most_attempts, config_.most_tracks - static_cast<int>(jobs.size()));
+    const int slots = map.slots();
+    for (int i = 0; i < slots && attempts > 0; ++i) {
+        const int slot = (next_attempt_ + i) % slots;
+        if (busy_[static_cast<std::size_t>(slot)] != 0 || map.at(slot).id < 0) continue;
+        if (!add_predicted(slot)) continue;
+        attempts -= 1;
+        if (attempts == 0) next_attempt_ = slot + 1;
+    }
+}
+
+void FrontEnd::align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) {
+    std::vector<Job> jobs;
+    collect_jobs(map, T_odom_camera, jobs);
+    std::vector<Track> aligned(jobs.size());
+    const int blocks = (static_cast<int>(jobs.size()) + kBlock - 1) / kBlock;
+    executor.parallel_for(blocks, [&](int block) {
+        const auto begin = static_cast<std::size_t>(block * kBlock);
+        const auto end = std::min(begin + kBlock, jobs.size());
+        for (std::size_t i = begin; i < end; ++i)
+            aligned[i] = align_one(map, T_odom_camera, jobs[i]);
+    });
+    tracks_.clear();
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        Landmark& landmark = map.at(jobs[i].slot);
+        landmark.failures = aligned[i].correlation > 0.0 ? 0 : landmark.failures + 1;
+        if (aligned[i].slot >= 0)
+            tracks_.push_back(aligned[i]);
+        else if (landmark.failures > kGiveUpAfter)
+            map.remove(jobs[i].slot);
+    }
+    drop_removed(map);
+}
+
+/// The aligned track; slot -1 when the landmark is not there.
+Track FrontEnd::align_one(const LandmarkMap& map, const Pose& T, const Job& job) const {
+    const Landmark& landmark = map.at(job.slot);
+    Track track;
+    track.slot = -1;
+    const auto view = map.predict_view(landmark, camera::Side::left, T);
+    const auto patch = view ? warp_patch(landmark.patch, view->host_from_view) : std::nullopt;
+    const auto found = patch ? align_patch(*patch,
+                                           left_.image(),
+                                           job.start_px,
+                                           job.followed ? kTrackShift_px : kAgainShift_px)
+                             : std::nullopt;
+    const bool good = found && found->correlation >= config_.min_correlation;
+    if (!good && !job.followed) return track;
+    track.raw_px = good ? found->raw_px : job.start_px;
+    const auto px = rectifier_.rectified_from_raw(camera::Side::left, track.raw_px);
+    if (!px) return track;
+    track.slot = job.slot;
+    track.id = landmark.id;
+    track.pixel_px = {px->x(), px->y(), kUnknown};
+    track.noise_factor = good ? 1.0 : kFollowedNoise;
+    track.correlation = good ? found->correlation : 0.0;
+    if (rgbd()) {
+        if (const auto pixel = depth_pixel(rectifier_, depth_m_, track.raw_px, config_.stereo))
+            track.pixel_px = *pixel;
+    } else if (good) {
+        measure_depth(map, T, landmark, track.raw_px - view->raw_px, track);
+    }
+    return track;
+}
+
+void FrontEnd::measure_depth(const LandmarkMap& map,
+                             const Pose& T,
+                             const Landmark& landmark,
+                             const Eigen::Vector2d& shift_px,
+                             Track& track) const {
+    if (right_.empty()) return;
+    const auto view = map.predict_view(landmark, camera::Side::right, T);
+    if (!view) return;
+    const auto patch = warp_patch(landmark.patch, view->host_from_view);
+    if (!patch) return;
+    const auto found =
+        align_patch(*patch, std::as_const(right_).view(), view->raw_px + shift_px, kTrackShift_px);
+    if (!found || found->correlation < config_.min_correlation) return;
+    if (const auto pixel = stereo_pixel(rectifier_, track.raw_px, found->raw_px, config_.stereo))
+        track.pixel_px = *pixel;
+}
+
+int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
+    drop_removed(map);
+    std::vector<Eigen::Vector2d> occupied;
+    for (const Track& track : tracks_) occupied.push_back(track.raw_px);
+    std::vector<Eigen::Vector2d> corners;
+    const auto left = left_.image();
+    detect_corners(left, occupied, config_.corners, executor, corners);
+    std::vector<std::optional<StereoPixel>> pixels(corners.size());
+    executor.parallel_for(static_cast<int>(corners.size()), [&](int index) {
+        const auto i = static_cast<std::size_t>(index);
+        if (rgbd())
+            pixels[i] = depth_pixel(rectifier_, depth_m_, corners[i], config_.stereo);
+        else if (!right_.empty())
+            pixels[i] = match_corner(
+                rectifier_, left, std::as_const(right_).view(), corners[i], config_.stereo);
+    });
+    int added = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (!pixels[i]) continue;
+        const auto slot = map.add_landmark(left, corners[i], *pixels[i]);
+        if (!slot) continue;
+        tracks_.push_back({*slot, map.at(*slot).id, corners[i], *pixels[i], 1.0, 1.0});
+        added += 1;
+    }
+    return added;
+}
+
+void FrontEnd::select(std::span<const std::uint8_t> inlier) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < tracks_.size(); ++i)
+        if (inlier[i] != 0) tracks_[kept++] = tracks_[i];
+    tracks_.resize(kept);
+}
+
+void FrontEnd::drop_removed(const LandmarkMap& map) {
+    const auto gone = [&](const Track& track) { return map.at(track.slot).id != track.id; };
+    std::erase_if(tracks_, gone);
+    std::erase_if(kept_, gone);
+}
+
+void FrontEnd::forget_excess(LandmarkMap& map) {
+    busy_.assign(static_cast<std::size_t>(map.slots()), 0);
+    for (const Track& track : tracks_) busy_[static_cast<std::size_t>(track.slot)] = 1;
+    map.limit(busy_);
+    drop_removed(map);
+}
+
+void FrontEnd::keep() {
+    kept_ = tracks_;
+    std::swap(left_, left_kept_);
+}
+
+std::span<const PointMatch> FrontEnd::matches(const LandmarkMap& map) {
+    matches_.clear();
+    for (const Track& track : tracks_) {
+        const Landmark& landmark = map.at(track.slot);
+        matches_.push_back(
+            {landmark.p_odom_m, landmark.covariance_m2, track.pixel_px, track.noise_factor});
+    }
+    return matches_;
+}
+
+}  // namespace surefoot::odometry

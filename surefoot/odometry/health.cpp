@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/odometry/health.hpp"
+
+#include <algorithm>
+
+namespace surefoot::odometry {
+namespace {
+
+constexpr double kBlurred = 0.3;       ///< sharpness ratio; the mean square falls fast with blur
+constexpr double kMinAgreeing = 0.35;  ///< share of the tracks that must agree on one motion
+constexpr double kDegradedDepthShare = 0.01;  ///< translation sigma relative to the scene's depth
+constexpr double kDegradedRotation_rad = 0.01;
+constexpr double kLostFactor = 10.0;  ///< times these: no usable pose
+
+}  // namespace
+
+HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
+    const bool gap = e.gap_s > config.max_gap_s;
+    const bool blurred = e.sharpness_ratio < kBlurred;
+    const auto because = [&](HealthReason otherwise) {
+        return gap ? HealthReason::time_gap : blurred ? HealthReason::blur : otherwise;
+    };
+    const double weakness =
+        std::max(e.translation_sigma_m / (kDegradedDepthShare * e.scene_depth_m),
+                 e.rotation_sigma_rad / kDegradedRotation_rad);
+    if (!e.pose_found || e.inliers < config.min_inliers)
+        return {Health::lost, because(HealthReason::few_tracks)};
+    if (!(weakness < kLostFactor)) return {Health::lost, because(HealthReason::poor_geometry)};
+    if (e.inliers < config.ok_inliers || e.inliers < kMinAgreeing * e.tracks)
+        return {Health::degraded, because(HealthReason::few_tracks)};
+    if (weakness > 1.0) return {Health::degraded, because(HealthReason::poor_geometry)};
+    if (blurred) return {Health::degraded, because(HealthReason::blur)};
+    if (e.residual_px > config.ok_residual_px)
+        return {Health::degraded, because(HealthReason::large_residual)};
+    if (gap) return {Health::degraded, HealthReason::time_gap};
+    return {Health::ok, HealthReason::none};
+}
+
+Matrix6 lost_covariance(const OdometryConfig& config, double before_s, double after_s) {
+    const double squares = after_s * after_s - before_s * before_s;
+    Vector6 variance;
+    variance.head<3>().setConstant(config.lost_speed_m_s * config.lost_speed_m_s * squares);
+    variance.tail<3>().setConstant(config.lost_turn_rad_s * config.lost_turn_rad_s * squares);
+    return variance.asDiagonal();
+}
+
+}  // namespace surefoot::odometry

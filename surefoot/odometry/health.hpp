@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/core/frame.hpp"
+#include "surefoot/odometry/odometry.hpp"
+
+namespace surefoot::odometry {
+
+/// What is known about a frame when its health is judged.
+struct HealthEvidence {
+    bool pose_found = false;
+    int tracks = 0;
+    int inliers = 0;
+    double residual_px = 0.0;
+    double gap_s = 0.0;                ///< since the previous frame
+    double sharpness_ratio = 1.0;      ///< to the last good frame, see ImagePyramid::sharpness
+    double translation_sigma_m = 0.0;  ///< weakest direction
+    double rotation_sigma_rad = 0.0;   ///< weakest direction
+    double scene_depth_m = 0.0;        ///< median of the inliers; 0 = unknown
+};
+
+struct HealthVerdict {
+    Health health = Health::lost;
+    HealthReason reason = HealthReason::few_tracks;
+};
+
+/// Lost without a pose, with fewer than `min_inliers`, or when points agree in one direction only.
+/// The reason is the cause where one is known: a time gap, then blur, then what the points say.
+[[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);
+
+/// Covariance of the unseen motion between `before_s` and `after_s` seconds after the camera was
+/// lost. The speed is unknown but lasting, so that the parts add up to (speed * time)^2.
+[[nodiscard]] Matrix6 lost_covariance(const OdometryConfig& config,
+                                      double before_s,
+                                      double after_s);
+
+}  // namespace surefoot::odometry

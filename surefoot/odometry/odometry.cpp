@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/odometry/odometry.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "surefoot/core/time.hpp"
+#include "surefoot/odometry/front_end.hpp"
+#include "surefoot/odometry/health.hpp"
+#include "surefoot/odometry/still_detector.hpp"
+
+namespace surefoot::odometry {
+namespace {
+
+constexpr std::uint64_t kSeed = 0x5afef007;
+constexpr double kCoastTime_s = 0.15;   ///< the predicted velocity of a lost camera decays with it
+constexpr double kKeyframeShare = 0.7;  ///< keyframe when fewer of the last one's points are seen
+constexpr double kKeyframeParallax =
+    0.035;                            ///< or when they moved by this share of the image width
+constexpr int kKeyframePeriod = 12;   ///< or after so many frames of motion
+constexpr double kPatchWorn = 0.9;    ///< correlation below which a keyframe renews the patch
+constexpr double kFewFollowed = 0.5;  ///< share below which points are followed a second time
+
+FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {
+    FrontEndConfig front;
+    front.corners.grid_columns = config.grid_columns;
+    front.corners.grid_rows = config.grid_rows;
+    front.corners.most = config.max_tracks;
+    front.most_tracks = config.max_tracks;
+    front.stereo.max_disparity_px =
+        std::min(rig.depth_to_disparity_px_m() / config.min_depth_m, rig.width / 4.0);
+    return front;
+}
+
+LandmarkMapConfig map_config(const OdometryConfig& config) {
+    LandmarkMapConfig map;
+    map.window_keyframes = config.window_keyframes;
+    map.bundle.sigma_px = config.sigma_px;
+    return map;
+}
+
+/// One sigma in the weakest direction.
+double largest_sigma(const Eigen::Matrix3d& covariance) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
+    return std::sqrt(std::max(eigen.eigenvalues().maxCoeff(), 0.0));
+}
+
+}  // namespace
+
+struct Odometry::Impl {
+    Impl(const OdometryConfig& c, const camera::Rectifier& r)
+        : config(c),
+          rectifier(r),
+          front(front_end_config(c, r.rig()), r),
+          map(map_config(c), r),
+          still(c.still_parallax_px) {
+        solver.sigma_px = config.sigma_px;
+        T_odom_camera = r.rig().T_body_camera;
+    }
+
+    MotionEstimate update(const StereoFrame& frame, Executor& executor);
+    MotionEstimate begin(const StereoFrame& frame, Executor& executor);
+    MotionEstimate found(const StereoFrame& frame,
+                         const PoseSolution& pose,
+                         const HealthEvidence& evidence,
+                         Executor& executor);
+    MotionEstimate lost(const StereoFrame& frame,
+                        const HealthEvidence& evidence,
+                        Executor& executor);
+    PoseSolution solve(const Pose& predicted, Executor& executor);
+    PoseSolution rough_pose(const Pose& predicted, Executor& executor);
+    HealthEvidence examine(const StereoFrame& frame, const PoseSolution& pose) const;
+    double scene_depth_m(const PoseSolution& pose) const;
+    Pose predict(double dt_s) const;
+    Matrix6 systematic_covariance(const Pose& T_before, const Pose& T_after, double depth_m) const;
+    bool wants_keyframe() const;
+    Pose make_keyframe(const Pose& T, Executor& executor);
+    bool seed_landmarks(Executor& executor);
+    MotionEstimate publish(const Pose& T_camera, const Matrix6& covariance, const Matrix6& extra);
+    Pose body_from(const Pose& T_camera) const {
+        return T_camera * rectifier.rig().T_body_camera.inverse();
+    }
+
+    OdometryConfig config;
+    const camera::Rectifier& rectifier;
+    FrontEnd front;
+    LandmarkMap map;
+    StillDetector still;
+    PoseSolverConfig solver;
+
+    Pose T_odom_camera;                           ///< as published last
+    Matrix6 covariance_camera = Matrix6::Zero();  ///< of T_odom_camera, the landmarks given
+    Matrix6 lost_body = Matrix6::Zero();          ///< of the motion since the last good frame
+    Vector6 velocity = Vector6::Zero();           ///< per second, camera frame
+    std::int64_t time_ns = 0;                     ///< of the previous frame
+    std::int64_t good_time_ns = 0;                ///< of the last frame with a pose
+    Pose T_odom_good;                             ///< camera pose then
+    double sharpness = 0.0;                       ///< of the image then
+    bool started = false;
+    int frames = 0;
+    int frames_since_keyframe = 0;
+    int keyframe_tracks = 0;
+};
+
+Odometry::Odometry(const OdometryConfig& config, const camera::Rectifier& rectifier)
+    : impl_(std::make_unique<Impl>(config, rectifier)) {}
+Odometry::~Odometry() = default;
+Odometry::Odometry(Odometry&&) noexcept = default;
+
+void Odometry::start_at(const Pose& T_odom_body) {
+    impl_->T_odom_camera = T_odom_body * impl_->rectifier.rig().T_body_camera;
+}
+
+MotionEstimate Odometry::update(const StereoFrame& frame, Executor& executor) {
+    MotionEstimate estimate = impl_->update(frame, executor);
+    estimate.time_ns = frame.time_ns;
+    impl_->time_ns = frame.time_ns;
+    impl_->frames += 1;
+    return estimate;
+}
+
+MotionEstimate Odometry::Impl::update(const StereoFrame& frame, Executor& executor) {
+    const bool loaded = front.load(frame, executor);
+    if (loaded && !started) return begin(frame, executor);
+    PoseSolution pose;
+    if (loaded && !map.empty())
+        pose = solve(predict(seconds_from_ns(frame.time_ns - time_ns)), executor);
+    const HealthEvidence evidence = examine(frame, pose);
+    if (judge(config, evidence).health == Health::lost) return lost(frame, evidence, executor);
+    return found(frame, pose, evidence, executor);
+}
+
+/// The first frame: its pose is given, its landmarks are new.
+MotionEstimate Odometry::Impl::begin(const StereoFrame& frame, Executor& executor) {
+    started = true;
+    T_odom_good = T_odom_camera;
+    good_time_ns = frame.time_ns;
+    sharpness = front.left().sharpness();
+    const bool seeded = seed_landmarks(executor);
+    MotionEstimate estimate = publish(T_odom_camera, Matrix6::Zero(), Matrix6::Zero());
+    estimate.tracks = front.kept();
+    estimate.health = seeded ? Health::degraded : Health::lost;
+    estimate.reason = seeded ? HealthReason::first_frame : HealthReason::blur;
+    return estimate;
+}
+
+/// Starts a new map at the present pose; false when the image does not give enough landmarks.
+bool Odometry::Impl::seed_landmarks(Executor& executor) {
+    map.clear();
+    front.clear();
+    still.clear();
+    static_cast<void>(make_keyframe(T_odom_camera, executor));
+    const bool enough = static_cast<int>(front.tracks().size()) >= config.min_inliers;
+    if (!enough) {
+        map.clear();
+        front.clear();
+    }
+    front.keep();
+    return enough;
+}
+
+Pose Odometry::Impl::predict(double dt_s) const {
+    if (!(dt_s > 0.0 && dt_s <= config.max_gap_s)) return T_odom_camera;
+    return perturbed(T_odom_camera, velocity * dt_s);
+}
+
+PoseSolution Odometry::Impl::rough_pose(const Pose& predicted, Executor& executor) {
+    front.follow(map, predicted, executor);
+    const auto matches = front.matches(map);
+    const Rng rng(mix_seed(kSeed, static_cast<std::uint64_t>(frames)));
+    PoseSolution pose = find_pose(rectifier.rig(), solver, matches, predicted, rng);
+    if (pose.found) pose = refine_pose(rectifier.rig(), solver, matches, pose.T_world_camera);
+    return pose;
+}
+
+PoseSolution Odometry::Impl::solve(const Pose& predicted, Executor& executor) {
+    PoseSolution pose = rough_pose(predicted, executor);
+    if (pose.found && pose.inliers < kFewFollowed * front.kept())
+        pose = rough_pose(pose.T_world_camera, executor);  // better starts find more
+    if (!pose.found) return pose;
+    front.align(map, pose.T_world_camera, executor);
+    return refine_pose(rectifier.rig(), solver, front.matches(map), pose.T_world_camera);
+}
+
+double Odometry::Impl::scene_depth_m(const PoseSolution& pose) const {
+    std::vector<double> depths;
+    const Eigen::Vector3d forward = pose.T_world_camera.rotation * Eigen::Vector3d::UnitZ();
+    for (std::size_t i = 0; i < front.tracks().size(); ++i)
+        if (pose.inlier[i] != 0)
+            depths.push_back(forward.dot(map.at(front.tracks()[i].slot).p_odom_m -
+                                         pose.T_world_camera.translation_m));
+    if (depths.empty()) return 0.0;
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    return *middle;
+}
+
+HealthEvidence Odometry::Impl::examine(const StereoFrame& frame, const PoseSolution& pose) const {
+    HealthEvidence evidence;
+    evidence.pose_found = pose.found;
+    evidence.tracks = static_cast<int>(front.tracks().size());
+    evidence.gap_s = seconds_from_ns(frame.time_ns - time_ns);
+    evidence.sharpness_ratio = front.left().sharpness() / std::max(sharpness, 1e-9);
+    if (!pose.found) return evidence;
+    evidence.inliers = pose.inliers;
+    evidence.residual_px = pose.residual_px;
+    evidence.translation_sigma_m = largest_sigma(pose.covariance.topLeftCorner<3, 3>());
+    evidence.rotation_sigma_rad = largest_sigma(pose.covariance.bottomRightCorner<3, 3>());
+    evidence.scene_depth_m = scene_depth_m(pose);
+    return evidence;
+}
+
+/// What a slightly wrong calibration does to a motion: a share of it, and a turn mistaken for a
+/// shift of the scene.
+Matrix6 Odometry::Impl::systematic_covariance(const Pose& T_before,
+                                              const Pose& T_after,
+                                              double depth_m) const {
+    const Vector6 motion = difference(T_before, T_after);
+    const double turn_rad = motion.tail<3>().norm();
+    const double shift_m = std::hypot(motion.head<3>().norm(), turn_rad * depth_m);
+    Vector6 sigma;
+    sigma.head<3>().setConstant(config.calibration_share * shift_m);
+    sigma.tail<3>().setConstant(config.calibration_share * turn_rad);
+    return sigma.cwiseAbs2().asDiagonal();
+}
+
+MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
+                                     const PoseSolution& pose,
+                                     const HealthEvidence& evidence,
+                                     Executor& executor) {
+    const double dt_s = seconds_from_ns(frame.time_ns - good_time_ns);
+    front.select(pose.inlier);
+    Pose T = pose.T_world_camera;
+    Matrix6 covariance = pose.covariance;
+    const bool standing =
+        config.still_parallax_px > 0.0 && still.update(front.tracks(), map, T, covariance);
+    if (standing) {
+        T = still.T_odom_camera();
+        // The error of a held pose is one error, not one per frame: 1/n^2 adds up to 1.64 of it.
+        covariance /= static_cast<double>(still.held()) * still.held();
+    }
+    frames_since_keyframe += standing ? 0 : 1;
+    if (wants_keyframe()) {
+        const Pose adjusted = make_keyframe(T, executor);
+        if (!standing) T = adjusted;
+    }
+    front.keep();
+    velocity = dt_s > 0.0 ? Vector6(difference(T_odom_good, T) / dt_s) : Vector6::Zero();
+    if (standing) covariance_camera.setZero();
+    const Matrix6 systematic = systematic_covariance(T_odom_good, T, evidence.scene_depth_m);
+    const Pose& T_body_camera = rectifier.rig().T_body_camera;
+    MotionEstimate estimate =
+        publish(T, covariance, lost_body + camera_to_body_covariance(systematic, T_body_camera));
+    lost_body.setZero();
+    T_odom_good = T;
+    good_time_ns = frame.time_ns;
+    sharpness = front.kept_sharpness();
+    const HealthVerdict verdict = judge(config, evidence);
+    estimate.health = verdict.health;
+    estimate.reason = verdict.reason;
+    estimate.tracks = evidence.tracks;
+    estimate.inliers = pose.inliers;
+    estimate.residual_px = pose.residual_px;
+    return estimate;
+}
+
+MotionEstimate Odometry::Impl::lost(const StereoFrame& frame,
+                                    const HealthEvidence& evidence,
+                                    Executor& executor) {
+    const double before_s = std::max(seconds_from_ns(time_ns - good_time_ns), 0.0);
+    const double after_s = std::max(seconds_from_ns(frame.time_ns - good_time_ns), before_s);
+    const Matrix6 unseen = lost_covariance(config, before_s, after_s);
+    lost_body += unseen;
+    // Coast: the velocity decays, the pose comes to a halt.
+    const double dt_s = after_s - before_s;
+    const Pose T = predict(dt_s);
+    velocity *= std::exp(-dt_s / kCoastTime_s);
+    covariance_camera.setZero();
+    MotionEstimate estimate = publish(T, Matrix6::Zero(), unseen);
+    const HealthVerdict verdict = judge(config, evidence);
+    estimate.health = Health::lost;
+    estimate.reason = verdict.reason;
+    estimate.tracks = evidence.tracks;
+    estimate.inliers = evidence.inliers;
+    if ((after_s > config.bridge_s || map.empty()) && front.loaded()) seed_landmarks(executor);
+    return estimate;
+}
+
+bool Odometry::Impl::wants_keyframe() const {
+    const int newest = map.newest().id;
+    std::vector<double> parallax;
+    for (const Track& track : front.tracks()) {
+        const Landmark& landmark = map.at(track.slot);
+        if (landmark.sightings.empty() || landmark.sightings.back().keyframe != newest) continue;
+        parallax.push_back((landmark.sightings.back().pixel_px - track.pixel_px).head<2>().norm());
+    }
+    if (static_cast<double>(parallax.size()) < kKeyframeShare * keyframe_tracks) return true;
+    if (frames_since_keyframe >= kKeyframePeriod) return true;
+    const auto middle = parallax.begin() + static_cast<std::ptrdiff_t>(parallax.size() / 2);
+    std::nth_element(parallax.begin(), middle, parallax.end());
+    return middle != parallax.end() && *middle > kKeyframeParallax * rectifier.rig().width;
+}
+
+/// Makes the present frame a keyframe and adjusts the map; its pose afterwards.
+Pose Odometry::Impl::make_keyframe(const Pose& T, Executor& executor) {
+    map.add_keyframe(T);
+    for (const Track& track : front.tracks()) {
+        if (map.at(track.slot).id < 0) continue;
+        map.add_sighting(track.slot, track.pixel_px, track.noise_factor);
+        if (track.correlation < kPatchWorn)
+            map.renew_patch(track.slot, front.left().image(), track.raw_px);
+    }
+    front.seed(map, executor);
+    map.adjust();
+    front.drop_removed(map);
+    front.forget_excess(map);
+    frames_since_keyframe = 0;
+    keyframe_tracks = static_cast<int>(front.tracks().size());
+    return map.newest().T_odom_camera;
+}
+
+/// The estimate of a frame at `T_camera`, which becomes the previous one. `extra` is added to the
+/// covariance of the relative motion, in body axes.
+MotionEstimate Odometry::Impl::publish(const Pose& T_camera,
+                                       const Matrix6& covariance,
+                                       const Matrix6& extra) {
+    MotionEstimate estimate;
+    estimate.T_odom_body = body_from(T_camera);
+    estimate.T_previous_body = body_from(T_odom_camera).inverse() * estimate.T_odom_body;
+    const Pose& T_body_camera = rectifier.rig().T_body_camera;
+    estimate.relative_covariance =
+        compose_covariance(camera_to_body_covariance(covariance_camera, T_body_camera),
+                           estimate.T_previous_body,
+                           camera_to_body_covariance(covariance, T_body_camera)) +
+        extra;
+    T_odom_camera = T_camera;
+    covariance_camera = covariance;
+    return estimate;
+}
+
+}  // namespace surefoot::odometry

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/config.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/frame.hpp"
+
+namespace surefoot::odometry {
+
+struct OdometryConfig {
+    int max_tracks = 240;
+    int grid_columns = 16;
+    int grid_rows = 10;
+    double min_depth_m = 0.4;
+    double sigma_px = 0.2;
+    int window_keyframes = 8;
+    double still_parallax_px = 0.3;
+    double bridge_s = 0.6;
+    double max_gap_s = 1.0;
+    int ok_inliers = 30;
+    int min_inliers = 10;
+    double ok_residual_px = 1.2;
+    double calibration_share = 0.005;
+    double lost_speed_m_s = 0.5;
+    double lost_turn_rad_s = 0.5;
+    void describe(ConfigVisitor& visitor);
+};
+
+/// Stereo (or RGB-D) visual odometry, every frame, on the raw images of both eyes; points are
+/// undistorted as points. Order of a frame: follow the landmarks by Lucas-Kanade from the predicted
+/// motion, find the pose (P3P consensus), align the landmarks' patches in both eyes, refine the
+/// pose; at keyframes add landmarks and adjust the last keyframes together.
+///
+/// Standing still is held exactly: a frame that statistics cannot tell from the pose where the
+/// camera stopped keeps that pose. While lost the pose coasts to a halt with growing covariance,
+/// and the landmarks are kept for `bridge_s` to find the way back; then they are seeded anew.
+///
+/// `update` is serial apart from what it gives to the executor; any executor gives the same bytes.
+class Odometry {
+  public:
+    /// `rectifier` must outlive the odometry.
+    Odometry(const OdometryConfig& config, const camera::Rectifier& rectifier);
+    ~Odometry();
+    Odometry(Odometry&&) noexcept;
+
+    /// Pose of base_link at the first frame (gravity aligned); call before the first update.
+    void start_at(const Pose& T_odom_body);
+    /// Follows the frame. Never throws, never jumps; health and reason say what happened.
+    [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace surefoot::odometry

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/odometry/odometry.hpp"
+
+namespace surefoot::odometry {
+
+void OdometryConfig::describe(ConfigVisitor& visitor) {
+    visitor.integer("max_tracks", max_tracks, 40, 2000, "landmarks followed at the same time");
+    visitor.integer("grid_columns", grid_columns, 2, 100, "cells over which corners are spread");
+    visitor.integer("grid_rows", grid_rows, 2, 100, "cells over which corners are spread");
+    visitor.number(
+        "min_depth_m", min_depth_m, 0.05, 10.0, "nearest point matched between the eyes");
+    visitor.number("sigma_px", sigma_px, 0.05, 3.0, "noise of an aligned point, per eye and axis");
+    visitor.integer("window_keyframes", window_keyframes, 3, 30, "keyframes adjusted together");
+    visitor.number("still_parallax_px",
+                   still_parallax_px,
+                   0.0,
+                   3.0,
+                   "median parallax below which standing still is tested; 0 = never");
+    visitor.number("bridge_s",
+                   bridge_s,
+                   0.0,
+                   5.0,
+                   "how long landmarks are kept while lost, before new ones are seeded");
+    visitor.number(
+        "max_gap_s", max_gap_s, 0.05, 60.0, "longer pauses between frames are a time gap");
+    visitor.integer("ok_inliers", ok_inliers, 10, 1000, "fewer agreeing points degrade the health");
+    visitor.integer("min_inliers", min_inliers, 6, 1000, "fewer agreeing points mean lost");
+    visitor.number("ok_residual_px",
+                   ok_residual_px,
+                   0.1,
+                   10.0,
+                   "larger rms reprojection error degrades the health");
+    visitor.number("calibration_share",
+                   calibration_share,
+                   0.0,
+                   0.1,
+                   "share of a motion that the calibration may get wrong (one sigma)");
+    visitor.number(
+        "lost_speed_m_s", lost_speed_m_s, 0.01, 100.0, "one sigma of the unseen speed while lost");
+    visitor.number("lost_turn_rad_s",
+                   lost_turn_rad_s,
+                   0.01,
+                   100.0,
+                   "one sigma of the unseen turn rate while lost");
+}
+
+}  // namespace surefoot::odometry

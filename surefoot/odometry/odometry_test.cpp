@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/odometry/odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include "surefoot/odometry/synthetic_for_test.hpp"
+
+namespace surefoot::odometry {
+namespace {
+
+using testing::Backwards;
+using testing::render_frame;
+
+constexpr double kNoise_grey = 2.0;
+
+/// A hand-held curve: 0.3 m/s and up to 0.4 rad/s at 20 Hz.
+Pose truth_at(int index) {
+    const double t = 0.05 * index;
+    return {exp_so3({0.10 * std::sin(2.0 * t), 0.15 * std::sin(1.3 * t), 0.12 * std::sin(1.7 * t)}),
+            {0.2 * std::sin(1.1 * t), 0.08 * std::sin(1.9 * t), 0.15 * t}};
+}
+
+struct Follower {
+    camera::StereoRig rig;
+    camera::Rectifier rectifier;
+    Odometry odometry;
+
+    explicit Follower(const camera::StereoRig& r, const OdometryConfig& config = {})
+        : rig(r),
+          rectifier(std::move(camera::Rectifier::make(r)).value()),
+          odometry(config, rectifier) {
+        odometry.start_at(rig.body_from_left().inverse());  // odom = the first left camera
+    }
+    Pose left_camera(const MotionEstimate& m) const { return m.T_odom_body * rig.body_from_left(); }
+};
+
+void expect_valid(const MotionEstimate& m) {
+    EXPECT_TRUE(m.T_odom_body.all_finite());
+    EXPECT_TRUE(m.relative_covariance.allFinite());
+    EXPECT_GE(m.relative_covariance.diagonal().minCoeff(), 0.0);
+}
+
+TEST(Odometry, FollowsAHandHeldCurve) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    double worst_m = 0.0;
+    Pose previous;
+    for (int i = 0; i < 40; ++i) {
+        const auto m =
+            run.odometry.update(render_frame(run.rig, truth_at(i), i, kNoise_grey), serial);
+        expect_valid(m);
+        const Pose T = run.left_camera(m);
+        worst_m = std::max(worst_m, (T.translation_m - truth_at(i).translation_m).norm());
+        if (i > 0) {
+            EXPECT_EQ(m.health, Health::ok) << "frame " << i << " " << to_string(m.reason);
+            EXPECT_LT(difference(previous * m.T_previous_body, m.T_odom_body).norm(), 1e-9);
+        }
+        previous = m.T_odom_body;
+    }
+    std::printf("worst position error %.2f mm\n", 1e3 * worst_m);
+    EXPECT_LT(worst_m, 0.010);  // 0.3 m path, walls up to 3 m away, 352 px wide images
+}
+
+TEST(Odometry, FollowsDepthImages) {
+    Follower run(testing::small_depth_rig());
+    Serial serial;
+    double worst_m = 0.0;
+    for (int i = 0; i < 20; ++i) {
+        const auto m =
+            run.odometry.update(render_frame(run.rig, truth_at(i), i, kNoise_grey), serial);
+        worst_m = std::max(worst_m,
+                           (run.left_camera(m).translation_m - truth_at(i).translation_m).norm());
+        if (i > 0) {
+            EXPECT_EQ(m.health, Health::ok) << "frame " << i << " " << to_string(m.reason);
+        }
+    }
+    std::printf("worst position error %.2f mm\n", 1e3 * worst_m);
+    EXPECT_LT(worst_m, 0.010);
+}
+
+TEST(Odometry, StandingStillIsExact) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    Pose start;
+    double variance = 0.0;
+    for (int i = 0; i < 20; ++i) {
+        const auto m = run.odometry.update(render_frame(run.rig, truth_at(0), i, 4.0), serial);
+        if (i == 0) start = m.T_odom_body;
+        variance += m.relative_covariance(0, 0);
+        // The first frame after the start may settle within its noise; then nothing moves.
+        const double moved_m = (m.T_odom_body.translation_m - start.translation_m).norm();
+        EXPECT_LT(moved_m, 0.5e-3) << "frame " << i;
+        if (i > 2) {
+            EXPECT_EQ(m.T_previous_body.translation_m, Eigen::Vector3d::Zero()) << i;
+        }
+    }
+    EXPECT_LT(std::sqrt(variance), 3e-3);  // the error of a held pose does not grow
+}
+
+TEST(Odometry, BlackFramesAreLostForBlurAndBridged) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    double unseen_sigma_m = 0.0;
+    for (int i = 0; i < 24; ++i) {
+        StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+        const bool black = i >= 10 && i < 14;
+        if (black) {
+            frame.left.fill(3);
+            frame.right.fill(3);
+        }
+        const auto m = run.odometry.update(frame, serial);
+        expect_valid(m);
+        if (black) {
+            EXPECT_EQ(m.health, Health::lost) << i;
+            EXPECT_STREQ(to_string(m.reason), "blur") << i;
+            unseen_sigma_m = std::sqrt(m.relative_covariance(0, 0));
+            EXPECT_GT(unseen_sigma_m, 0.01) << i;
+            EXPECT_LT(m.T_previous_body.translation_m.norm(), 0.05) << "jump in frame " << i;
+        }
+        if (i > 15) {
+            EXPECT_EQ(m.health, Health::ok) << i << " " << to_string(m.reason);
+            EXPECT_LT((run.left_camera(m).translation_m - truth_at(i).translation_m).norm(), 0.010)
+                << i;
+        }
+    }
+}
+
+TEST(Odometry, LongLossStartsANewMapWithoutAJump) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    Pose before;
+    int recovered = -1;
+    for (int i = 0; i < 40; ++i) {
+        StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+        if (i >= 8 && i < 28) frame.left.fill(0);
+        const auto m = run.odometry.update(frame, serial);
+        expect_valid(m);
+        if (i > 0) {
+            EXPECT_LT((m.T_odom_body.translation_m - before.translation_m).norm(), 0.04)
+                << "frame " << i;
+        }
+        before = m.T_odom_body;
+        if (i >= 28 && recovered < 0 && m.health == Health::ok) recovered = i;
+    }
+    EXPECT_GE(recovered, 29);
+    EXPECT_LE(recovered, 31);
+}
+
+TEST(Odometry, BlackFromTheStartWaitsForAnImage) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    for (int i = 0; i < 8; ++i) {
+        StereoFrame frame = render_frame(run.rig, truth_at(0), i, kNoise_grey);
+        if (i < 3) frame.left.fill(0);
+        const auto m = run.odometry.update(frame, serial);
+        expect_valid(m);
+        if (i < 4) {
+            EXPECT_EQ(m.health, Health::lost) << i;
+        }
+        if (i > 4) {
+            EXPECT_EQ(m.health, Health::ok) << i << " " << to_string(m.reason);
+        }
+    }
+}
+
+TEST(Odometry, WrongSizeAndMissingRightImageAreNoCrash) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    for (int i = 0; i < 6; ++i) {
+        StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+        if (i == 2) frame.left = GreyImage(10, 10);
+        if (i == 4) frame.right = GreyImage();
+        const auto m = run.odometry.update(frame, serial);
+        expect_valid(m);
+        EXPECT_EQ(m.health == Health::lost, i == 2) << "frame " << i;
+    }
+}
+
+TEST(Odometry, TimeGapIsNamed) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    for (int i = 0; i < 4; ++i) {
+        StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+        if (i == 3) frame.time_ns += 5'000'000'000LL;
+        const auto m = run.odometry.update(frame, serial);
+        if (i == 3) {
+            EXPECT_STREQ(to_string(m.reason), "time_gap");
+        }
+    }
+}
+
+TEST(Odometry, AnyExecutorGivesTheSameBytes) {
+    Follower a(testing::small_rig());
+    Follower b(testing::small_rig());
+    Serial serial;
+    Backwards backwards;
+    for (int i = 0; i < 12; ++i) {
+        const StereoFrame frame = render_frame(a.rig, truth_at(i), i, kNoise_grey);
+        const auto ma = a.odometry.update(frame, serial);
+        const auto mb = b.odometry.update(frame, backwards);
+        EXPECT_EQ(ma.T_odom_body.translation_m, mb.T_odom_body.translation_m) << i;
+        EXPECT_EQ(ma.T_odom_body.rotation.coeffs(), mb.T_odom_body.rotation.coeffs()) << i;
+        EXPECT_EQ(ma.relative_covariance, mb.relative_covariance) << i;
+        EXPECT_EQ(ma.inliers, mb.inliers) << i;
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::odometry

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "surefoot/core/views.hpp"
+
+namespace surefoot::odometry {
+
+/// The surroundings of a point in the image where it was first seen, so that it can be found again
+/// without that image.
+struct HostPatch {
+    static constexpr int kRadius = 13;
+    static constexpr int kSize = 2 * kRadius + 1;
+    std::array<std::uint8_t, kSize * kSize> pixels{};
+    Eigen::Vector2f centre = Eigen::Vector2f::Zero();  ///< of the point, in patch pixels
+};
+
+/// Copies the patch around `raw_px`; nothing when it does not lie inside the image.
+[[nodiscard]] std::optional<HostPatch> cut_patch(ImageView<const std::uint8_t> image,
+                                                 const Eigen::Vector2d& raw_px);
+
+/// A host patch warped to how another view should see it, ready for alignment.
+struct PatchTemplate {
+    static constexpr int kRadius = 6;
+    static constexpr int kSize = 2 * kRadius + 1;
+    static constexpr int kCount = kSize * kSize;
+    std::array<float, kCount> value;   ///< without mean
+    std::array<float, kCount> step_u;  ///< rows of the pseudo-inverse: grey difference -> pixels
+    std::array<float, kCount> step_v;
+    float norm = 0.0F;  ///< of `value`
+};
+
+/// `host_from_view` maps pixel offsets of the view into offsets of the host image. Nothing when the
+/// warp leaves the patch or the template has no texture in some direction.
+[[nodiscard]] std::optional<PatchTemplate> warp_patch(const HostPatch& host,
+                                                      const Eigen::Matrix2d& host_from_view);
+
+struct Alignment {
+    Eigen::Vector2d raw_px = Eigen::Vector2d::Zero();
+    double correlation = 0.0;  ///< normalised cross-correlation at the result, [-1, 1]
+};
+
+/// Moves `start_px` to where the image looks most like the template, up to gain and offset:
+/// inverse-compositional Gauss-Newton (Baker and Matthews 2004) with the two photometric parameters
+/// projected out. Nothing when it leaves the image or moves farther than `max_shift_px`.
+[[nodiscard]] std::optional<Alignment> align_patch(const PatchTemplate& patch,
+                                                   ImageView<const std::uint8_t> image,
+                                                   const Eigen::Vector2d& start_px,
+                                                   double max_shift_px);
+
+}  // namespace surefoot::odometry

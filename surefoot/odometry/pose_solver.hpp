@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/odometry/stereo_projection.hpp"
+
+namespace surefoot::odometry {
+
+/// A known point and where the camera sees it now.
+struct PointMatch {
+    Eigen::Vector3d p_world_m;
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of p_world_m, in world axes
+    StereoPixel pixel_px;
+    double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
+};
+
+struct PoseSolverConfig {
+    double sigma_px = 0.3;  ///< of each of (u_left, v, u_right)
+    int ransac_rounds = 150;
+    double ransac_threshold_px = 3.0;
+    double gate_sigmas = 3.5;   ///< residuals beyond are outliers of the refinement
+    double huber_sigmas = 1.0;  ///< residuals beyond count linearly, not squared
+    int iterations = 12;
+};
+
+struct PoseSolution {
+    bool found = false;  ///< else nothing below means anything
+    Pose T_world_camera;
+    Matrix6 covariance =
+        Matrix6::Zero();               ///< of T_world_camera (see pose.hpp), scaled by the residual
+    std::vector<std::uint8_t> inlier;  ///< one per match
+    int inliers = 0;
+    double residual_px = 0.0;     ///< rms of the pixel components of the inliers
+    double residual_scale = 1.0;  ///< rms of the inliers' residuals in sigmas; 1 = as expected
+};
+
+/// Minimal number of points for a pose with at least one to spare.
+inline constexpr int kMinimalPoseMatches = 5;
+
+/// Pose with the most points within `ransac_threshold_px` of their (u_left, v): `T_predicted`
+/// first, then three-point poses of random samples (P3P). The same seed gives the same pose.
+///
+/// Fischler and Bolles 1981 (sample consensus); cv::solveP3P for the minimal problem.
+[[nodiscard]] PoseSolution find_pose(const camera::RectifiedRig& rig,
+                                     const PoseSolverConfig& config,
+                                     std::span<const PointMatch> matches,
+                                     const Pose& T_world_camera_predicted,
+                                     Rng rng);
+
+/// Robust least squares over (u_left, v, u_right) from a good start: Gauss-Newton with Huber
+/// weights and a gate. Each residual is weighted by its pixel noise plus the projected uncertainty
+/// of its point, the points taken as independent. The covariance is the inverse information, scaled
+/// up (never down below kMinResidualScale) by the residuals.
+///
+/// Not found when fewer than kMinimalPoseMatches points agree or they leave a direction open.
+[[nodiscard]] PoseSolution refine_pose(const camera::RectifiedRig& rig,
+                                       const PoseSolverConfig& config,
+                                       std::span<const PointMatch> matches,
+                                       const Pose& T_world_camera_start);
+
+/// The covariance shrinks with small residuals down to this share of the configured sigmas only.
+inline constexpr double kMinResidualScale = 0.5;
+
+/// Covariance of T_a_body = T_a_camera * T_body_camera^-1 from that of T_a_camera.
+[[nodiscard]] Matrix6 camera_to_body_covariance(const Matrix6& covariance_camera,
+                                                const Pose& T_body_camera);
+
+}  // namespace surefoot::odometry

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/odometry/still_detector.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <limits>
+
+namespace surefoot::odometry {
+namespace {
+
+/// 99.9 % of a chi-square variable with six degrees of freedom lies below.
+constexpr double kChi2Limit = 22.46;
+constexpr std::size_t kMinShared = 20;  ///< points that both frames must see
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+bool StillDetector::update(std::span<const Track> tracks,
+                           const LandmarkMap& map,
+                           const Pose& T_odom_camera,
+                           const Matrix6& covariance) {
+    // Marks and tracks are both few: index the marks by slot.
+    std::vector<const Mark*> by_slot(static_cast<std::size_t>(map.slots()), nullptr);
+    for (const Mark& mark : anchor_)
+        if (mark.slot < map.slots() && map.at(mark.slot).id == mark.id)
+            by_slot[static_cast<std::size_t>(mark.slot)] = &mark;
+    parallax_.clear();
+    for (const Track& track : tracks)
+        if (const Mark* mark = by_slot[static_cast<std::size_t>(track.slot)])
+            parallax_.push_back((track.pixel_px.head<2>() - mark->px).norm());
+    const Vector6 motion = difference(T_odom_camera_, T_odom_camera);
+    const Matrix6 sum = covariance_ + covariance;
+    if (parallax_.size() >= kMinShared && median(parallax_) < parallax_px_ &&
+        motion.dot(sum.ldlt().solve(motion)) < kChi2Limit) {
+        held_ += 1;
+        return true;
+    }
+    set_anchor(tracks, map, T_odom_camera, covariance);
+    return false;
+}
+
+void StillDetector::set_anchor(std::span<const Track> tracks,
+                               const LandmarkMap& map,
+                               const Pose& T,
+                               const Matrix6& covariance) {
+    anchor_.clear();
+    for (const Track& track : tracks)
+        anchor_.push_back({track.slot, map.at(track.slot).id, track.pixel_px.head<2>()});
+    T_odom_camera_ = T;
+    covariance_ = covariance;
+    held_ = 0;
+}
+
+}  // namespace surefoot::odometry

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/frame.hpp"
+#include "surefoot/core/rng.hpp"
+
+namespace surefoot::odometry::testing {
+
+/// Smooth random grey value of a surface: three octaves of value noise on an integer lattice.
+inline double texture_grey(int surface, double a, double b) {
+    const auto lattice = [surface](int i, int j) {
+        const auto key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32U |
+                         static_cast<std::uint32_t>(j);
+        return static_cast<double>(mix_seed(key, static_cast<std::uint64_t>(surface)) >> 40U) /
+               16777216.0;
+    };
+    double grey = 0.0;
+    double amplitude = 120.0;
+    for (double scale = 12.0; scale < 100.0; scale *= 2.5, amplitude *= 0.6) {
+        const double x = a * scale;
+        const double y = b * scale;
+        const int i = static_cast<int>(std::floor(x));
+        const int j = static_cast<int>(std::floor(y));
+        const auto smooth = [](double t) { return t * t * (3.0 - 2.0 * t); };
+        const double s = smooth(x - i);
+        const double t = smooth(y - j);
+        grey += amplitude * ((lattice(i, j) * (1.0 - s) + lattice(i + 1, j) * s) * (1.0 - t) +
+                             (lattice(i, j + 1) * (1.0 - s) + lattice(i + 1, j + 1) * s) * t);
+    }
+    return std::clamp(grey, 0.0, 255.0);
+}
+
+/// A wall 3 m ahead, a floor 0.8 m below and a side wall 1.2 m to the right of the start pose, in
+/// optical axes (x right, y down, z forward). Returns the depth along the ray, or infinity.
+inline double cast_ray(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray, double& grey) {
+    const Eigen::Vector3d limit(1.2, 0.8, 3.0);
+    double best = std::numeric_limits<double>::infinity();
+    int axis_hit = -1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double along = (limit[axis] - origin[axis]) / ray[axis];
+        if (ray[axis] > 0.0 && along < best) {
+            best = along;
+            axis_hit = axis;
+        }
+    }
+    grey = 0.0;
+    if (axis_hit < 0) return best;
+    const Eigen::Vector3d hit = origin + best * ray;
+    grey = texture_grey(axis_hit, hit[(axis_hit + 1) % 3], hit[(axis_hit + 2) % 3]);
+    return best;
+}
+
+inline camera::StereoRig small_rig() {
+    camera::PinholeRadTan lens;
+    lens.fx_px = lens.fy_px = 220.0;
+    lens.cx_px = 175.0;
+    lens.cy_px = 110.0;
+    lens.k1 = -0.12;
+    lens.k2 = 0.02;
+    camera::StereoRig rig;
+    rig.left = {lens, 352, 224};
+    lens.cx_px = 178.0;
+    rig.right = camera::Camera{lens, 352, 224};
+    rig.T_left_right = {exp_so3({0.002, -0.004, 0.003}), {0.12, 0.001, -0.002}};
+    return rig;
+}
+
+inline camera::StereoRig small_depth_rig() {
+    camera::StereoRig rig = small_rig();
+    rig.right.reset();
+    return rig;
+}
+
+inline GreyImage render_eye(const camera::Camera& eye,
+                            const Pose& T_world_eye,
+                            double noise_grey,
+                            Rng& rng,
+                            Image<float>* depth_m = nullptr) {
+    GreyImage image(eye.width, eye.height);
+    if (depth_m != nullptr) *depth_m = Image<float>(eye.width, eye.height);
+    for (int v = 0; v < eye.height; ++v) {
+        for (int u = 0; u < eye.width; ++u) {
+            const Eigen::Vector3d ray = *camera::unproject(eye.model, Eigen::Vector2d(u, v));
+            double grey = 0.0;
+            const double along =
+                cast_ray(T_world_eye.translation_m, T_world_eye.rotation * ray, grey);
+            if (noise_grey > 0.0) grey += noise_grey * rng.normal();
+            image.at(u, v) = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));
+            if (depth_m != nullptr)
+                depth_m->at(u, v) = std::isfinite(along) ? static_cast<float>(along * ray.z())
+                                                         : std::numeric_limits<float>::quiet_NaN();
+        }
+    }
+    return image;
+}
+
+/// Frame of the rig at a pose of its left camera.
+inline StereoFrame render_frame(const camera::StereoRig& rig,
+                                const Pose& T_world_left,
+                                int index,
+                                double noise_grey) {
+    Rng rng(mix_seed(99, static_cast<std::uint64_t>(index)));
+    StereoFrame frame;
+    frame.index = index;
+    frame.time_ns = 1'000'000'000LL + index * 50'000'000LL;
+    if (rig.right) {
+        frame.left = render_eye(rig.left, T_world_left, noise_grey, rng);
+        frame.right = render_eye(*rig.right, T_world_left * rig.T_left_right, noise_grey, rng);
+    } else {
+        frame.left = render_eye(rig.left, T_world_left, noise_grey, rng, &frame.depth_m);
+    }
+    return frame;
+}
+
+/// Another order of work than Serial: results must not depend on it.
+class Backwards final : public Executor {
+  public:
+    void parallel_for(int count, const std::function<void(int)>& work) override {
+        for (int index = count - 1; index >= 0; --index) work(index);
+    }
+    [[nodiscard]] int width() const noexcept override { return 4; }
+};
+
+}  // namespace surefoot::odometry::testing

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/config.hpp"
+#include "surefoot/core/report.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/ground/ground_calibration.hpp"
+
+namespace surefoot::pipeline {
+
+struct AlignmentConfig {
+    double pitch_deg = 0.0;             ///< of base_link below the horizon when nothing measures it
+    double still_gyro_rad_s = 0.15;     ///< MEMS bias (EuRoC 0.08) plus noise; above it the accelerometer is not taken for gravity
+    double still_force_m_s2 = 0.3;      ///< as above: deviation of the mean force from 9.81
+    double plane_imu_limit_deg = 3.0;   ///< plane and gravity farther apart: the floor is a ramp
+    void describe(ConfigVisitor& visitor);
+};
+
+/// Where odom lies: z against gravity, origin on the ground under the first base_link if the ground
+/// was found, else at that base_link; x along the first heading.
+struct Alignment {
+    Pose T_odom_body;  ///< of the first frame
+    grid::GravitySource gravity_source = grid::GravitySource::assumed;
+    bool has_ground = false;
+    double ground_height_m = 0.0;       ///< base_link above the ground; 0 without ground
+    std::string reason;                 ///< one sentence: what was used and what was not, and why
+};
+
+/// Gravity direction in base_link measured by the accelerometer while the rig stands still.
+[[nodiscard]] std::optional<Eigen::Vector3d> up_from_imu(const AlignmentConfig& config,
+                                                         const Pose& T_body_imu,
+                                                         std::span<const StereoFrame> frames);
+
+/// Direction of up in base_link that a level machine would have with the configured pitch.
+[[nodiscard]] Eigen::Vector3d assumed_up(const AlignmentConfig& config);
+
+/// Combines the averaged ground plane and the accelerometer: tilt from the plane, from the
+/// accelerometer when there is no plane or the two disagree (a ramp), else assumed.
+[[nodiscard]] Alignment place_odom(const AlignmentConfig& config,
+                                   const ground::GroundAlignment& ground,
+                                   const std::optional<Eigen::Vector3d>& up_imu_body);
+
+}  // namespace surefoot::pipeline

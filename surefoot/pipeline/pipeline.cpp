@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/pipeline/pipeline.hpp"
+
+#include <algorithm>
+
+#include "surefoot/grid/snapshot_builder.hpp"
+#include "surefoot/ground/ground_observation.hpp"
+#include "surefoot/ground/sample_points.hpp"
+#include "surefoot/pipeline/rgbd_depth.hpp"
+
+namespace surefoot::pipeline {
+namespace {
+
+constexpr std::uint64_t kGroundSeed = 1;  ///< the same points always give the same plane
+
+/// Measures the stages of one frame; without a clock all times are zero.
+class StageTimer {
+  public:
+    StageTimer(Clock clock, FrameReport& report) : clock_(clock), report_(report) { start_ns_ = now(); }
+    void finished(Stage stage) {
+        const std::int64_t end_ns = now();
+        report_.stage_ms[static_cast<std::size_t>(stage)] = static_cast<double>(end_ns - start_ns_) * 1e-6;
+        start_ns_ = end_ns;
+    }
+
+  private:
+    [[nodiscard]] std::int64_t now() const { return clock_ ? clock_() : 0; }
+    Clock clock_;
+    FrameReport& report_;
+    std::int64_t start_ns_ = 0;
+};
+
+std::int64_t count_valid(const Image<float>& disparity_px) {
+    return std::count_if(disparity_px.data(), disparity_px.data() + disparity_px.size(),
+                         [](float d) { return d > 0.0F; });
+}
+
+/// The plane n . p + h = 0 of a later base_link in the first one.
+GroundObservation in_first_body(GroundObservation ground, const Pose& T_first_body) {
+    ground.normal = T_first_body.rotation * ground.normal;
+    ground.height_m -= ground.normal.dot(T_first_body.translation_m);
+    return ground;
+}
+
+grid::SnapshotHealth snapshot_health(Health health) {
+    switch (health) {
+        case Health::ok: return grid::SnapshotHealth::ok;
+        case Health::degraded: return grid::SnapshotHealth::degraded;
+        case Health::lost: return grid::SnapshotHealth::lost;
+    }
+    return grid::SnapshotHealth::lost;
+}
+
+}  // namespace
+
+Result<Pipeline> Pipeline::make(const PipelineConfig& config,
+                                const camera::StereoRig& rig,
+                                Executor& executor,
+                                Clock clock) {
+    if (const auto problem = config.problem()) return usage_error(*problem);
+    auto rectifier = camera::Rectifier::make(rig);
+    if (!rectifier) return rectifier.error();
+    return Pipeline(config, rig, std::make_unique<camera::Rectifier>(std::move(rectifier).value()), executor, clock);
+}
+
+Pipeline::Pipeline(const PipelineConfig& config,
+                   const camera::StereoRig& rig,
+                   std::unique_ptr<camera::Rectifier> rectifier,
+                   Executor& executor,
+                   Clock clock)
+    : config_(config),
+      executor_(&executor),
+      clock_(clock),
+      rectifier_(std::move(rectifier)),
+      odometry_(config.odometry, *rectifier_),
+      matcher_(stereo::make_sgbm_matcher(config.stereo)),
+      map_(config.elevation),
+      rater_(config.traversability.widened_to(config.elevation.resolution_m)),
+      imu_mount_(rig.imu) {}
+
+const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
+    first_frames = first_frames.first(std::min(first_frames.size(), kAlignmentFrames));
+    const Pose T_body_imu = imu_mount_ ? imu_mount_->T_body_imu : Pose{};
+    const auto up_imu_body = up_from_imu(config_.mount, T_body_imu, first_frames);
+    const Eigen::Vector3d up_hint_body = up_imu_body.value_or(assumed_up(config_.mount));
+
+    // A scout odometry brings all sightings into the first body frame: the machine may move already.
+    odometry::Odometry scout(config_.odometry, *rectifier_);
+    scout.start_at(Pose{});
+    ground::GroundCalibration calibration(config_.ground);
+    for (const StereoFrame& frame : first_frames) {
+        const MotionEstimate motion = scout.update(frame, *executor_);
+        rectifier_->rectify(frame, pair_);
+        measure_depth(frame);
+        calibration.add(in_first_body(observe_ground(motion.T_odom_body, up_hint_body), motion.T_odom_body));
+    }
+    alignment_ = place_odom(config_.mount, calibration.alignment(), up_imu_body);
+    odometry_.start_at(alignment_.T_odom_body);
+    return alignment_;
+}
+
+FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
+    FrameReport report;
+    report.time_ns = frame.time_ns;
+    report.index = frame.index;
+    report.work = work;
+    StageTimer timer(clock_, report);
+
+    report.motion = odometry_.update(frame, *executor_);
+    follow(report.motion);
+    timer.finished(Stage::odometry);
+    if (work == Work::full) {
+        rectifier_->rectify(frame, pair_);
+        timer.finished(Stage::rectify);
+        measure_depth(frame);
+        timer.finished(Stage::stereo);
+        report.ground = observe_ground(report.motion.T_odom_body, Eigen::Vector3d::UnitZ());
+        timer.finished(Stage::ground);
+        report.fusion = fuse(report.motion);
+        timer.finished(Stage::fuse);
+        rate();
+        timer.finished(Stage::traversability);
+        report.depth_pixels = count_valid(depth_.disparity_px);
+        report.image_pixels = static_cast<std::int64_t>(depth_.disparity_px.size());
+    }
+    report.known_cells = map_.known_cells();
+    return report;
+}
+
+void Pipeline::measure_depth(const StereoFrame& frame) {
+    if (pair_.right.empty()) {
+        depth_from_rgbd(*rectifier_, config_.elevation.sensor, frame.depth_m.view(), depth_);
+    } else {
+        matcher_->match(pair_.left.view(), pair_.right.view(), *executor_, depth_);
+    }
+}
+
+GroundObservation Pipeline::observe_ground(const Pose& T_level_body, const Eigen::Vector3d& up_level) {
+    // The plane is looked for in base_link: its height is that of the machine, not of odom.
+    constexpr int kStep_px = 4;
+    ground::sample_points(rectifier_->rig(), depth_, kStep_px, ground_points_);
+    const Eigen::Vector3d up_body = T_level_body.rotation.conjugate() * up_level;
+    return ground::observe_ground(config_.ground, ground_points_, up_body, kGroundSeed);
+}
+
+void Pipeline::follow(const MotionEstimate& motion) {
+    map_.follow(motion.T_odom_body, motion.relative_covariance);
+    last_motion_ = motion;
+}
+
+FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
+    if (motion.health == Health::lost) return {};  // where would it go?
+    last_fused_ns_ = motion.time_ns;
+    ++version_;
+    return map_.add(rectifier_->rig(), motion.T_odom_body, depth_, motion.time_ns);
+}
+
+void Pipeline::rate() {
+    rater_.rate(map_.layers().height_m.view(), map_.geometry().resolution_m, *executor_, rating_);
+}
+
+Status Pipeline::snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) const {
+    const elevation::ElevationLayers& layers = map_.layers();
+    grid::SnapshotInput input;
+    input.geometry = map_.geometry();
+    input.height_m = layers.height_m.view();
+    input.variance_m2 = layers.height_var_m2.view();
+    input.drift_m = layers.horizontal_drift_m.view();
+    input.T_odom_body = last_motion_.T_odom_body;
+    input.frame_time_ns = last_fused_ns_;
+    input.pose_time_ns = last_motion_.time_ns;
+    input.gravity_source = alignment_.gravity_source;
+    input.health = snapshot_health(last_motion_.health);
+    input.version = version_;
+    input.config_hash = config_hash;
+    return grid::build_snapshot(input, out);
+}
+
+}  // namespace surefoot::pipeline

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/report.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/elevation/elevation_map.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/odometry/odometry.hpp"
+#include "surefoot/pipeline/alignment.hpp"
+#include "surefoot/pipeline/pipeline_config.hpp"
+#include "surefoot/stereo/matcher.hpp"
+#include "surefoot/traversability/traversability.hpp"
+
+namespace surefoot::pipeline {
+
+/// The clock that stage times are read from [ns]; the library owns none. Null leaves them at zero.
+using Clock = std::int64_t (*)();
+
+/// Stereo frames in, rated map of the ground out: one frame is one call of `process`.
+///
+/// Order of calls: `make`, `align` once with the first frames, then `process` for every frame in time
+/// order (those used for the alignment included). One thread at a time.
+class Pipeline {
+  public:
+    /// Fails with the first problem of the rig or the configuration.
+    [[nodiscard]] static Result<Pipeline> make(const PipelineConfig& config,
+                                               const camera::StereoRig& rig,
+                                               Executor& executor,
+                                               Clock clock = nullptr);
+
+    /// Most frames that `align` looks at; callers buffer no more.
+    static constexpr std::size_t kAlignmentFrames = 10;
+
+    /// Finds gravity and the ground in the first frames and places odom; see alignment.hpp.
+    const Alignment& align(std::span<const StereoFrame> first_frames);
+
+    /// The whole frame: motion, and with Work::full depth, map and rating.
+    FrameReport process(const StereoFrame& frame, Work work);
+
+    [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
+    [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rectifier_->rig(); }
+    [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
+    [[nodiscard]] const elevation::ElevationMap& map() const noexcept { return map_; }
+    [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
+        return rating_;
+    }
+    /// Rectified pair and depth of the last full frame.
+    [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
+    [[nodiscard]] const camera::DepthImage& depth() const noexcept { return depth_; }
+
+    /// What the gate may know, as of the last frame. An error leaves `out` not intact.
+    [[nodiscard]] Status snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) const;
+
+  private:
+    Pipeline(const PipelineConfig& config,
+             const camera::StereoRig& rig,
+             std::unique_ptr<camera::Rectifier> rectifier,
+             Executor& executor,
+             Clock clock);
+
+    void measure_depth(const StereoFrame& frame);
+    [[nodiscard]] GroundObservation observe_ground(const Pose& T_level_body, const Eigen::Vector3d& up_level);
+    void follow(const MotionEstimate& motion);
+    [[nodiscard]] FusionCounts fuse(const MotionEstimate& motion);
+    void rate();
+
+    PipelineConfig config_;
+    Executor* executor_;
+    Clock clock_;
+    std::unique_ptr<camera::Rectifier> rectifier_;  // the odometry refers to it: address must stay
+    odometry::Odometry odometry_;
+    std::unique_ptr<stereo::Matcher> matcher_;
+    elevation::ElevationMap map_;
+    traversability::Traversability rater_;
+    traversability::TraversabilityLayers rating_;
+    Alignment alignment_;
+
+    std::optional<camera::ImuMount> imu_mount_;
+    camera::RectifiedPair pair_;
+    camera::DepthImage depth_;
+    std::vector<Eigen::Vector3d> ground_points_;
+    MotionEstimate last_motion_;
+    Matrix6 covariance_since_map_ = Matrix6::Zero();  ///< of the motion since the map last followed
+    std::int64_t last_fused_ns_ = 0;
+    std::uint64_t version_ = 0;  ///< counts fused frames
+};
+
+}  // namespace surefoot::pipeline

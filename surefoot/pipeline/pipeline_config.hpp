@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "surefoot/core/config.hpp"
+#include "surefoot/elevation/elevation_map.hpp"
+#include "surefoot/ground/ground_config.hpp"
+#include "surefoot/odometry/odometry.hpp"
+#include "surefoot/pipeline/alignment.hpp"
+#include "surefoot/stereo/matcher.hpp"
+#include "surefoot/traversability/traversability.hpp"
+
+namespace surefoot::pipeline {
+
+/// Every setting of the chain, nested by module. Defaults stand in the modules' structs.
+struct PipelineConfig {
+    AlignmentConfig mount;
+    stereo::MatcherConfig stereo;
+    odometry::OdometryConfig odometry;
+    ground::GroundConfig ground;
+    elevation::ElevationConfig elevation;
+    traversability::TraversabilityConfig traversability;
+
+    void describe(ConfigVisitor& visitor);
+    /// First contradiction between values that are each in range, or nothing.
+    [[nodiscard]] std::optional<std::string> problem() const;
+};
+
+}  // namespace surefoot::pipeline

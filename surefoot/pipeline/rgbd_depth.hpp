@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/camera/rectifier.hpp"
+#include "surefoot/elevation/sensor_variance.hpp"
+
+namespace surefoot::pipeline {
+
+/// A measured depth image (raw left camera, z in m, NaN = unknown) as the DepthImage of the rectified
+/// rig: nearest raw pixel, disparity = f b / z of the virtual baseline, sigma from the Kinect model of
+/// `sensor`. Depth outside the model's range (0.35-3 m) stays; the map's range filter decides.
+void depth_from_rgbd(const camera::Rectifier& rectifier,
+                     const elevation::SensorConfig& sensor,
+                     ImageView<const float> depth_m,
+                     camera::DepthImage& out);
+
+}  // namespace surefoot::pipeline

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/views.hpp"
+
+namespace surefoot::stereo {
+
+/// Left-right check by projecting the left winners: every left pixel claims the right pixel it
+/// matched, the nearest (largest disparity) claim stands, and a pixel whose right pixel is claimed
+/// by something nearer by more than `tolerance_px` is hidden there: it becomes NaN. Matches that
+/// fall outside the right image become NaN too. One matching pass instead of two.
+void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparity_px);
+
+/// Marks (255) the pixels on both sides of a jump: a known neighbour along the row or the column,
+/// holes skipped, differs by more than `jump_px` plus 0.4 px for each pixel of distance. Ground
+/// seen at a usable angle slopes less (baseline / camera height); the ramps that matchers draw
+/// behind edges more.
+void mark_jumps(const Image<float>& disparity_px, double jump_px, Image<std::uint8_t>& jumps);
+
+/// Distance [px] of every pixel from the nearest marked one, along rows, columns and diagonals
+/// alike; 255 stands for 255 or more. Two passes (Rosenfeld and Pfaltz 1966).
+void distance_to_marks(const Image<std::uint8_t>& marks, Image<std::uint8_t>& distance_px);
+
+/// Share of unknown pixels in the window of `radius_px` around each pixel, as far as it lies in the
+/// image.
+void unknown_share(Executor& executor,
+                   const Image<float>& disparity_px,
+                   int radius_px,
+                   Image<float>& share);
+
+}  // namespace surefoot::stereo

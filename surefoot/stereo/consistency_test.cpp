@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/consistency.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+
+namespace surefoot::stereo {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+Image<float> row_image(const std::vector<float>& values) {
+    Image<float> image(static_cast<int>(values.size()), 1);
+    std::copy(values.begin(), values.end(), image.data());
+    return image;
+}
+
+std::vector<int> known_columns(const Image<float>& image) {
+    std::vector<int> known;
+    for (int u = 0; u < image.width(); ++u) {
+        if (!std::isnan(image.at(u, 0))) known.push_back(u);
+    }
+    return known;
+}
+
+TEST(DropHidden, NothingKnownStaysNothing) {
+    Serial serial;
+    Image<float> empty;
+    drop_hidden(serial, 1.0, empty);
+    Image<float> unknown = row_image({kNan, kNan});
+    drop_hidden(serial, 1.0, unknown);
+    EXPECT_TRUE(known_columns(unknown).empty());
+}
+
+TEST(DropHidden, ABackgroundPixelBehindANearerOneGoes) {
+    Serial serial;
+    // Column 6 with disparity 4 and column 4 with disparity 2 both claim right column 2.
+    Image<float> image = row_image({kNan, kNan, kNan, 2, 2, 2, 4, 4});
+    drop_hidden(serial, 1.0, image);
+    EXPECT_EQ(known_columns(image), (std::vector<int>{3, 6, 7}));
+}
+
+TEST(DropHidden, ASlantedSurfaceStays) {
+    Serial serial;
+    Image<float> image = row_image({kNan, kNan, kNan, 2.0F, 2.6F, 3.2F, 3.8F, 4.4F});
+    drop_hidden(serial, 1.0, image);
+    EXPECT_EQ(known_columns(image), (std::vector<int>{3, 4, 5, 6, 7}));
+}
+
+TEST(DropHidden, MatchesOutsideTheRightImageGo) {
+    Serial serial;
+    Image<float> image = row_image({1.0F, 0.4F, 3.0F, 3.0F});
+    drop_hidden(serial, 1.0, image);
+    EXPECT_EQ(known_columns(image), (std::vector<int>{1, 3}));
+}
+
+TEST(MarkJumps, BothSidesOfAStepAndAcrossAHole) {
+    Image<std::uint8_t> jumps;
+    mark_jumps(row_image({5, 5, 5, 9, 9, 9}), 1.0, jumps);
+    EXPECT_EQ(jumps.at(2, 0), 255);
+    EXPECT_EQ(jumps.at(3, 0), 255);
+    EXPECT_EQ(jumps.at(0, 0), 0);
+    mark_jumps(row_image({5, 5, kNan, kNan, 9, 9}), 1.0, jumps);
+    EXPECT_EQ(jumps.at(1, 0), 255);
+    EXPECT_EQ(jumps.at(4, 0), 255);
+}
+
+TEST(MarkJumps, ARampThatNoGroundHasIsAJump) {
+    std::vector<float> ramp;
+    for (int u = 0; u < 20; ++u)
+        ramp.push_back(10.0F + 0.9F * static_cast<float>(std::clamp(u - 6, 0, 8)));
+    Image<std::uint8_t> jumps;
+    mark_jumps(row_image(ramp), 1.0, jumps);
+    EXPECT_EQ(jumps.at(10, 0), 255);
+    EXPECT_EQ(jumps.at(2, 0), 0);
+    EXPECT_EQ(jumps.at(18, 0), 0);
+}
+
+TEST(MarkJumps, GroundAtAUsableAngleIsNone) {
+    // 0.3 px per pixel: a camera 0.35 m above the floor with a baseline of 0.12 m.
+    Image<float> floor(30, 30);
+    for (int v = 0; v < 30; ++v) {
+        for (int u = 0; u < 30; ++u) floor.at(u, v) = 3.0F + 0.3F * static_cast<float>(v);
+    }
+    floor.at(10, 10) = kNan;
+    Image<std::uint8_t> jumps;
+    mark_jumps(floor, 1.0, jumps);
+    for (std::size_t i = 0; i < jumps.size(); ++i) EXPECT_EQ(jumps.data()[i], 0) << "pixel " << i;
+}
+
+TEST(DistanceToMarks, IsTheChessboardDistance) {
+    Rng rng(5);
+    Image<std::uint8_t> marks(40, 25, 0);
+    for (int n = 0; n < 6; ++n)
+        marks.at(static_cast<int>(rng.below(40)), static_cast<int>(rng.below(25))) = 255;
+    Image<std::uint8_t> distance;
+    distance_to_marks(marks, distance);
+    for (int v = 0; v < 25; ++v) {
+        for (int u = 0; u < 40; ++u) {
+            int nearest = 255;
+            for (int b = 0; b < 25; ++b) {
+                for (int a = 0; a < 40; ++a) {
+                    if (marks.at(a, b) != 0)
+                        nearest = std::min(nearest, std::max(std::abs(a - u), std::abs(b - v)));
+                }
+            }
+            ASSERT_EQ(distance.at(u, v), nearest) << u << " " << v;
+        }
+    }
+    marks.fill(0);
+    distance_to_marks(marks, distance);
+    EXPECT_EQ(distance.at(0, 0), 255);
+}
+
+TEST(UnknownShare, CountsTheWindowInsideTheImage) {
+    constexpr int kRadius = 3;
+    Rng rng(6);
+    Image<float> image(37, 70, 1.0F);
+    for (int n = 0; n < 600; ++n)
+        image.at(static_cast<int>(rng.below(37)), static_cast<int>(rng.below(70))) = kNan;
+    Serial serial;
+    Image<float> share;
+    unknown_share(serial, image, kRadius, share);
+    for (int v = 0; v < 70; ++v) {
+        for (int u = 0; u < 37; ++u) {
+            int unknown = 0;
+            int all = 0;
+            for (int b = v - kRadius; b <= v + kRadius; ++b) {
+                for (int a = u - kRadius; a <= u + kRadius; ++a) {
+                    if (!image.contains(a, b)) continue;
+                    ++all;
+                    unknown += std::isnan(image.at(a, b)) ? 1 : 0;
+                }
+            }
+            ASSERT_EQ(share.at(u, v), static_cast<float>(unknown) / static_cast<float>(all))
+                << u << " " << v;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::stereo

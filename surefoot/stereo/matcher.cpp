@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/matcher.hpp"
+
+#include <fmt/format.h>
+
+namespace surefoot::stereo {
+
+void MatcherConfig::describe(ConfigVisitor& visitor) {
+    visitor.integer("disparities",
+                    disparities,
+                    16,
+                    512,
+                    "search range [px], a multiple of 16; KITTI-size images want 96-128");
+    visitor.integer("block_size", block_size, 1, 11, "side of the matching window [px], odd");
+    visitor.integer("uniqueness_percent",
+                    uniqueness_percent,
+                    0,
+                    50,
+                    "a match must be better than the second best by this margin");
+    visitor.number("left_right_tolerance_px",
+                   left_right_tolerance_px,
+                   0.0,
+                   16.0,
+                   "a pixel hidden behind a nearer match by more than this is dropped");
+}
+
+std::optional<std::string> MatcherConfig::problem() const {
+    if (disparities < 16 || disparities > 512 || disparities % 16 != 0) {
+        return fmt::format("stereo.disparities = {} must be a multiple of 16 from 16 to 512",
+                           disparities);
+    }
+    if (block_size < 1 || block_size > 11 || block_size % 2 == 0) {
+        return fmt::format("stereo.block_size = {} must be odd, from 1 to 11", block_size);
+    }
+    if (uniqueness_percent < 0 || uniqueness_percent > 50) {
+        return fmt::format("stereo.uniqueness_percent = {} must be from 0 to 50",
+                           uniqueness_percent);
+    }
+    if (!(left_right_tolerance_px >= 0.0 && left_right_tolerance_px <= 16.0)) {
+        return fmt::format("stereo.left_right_tolerance_px = {} must be from 0 to 16",
+                           left_right_tolerance_px);
+    }
+    return std::nullopt;
+}
+
+}  // namespace surefoot::stereo

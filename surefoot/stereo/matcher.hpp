@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/core/config.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/views.hpp"
+
+namespace surefoot::stereo {
+
+struct MatcherConfig {
+    int disparities = 64;  ///< search range [px], a multiple of 16; KITTI-size images want 96-128
+    int block_size = 3;    ///< odd
+    int uniqueness_percent = 10;
+    double left_right_tolerance_px = 1.0;
+    void describe(ConfigVisitor& visitor);
+    /// First reason why it cannot be used, with the value; or nothing.
+    [[nodiscard]] std::optional<std::string> problem() const;
+};
+
+/// Dense matching of a rectified pair. An implementation is deterministic for every executor.
+class Matcher {
+  public:
+    virtual ~Matcher() = default;
+    /// Writes disparity, sigma and outlier probability for every pixel of `left` into `depth`.
+    /// Both images must have the same size. Where there is no match, disparity and sigma are NaN
+    /// and the outlier probability is 1.
+    virtual void match(ImageView<const std::uint8_t> left,
+                       ImageView<const std::uint8_t> right,
+                       Executor& executor,
+                       camera::DepthImage& depth) = 0;
+};
+
+/// OpenCV's semi-global matcher (3-way mode) with our left-right check, sub-pixel refinement, sigma
+/// and outlier probability. `config` must have no problem().
+[[nodiscard]] std::unique_ptr<Matcher> make_sgbm_matcher(const MatcherConfig& config);
+
+}  // namespace surefoot::stereo

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/matcher.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "surefoot/stereo/confidence.hpp"
+#include "surefoot/stereo/test_executors.hpp"
+#include "surefoot/stereo/test_scene.hpp"
+
+namespace surefoot::stereo {
+namespace {
+
+camera::DepthImage match(const GreyImage& left,
+                         const GreyImage& right,
+                         const MatcherConfig& config = {}) {
+    Serial serial;
+    camera::DepthImage depth;
+    make_sgbm_matcher(config)->match(left.view(), right.view(), serial, depth);
+    return depth;
+}
+
+/// Steps of 0.18 m, a kerb and a table over a floor, as a walking machine sees them.
+const test::SyntheticPair& scene() {
+    static const test::SyntheticPair pair = [] {
+        test::SceneConfig config;
+        config.seed = 77;
+        config.contrast_grey = 4.0;
+        config.boxes = {{{1.0, -0.5, 0.0}, {1.4, 0.1, 0.18}},
+                        {{1.4, -0.5, 0.0}, {1.8, 0.1, 0.36}},
+                        {{1.5, 0.3, 0.0}, {2.1, 0.9, 0.10}}};
+        return test::Scene(config).render();
+    }();
+    return pair;
+}
+
+struct Score {
+    double density = 0.0;
+    double bad_1 = 0.0;
+    double bad_2 = 0.0;
+    double rms_px = 0.0;   ///< of errors below 1 px
+    double mean_px = 0.0;  ///< of errors below 1 px
+    double within_3_sigma = 0.0;
+};
+
+/// Over pixels whose truth is known (hidden ones are not) and, if given, `use` accepts.
+template <typename Use>
+Score score(const Image<float>& disparity_px,
+            const Image<float>* sigma_px,
+            const Image<float>& truth_px,
+            Use use) {
+    Score s;
+    double all = 0, known = 0, good = 0, sum = 0, sum_sq = 0;
+    for (int v = 0; v < truth_px.height(); ++v) {
+        for (int u = 0; u < truth_px.width(); ++u) {
+            if (std::isnan(truth_px.at(u, v)) || !use(u, v)) continue;
+            ++all;
+            const double error = static_cast<double>(disparity_px.at(u, v) - truth_px.at(u, v));
+            if (std::isnan(error)) continue;
+            ++known;
+            s.bad_1 += std::abs(error) > 1.0;
+            s.bad_2 += std::abs(error) > 2.0;
+            if (sigma_px != nullptr) {
+                s.within_3_sigma +=
+                    std::abs(error) <= 3.0 * static_cast<double>(sigma_px->at(u, v));
+            }
+            if (std::abs(error) > 1.0) continue;
+            ++good;
+            sum += error;
+            sum_sq += error * error;
+        }
+    }
+    s.density = known / all;
+    s.bad_1 /= known;
+    s.bad_2 /= known;
+    s.within_3_sigma /= known;
+    s.mean_px = sum / good;
+    s.rms_px = std::sqrt(sum_sq / good);
+    return s;
+}
+
+/// What OpenCV gives with the same settings, without anything of ours.
+Image<float> plain_sgbm(const GreyImage& left, const GreyImage& right, int disparities) {
+    const auto padded = [&](const GreyImage& image) {
+        const cv::Mat m(
+            image.height(), image.width(), CV_8UC1, const_cast<std::uint8_t*>(image.data()));
+        cv::Mat out;
+        cv::copyMakeBorder(m, out, 0, 0, disparities, 0, cv::BORDER_REPLICATE);
+        return out;
+    };
+    cv::Mat steps;
+    cv::StereoSGBM::create(
+        0, disparities, 3, 72, 288, 1, 63, 10, 100, 2, cv::StereoSGBM::MODE_SGBM_3WAY)
+        ->compute(padded(left), padded(right), steps);
+    Image<float> disparity_px(left.width(), left.height(), std::numeric_limits<float>::quiet_NaN());
+    for (int v = 0; v < left.height(); ++v) {
+        for (int u = 0; u < left.width(); ++u) {
+            const float d = static_cast<float>(steps.at<std::int16_t>(v, u + disparities)) / 16.0F;
+            if (d > 0.0F && d <= static_cast<float>(u)) disparity_px.at(u, v) = d;
+        }
+    }
+    return disparity_px;
+}
+
+double cpu_ms() {
+    return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+TEST(MatcherConfig, SaysWhatIsWrong) {
+    EXPECT_EQ(MatcherConfig{}.problem(), std::nullopt);
+    EXPECT_EQ((MatcherConfig{.disparities = 60}).problem().value_or(""),
+              "stereo.disparities = 60 must be a multiple of 16 from 16 to 512");
+    EXPECT_EQ((MatcherConfig{.block_size = 4}).problem().value_or(""),
+              "stereo.block_size = 4 must be odd, from 1 to 11");
+    EXPECT_EQ((MatcherConfig{.left_right_tolerance_px = std::nan("")}).problem().value_or(""),
+              "stereo.left_right_tolerance_px = nan must be from 0 to 16");
+}
+
+TEST(SgbmMatcher, AGreyWallGivesNoTrustedDepth) {
+    const GreyImage grey(160, 120, 128);
+    const camera::DepthImage depth = match(grey, grey);
+    for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
+        const bool unknown = std::isnan(depth.disparity_px.data()[i]);
+        EXPECT_TRUE(unknown || depth.sigma_px.data()[i] == kMaxSigma_px);
+        if (unknown) {
+            EXPECT_EQ(depth.outlier_probability.data()[i], 1.0F);
+        }
+    }
+}
+
+TEST(SgbmMatcher, ImagesNarrowerThanTheSearchWork) {
+    const GreyImage grey(20, 10, 128);
+    const camera::DepthImage depth = match(grey, grey);
+    EXPECT_EQ(depth.disparity_px.width(), 20);
+    EXPECT_EQ(depth.disparity_px.height(), 10);
+}
+
+TEST(SgbmMatcher, FloorIsExactToATenthOfAPixel) {
+    const test::SyntheticPair& pair = scene();
+    const double start_ms = cpu_ms();
+    const camera::DepthImage depth = match(pair.left, pair.right);
+    const double ours_ms = cpu_ms() - start_ms;
+    const auto away_from_edges = [&](int u, int v) { return pair.near_edge.at(u, v) == 0; };
+    const Score ours =
+        score(depth.disparity_px, &depth.sigma_px, pair.disparity_px, away_from_edges);
+    const Score plain =
+        score(plain_sgbm(pair.left, pair.right, 64), nullptr, pair.disparity_px, away_from_edges);
+    std::printf(
+        "rendered steps: rms %.3f px (plain %.3f), mean %+.3f (plain %+.3f), bad-1 %.2f %%, "
+        "density %.1f %%, "
+        "3 sigma %.2f %%, first call %.0f ms of processor time\n",
+        ours.rms_px,
+        plain.rms_px,
+        ours.mean_px,
+        plain.mean_px,
+        100 * ours.bad_1,
+        100 * ours.density,
+        100 * ours.within_3_sigma,
+        ours_ms);
+    // 5 mm of height at 1.2 m are 0.14 px of this camera.
+    EXPECT_LT(ours.rms_px, 0.13);
+    EXPECT_LT(ours.rms_px, 0.65 * plain.rms_px);
+    EXPECT_LT(std::abs(ours.mean_px), 0.02);
+    EXPECT_LT(ours.bad_1, 0.002);
+    EXPECT_GT(ours.density, 0.99);
+}
+
+TEST(SgbmMatcher, ThreeSigmaCoverTheErrors) {
+    const test::SyntheticPair& pair = scene();
+    const camera::DepthImage depth = match(pair.left, pair.right);
+    const Score all = score(
+        depth.disparity_px, &depth.sigma_px, pair.disparity_px, [](int, int) { return true; });
+    const Score trusted =
+        score(depth.disparity_px, &depth.sigma_px, pair.disparity_px, [&](int u, int v) {
+            return depth.outlier_probability.at(u, v) < 0.5F;
+        });
+    std::printf("3 sigma cover %.2f %% of all pixels, %.2f %% of the trusted\n",
+                100 * all.within_3_sigma,
+                100 * trusted.within_3_sigma);
+    EXPECT_GE(all.within_3_sigma, 0.97);
+    EXPECT_GE(trusted.within_3_sigma, 0.99);
+}
+
+TEST(SgbmMatcher, WrongMatchesAreSuspectedAndTrustedOnesAreRight) {
+    const test::SyntheticPair& pair = scene();
+    const camera::DepthImage depth = match(pair.left, pair.right);
+    int wrong = 0, suspected = 0, trusted = 0, trusted_wrong = 0;
+    double expected_wrong = 0.0;
+    for (int v = 0; v < pair.left.height(); ++v) {
+        for (int u = 0; u < pair.left.width(); ++u) {
+            const float error = depth.disparity_px.at(u, v) - pair.disparity_px.at(u, v);
+            if (std::isnan(error)) continue;
+            const float probability = depth.outlier_probability.at(u, v);
+            ASSERT_GE(probability, 0.0F);
+            ASSERT_LE(probability, 1.0F);
+            const bool bad = std::abs(error) > 1.0F;
+            wrong += bad;
+            suspected += bad && probability >= 0.2F;
+            if (probability >= 0.2F) continue;
+            ++trusted;
+            trusted_wrong += bad;
+            expected_wrong += static_cast<double>(probability);
+        }
+    }
+    std::printf("%d wrong, %d of them suspected; %d trusted, %d of them wrong (%.0f expected)\n",
+                wrong,
+                suspected,
+                trusted,
+                trusted_wrong,
+                expected_wrong);
+    EXPECT_GT(suspected, 0.85 * wrong);
+    EXPECT_LT(trusted_wrong, 1e-3 * trusted);
+}
+
+TEST(SgbmMatcher, SameBytesForEveryExecutorThreadCountAndCall) {
+    const test::SyntheticPair& pair = scene();
+    const int threads = cv::getNumThreads();
+    Serial serial;
+    test::TwoThreads two;
+    camera::DepthImage a, b;
+    const auto matcher = make_sgbm_matcher(MatcherConfig{});
+    cv::setNumThreads(1);
+    matcher->match(pair.left.view(), pair.right.view(), serial, a);
+    cv::setNumThreads(2);
+    matcher->match(pair.right.view(), pair.left.view(), two, b);  // leaves other contents behind
+    matcher->match(pair.left.view(), pair.right.view(), two, b);
+    cv::setNumThreads(threads);
+    const auto same = [](const Image<float>& x, const Image<float>& y) {
+        return x.size() == y.size() &&
+               std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) == 0;
+    };
+    EXPECT_TRUE(same(a.disparity_px, b.disparity_px));
+    EXPECT_TRUE(same(a.sigma_px, b.sigma_px));
+    EXPECT_TRUE(same(a.outlier_probability, b.outlier_probability));
+}
+
+// ---- real images --------------------------------------------------------------------------------
+
+struct RealPair {
+    const char* name;
+    const char* truth;
+    const char* other_truth;  ///< of the right eye, to find hidden pixels; or
+    const char* mask;         ///< above 200 where both eyes see
+    double truth_scale;
+    int disparities;
+    double max_bad_2;  ///< measured value plus a tenth
+};
+
+GreyImage load(const std::string& file) {
+    const cv::Mat m = cv::imread(file, cv::IMREAD_GRAYSCALE);
+    GreyImage image(m.cols, m.rows);
+    if (!m.empty()) m.copyTo(cv::Mat(m.rows, m.cols, CV_8UC1, image.data()));
+    return image;
+}
+
+Image<float> load_truth(const std::string& base, const RealPair& pair) {
+    const GreyImage grey = load(base + pair.truth);
+    const GreyImage other =
+        pair.other_truth != nullptr ? load(base + pair.other_truth) : GreyImage();
+    const GreyImage mask = pair.mask != nullptr ? load(base + pair.mask) : GreyImage();
+    Image<float> truth_px(grey.width(), grey.height(), std::numeric_limits<float>::quiet_NaN());
+    for (int v = 0; v < grey.height(); ++v) {
+        for (int u = 0; u < grey.width(); ++u) {
+            const double d = grey.at(u, v) / pair.truth_scale;
+            if (grey.at(u, v) == 0 || (!mask.empty() && mask.at(u, v) <= 200)) continue;
+            if (!other.empty()) {
+                const int x = static_cast<int>(std::lround(u - d));
+                if (!other.contains(x, v) || other.at(x, v) == 0) continue;
+                if (std::abs(other.at(x, v) / pair.truth_scale - d) > 1.0) continue;
+            }
+            truth_px.at(u, v) = static_cast<float>(d);
+        }
+    }
+    return truth_px;
+}
+
+TEST(SgbmMatcher, MiddleburyBesidePlainSgbm) {
+    // Truth of adirondack is rounded to whole pixels: only bad-2 means something there.
+    const RealPair pairs[] = {
+        {"cones", "disp_left_x4.png", "disp_right_x4.png", nullptr, 4.0, 64, 0.024},
+        {"teddy", "disp_left_x4.png", "disp_right_x4.png", nullptr, 4.0, 64, 0.028},
+        {"cloth3", "disp_left.png", "disp_right.png", nullptr, 2.0, 96, 0.010},
+        {"adirondack", "gt.png", nullptr, "mask.png", 1.0, 80, 0.039},
+    };
+    const char* folder = std::getenv("SUREFOOT_DATA_DIR");
+    const std::string root =
+        std::string(folder != nullptr ? folder : SUREFOOT_DEFAULT_DATA_DIR) + "/stereo/";
+    int skipped = 0;
+    for (const RealPair& pair : pairs) {
+        const std::string base = root + pair.name + "/";
+        const GreyImage left = load(base + "left.png");
+        const GreyImage right = load(base + "right.png");
+        if (left.empty() || right.empty()) {
+            ++skipped;
+            continue;
+        }
+        const Image<float> truth_px = load_truth(base, pair);
+        const auto everywhere = [](int, int) { return true; };
+        const camera::DepthImage depth =
+            match(left, right, MatcherConfig{.disparities = pair.disparities});
+        const Score ours = score(depth.disparity_px, &depth.sigma_px, truth_px, everywhere);
+        const Score plain =
+            score(plain_sgbm(left, right, pair.disparities), nullptr, truth_px, everywhere);
+        std::printf(
+            "%-10s bad-1 %5.2f %% (plain %5.2f), bad-2 %4.2f %% (%4.2f), density %.1f %% (%.1f), "
+            "rms %.3f px "
+            "(%.3f), 3 sigma %.1f %%\n",
+            pair.name,
+            100 * ours.bad_1,
+            100 * plain.bad_1,
+            100 * ours.bad_2,
+            100 * plain.bad_2,
+            100 * ours.density,
+            100 * plain.density,
+            ours.rms_px,
+            plain.rms_px,
+            100 * ours.within_3_sigma);
+        EXPECT_LT(ours.bad_2, pair.max_bad_2) << pair.name;
+        EXPECT_LE(ours.bad_2, plain.bad_2) << pair.name;
+        EXPECT_GT(ours.density, plain.density - 0.01) << pair.name;
+    }
+    if (skipped > 0) std::printf("skipped %d of 4 pairs: no images in %s\n", skipped, root.c_str());
+}
+
+}  // namespace
+}  // namespace surefoot::stereo

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/views.hpp"
+
+namespace surefoot::stereo {
+
+struct RefineConfig {
+    int smooth_radius_px = 4;      ///< neighbours on the same surface are averaged over 9x9 pixels
+    double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
+    int window_radius_px = 12;     ///< 25x25 pixels share one correction, at most 16
+    double prior_sigma_px = 0.2;   ///< how far the smoothed value is trusted, 1 sigma
+    int jump_margin_px = 2;        ///< pixels this near to a jump show mixed surfaces: not used
+    double max_step_px = 1.0;      ///< no correction is larger
+    /// Least grey-level noise (1 sigma, after smoothing the image) that a window is believed to
+    /// have.
+    double min_noise_grey = 0.4;
+    /// Neighbouring pixels share their noise after the smoothing: this many count as one.
+    double correlation = 3.5;
+};
+
+/// What the refinement learnt about a pixel besides its disparity.
+struct Refinement {
+    Image<float>
+        residual_grey;  ///< rms difference between the eyes that no shift explains; NaN = unknown
+    Image<float>
+        gradient_grey_px;  ///< rms slope along the row in the window; 0 = no texture, NaN = unknown
+    Image<float> shift_px;  ///< how far the smoothed value was moved; NaN = unknown
+};
+
+/// Sub-pixel refinement: smoothing along surfaces, then image registration (Lucas and Kanade 1981)
+/// along the row.
+///
+/// A semi-global matcher draws its parabola through three costs and so prefers whole pixels,
+/// scatters from pixel to pixel, and leans toward fronto-parallel surfaces where texture is weak.
+/// Averaging over neighbours on the same surface removes the first two. For the third, the right
+/// image is warped by the disparity field itself, so that slanted ground stays slanted, and each
+/// window solves for the one shift that explains the grey differences left over: with e = L(u) -
+/// R(u - d) and g the mean gradient of both images,
+///   shift = -(sum g e / c s^2) / (sum g^2 / c s^2 + 1 / p^2)
+/// where s is the residual noise, c the noise correlation and p the prior. The sums are free of
+/// their means (cameras differ in brightness) and exact (integers): they do not depend on the
+/// blocks. Taking the gradient from both images makes g and e uncorrelated under noise at every
+/// fraction of a pixel. A second step would amplify the noise: the box window has negative
+/// frequencies. Cost: O(1) per pixel for any window.
+class SubpixelRefiner {
+  public:
+    explicit SubpixelRefiner(const RefineConfig& config);
+
+    /// Replaces `disparity_px` (NaN = unknown stays unknown) by its refined value.
+    /// `jump_distance_px` is the distance of every pixel from the nearest disparity jump.
+    void refine(ImageView<const std::uint8_t> left,
+                ImageView<const std::uint8_t> right,
+                const Image<std::uint8_t>& jump_distance_px,
+                Executor& executor,
+                Image<float>& disparity_px,
+                Refinement& out);
+
+  private:
+    void warp(int v, const Image<std::uint8_t>& jump_distance_px, const Image<float>& disparity_px);
+    void solve_block(int first, int last, Image<float>& disparity_px, Refinement& out) const;
+
+    RefineConfig config_;
+    Image<std::int16_t> left_;  ///< smoothed, 1/16 grey level
+    Image<std::int16_t> right_;
+    Image<float> horizontal_;  ///< disparity, smoothed along the row alone
+    Image<std::int16_t> gradient_;
+    Image<std::int16_t> error_;
+    Image<std::int16_t> used_;  ///< 1 where gradient and error are valid
+};
+
+/// Mean over the neighbours on the same surface, along the row (`down` false) or the column.
+/// Neighbours count in opposite pairs, so that a slanted plane keeps its value.
+void smooth_along(const Image<float>& in,
+                  int v,
+                  bool down,
+                  int radius_px,
+                  double same_surface_px,
+                  Image<float>& out);
+
+}  // namespace surefoot::stereo

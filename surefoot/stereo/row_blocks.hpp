@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "surefoot/core/executor.hpp"
+
+namespace surefoot::stereo {
+
+/// Calls work(first, last) for blocks of rows. The blocks are fixed, whatever the number of
+/// threads: results cannot depend on it.
+template <typename Work>
+void for_row_blocks(Executor& executor, int height, const Work& work) {
+    constexpr int kBlockRows = 32;
+    const int blocks = (height + kBlockRows - 1) / kBlockRows;
+    executor.parallel_for(blocks, [&](int block) {
+        work(block * kBlockRows, std::min(height, (block + 1) * kBlockRows));
+    });
+}
+
+}  // namespace surefoot::stereo

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::traversability {
+
+/// Half-open rectangle of cells: columns [ix0, ix0 + nx), rows [iy0, iy0 + ny).
+struct CellRect {
+    int ix0 = 0;
+    int iy0 = 0;
+    int nx = 0;
+    int ny = 0;
+
+    [[nodiscard]] bool empty() const noexcept { return nx <= 0 || ny <= 0; }
+    /// Grown by `cells` on every side.
+    [[nodiscard]] CellRect grown(int cells) const noexcept {
+        return {ix0 - cells, iy0 - cells, nx + 2 * cells, ny + 2 * cells};
+    }
+    /// The part of it within a grid of that size.
+    [[nodiscard]] CellRect clipped(int grid_nx, int grid_ny) const noexcept;
+    friend bool operator==(const CellRect&, const CellRect&) = default;
+};
+
+/// A copy of (part of) a layer with unknown cells all around it, so that a disc can be read at
+/// every cell without asking where the map ends. NaN is the only unknown in it.
+class PaddedLayer {
+  public:
+    /// A layer of nx * ny unknown cells with `margin` more on every side; allocates only to grow.
+    void reset(int nx, int ny, int margin);
+    /// Copies the cells of `rect` (within the layer); values that are not finite become NaN.
+    void load(ImageView<const float> source, const CellRect& rect);
+
+    [[nodiscard]] int stride() const noexcept { return cells_.width(); }
+    [[nodiscard]] float* row(int iy) noexcept { return cells_.row(iy + margin_) + margin_; }
+    [[nodiscard]] const float* row(int iy) const noexcept {
+        return cells_.row(iy + margin_) + margin_;
+    }
+
+  private:
+    int margin_ = 0;
+    grid::Layer cells_;
+};
+
+/// A cell of a disc, seen from its centre.
+struct DiscCell {
+    std::ptrdiff_t offset = 0;  ///< in elements of a PaddedLayer
+    double x_m = 0.0;
+    double y_m = 0.0;
+};
+
+/// All cells with dx^2 + dy^2 <= (radius / resolution)^2 + 1e-6 (in cells), row by row; the addend
+/// keeps cells on the rim in, whatever the rounding of the quotient.
+struct Disc {
+    int reach = 0;  ///< largest |dx| or |dy| [cells]
+    std::vector<DiscCell> cells;
+
+    /// How many cells a disc of that radius reaches.
+    [[nodiscard]] static int reach_of(double radius_m, double resolution_m) noexcept;
+    /// Fills the disc for layers of that stride; keeps its memory.
+    void build(double radius_m, double resolution_m, int stride);
+};
+
+}  // namespace surefoot::traversability

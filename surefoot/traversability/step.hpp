@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/traversability/disc.hpp"
+#include "surefoot/traversability/traversability_config.hpp"
+
+namespace surefoot::traversability {
+
+/// Pass 1: highest minus lowest known height within the first disc around every known cell of
+/// `rect`; NaN at unknown cells, and everywhere if the disc is a single cell (it could find nothing
+/// but 0).
+void step_heights(const PaddedLayer& height_m,
+                  const Disc& first_disc,
+                  const CellRect& rect,
+                  PaddedLayer& step_height_m);
+
+/// Pass 2, at every cell with a known step height within the second disc (unknown cells included):
+///   s = min(max, n / critical_cells * max), n = number of step heights above the critical one,
+///   so that a single noisy cell is no obstacle;  rating = 1 - s / critical below it, else 0.
+void rate_step(const TraversabilityConfig::Step& config,
+               const PaddedLayer& step_height_m,
+               const Disc& second_disc,
+               const CellRect& rect,
+               grid::Layer& step);
+
+}  // namespace surefoot::traversability

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/views.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/traversability/disc.hpp"
+#include "surefoot/traversability/traversability_config.hpp"
+
+namespace surefoot::traversability {
+
+/// What is known about every cell; NaN = unknown. Normals are unit vectors in the frame of the map,
+/// z >= 0; the rest are ratings from 1 (traversable) to 0 (not).
+struct TraversabilityLayers {
+    grid::Layer normal_x;
+    grid::Layer normal_y;
+    grid::Layer normal_z;
+    grid::Layer slope;
+    grid::Layer step;
+    grid::Layer roughness;
+    grid::Layer traversability;
+
+    void resize(int nx, int ny);
+    [[nodiscard]] bool has_size(int nx, int ny) const noexcept;
+};
+
+/// Rates a height map: normals -> slope, step, roughness -> weighted sum (Wermelinger et al. 2016).
+/// The plain version: every faster one is tested against it. Holds the working memory, so that
+/// rating maps of one size allocates nothing after the first. Results are the same bytes for every
+/// executor. Cost: proportional to cells times disc sizes.
+class Traversability {
+  public:
+    /// Blocks of rows that are one piece of work for the executor.
+    static constexpr int kBlockRows = 16;
+
+    explicit Traversability(const TraversabilityConfig& config) : config_(config) {}
+    [[nodiscard]] const TraversabilityConfig& config() const noexcept { return config_; }
+
+    /// Rates all cells of `height_m` (NaN = unknown; one row per iy, cell size `resolution_m` > 0).
+    void rate(ImageView<const float> height_m,
+              double resolution_m,
+              Executor& executor,
+              TraversabilityLayers& out);
+
+    /// Rates the cells of `region` only and leaves the others of `out` as they are; the region gets
+    /// the values that rating the whole map would give it. If `out` has another size than the map,
+    /// all cells are rated.
+    void rate(ImageView<const float> height_m,
+              double resolution_m,
+              const CellRect& region,
+              Executor& executor,
+              TraversabilityLayers& out);
+
+    /// The cells whose ratings can differ after the heights in `changed` have changed (not
+    /// clipped).
+    [[nodiscard]] CellRect affected_by(const CellRect& changed, double resolution_m) const noexcept;
+
+  private:
+    TraversabilityConfig config_;
+    PaddedLayer height_;
+    PaddedLayer step_height_;  ///< pass 1 of the step filter
+    Disc normals_disc_;
+    Disc first_step_disc_;
+    Disc second_step_disc_;
+    Disc roughness_disc_;
+};
+
+/// Rates one map with fresh working memory.
+void rate(const TraversabilityConfig& config,
+          ImageView<const float> height_m,
+          double resolution_m,
+          Executor& executor,
+          TraversabilityLayers& out);
+
+}  // namespace surefoot::traversability

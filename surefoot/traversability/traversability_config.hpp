@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "surefoot/core/config.hpp"
+
+namespace surefoot::traversability {
+
+/// How the weighted sum treats a cell in which a layer is unknown or impassable.
+enum class Combine : std::uint8_t {
+    mean_nan,        ///< weighted mean; unknown if any layer is unknown
+    zero_dominates,  ///< an exact 0 in a layer with a weight forces 0, also over unknown
+};
+
+/// Rating of the ground from 1 (traversable) to 0 (not); one sub-struct per filter. A radius wants
+/// at least one cell: a disc of a single cell measures no slope and no step, and its layer stays
+/// unknown. The defaults are the critical values of `ethz` with radii between the centre distances
+/// of a 25 mm grid (no cell on the rim) that average stereo noise over 29, 21 and 29 cells.
+struct TraversabilityConfig {
+    struct Normals {
+        double radius_m = 0.08;
+        void describe(ConfigVisitor& visitor);
+    };
+    struct Slope {
+        double critical_rad = 1.0;
+        void describe(ConfigVisitor& visitor);
+    };
+    struct Step {
+        double critical_m = 0.12;
+        double first_radius_m = 0.06;
+        double second_radius_m = 0.06;
+        int critical_cells = 4;
+        void describe(ConfigVisitor& visitor);
+    };
+    struct Roughness {
+        double critical_m = 0.05;
+        double radius_m = 0.08;
+        void describe(ConfigVisitor& visitor);
+    };
+    struct Weights {
+        double slope = 1.0;
+        double step = 1.0;
+        double roughness = 1.0;
+        void describe(ConfigVisitor& visitor);
+    };
+
+    Normals normals;
+    Slope slope;
+    Step step;
+    Roughness roughness;
+    Weights weights;
+    Combine combine = Combine::mean_nan;
+
+    void describe(ConfigVisitor& visitor);
+
+    /// First reason why this cannot rate a grid of that cell size, or nothing.
+    [[nodiscard]] std::optional<std::string> problem(double resolution_m) const;
+    /// The same with every radius that is shorter than a cell widened to 1.5 cells (a 3x3 disc), so
+    /// that one configuration serves coarse maps too.
+    [[nodiscard]] TraversabilityConfig widened_to(double resolution_m) const;
+};
+
+inline constexpr std::array<const char*, 4> kPresetNames{
+    "rex_zed", "rex_demo_stairs", "laser", "ethz"};
+
+/// Published parameter sets for comparison: `rex_zed`, `rex_demo_stairs` and `laser` (Lange 2016)
+/// with the zero rule, `ethz` (traversability_estimation) with the mean. Nothing for another name.
+[[nodiscard]] std::optional<TraversabilityConfig> preset(std::string_view name);
+
+}  // namespace surefoot::traversability

@@ -1,0 +1,59 @@
+"""Calls the program under test and offers small recordings to break."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+BINARY = pathlib.Path(os.environ["SUREFOOT_BINARY"])
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DATA = pathlib.Path(os.environ.get("SUREFOOT_DATA_DIR", ROOT.parent / "shared" / "data"))
+
+
+def surefoot(*arguments, cwd=None, timeout=600, **options):
+    """Runs one verb; returns the completed process with text output."""
+    return subprocess.run([str(BINARY), *map(str, arguments)], cwd=cwd, capture_output=True, text=True,
+                          timeout=timeout, env={**os.environ, "NO_COLOR": "1"}, **options)
+
+
+class CliTest(unittest.TestCase):
+    """A test with a folder of its own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="surefoot-test-")
+        self.addCleanup(folder.cleanup)
+        self.dir = pathlib.Path(folder.name)
+
+    def run_ok(self, *arguments, **options):
+        process = surefoot(*arguments, **options)
+        self.assertEqual(process.returncode, 0, f"surefoot {' '.join(map(str, arguments))}\n{process.stderr}")
+        return process
+
+    def json_of(self, *arguments, **options):
+        return json.loads(self.run_ok(*arguments, "--json", **options).stdout)
+
+    def data(self, *parts):
+        """A folder of the optional data, or None with a printed line when it is not there."""
+        path = DATA.joinpath(*parts)
+        if path.exists():
+            return path
+        print(f"skipped 1 check: {path} is not there (set SUREFOOT_DATA_DIR)", flush=True)
+        return None
+
+
+def read_tum(path):
+    rows = [[float(x) for x in line.split()] for line in path.read_text().splitlines() if line and line[0] != "#"]
+    return rows
+
+
+def read_asc(path):
+    """(header dict, rows from largest y to smallest; NODATA = None)."""
+    header, rows = {}, []
+    for line in path.read_text().splitlines():
+        words = line.split()
+        if words and words[0][0].isalpha():
+            header[words[0].lower()] = float(words[1])
+        elif words:
+            rows.append([None if float(x) == header["nodata_value"] else float(x) for x in words])
+    return header, rows

@@ -1,0 +1,169 @@
+"""The main job, measured: real and simulated recordings in, trajectories, maps and verdicts out."""
+import hashlib
+import json
+import math
+import statistics
+import unittest
+
+from surefoot_cli import CliTest, read_asc, read_tum, surefoot
+
+# What a run may write differently from one time to the next: times, and the number of threads.
+TIMING_FILES = {"report.json", "report.html", "config.yaml"}
+
+
+def digest(folder):
+    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in TIMING_FILES}
+
+
+class RealRecordings(CliTest):
+    def test_kitti_city_trajectory(self):
+        city = self.data("sequences", "kitti_city")
+        if city is None:
+            return
+        self.run_ok("run", city, "--out", self.dir / "city")
+        self.assertEqual(len(read_tum(self.dir / "city" / "trajectory.tum")), 51)
+        errors = self.json_of("eval", "trajectory", self.dir / "city" / "trajectory_camera.tum", city / "poses.txt")
+        self.assertEqual(errors["matched"], 51)
+        self.assertLessEqual(errors["ate_rmse_m"], 0.15)
+        # The street begins 6 m ahead, the default map ends 3 m ahead: an empty map, with its reason.
+        report = json.loads((self.dir / "city" / "report.json").read_text())
+        self.assertTrue(report["complete"])
+        self.assertEqual(report["map"]["known_cells"], 0)
+        self.assertIn("beyond the map", report["map"]["reason"])
+
+    def test_kitti_city_road_ahead(self):
+        city = self.data("sequences", "kitti_city")
+        if city is None:
+            return
+        out = self.dir / "city"
+        self.run_ok("run", city, "--out", out, "--set", "elevation.length_m=40", "--set",
+                    "elevation.resolution_m=0.1")
+        flat, traversable, cells = road_quality(out)
+        print(f"kitti_city road: {cells} cells, {flat:.3f} within 80 mm of the plane, {traversable:.3f} traversable")
+        self.assertGreater(cells, 1000)
+        self.assertGreaterEqual(flat, 0.90)
+        self.assertGreaterEqual(traversable, 0.90)
+
+    def test_zed_office_steps(self):
+        office = self.data("sequences", "zed_office")
+        if office is None:
+            return
+        self.run_ok("run", office, "--out", self.dir / "office")
+        poses = read_tum(self.dir / "office" / "trajectory.tum")
+        steps_mm = [1e3 * math.dist(a[1:4], b[1:4]) for a, b in zip(poses, poses[1:])]
+        print(f"zed_office steps: {[round(s, 1) for s in steps_mm]} mm")
+        self.assertEqual(len(steps_mm), 7)
+        self.assertTrue(95 <= statistics.mean(steps_mm) <= 108, steps_mm)
+        self.assertLessEqual(statistics.stdev(steps_mm), 8.0)
+
+    def test_euroc_still_does_not_drift(self):
+        still = self.data("sequences", "euroc_still")
+        if still is None:
+            return
+        self.run_ok("run", still, "--out", self.dir / "still")
+        poses = read_tum(self.dir / "still" / "trajectory.tum")
+        self.assertEqual(len(poses), 30)
+        drift_mm = max(1e3 * math.dist(poses[0][1:4], pose[1:4]) for pose in poses)
+        print(f"euroc_still: largest displacement {drift_mm:.2f} mm")
+        self.assertLessEqual(drift_mm, 5.0)
+        report = json.loads((self.dir / "still" / "report.json").read_text())
+        self.assertIn(report["gravity_source"], ("imu", "plane"))
+
+
+def road_quality(out):
+    """Of the known cells within 2 m of the driven line: share within 80 mm of a fitted plane, share traversable."""
+    header, heights = read_asc(out / "elevation.asc")
+    _, values = read_asc(out / "traversability.asc")
+    size, x0, y0 = header["cellsize"], header["xllcorner"], header["yllcorner"]
+    path = [pose[1:3] for pose in read_tum(out / "trajectory.tum")]
+    chosen = []
+    for row, (line, line_t) in enumerate(zip(heights, values)):
+        y = y0 + (len(heights) - row - 0.5) * size
+        for column, z in enumerate(line):
+            x = x0 + (column + 0.5) * size
+            if z is not None and min(math.dist((x, y), p) for p in path) <= 2.0:
+                chosen.append((x, y, z, line_t[column]))
+    a, b, c = fit_plane([(x, y, z) for x, y, z, _ in chosen])
+    flat = sum(abs(z - (a * x + b * y + c)) <= 0.08 for x, y, z, _ in chosen)
+    safe = sum(t is not None and t >= 0.80 for _, _, _, t in chosen)
+    return flat / len(chosen), safe / len(chosen), len(chosen)
+
+
+def fit_plane(points):
+    """Least squares z = a x + b y + c, refitted three times on the points within 0.15 m (kerbs, parked cars)."""
+    kept = points
+    for _ in range(4):
+        n = len(kept)
+        sums = [sum(f(p) for p in kept) for f in (
+            lambda p: p[0], lambda p: p[1], lambda p: p[2], lambda p: p[0] * p[0], lambda p: p[0] * p[1],
+            lambda p: p[1] * p[1], lambda p: p[0] * p[2], lambda p: p[1] * p[2])]
+        sx, sy, sz, sxx, sxy, syy, sxz, syz = sums
+        a, b, c = solve3([[sxx, sxy, sx, sxz], [sxy, syy, sy, syz], [sx, sy, n, sz]])
+        kept = [p for p in points if abs(p[2] - (a * p[0] + b * p[1] + c)) <= 0.15]
+    return a, b, c
+
+
+def solve3(rows):
+    """Gaussian elimination with pivots of a 3x3 system with its right side."""
+    for i in range(3):
+        pivot = max(range(i, 3), key=lambda r: abs(rows[r][i]))
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        for r in range(3):
+            if r != i:
+                factor = rows[r][i] / rows[i][i]
+                rows[r] = [x - factor * y for x, y in zip(rows[r], rows[i])]
+    return [rows[i][3] / rows[i][i] for i in range(3)]
+
+
+class Simulation(CliTest):
+    @classmethod
+    def setUpClass(cls):
+        import pathlib
+        import tempfile
+        cls.folder = tempfile.TemporaryDirectory(prefix="surefoot-demo-")
+        cls.demo = pathlib.Path(cls.folder.name) / "demo"
+        process = surefoot("run", "sim:demo_stairs", "--machine", "rex", "--out", cls.demo, "--threads", 2)
+        assert process.returncode == 0, process.stderr
+        cls.report = json.loads((cls.demo / "report.json").read_text())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_elevation_against_the_truth_without_alignment(self):
+        truth = self.report["truth"]
+        print(f"demo elevation: {truth['elevation']}")
+        self.assertLessEqual(truth["elevation"]["median_abs_m"], 0.005)
+        self.assertLessEqual(truth["elevation"]["p90_abs_m"], 0.020)
+        self.assertLessEqual(truth["elevation_away_from_edges"]["share_over_50mm"], 0.02)
+        self.assertGreaterEqual(truth["coverage_within_2_5_m"], 0.90)
+
+    def test_depth_sigma_is_honest(self):
+        depth = self.report["truth"]["depth"]
+        print(f"demo depth: {depth}")
+        self.assertGreaterEqual(depth["within_3_sigma"], 0.95)
+        self.assertGreaterEqual(depth["sigma_at_2_m_m"], 2.0 * depth["sigma_at_1_m_m"])
+
+    def test_results_are_all_there(self):
+        for name in ("trajectory.tum", "trajectory_camera.tum", "elevation.asc", "variance.asc", "traversability.asc",
+                     "elevation.png", "traversability.png", "map.ply", "map.snapshot", "report.json", "report.html",
+                     "config.yaml"):
+            self.assertGreater((self.demo / name).stat().st_size, 100, name)
+
+    def test_same_bytes_with_one_thread_and_with_two(self):
+        for threads in (1, 2):
+            self.run_ok("run", "sim:demo_stairs", "--machine", "rex", "--max-frames", 12, "--threads", threads,
+                        "--out", self.dir / f"threads{threads}")
+        self.assertEqual(digest(self.dir / "threads1"), digest(self.dir / "threads2"))
+
+    def verdict(self, pose, command, *extra):
+        process = surefoot("gate", "--map", self.demo, "--pose", ",".join(map(str, pose)), "--command", command,
+                           "--json", *extra)
+        verdict = json.loads(process.stdout)
+        self.assertEqual(process.returncode, {"OK": 0, "NOT_TRAVERSABLE": 3, "ERROR": 4}[verdict["verdict"]])
+        return verdict
+
+
+if __name__ == "__main__":
+    unittest.main()
