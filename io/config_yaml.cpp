@@ -165,8 +165,8 @@ Status collect(const YamlNode& node,
                const std::string& file,
                const std::vector<std::string>& keys,
                GivenValues& out) {
-    for (const auto& [name, child] : node.entries) {
-        const std::string key = prefix + name;
+    for (const YamlNode& child : node.items) {
+        const std::string key = prefix + child.key;
         const std::string where = fmt::format("{}:{}", file, child.line);
         const bool known = std::find(keys.begin(), keys.end(), key) != keys.end();
         const bool group = std::any_of(keys.begin(), keys.end(), [&](const std::string& other) {
@@ -174,8 +174,8 @@ Status collect(const YamlNode& node,
         });
         if (!known && !group) {
             // Show the reader a whole key: the first inside a misspelt group is as good as any.
-            const bool inner = child.is_mapping() && !child.entries.empty();
-            return unknown_key(where, inner ? key + "." + child.entries[0].first : key, keys);
+            const bool inner = child.is_mapping() && !child.items.empty();
+            return unknown_key(where, inner ? key + "." + child.items[0].key : key, keys);
         }
         if (known) {
             if (!child.is_scalar()) {

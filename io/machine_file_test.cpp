@@ -59,19 +59,18 @@ TEST(MachineFile, the_rex_is_read_completely) {
 TEST(MachineFile, movements_of_the_rex_are_the_ellipse_through_its_four_steps) {
     const auto file = read_machine(SUREFOOT_SOURCE_DIR "/machines/rex.yaml");
     ASSERT_TRUE(file.ok()) << file.error().message;
-    constexpr double kRounding_tenth_mm =
-        10.0;  // the file gives whole millimetres, halves of these
+    constexpr double kRoundingTenthMm = 10.0;  // the file gives whole millimetres, halves of these
     for (int sector = 0; sector < 16; ++sector) {
         const double angle = sector * std::numbers::pi / 8.0;
         const double forward = std::cos(angle) * (std::cos(angle) > 0.0 ? 4000.0 : 2500.0);
         const double left = -1000.0 * std::sin(angle);
         const Movement& outer = file->machine.movements[static_cast<std::size_t>(9 + sector)];
-        EXPECT_NEAR(outer.forward_tenth_mm, forward, kRounding_tenth_mm) << 9 + sector;
-        EXPECT_NEAR(outer.left_tenth_mm, left, kRounding_tenth_mm) << 9 + sector;
+        EXPECT_NEAR(outer.forward_tenth_mm, forward, kRoundingTenthMm) << 9 + sector;
+        EXPECT_NEAR(outer.left_tenth_mm, left, kRoundingTenthMm) << 9 + sector;
         if (sector % 2 != 0) continue;
         const Movement& inner = file->machine.movements[static_cast<std::size_t>(1 + sector / 2)];
-        EXPECT_NEAR(inner.forward_tenth_mm, forward / 2.0, kRounding_tenth_mm) << 1 + sector / 2;
-        EXPECT_NEAR(inner.left_tenth_mm, left / 2.0, kRounding_tenth_mm) << 1 + sector / 2;
+        EXPECT_NEAR(inner.forward_tenth_mm, forward / 2.0, kRoundingTenthMm) << 1 + sector / 2;
+        EXPECT_NEAR(inner.left_tenth_mm, left / 2.0, kRoundingTenthMm) << 1 + sector / 2;
     }
     EXPECT_NEAR(file->machine.movements[25].sin_turn, std::sin(std::numbers::pi / 12.0), 1e-15);
     EXPECT_NEAR(file->machine.movements[26].sin_turn, -std::sin(std::numbers::pi / 12.0), 1e-15);

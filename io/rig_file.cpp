@@ -32,8 +32,8 @@ Result<camera::StereoRig> read_opencv(YamlNode root,
     if (!text) return text.error();
     const Result<YamlNode> more = parse_yaml(*text, beside);
     if (!more) return more.error();
-    for (const auto& entry : more->entries) {
-        if (root.find(entry.first) == nullptr) root.entries.push_back(entry);
+    for (const YamlNode& item : more->items) {
+        if (root.find(item.key) == nullptr) root.items.push_back(item);
     }
     return opencv_rig(root, path + " + extrinsics.yml", size);
 }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxYamlBytes = std::size_t{16} << 20;
 constexpr int kMaxDepth = 64;
+constexpr std::size_t kMaxKeys = 10'000;
 constexpr int kMaxValues = 1'000'000;
 
 struct Converter {
@@ -54,12 +55,17 @@ struct Converter {
             if (!entry.first.IsScalar())
                 return fail(entry.first.Mark(), "a key must be plain text");
             const std::string& key = entry.first.Scalar();
+            if (out.items.size() >= kMaxKeys) {  // the search for doubles below is linear
+                return fail(entry.first.Mark(),
+                            fmt::format("more than {} keys in a group", kMaxKeys));
+            }
             if (out.find(key) != nullptr) {
                 return fail(entry.first.Mark(), fmt::format("key {} appears twice", quoted(key)));
             }
-            out.entries.emplace_back(key, convert(entry.second, depth + 1));
+            out.items.push_back(convert(entry.second, depth + 1));
+            out.items.back().key = key;
             // The key's own line is what a reader looks for.
-            out.entries.back().second.line = std::max(entry.first.Mark().line + 1, 1);
+            out.items.back().line = std::max(entry.first.Mark().line + 1, 1);
             if (error) return;
         }
     }
@@ -75,9 +81,10 @@ std::string without_directives(std::string_view text) {
 
 }  // namespace
 
-const YamlNode* YamlNode::find(std::string_view key) const noexcept {
-    for (const auto& [name, node] : entries) {
-        if (name == key) return &node;
+const YamlNode* YamlNode::find(std::string_view name) const noexcept {
+    if (kind != Kind::mapping) return nullptr;
+    for (const YamlNode& item : items) {
+        if (item.key == name) return &item;
     }
     return nullptr;
 }
@@ -214,12 +221,12 @@ std::vector<double> YamlReader::numbers(const YamlNode& node,
 void YamlReader::only_keys(const YamlNode& mapping,
                            std::string_view prefix,
                            const std::vector<std::string>& names) {
-    for (const auto& [key, node] : mapping.entries) {
-        if (std::find(names.begin(), names.end(), key) != names.end() || error_) continue;
-        std::string hint = did_you_mean(key, names);
+    for (const YamlNode& node : mapping.items) {
+        if (std::find(names.begin(), names.end(), node.key) != names.end() || error_) continue;
+        std::string hint = did_you_mean(node.key, names);
         if (hint.empty()) hint = fmt::format("; known keys: {}", fmt::join(names, ", "));
         error_ = input_error(
-            fmt::format("{}:{}: unknown key '{}{}'{}", file_, node.line, prefix, key, hint));
+            fmt::format("{}:{}: unknown key '{}{}'{}", file_, node.line, prefix, node.key, hint));
     }
 }
 

@@ -18,13 +18,13 @@ struct YamlNode {
     enum class Kind { null, scalar, sequence, mapping };
 
     Kind kind = Kind::null;
-    int line = 0;  ///< from 1
+    int line = 0;     ///< from 1
+    std::string key;  ///< of an item of a mapping
     std::string scalar;
-    std::vector<YamlNode> items;                            ///< sequence
-    std::vector<std::pair<std::string, YamlNode>> entries;  ///< mapping, in file order
+    std::vector<YamlNode> items;  ///< of a sequence or a mapping, in file order
 
     /// The value of a key of this mapping, or nullptr.
-    [[nodiscard]] const YamlNode* find(std::string_view key) const noexcept;
+    [[nodiscard]] const YamlNode* find(std::string_view name) const noexcept;
     [[nodiscard]] bool is_mapping() const noexcept { return kind == Kind::mapping; }
     [[nodiscard]] bool is_scalar() const noexcept { return kind == Kind::scalar; }
     /// "a number list", "a mapping" ... for messages.

@@ -62,7 +62,7 @@ TEST(ImagingTest, GreyValuesHaveTheConfiguredVariance) {
         }
         const double mean = sum / kCount;
         const double variance = squares / kCount - mean * mean;
-        const double kRounding = 1.0 / 12.0;
+        constexpr double kRounding = 1.0 / 12.0;
         const double expected = 1.5 * 1.5 + 0.03 * static_cast<double>(signal_dn) + kRounding;
         EXPECT_NEAR(mean, static_cast<double>(signal_dn), 0.03);
         EXPECT_NEAR(variance, expected, 5.0 * expected * std::sqrt(2.0 / kCount));

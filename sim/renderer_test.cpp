@@ -30,6 +30,7 @@ class ThreeThreads final : public Executor {
   public:
     void parallel_for(int count, const std::function<void(int)>& work) override {
         std::vector<std::thread> threads;
+        threads.reserve(3);
         for (int first = 0; first < 3; ++first) {
             threads.emplace_back([&, first] {
                 for (int index = first; index < count; index += 3) work(index);

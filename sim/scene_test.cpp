@@ -154,8 +154,9 @@ TEST(SceneTest, HighestOverACellEqualsDenseSampling) {
         const auto exact = scene.highest_over({low, low.array() + kCell_m});
         double sampled_m = -std::numeric_limits<double>::infinity();
         for (int k = 0; k < kSamples * kSamples; ++k) {
+            const int row = k / kSamples;
             const double x_m = low.x() + kCell_m * (k % kSamples + 0.5) / kSamples;
-            const double y_m = low.y() + kCell_m * (k / kSamples + 0.5) / kSamples;
+            const double y_m = low.y() + kCell_m * (row + 0.5) / kSamples;
             if (const auto z = scene.height_at(x_m, y_m)) sampled_m = std::max(sampled_m, z->z_m);
         }
         ASSERT_TRUE(exact) << low.transpose();

@@ -86,8 +86,9 @@ double brute_average(const Textures& textures, double u_m, double v_m, const Foo
     const Footprint point{1e-5, 1e-5, 1.0, 0.0};
     double sum = 0.0;
     for (int i = 0; i < kSide * kSide; ++i) {
+        const int row = i / kSide;
         const double along = ((i % kSide + 0.5) / kSide - 0.5) * f.major_m;
-        const double across = ((i / kSide + 0.5) / kSide - 0.5) * f.minor_m;
+        const double across = ((row + 0.5) / kSide - 0.5) * f.minor_m;
         sum += static_cast<double>(textures.reflectance(0,
                                                         0,
                                                         u_m + along * f.axis_u - across * f.axis_v,

@@ -2,43 +2,20 @@
 #include "surefoot/gate/gate.hpp"
 
 #include <cmath>
-#include <memory>
 
 #include <fmt/format.h>
 
 #include "apps/surefoot/explain.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/offline_map.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/file.hpp"
-#include "io/text.hpp"
 #include "surefoot/gate/verdict_text.hpp"
 
 namespace surefoot::app {
 namespace {
-
-struct PlanarPose {
-    double x_m = 0.0;
-    double y_m = 0.0;
-    double yaw_rad = 0.0;
-};
-
-Result<PlanarPose> parse_pose(const std::string& text) {
-    double values[3] = {};
-    std::size_t begin = 0;
-    for (int i = 0; i < 3; ++i) {
-        const std::size_t end = i < 2 ? text.find(',', begin) : text.size();
-        const auto value = end == std::string::npos ? std::nullopt : io::parse_double(text.substr(begin, end - begin));
-        if (!value || !std::isfinite(*value)) {
-            return usage_error(fmt::format("--pose '{}': three finite numbers x,y,yaw (m, m, rad) are needed", text));
-        }
-        values[i] = *value;
-        begin = end + 1;
-    }
-    return PlanarPose{values[0], values[1], values[2]};
-}
 
 int exit_code_of(gate::Decision decision) {
     switch (decision) {
@@ -52,7 +29,7 @@ int exit_code_of(gate::Decision decision) {
 }  // namespace
 
 int gate(const GateOptions& options) {
-    const auto pose = parse_pose(options.pose);
+    const auto pose = parse_three_numbers("--pose", options.pose, "x,y,yaw (m, m, rad)");
     if (!pose) return report(pose.error());
     if (options.command < 0 || options.command > 255) {
         return report(usage_error(fmt::format("--command {}: a code from 0 to 255 is needed", options.command)));
@@ -63,13 +40,15 @@ int gate(const GateOptions& options) {
     auto map = load_offline_map(options.map_dir);
     if (!map) return report(map.error());
 
-    gate::Query query = gate::make_query(static_cast<std::uint8_t>(options.command), pose->x_m, pose->y_m,
-                                         std::cos(pose->yaw_rad), std::sin(pose->yaw_rad));
+    gate::Query query = gate::make_query(static_cast<std::uint8_t>(options.command), (*pose)[0], (*pose)[1],
+                                         std::cos((*pose)[2]), std::sin((*pose)[2]));
     std::vector<std::string> assumed = map->assumed;
     assumed.push_back("frame and pose are as fresh as when the map was written");
     assumed.push_back("perception was ready");
-    if (options.vouch) {
-        query.vouched = vouch_for_start(machine->value().machine, query, *map->snapshot, assumed);
+    if (options.vouch_radius_m != 0.0) {
+        const auto vouched = vouch_for_start(machine->value().machine, query, *map->snapshot, options.vouch_radius_m, assumed);
+        if (!vouched) return report(vouched.error());
+        query.vouched = *vouched;
     }
     gate::GateHealth health;
     health.state = gate::GateState::ready;

@@ -3,6 +3,7 @@
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/point_cloud.hpp"
@@ -13,6 +14,8 @@ namespace surefoot::app {
 int ground(const GroundOptions& options) {
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
+    const auto origin = parse_three_numbers("--origin", options.origin, "x,y,z (m)");
+    if (!origin) return report(origin.error());
     auto cloud = io::read_cloud(options.cloud);
     if (!cloud) return report(cloud.error());
     // Organised clouds come straight from a camera: optical axes, y down. Others have z up.
@@ -24,7 +27,8 @@ int ground(const GroundOptions& options) {
     if (optical) config.max_tilt_deg = std::max(config.max_tilt_deg, kAnyMountTilt_deg);
 
     const auto sighting =
-        ground::sight_ground(config, cloud->points_m, up, Eigen::Vector3d::Zero(), options.common.seed);
+        ground::sight_ground(config, cloud->points_m, up, Eigen::Vector3d((*origin)[0], (*origin)[1], (*origin)[2]),
+                             options.common.seed);
     if (options.common.json) {
         fmt::print("{}\n", ground_json(sighting));
     } else if (sighting.observation.accepted) {

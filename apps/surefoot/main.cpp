@@ -103,9 +103,10 @@ void add_fuse(CLI::App& app, FuseOptions& o, int& exit_code) {
 
 void add_ground(CLI::App& app, GroundOptions& o, int& exit_code) {
     CLI::App* verb = bind(add_verb(app, "ground", "ground plane of a cloud: tilt, height, inliers",
-                                   "surefoot ground out/floor/map.ply --json"),
+                                   "surefoot ground out/floor/map.ply --origin 0,0,0.95 --json"),
                           o, ground, exit_code);
     verb->add_option("cloud", o.cloud, "PCD, PLY or XYZ")->required()->type_name("CLOUD");
+    verb->add_option("--origin", o.origin, "where the sensor is in the cloud; heights count from there")->type_name("X,Y,Z");
     verb->add_option("--frame", o.frame, "axes of the cloud; without it organised clouds are optical")
         ->check(CLI::IsMember({"optical", "body"}));
 }
@@ -119,7 +120,11 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
     verb->add_option("--command", o.command, "joystick sector 1-24, 25 turn left, 26 turn right")->required()->type_name("N");
     verb->add_option("--machine", o.machine, "machine file or built-in name")->type_name("FILE|NAME");
     verb->add_option("--explain", o.explain_file, "picture of footprint, corridor and deciding cell")->type_name("F.png");
-    verb->add_flag("--vouch,!--no-vouch", o.vouch, "count the start area under the present feet as vouched for (listed in 'assumed')");
+    verb->add_option("--vouch", o.vouch_radius_m,
+                     "radius around base_link that an operator answers for where nothing was measured; 0 = none; "
+                     "without it the ground under the present feet is assumed, and listed in 'assumed'")
+        ->type_name("M")
+        ->check(CLI::Range(0.0, 2.0));
 }
 
 void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {

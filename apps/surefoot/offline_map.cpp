@@ -65,6 +65,16 @@ std::vector<std::int64_t> heights_around(const gate::Query& query, const grid::M
     return heights;
 }
 
+/// Farthest corner of the standing feet from base_link [0.1 mm].
+double reach_of(const Machine& machine) {
+    double reach = 0.0;
+    for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
+        reach = std::max(reach, std::hypot(std::abs(foot->center_x_tenth_mm) + 0.5 * foot->length_tenth_mm,
+                                           std::abs(foot->center_y_tenth_mm) + 0.5 * foot->width_tenth_mm));
+    }
+    return reach;
+}
+
 }  // namespace
 
 Result<OfflineMap> load_offline_map(const std::string& folder) {
@@ -75,15 +85,23 @@ Result<OfflineMap> load_offline_map(const std::string& folder) {
     return OfflineMap{std::move(snapshot).value(), {}};
 }
 
-gate::VouchedArea vouch_for_start(const Machine& machine,
-                                  const gate::Query& query,
-                                  const grid::MapSnapshot& map,
-                                  std::vector<std::string>& assumed) {
+Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
+                                          const gate::Query& query,
+                                          const grid::MapSnapshot& map,
+                                          double radius_m,
+                                          std::vector<std::string>& assumed) {
+    const double limit_m = kTenthMm_m * machine.limits.vouch_radius_tenth_mm;
+    if (radius_m > limit_m) {
+        return usage_error(fmt::format("--vouch {:g}: the machine file allows at most {:g} m", radius_m, limit_m));
+    }
     gate::VouchedArea area;
     area.active = true;
     area.center_x_tenth_mm = query.x_tenth_mm;
     area.center_y_tenth_mm = query.y_tenth_mm;
-    area.radius_tenth_mm = machine.limits.vouch_radius_tenth_mm;
+    // Cells count only when they lie wholly inside: one diagonal more than the feet reach.
+    const double feet_m = kTenthMm_m * (reach_of(machine) + 1.5 * map.resolution_tenth_mm);
+    area.radius_tenth_mm =
+        static_cast<std::int32_t>((radius_m < 0.0 ? std::min(feet_m, limit_m) : radius_m) / kTenthMm_m);
     // The machine stands on the lower ground around it, not on the furniture beside it: lower quartile.
     const auto heights = heights_around(query, map, area.radius_tenth_mm);
     if (!heights.empty()) area.height_tenth_mm = static_cast<std::int32_t>(heights[heights.size() / 4]);

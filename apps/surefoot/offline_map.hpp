@@ -21,11 +21,13 @@ struct OfflineMap {
 /// map.snapshot of a run, else elevation.asc with variance.asc.
 [[nodiscard]] Result<OfflineMap> load_offline_map(const std::string& folder);
 
-/// The operator's word for the ground under the present feet: as far as the machine file allows, at the
-/// height that the map gives there. Adds a sentence to `assumed`.
-[[nodiscard]] gate::VouchedArea vouch_for_start(const Machine& machine,
-                                                const gate::Query& query,
-                                                const grid::MapSnapshot& map,
-                                                std::vector<std::string>& assumed);
+/// An operator's word for the ground around base_link, at the height that the map gives there. A
+/// negative radius means just the ground under the present feet. Adds a sentence to `assumed`; a usage
+/// error when the radius exceeds what the machine file allows.
+[[nodiscard]] Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
+                                                        const gate::Query& query,
+                                                        const grid::MapSnapshot& map,
+                                                        double radius_m,
+                                                        std::vector<std::string>& assumed);
 
 }  // namespace surefoot::app

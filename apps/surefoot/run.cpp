@@ -18,6 +18,12 @@ void choose_sensor_model(const camera::StereoRig& rig, Settings& settings) {
     if (!rig.right && model == elevation::SensorModel::matcher) model = elevation::SensorModel::kinect;
 }
 
+/// Where base_link stands over its own ground is known from the machine file.
+void expect_machine_height(const std::optional<io::MachineFile>& machine, Settings& settings) {
+    double& expected_m = settings.pipeline.ground.expected_height_m;
+    if (machine && expected_m == 0.0) expected_m = 1e-4 * machine->machine.sole_depth_tenth_mm;
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -31,6 +37,7 @@ int run(const RunOptions& options) {
     if (!source) return report(source.error());
     const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);
     choose_sensor_model(rig, *settings);
+    expect_machine_height(*machine, *settings);
     auto pipeline = pipeline::Pipeline::make(settings->pipeline, rig, *executor, steady_now_ns);
     if (!pipeline) return report(pipeline.error());
     if (const auto status = io::make_folder(options.out_dir); !status) return report(status.error());

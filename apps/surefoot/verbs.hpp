@@ -69,6 +69,7 @@ int fuse(const FuseOptions& options);
 struct GroundOptions {
     CommonOptions common;
     std::string cloud;
+    std::string origin = "0,0,0";  ///< of the sensor, in the axes of the cloud
     std::string frame;  ///< optical | body | "" = by the cloud
 };
 int ground(const GroundOptions& options);
@@ -80,7 +81,7 @@ struct GateOptions {
     int command = 0;
     std::string machine = "rex";
     std::string explain_file;
-    bool vouch = true;
+    double vouch_radius_m = -1.0;  ///< < 0: just the ground under the present feet
 };
 int gate(const GateOptions& options);
 

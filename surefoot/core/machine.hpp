@@ -140,11 +140,11 @@ constexpr const char* problem_of(const GateLimits& limits) noexcept {
         return "a drop limit is outside its range";
     if (!within(limits.drift_tenth_mm, 1, 1'000)) return "the drift limit is outside 0.1-100 mm";
     // Time limits have no value that switches them off.
-    constexpr std::int64_t kSecond_ns = 1'000'000'000;
-    if (!within(limits.frame_age_ns, std::int64_t{1}, kSecond_ns) ||
-        !within(limits.pose_age_ns, std::int64_t{1}, kSecond_ns) ||
-        !within(limits.verdict_ttl_ns, std::int64_t{1}, kSecond_ns) ||
-        !within(limits.future_tolerance_ns, std::int64_t{0}, kSecond_ns / 10))
+    constexpr std::int64_t kSecondNs = 1'000'000'000;
+    if (!within(limits.frame_age_ns, std::int64_t{1}, kSecondNs) ||
+        !within(limits.pose_age_ns, std::int64_t{1}, kSecondNs) ||
+        !within(limits.verdict_ttl_ns, std::int64_t{1}, kSecondNs) ||
+        !within(limits.future_tolerance_ns, std::int64_t{0}, kSecondNs / 10))
         return "a time limit is outside its range";
     if (!within(limits.vouch_radius_tenth_mm, 0, 20'000))
         return "the vouched radius is outside 0-2 m";

@@ -44,7 +44,7 @@ double turn_rad(const Movement& movement) {
 
 // The target and then each corner are rounded to 0.1 mm in x and y: twice half a diagonal, 1.42;
 // angles to 2^-20, which is 0.01 mm at 0.6 m and happens three times.
-constexpr double kRounding_tenth_mm = 1.8;
+constexpr double kRoundingTenthMm = 1.8;
 
 TEST(Footprints, target_and_boxes_agree_with_plain_trigonometry) {
     Rng rng(12);
@@ -70,12 +70,11 @@ TEST(Footprints, target_and_boxes_agree_with_plain_trigonometry) {
                 const double u = box.center_x_tenth_mm + (corner % 2 - 0.5) * box.length_tenth_mm;
                 const double v = box.center_y_tenth_mm + (corner / 2 - 0.5) * box.width_tenth_mm;
                 // On the rim: neither outside nor inside by more than the rounding.
-                EXPECT_NEAR(outside_by(sweep.feet[foot].landing, target.point(u, v)),
-                            0.0,
-                            kRounding_tenth_mm)
+                EXPECT_NEAR(
+                    outside_by(sweep.feet[foot].landing, target.point(u, v)), 0.0, kRoundingTenthMm)
                     << "round " << round;
                 EXPECT_NEAR(
-                    outside_by(sweep.feet[foot].stance, start.point(u, v)), 0.0, kRounding_tenth_mm)
+                    outside_by(sweep.feet[foot].stance, start.point(u, v)), 0.0, kRoundingTenthMm)
                     << "round " << round;
             }
         }

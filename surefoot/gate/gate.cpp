@@ -14,8 +14,8 @@ namespace surefoot::gate {
 namespace {
 
 /// 100 km and 1 km: bounds that keep every product of the exact geometry inside 64 bits.
-constexpr std::int64_t kFarthest_tenth_mm = 1'000'000'000;
-constexpr std::int64_t kHighest_tenth_mm = 10'000'000;
+constexpr std::int64_t kFarthestTenthMm = 1'000'000'000;
+constexpr std::int64_t kHighestTenthMm = 10'000'000;
 
 constexpr bool within(std::int64_t value, std::int64_t bound) noexcept {
     return value >= -bound && value <= bound;
@@ -40,18 +40,18 @@ void check_process(const GateHealth& health, std::int64_t now_ns, Findings& find
 
 void check_numbers(const Query& query, const GateLimits& limits, Findings& findings) noexcept {
     const double norm_sq = query.cos_yaw * query.cos_yaw + query.sin_yaw * query.sin_yaw;
-    const bool pose = within(query.x_tenth_mm, kFarthest_tenth_mm) &&
-                      within(query.y_tenth_mm, kFarthest_tenth_mm) && norm_sq > 0.999 &&
+    const bool pose = within(query.x_tenth_mm, kFarthestTenthMm) &&
+                      within(query.y_tenth_mm, kFarthestTenthMm) && norm_sq > 0.999 &&
                       norm_sq < 1.001;
     const bool stance = query.stance_source == StanceHeight::map ||
                         (query.stance_source == StanceHeight::given &&
-                         within(query.stance_height_tenth_mm, kHighest_tenth_mm));
+                         within(query.stance_height_tenth_mm, kHighestTenthMm));
     const VouchedArea& area = query.vouched;
-    const bool vouched = !area.active || (within(area.center_x_tenth_mm, kFarthest_tenth_mm) &&
-                                          within(area.center_y_tenth_mm, kFarthest_tenth_mm) &&
+    const bool vouched = !area.active || (within(area.center_x_tenth_mm, kFarthestTenthMm) &&
+                                          within(area.center_y_tenth_mm, kFarthestTenthMm) &&
                                           area.radius_tenth_mm > 0 &&
                                           area.radius_tenth_mm <= limits.vouch_radius_tenth_mm &&
-                                          within(area.height_tenth_mm, kHighest_tenth_mm));
+                                          within(area.height_tenth_mm, kHighestTenthMm));
     if (!(pose && stance && vouched)) findings.deny(Reason::bad_number);
 }
 
@@ -222,7 +222,7 @@ Query make_query(
     query.command = command;
     const double x = x_m * kTenthMmPerM;
     const double y = y_m * kTenthMmPerM;
-    const auto bound = static_cast<double>(kFarthest_tenth_mm);
+    const auto bound = static_cast<double>(kFarthestTenthMm);
     if (!(x >= -bound && x <= bound && y >= -bound && y <= bound)) return query;
     query.x_tenth_mm = static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
     query.y_tenth_mm = static_cast<std::int64_t>(y < 0.0 ? y - 0.5 : y + 0.5);

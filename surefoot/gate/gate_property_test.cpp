@@ -99,11 +99,11 @@ TEST(GateProperty, less_evidence_never_turns_a_refusal_into_ok) {
     for (int round = 0; round < 250; ++round) {
         const auto map = random_map(rng);
         const Query query = query_at_body(random_command(rng), *map);
-        Verdict before = decide(machine, query, *map, kReady, kNow_ns);
+        Verdict before = decide(machine, query, *map, kReady, kNowNs);
         for (int flip = 0; flip < 6; ++flip) {
             const char* what = worsen(*map, rng);
             seal(*map);
-            const Verdict after = decide(machine, query, *map, kReady, kNow_ns);
+            const Verdict after = decide(machine, query, *map, kReady, kNowNs);
             if (before.decision != Decision::ok) {
                 ASSERT_NE(after.decision, Decision::ok)
                     << "round " << round << ": " << what << " turned " << words(before);
@@ -126,7 +126,7 @@ TEST(GateProperty, ok_means_that_an_independent_look_finds_nothing) {
     for (int round = 0; round < 250; ++round) {
         const auto map = random_map(rng);
         const Query query = query_at_body(random_command(rng), *map);
-        const Verdict verdict = decide(machine, query, *map, kReady, kNow_ns);
+        const Verdict verdict = decide(machine, query, *map, kReady, kNowNs);
         if (verdict.decision != Decision::ok) continue;
         ++allowed;
         // Plain floating-point oracle over points of both landing feet and the drop band.
@@ -163,8 +163,8 @@ TEST(GateProperty, equal_bytes_give_equal_verdicts_wherever_they_lie) {
         const auto map = random_map(rng);
         std::memcpy(static_cast<void*>(copy.get()), map.get(), sizeof(*copy));
         const Query query = query_at_body(random_command(rng), *map);
-        const Verdict a = decide(machine, query, *map, kReady, kNow_ns);
-        const Verdict b = decide(machine, query, *copy, kReady, kNow_ns);
+        const Verdict a = decide(machine, query, *map, kReady, kNowNs);
+        const Verdict b = decide(machine, query, *copy, kReady, kNowNs);
         EXPECT_EQ(a.decision, b.decision);
         EXPECT_EQ(a.reasons, b.reasons);
         EXPECT_EQ(a.evidence.worst_x_tenth_mm, b.evidence.worst_x_tenth_mm);
@@ -180,7 +180,7 @@ TEST(GateProperty, a_shift_of_the_whole_world_by_cells_changes_nothing) {
     for (int round = 0; round < 50; ++round) {
         const auto map = random_map(rng);
         Query query = query_at_body(random_command(rng), *map);
-        const Verdict here = decide(machine, query, *map, kReady, kNow_ns);
+        const Verdict here = decide(machine, query, *map, kReady, kNowNs);
         const std::int64_t shift =
             250 * (static_cast<std::int64_t>(rng.below(2'000'000)) - 1'000'000);
         map->origin_x_tenth_mm += shift;
@@ -188,7 +188,7 @@ TEST(GateProperty, a_shift_of_the_whole_world_by_cells_changes_nothing) {
         query.x_tenth_mm += shift;
         query.y_tenth_mm -= shift;
         seal(*map);
-        const Verdict there = decide(machine, query, *map, kReady, kNow_ns);
+        const Verdict there = decide(machine, query, *map, kReady, kNowNs);
         EXPECT_EQ(here.reasons, there.reasons) << words(here) << " / " << words(there);
         EXPECT_EQ(here.evidence.max_tilt_tan_sq, there.evidence.max_tilt_tan_sq);
     }
@@ -202,7 +202,7 @@ TEST(GateProperty, decide_allocates_nothing) {
         Query query = query_at_body(static_cast<std::uint8_t>(code), *map);
         query.vouched = {true, 0, 0, 8000, 0};
         const long before = allocations.load();
-        const Verdict verdict = decide(machine, query, *map, kReady, kNow_ns);
+        const Verdict verdict = decide(machine, query, *map, kReady, kNowNs);
         EXPECT_EQ(allocations.load(), before) << words(verdict);
     }
 }
@@ -238,7 +238,7 @@ TEST(GateProperty, random_bytes_never_crash_and_never_pass) {
         map->origin_y_tenth_mm = any(1'000'000'000);
         map->gravity_source = grid::GravitySource::imu;
         map->health = grid::SnapshotHealth::ok;
-        map->frame_time_ns = map->pose_time_ns = kNow_ns;
+        map->frame_time_ns = map->pose_time_ns = kNowNs;
         seal(*map);
         ASSERT_TRUE(grid::is_intact(*map));
         for (int i = 0; i < 4; ++i) {
@@ -259,7 +259,7 @@ TEST(GateProperty, random_bytes_never_crash_and_never_pass) {
                              query.y_tenth_mm,
                              static_cast<std::int32_t>(1 + rng.below(10'000)),
                              0};
-            const Verdict verdict = decide(machine, query, *map, kReady, kNow_ns);
+            const Verdict verdict = decide(machine, query, *map, kReady, kNowNs);
             EXPECT_NE(verdict.decision, Decision::ok) << "round " << round;
         }
     }
@@ -280,7 +280,7 @@ TEST(GateProperty, a_decision_takes_less_than_a_few_milliseconds) {
                                            query_at_body(static_cast<std::uint8_t>(code), *map),
                                            *map,
                                            kReady,
-                                           kNow_ns);
+                                           kNowNs);
             const std::chrono::duration<double, std::micro> took =
                 std::chrono::steady_clock::now() - start;
             EXPECT_EQ(verdict.decision, Decision::ok);

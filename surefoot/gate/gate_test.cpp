@@ -18,12 +18,12 @@ void expect_refused(const Verdict& verdict, Reason primary) {
     EXPECT_EQ(verdict.primary, primary) << words(verdict);
     EXPECT_TRUE(verdict.reasons.contains(primary));
     EXPECT_TRUE(verdict.evidence.has_worst_cell) << words(verdict);
-    EXPECT_FALSE(verdict.allows_step(kNow_ns));
+    EXPECT_FALSE(verdict.allows_step(kNowNs));
 }
 void expect_error(const Verdict& verdict, Reason primary) {
     EXPECT_EQ(verdict.decision, Decision::error) << words(verdict);
     EXPECT_EQ(verdict.primary, primary) << words(verdict);
-    EXPECT_FALSE(verdict.allows_step(kNow_ns));
+    EXPECT_FALSE(verdict.allows_step(kNowNs));
 }
 void expect_ok(const Verdict& verdict) {
     EXPECT_EQ(verdict.decision, Decision::ok) << words(verdict);
@@ -36,13 +36,13 @@ TEST(Gate, a_default_verdict_query_and_health_inhibit) {
     EXPECT_FALSE(Verdict{}.allows_step(0));
     Terrain floor;
     const auto map = floor.snapshot();
-    expect_error(decide(rex(), Query{}, *map, kReady, kNow_ns), Reason::bad_number);
-    expect_error(decide(rex(), query_at_body(kForward, *map), *map, GateHealth{}, kNow_ns),
+    expect_error(decide(rex(), Query{}, *map, kReady, kNowNs), Reason::bad_number);
+    expect_error(decide(rex(), query_at_body(kForward, *map), *map, GateHealth{}, kNowNs),
                  Reason::not_ready);
-    expect_error(decide(Machine{}, query_at_body(kForward, *map), *map, kReady, kNow_ns),
+    expect_error(decide(Machine{}, query_at_body(kForward, *map), *map, kReady, kNowNs),
                  Reason::config);
     const auto nothing = std::make_unique<grid::MapSnapshot>();
-    expect_error(decide(rex(), query_at_body(kForward, *map), *nothing, kReady, kNow_ns),
+    expect_error(decide(rex(), query_at_body(kForward, *map), *nothing, kReady, kNowNs),
                  Reason::internal);
 }
 
@@ -57,17 +57,17 @@ TEST(Gate, given_a_flat_known_floor_then_every_configured_movement_is_ok) {
         EXPECT_EQ(verdict.evidence.height_delta_tenth_mm, 0);
         EXPECT_EQ(verdict.map_version, 42U);
         EXPECT_EQ(verdict.config_hash, 4711U);
-        EXPECT_EQ(verdict.valid_until_ns, kNow_ns + 300 * kMs);
+        EXPECT_EQ(verdict.valid_until_ns, kNowNs + 300 * kMs);
     }
 }
 
 TEST(Gate, an_ok_lives_300_ms_and_not_before_it_was_given) {
     Terrain floor;
     const Verdict verdict = ask(floor, kForward);
-    EXPECT_TRUE(verdict.allows_step(kNow_ns));
-    EXPECT_TRUE(verdict.allows_step(kNow_ns + 300 * kMs - 1));
-    EXPECT_FALSE(verdict.allows_step(kNow_ns + 300 * kMs));
-    EXPECT_FALSE(verdict.allows_step(kNow_ns - 1));
+    EXPECT_TRUE(verdict.allows_step(kNowNs));
+    EXPECT_TRUE(verdict.allows_step(kNowNs + 300 * kMs - 1));
+    EXPECT_FALSE(verdict.allows_step(kNowNs + 300 * kMs));
+    EXPECT_FALSE(verdict.allows_step(kNowNs - 1));
 }
 
 TEST(Gate, works_at_any_pose_yaw_and_cell_size) {
@@ -81,7 +81,7 @@ TEST(Gate, works_at_any_pose_yaw_and_cell_size) {
         for (int deg = -180; deg < 180; deg += 17) {
             const double yaw = deg * std::numbers::pi / 180.0;
             const Query query = make_query(kForward, 0.0131, -0.0077, std::cos(yaw), std::sin(yaw));
-            const Verdict verdict = decide(rex(), query, *map, kReady, kNow_ns);
+            const Verdict verdict = decide(rex(), query, *map, kReady, kNowNs);
             expect_ok(verdict);
             EXPECT_FALSE(HasFailure()) << "resolution " << res_m << " yaw " << deg;
         }
@@ -146,7 +146,7 @@ TEST(Gate, any_single_unknown_cell_of_the_swept_area_inhibits) {
             map->source[at] = grid::EvidenceSource::unknown;
             seal(*map);
             const Verdict verdict =
-                decide(machine, query_at_body(kForward, *map), *map, kReady, kNow_ns);
+                decide(machine, query_at_body(kForward, *map), *map, kReady, kNowNs);
             EXPECT_EQ(verdict.primary, Reason::unknown_cells) << x << " " << y << words(verdict);
             map->source[at] = before;
         }
@@ -385,7 +385,7 @@ TEST(Gate, a_gentle_wedge_along_or_across_the_foot_is_a_plane_not_roughness) {
             }
             const auto map = wedge.snapshot();
             const Query query = make_query(kForward, 0.0, 0.0, std::cos(yaw), std::sin(yaw));
-            expect_ok(decide(rex(), query, *map, kReady, kNow_ns));
+            expect_ok(decide(rex(), query, *map, kReady, kNowNs));
             EXPECT_FALSE(HasFailure()) << "yaw " << yaw << (along ? " along" : " across");
         }
     }
@@ -439,16 +439,16 @@ TEST(Gate, the_height_of_the_stance_comes_from_the_map_or_from_the_caller) {
     low.height.fill(-0.2F);
     const auto map = low.snapshot();
     Query query = query_at_body(kForward, *map);
-    const Verdict by_map = decide(rex(), query, *map, kReady, kNow_ns);
+    const Verdict by_map = decide(rex(), query, *map, kReady, kNowNs);
     expect_ok(by_map);
     EXPECT_EQ(by_map.evidence.stance_height_tenth_mm, -2000);
     query.stance_source = StanceHeight::given;
     query.stance_height_tenth_mm = -1950;
-    expect_ok(decide(rex(), query, *map, kReady, kNow_ns));
+    expect_ok(decide(rex(), query, *map, kReady, kNowNs));
     query.stance_height_tenth_mm = 0;
-    expect_refused(decide(rex(), query, *map, kReady, kNow_ns), Reason::drop_off);
+    expect_refused(decide(rex(), query, *map, kReady, kNowNs), Reason::drop_off);
     query.stance_source = static_cast<StanceHeight>(9);
-    expect_error(decide(rex(), query, *map, kReady, kNow_ns), Reason::bad_number);
+    expect_error(decide(rex(), query, *map, kReady, kNowNs), Reason::bad_number);
 }
 
 // ---- the vouched start area ---------------------------------------------------------------------
@@ -466,7 +466,7 @@ struct VouchedStart : ::testing::Test {
         query.vouched = {true, 0, 0, 8500, 0};
     }
     void rebuild() { map = floor.snapshot(); }
-    [[nodiscard]] Verdict ask_now() const { return decide(rex(), query, *map, kReady, kNow_ns); }
+    [[nodiscard]] Verdict ask_now() const { return decide(rex(), query, *map, kReady, kNowNs); }
 };
 
 TEST_F(VouchedStart, is_off_by_default_and_the_first_step_is_then_refused) {
@@ -545,8 +545,8 @@ TEST(GateReadiness, ages_are_two_sided) {
                           {4999, 10, Reason::frame_stale}};
     for (const Case& c : cases) {
         Terrain floor;
-        floor.input.frame_time_ns = kNow_ns - c.frame_age_ms * kMs;
-        floor.input.pose_time_ns = kNow_ns - c.pose_age_ms * kMs;
+        floor.input.frame_time_ns = kNowNs - c.frame_age_ms * kMs;
+        floor.input.pose_time_ns = kNowNs - c.pose_age_ms * kMs;
         const Verdict verdict = ask(floor, kForward);
         EXPECT_EQ(verdict.primary, c.primary)
             << c.frame_age_ms << " " << c.pose_age_ms << " " << words(verdict);
@@ -557,7 +557,7 @@ TEST(GateReadiness, extreme_stamps_do_not_overflow) {
     constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();
     constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
     for (const std::int64_t stamp : {kMin, std::int64_t{0}, kMax}) {
-        for (const std::int64_t now : {kMin, std::int64_t{-1}, kNow_ns, kMax}) {
+        for (const std::int64_t now : {kMin, std::int64_t{-1}, kNowNs, kMax}) {
             Terrain floor;
             floor.input.frame_time_ns = stamp;
             const auto map = floor.snapshot();
@@ -572,7 +572,7 @@ TEST(GateReadiness, only_ready_can_say_ok) {
     const auto map = floor.snapshot();
     for (int state = 0; state < 256; ++state) {
         const GateHealth health{static_cast<GateState>(state), {}};
-        const Verdict verdict = decide(rex(), query_at_body(kForward, *map), *map, health, kNow_ns);
+        const Verdict verdict = decide(rex(), query_at_body(kForward, *map), *map, health, kNowNs);
         if (health.state == GateState::ready)
             expect_ok(verdict);
         else
@@ -587,7 +587,7 @@ TEST(GateReadiness, every_raised_fault_is_an_error_under_its_own_name) {
     for (int i = 0; i < kReasonCount; ++i) {
         const auto fault = static_cast<Reason>(i);
         const GateHealth health{GateState::ready, ReasonSet(fault)};
-        const Verdict verdict = decide(rex(), query_at_body(kForward, *map), *map, health, kNow_ns);
+        const Verdict verdict = decide(rex(), query_at_body(kForward, *map), *map, health, kNowNs);
         expect_error(verdict, is_error(fault) ? fault : Reason::internal);
     }
 }
@@ -637,7 +637,7 @@ TEST(GateReadiness, numbers_must_be_finite_and_small) {
                          make_query(kForward, 1e300, 0, 1, 0),
                          make_query(kForward, -1e6, 0, 1, 0)};
     for (const Query& query : bad)
-        expect_error(decide(rex(), query, *map, kReady, kNow_ns), Reason::bad_number);
+        expect_error(decide(rex(), query, *map, kReady, kNowNs), Reason::bad_number);
 }
 
 TEST(GateReadiness, all_256_codes_are_either_configured_or_an_error) {
@@ -651,12 +651,12 @@ TEST(GateReadiness, all_256_codes_are_either_configured_or_an_error) {
     for (int code = 0; code < 256; ++code) {
         const auto command = static_cast<std::uint8_t>(code);
         const Query query = query_at_body(command, *map);
-        const Verdict all = decide(rex(), query, *map, kReady, kNow_ns);
+        const Verdict all = decide(rex(), query, *map, kReady, kNowNs);
         if (code >= 1 && code <= 26)
             expect_ok(all);
         else
             expect_error(all, Reason::unknown_command);
-        const Verdict few = decide(four, query, *map, kReady, kNow_ns);
+        const Verdict few = decide(four, query, *map, kReady, kNowNs);
         if (four.movements.size() > command && four.movements[command].configured)
             expect_ok(few);
         else
@@ -670,9 +670,9 @@ TEST(GateReadiness, a_class_that_is_off_has_no_movements) {
     Machine machine = rex();
     machine.movements[kForward].movement_class = MovementClass::stair;
     const Query query = query_at_body(kForward, *map);
-    expect_error(decide(machine, query, *map, kReady, kNow_ns), Reason::unknown_command);
+    expect_error(decide(machine, query, *map, kReady, kNowNs), Reason::unknown_command);
     machine.limits.step[1].enabled = true;
-    expect_ok(decide(machine, query, *map, kReady, kNow_ns));
+    expect_ok(decide(machine, query, *map, kReady, kNowNs));
 }
 
 TEST(GateReadiness, an_error_hides_no_terrain_and_beats_it) {
@@ -689,7 +689,7 @@ TEST(VerdictText, says_what_where_value_and_limit) {
     hole.box(0.55, 0.60, 0.15, 0.20, -0.17);
     const auto map = hole.snapshot();
     const Query query = query_at_body(kForward, *map);
-    const Verdict verdict = decide(rex(), query, *map, kReady, kNow_ns);
+    const Verdict verdict = decide(rex(), query, *map, kReady, kNowNs);
     // The cell's centre at 0.5625 m, the toes at 0.240 m.
     EXPECT_EQ(text_of(verdict, query, rex()),
               "drop of 0.17 m, 0.32 m ahead of the left foot (limit 0.050 m)");

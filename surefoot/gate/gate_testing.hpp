@@ -14,10 +14,10 @@
 /// What the tests of the gate share: the REX, terrain to stand on, and one call that asks.
 namespace surefoot::gate::testing {
 
-inline constexpr std::int64_t kNow_ns = 5'000'000'000;
+inline constexpr std::int64_t kNowNs = 5'000'000'000;
 inline constexpr std::int64_t kMs = 1'000'000;
 inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-inline constexpr double kResolution_m = 0.025;
+inline constexpr double kResolutionM = 0.025;
 
 // Joystick codes of the REX.
 inline constexpr std::uint8_t kForward = 9;
@@ -33,7 +33,7 @@ Machine rex();
 /// Ground of 240 x 240 cells of 25 mm around the machine, which stands at the origin of odom and
 /// looks along +x. Flat, known and fresh unless a test says otherwise.
 struct Terrain {
-    grid::GridGeometry geometry{kResolution_m, 240, 240, {-3.0, -3.0}};
+    grid::GridGeometry geometry{kResolutionM, 240, 240, {-3.0, -3.0}};
     grid::Layer height{240, 240, 0.0F};
     grid::Layer variance{240, 240, 16e-6F};  // (4 mm)^2
     grid::Layer drift{240, 240, 0.005F};
@@ -42,8 +42,8 @@ struct Terrain {
 
     Terrain() {
         input.T_odom_body.translation_m = {0.0, 0.0, 0.99};
-        input.frame_time_ns = kNow_ns - 50 * kMs;
-        input.pose_time_ns = kNow_ns - 10 * kMs;
+        input.frame_time_ns = kNowNs - 50 * kMs;
+        input.pose_time_ns = kNowNs - 10 * kMs;
         input.gravity_source = grid::GravitySource::imu;
         input.health = grid::SnapshotHealth::ok;
         input.version = 42;
@@ -104,7 +104,7 @@ inline void seal(grid::MapSnapshot& map) {
 }
 
 inline Verdict ask(const grid::MapSnapshot& map, std::uint8_t command) {
-    return decide(rex(), query_at_body(command, map), map, kReady, kNow_ns);
+    return decide(rex(), query_at_body(command, map), map, kReady, kNowNs);
 }
 inline Verdict ask(Terrain& terrain, std::uint8_t command) {
     return ask(*terrain.snapshot(), command);

@@ -54,8 +54,8 @@ std::string place(const Evidence& evidence, const Query& query, const Machine& m
     const double ahead =
         beyond(forward, metres(box.center_x_tenth_mm), metres(box.length_tenth_mm));
     const double aside = beyond(left, metres(box.center_y_tenth_mm), metres(box.width_tenth_mm));
-    constexpr double kNear_m = 0.005;  // rounds to 0.00
-    if (magnitude(ahead) < kNear_m && magnitude(aside) < kNear_m) return "under " + foot;
+    constexpr double kNearM = 0.005;  // rounds to 0.00
+    if (magnitude(ahead) < kNearM && magnitude(aside) < kNearM) return "under " + foot;
     if (magnitude(ahead) >= magnitude(aside))
         return fixed(magnitude(ahead), 2) + (ahead > 0.0 ? " m ahead of " : " m behind ") + foot;
     return fixed(magnitude(aside), 2) + (aside > 0.0 ? " m left of " : " m right of ") + foot;

@@ -67,21 +67,20 @@ std::uint64_t header_hash(const MapSnapshot& s) noexcept {
 
 bool has_sound_header(const MapSnapshot& s) noexcept {
     // 5 mm is the finest and 0.2 m the coarsest cell that the rules of the gate were made for.
-    constexpr std::int32_t kFinest_tenth_mm = 50;
-    constexpr std::int32_t kCoarsest_tenth_mm = 2000;
+    constexpr std::int32_t kFinestTenthMm = 50;
+    constexpr std::int32_t kCoarsestTenthMm = 2000;
     // 100 km: what quantised coordinates may reach without any product overflowing.
-    constexpr std::int64_t kFarthest_tenth_mm = 1'000'000'000;
+    constexpr std::int64_t kFarthestTenthMm = 1'000'000'000;
     const auto near = [](std::int64_t value) {
-        return value >= -kFarthest_tenth_mm && value <= kFarthest_tenth_mm;
+        return value >= -kFarthestTenthMm && value <= kFarthestTenthMm;
     };
     const double norm_sq =
         s.body_cos_yaw * s.body_cos_yaw + s.body_sin_yaw * s.body_sin_yaw;  // NaN fails the test
     return s.magic == MapSnapshot::kMagic && s.layout == MapSnapshot::kLayout && s.nx >= 1 &&
            s.nx <= MapSnapshot::kMaxSide && s.ny >= 1 && s.ny <= MapSnapshot::kMaxSide &&
-           s.resolution_tenth_mm >= kFinest_tenth_mm &&
-           s.resolution_tenth_mm <= kCoarsest_tenth_mm && near(s.origin_x_tenth_mm) &&
-           near(s.origin_y_tenth_mm) && near(s.body_x_tenth_mm) && near(s.body_y_tenth_mm) &&
-           near(s.body_z_tenth_mm) && norm_sq > 0.999 && norm_sq < 1.001;
+           s.resolution_tenth_mm >= kFinestTenthMm && s.resolution_tenth_mm <= kCoarsestTenthMm &&
+           near(s.origin_x_tenth_mm) && near(s.origin_y_tenth_mm) && near(s.body_x_tenth_mm) &&
+           near(s.body_y_tenth_mm) && near(s.body_z_tenth_mm) && norm_sq > 0.999 && norm_sq < 1.001;
 }
 
 }  // namespace

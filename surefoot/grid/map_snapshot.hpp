@@ -17,10 +17,10 @@ enum class GravitySource : std::uint8_t { assumed = 0, plane = 1, imu = 2 };
 /// Health of the motion estimate when the snapshot was taken (as core Health, fixed width).
 enum class SnapshotHealth : std::uint8_t { lost = 0, degraded = 1, ok = 2 };
 
-/// Everything that the step gate knows about the ground: a plain block of memory that can be copied,
-/// stored and shared between processes. Lengths are integers in units of 0.1 mm ("tenth_mm"), so that
-/// a decision is the same on every machine. Layer element = iy * nx + ix; cell (ix, iy) covers
-/// [origin + i * resolution, origin + (i + 1) * resolution) in odom.
+/// Everything that the step gate knows about the ground: a plain block of memory that can be
+/// copied, stored and shared between processes. Lengths are integers in units of 0.1 mm
+/// ("tenth_mm"), so that a decision is the same on every machine. Layer element = iy * nx + ix;
+/// cell (ix, iy) covers [origin + i * resolution, origin + (i + 1) * resolution) in odom.
 struct MapSnapshot {
     static constexpr std::uint32_t kMagic = 0x54465253;  // "SRFT"
     static constexpr std::uint32_t kLayout = 1;
@@ -32,10 +32,10 @@ struct MapSnapshot {
 
     std::uint32_t magic = kMagic;
     std::uint32_t layout = kLayout;
-    std::uint64_t version = 0;            ///< grows with every published map
+    std::uint64_t version = 0;  ///< grows with every published map
     std::uint64_t config_hash = 0;
-    std::int64_t frame_time_ns = 0;       ///< last integrated depth frame
-    std::int64_t pose_time_ns = 0;        ///< last pose
+    std::int64_t frame_time_ns = 0;  ///< last integrated depth frame
+    std::int64_t pose_time_ns = 0;   ///< last pose
     std::int32_t resolution_tenth_mm = 0;
     std::int32_t nx = 0;
     std::int32_t ny = 0;
@@ -51,12 +51,15 @@ struct MapSnapshot {
     SnapshotHealth health = SnapshotHealth::lost;
     std::array<std::uint8_t, 6> padding{};
 
-    std::array<std::int32_t, kMaxCells> height_tenth_mm{};       ///< kUnknownHeight = never measured
-    std::array<std::uint16_t, kMaxCells> sigma_tenth_mm{};       ///< one sigma of the height, saturated
-    std::array<std::uint16_t, kMaxCells> drift_tenth_mm{};       ///< 1-sigma horizontal drift since last seen
-    std::array<std::uint16_t, kMaxCells> clearance_tenth_mm{};   ///< free height above; kNoCeiling = open
-    std::array<std::uint16_t, kMaxCells> component{};            ///< label of the connected surface, 0 = none
-    std::array<std::uint8_t, kMaxCells> drop_evidence{};         ///< 0..255, 255 = a ray proved a drop here
+    std::array<std::int32_t, kMaxCells> height_tenth_mm{};  ///< kUnknownHeight = never measured
+    std::array<std::uint16_t, kMaxCells> sigma_tenth_mm{};  ///< one sigma of the height, saturated
+    std::array<std::uint16_t, kMaxCells>
+        drift_tenth_mm{};  ///< 1-sigma horizontal drift since last seen
+    std::array<std::uint16_t, kMaxCells>
+        clearance_tenth_mm{};                          ///< free height above; kNoCeiling = open
+    std::array<std::uint16_t, kMaxCells> component{};  ///< label of the connected surface, 0 = none
+    std::array<std::uint8_t, kMaxCells>
+        drop_evidence{};  ///< 0..255, 255 = a ray proved a drop here
     std::array<EvidenceSource, kMaxCells> source{};
 
     std::uint64_t checksum = 0;  ///< of everything above; see snapshot_checksum()

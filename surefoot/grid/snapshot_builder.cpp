@@ -11,7 +11,7 @@ namespace surefoot::grid {
 namespace {
 
 constexpr double kTenthMmPerM = 1e4;
-constexpr double kHighest_m = 1000.0;  ///< a height beyond it is a broken number, not ground
+constexpr double kHighestM = 1000.0;  ///< a height beyond it is a broken number, not ground
 
 std::int64_t tenth_mm(double length_m) {
     return std::llround(length_m * kTenthMmPerM);
@@ -132,7 +132,7 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
                 : static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(evidence, 0.0, 1.0)));
     }
     const double height_m = value(input.height_m);
-    if (!(std::abs(height_m) <= kHighest_m)) return;
+    if (!(std::abs(height_m) <= kHighestM)) return;
     out.height_tenth_mm[at] = static_cast<std::int32_t>(tenth_mm(height_m));
     out.sigma_tenth_mm[at] = saturated_up(std::sqrt(value(input.variance_m2)));
     if (!input.drift_m.empty()) out.drift_tenth_mm[at] = saturated_up(value(input.drift_m));

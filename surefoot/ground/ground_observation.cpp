@@ -134,7 +134,13 @@ Candidate measured(const GroundConfig& config,
 }
 
 /// Whether `a` is the better ground of two accepted planes.
-bool is_more_ground(const Candidate& a, const Candidate& b) {
+bool is_more_ground(const GroundConfig& config, const Candidate& a, const Candidate& b) {
+    if (config.expected_height_m > 0.0) {
+        const double a_off_m = std::abs(a.height_m() - config.expected_height_m);
+        const double b_off_m = std::abs(b.height_m() - config.expected_height_m);
+        // Planes that fit about equally well (a ramp that begins at the feet) differ by the rules below.
+        if (std::abs(a_off_m - b_off_m) > config.max_disagreement_m) return a_off_m < b_off_m;
+    }
     const double a_at_b =
         -a.fit.plane.signed_distance_m(b.fit.centroid_m);  // of plane a above b's points
     const double b_at_a = -b.fit.plane.signed_distance_m(a.fit.centroid_m);
@@ -144,9 +150,9 @@ bool is_more_ground(const Candidate& a, const Candidate& b) {
 }
 
 /// An accepted plane wins over a rejected one; of two rejected ones the first (largest) stays.
-bool is_better(const Candidate& a, const Candidate& b) {
+bool is_better(const GroundConfig& config, const Candidate& a, const Candidate& b) {
     if (a.reason != GroundReason::accepted) return false;
-    return b.reason != GroundReason::accepted || is_more_ground(a, b);
+    return b.reason != GroundReason::accepted || is_more_ground(config, a, b);
 }
 
 /// One plane after the other, largest first, each without the points of those before it.
@@ -165,7 +171,7 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
         const Candidate candidate = measured(config, points, *found, up);
         const bool height_fits = candidate.height_m() >= config.min_height_m &&
                                  candidate.height_m() <= config.max_height_m;
-        if (height_fits && (!best || is_better(candidate, *best))) best = candidate;
+        if (height_fits && (!best || is_better(config, candidate, *best))) best = candidate;
         // Twice the tolerance takes the noisy fringe of this plane away too.
         std::erase_if(rest, [&](const Eigen::Vector3d& p) {
             return std::abs(found->plane.signed_distance_m(p)) <= 2.0 * config.tolerance_m;

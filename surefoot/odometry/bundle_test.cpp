@@ -123,21 +123,24 @@ TEST(Bundle, BringsPosesToTheTruthAndLeavesFixedOnes) {
     const BundleResult result = adjust_bundle(test_rig(), config, problem);
     EXPECT_LT(result.cost_after, 0.2 * result.cost_before);
     EXPECT_EQ(problem.T_world_camera[0].translation_m, first.translation_m);
-    // 60 points at 0.3 px: about 0.3 px / 400 px * 2.5 m / sqrt(60) = 0.25 mm per axis.
+    // 0.3 px / 400 px * 2.5 m / sqrt(60) = 0.25 mm for a pure shift; a shift that a turn hides
+    // costs up to ten times that with points in a narrow cone.
     for (std::size_t i = 1; i < truth.size(); ++i)
         EXPECT_LT(difference(truth[i], problem.T_world_camera[i]).norm(), 3e-3) << "pose " << i;
 }
 
 TEST(Bundle, OneWrongSightIsNamedAndHarmless) {
-    std::vector<Pose> truth;
-    BundleProblem problem = make_problem(3, &truth);
-    problem.sights[10].pixel_px.x() += 30.0;
     BundleConfig config;
     config.sigma_px = kNoise_px;
     config.iterations = 20;
-    const BundleResult result = adjust_bundle(test_rig(), config, problem);
+    BundleProblem good = make_problem(3);
+    BundleProblem bad = good;
+    bad.sights[10].pixel_px.x() += 30.0;
+    static_cast<void>(adjust_bundle(test_rig(), config, good));
+    const BundleResult result = adjust_bundle(test_rig(), config, bad);
     EXPECT_GT(result.residual_sigmas[10], 20.0);
-    EXPECT_LT(difference(truth[5], problem.T_world_camera[5]).norm(), 3e-3);
+    // 100 sigmas off, it pulls like one of huber_sigmas among 360 sights.
+    EXPECT_LT(difference(good.T_world_camera[5], bad.T_world_camera[5]).norm(), 1e-3);
 }
 
 TEST(Bundle, NothingToDoIsNotAnError) {

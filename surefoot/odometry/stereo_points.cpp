@@ -13,8 +13,10 @@ namespace {
 constexpr int kRadius = 4;  ///< of the coarse search window
 constexpr int kSize = 2 * kRadius + 1;
 constexpr int kCount = kSize * kSize;
-constexpr double kKnot_px = 8.0;            ///< the epipolar curve is straight enough between knots
-constexpr int kSamePeak_px = 3;             ///< places this close belong to one maximum
+constexpr double kKnot_px = 8.0;  ///< the epipolar curve is straight enough between knots
+constexpr int kSamePeak_px = 3;   ///< places this close belong to one maximum
+constexpr double kCorrelationNoise =
+    0.05;  ///< of whole-pixel windows: smaller differences mean nothing
 constexpr double kCoarseCorrelation = 0.6;  ///< before the sub-pixel refinement
 constexpr double kRefineShift_px = 2.0;
 constexpr double kDepthEdge = 0.03;  ///< relative depth step within the 3x3 neighbourhood
@@ -96,7 +98,8 @@ std::optional<Eigen::Vector2d> best_place(ImageView<const std::uint8_t> right,
     if (top < kCoarseCorrelation) return std::nullopt;
     for (int d = 0; d < static_cast<int>(score.size()); ++d) {
         const double other = score[static_cast<std::size_t>(d)];
-        if (std::abs(d - best) > kSamePeak_px && 1.0 - other < uniqueness * (1.0 - top))
+        if (std::abs(d - best) > kSamePeak_px &&
+            1.0 - other < uniqueness * (1.0 - top) + kCorrelationNoise)
             return std::nullopt;
     }
     return curve[static_cast<std::size_t>(best)];

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/executor.hpp"
@@ -12,14 +15,25 @@
 
 namespace surefoot::odometry::testing {
 
-/// Smooth random grey value of a surface: three octaves of value noise on an integer lattice.
+/// Random numbers in [0, 1) on a lattice that repeats every 256 steps.
+class Lattice {
+  public:
+    explicit Lattice(std::uint64_t seed) {
+        Rng rng(seed);
+        for (float& value : values_) value = static_cast<float>(rng.uniform());
+    }
+    [[nodiscard]] double at(int i, int j) const {
+        return static_cast<double>(values_[static_cast<std::size_t>((i & 255) * 256 + (j & 255))]);
+    }
+
+  private:
+    std::vector<float> values_ = std::vector<float>(256 * 256);
+};
+
+/// Smooth random grey value of a surface: three octaves of value noise.
 inline double texture_grey(int surface, double a, double b) {
-    const auto lattice = [surface](int i, int j) {
-        const auto key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32U |
-                         static_cast<std::uint32_t>(j);
-        return static_cast<double>(mix_seed(key, static_cast<std::uint64_t>(surface)) >> 40U) /
-               16777216.0;
-    };
+    static const std::array<Lattice, 3> lattices{Lattice(1), Lattice(2), Lattice(3)};
+    const Lattice& lattice = lattices[static_cast<std::size_t>(surface)];
     double grey = 0.0;
     double amplitude = 120.0;
     for (double scale = 12.0; scale < 100.0; scale *= 2.5, amplitude *= 0.6) {
@@ -30,8 +44,8 @@ inline double texture_grey(int surface, double a, double b) {
         const auto smooth = [](double t) { return t * t * (3.0 - 2.0 * t); };
         const double s = smooth(x - i);
         const double t = smooth(y - j);
-        grey += amplitude * ((lattice(i, j) * (1.0 - s) + lattice(i + 1, j) * s) * (1.0 - t) +
-                             (lattice(i, j + 1) * (1.0 - s) + lattice(i + 1, j + 1) * s) * t);
+        grey += amplitude * ((lattice.at(i, j) * (1.0 - s) + lattice.at(i + 1, j) * s) * (1.0 - t) +
+                             (lattice.at(i, j + 1) * (1.0 - s) + lattice.at(i + 1, j + 1) * s) * t);
     }
     return std::clamp(grey, 0.0, 255.0);
 }
@@ -77,19 +91,35 @@ inline camera::StereoRig small_depth_rig() {
     return rig;
 }
 
+/// Unit rays of all pixels, row by row; computed once per lens.
+inline const std::vector<Eigen::Vector3d>& rays_of(const camera::Camera& eye) {
+    static std::vector<std::pair<double, std::vector<Eigen::Vector3d>>> cache;  // by cx
+    const double key = std::get<camera::PinholeRadTan>(eye.model).cx_px;
+    for (const auto& [cx, rays] : cache)
+        if (cx == key) return rays;
+    std::vector<Eigen::Vector3d> rays;
+    for (int v = 0; v < eye.height; ++v)
+        for (int u = 0; u < eye.width; ++u)
+            rays.push_back(*camera::unproject(eye.model, Eigen::Vector2d(u, v)));
+    cache.emplace_back(key, std::move(rays));
+    return cache.back().second;
+}
+
+/// Depth, where asked for, is along z of the eye.
 inline GreyImage render_eye(const camera::Camera& eye,
                             const Pose& T_world_eye,
                             double noise_grey,
                             Rng& rng,
                             Image<float>* depth_m = nullptr) {
+    const auto& rays = rays_of(eye);
+    const Eigen::Matrix3d R = T_world_eye.R();
     GreyImage image(eye.width, eye.height);
     if (depth_m != nullptr) *depth_m = Image<float>(eye.width, eye.height);
     for (int v = 0; v < eye.height; ++v) {
         for (int u = 0; u < eye.width; ++u) {
-            const Eigen::Vector3d ray = *camera::unproject(eye.model, Eigen::Vector2d(u, v));
+            const Eigen::Vector3d& ray = rays[static_cast<std::size_t>(v * eye.width + u)];
             double grey = 0.0;
-            const double along =
-                cast_ray(T_world_eye.translation_m, T_world_eye.rotation * ray, grey);
+            const double along = cast_ray(T_world_eye.translation_m, R * ray, grey);
             if (noise_grey > 0.0) grey += noise_grey * rng.normal();
             image.at(u, v) = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));
             if (depth_m != nullptr)

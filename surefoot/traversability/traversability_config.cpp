@@ -107,7 +107,7 @@ TraversabilityConfig TraversabilityConfig::widened_to(double resolution_m) const
                              &result.step.first_radius_m,
                              &result.step.second_radius_m,
                              &result.roughness.radius_m}) {
-        if (*radius_m < resolution_m) *radius_m = 1.5 * resolution_m;
+        if (*radius_m < resolution_m) *radius_m = resolution_m;
     }
     return result;
 }

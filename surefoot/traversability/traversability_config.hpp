@@ -60,8 +60,9 @@ struct TraversabilityConfig {
 
     /// First reason why this cannot rate a grid of that cell size, or nothing.
     [[nodiscard]] std::optional<std::string> problem(double resolution_m) const;
-    /// The same with every radius that is shorter than a cell widened to 1.5 cells (a 3x3 disc), so
-    /// that one configuration serves coarse maps too.
+    /// The same with every radius that is shorter than a cell widened to one cell, the smallest disc
+    /// that has neighbours: one configuration serves coarse maps too, and obstacles grow no more than
+    /// they must.
     [[nodiscard]] TraversabilityConfig widened_to(double resolution_m) const;
 };
 

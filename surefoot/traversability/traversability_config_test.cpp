@@ -101,8 +101,8 @@ TEST(TraversabilityConfig, RadiusBelowACellIsNamedAndCanBeWidened) {
         << *problem;
     const TraversabilityConfig widened = config.widened_to(0.1);
     EXPECT_FALSE(widened.problem(0.1));
-    EXPECT_DOUBLE_EQ(widened.normals.radius_m, 0.15);
-    EXPECT_DOUBLE_EQ(widened.step.second_radius_m, 0.15);
+    EXPECT_DOUBLE_EQ(widened.normals.radius_m, 0.1);
+    EXPECT_DOUBLE_EQ(widened.step.second_radius_m, 0.1);
     EXPECT_DOUBLE_EQ(config.widened_to(0.025).normals.radius_m, 0.08) << "enough already";
 }
 
