@@ -28,7 +28,7 @@ struct FrontEndConfig {
     KltConfig klt;
     CornerConfig corners;
     StereoPointConfig stereo;
-    double min_correlation = 0.9;  ///< of an aligned patch
+    double min_correlation = 0.8;  ///< of an aligned patch
     int most_tracks = 240;         ///< with those found again
     int most_attempts = 60;        ///< landmarks looked for again per frame
 };

@@ -19,7 +19,7 @@ constexpr double kKeyframeShare = 0.7;  ///< keyframe when fewer of the last one
 constexpr double kKeyframeParallax =
     0.035;                            ///< or when they moved by this share of the image width
 constexpr int kKeyframePeriod = 12;   ///< or after so many frames of motion
-constexpr double kPatchWorn = 0.9;    ///< correlation below which a keyframe renews the patch
+constexpr double kPatchWorn = 0.8;    ///< correlation below which a keyframe renews the patch
 constexpr double kFewFollowed = 0.5;  ///< share below which points are followed a second time
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {

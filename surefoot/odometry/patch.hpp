@@ -25,7 +25,7 @@ struct HostPatch {
 
 /// A host patch warped to how another view should see it, ready for alignment.
 struct PatchTemplate {
-    static constexpr int kRadius = 6;
+    static constexpr int kRadius = 4;
     static constexpr int kSize = 2 * kRadius + 1;
     static constexpr int kCount = kSize * kSize;
     std::array<float, kCount> value;   ///< without mean

@@ -7,13 +7,24 @@ import unittest
 
 from surefoot_cli import CliTest, read_asc, read_tum, surefoot
 
-# What a run may write differently from one time to the next: times, and the number of threads.
-TIMING_FILES = {"report.json", "report.html", "config.yaml"}
 
 
 def digest(folder):
-    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in TIMING_FILES}
+    """Hash of every result. Times are exempt: "timing" in report.json, and report.html that draws them."""
+    result = {}
+    for path in sorted(folder.rglob("*")):
+        content = path.read_bytes()
+        if path.name == "report.html":
+            continue
+        if path.name == "report.json":
+            report = json.loads(content)
+            del report["timing"]
+            content = json.dumps(report).encode()
+        result[str(path.relative_to(folder))] = hashlib.sha256(content).hexdigest()
+    return result
+
+
+FORWARD = 9  # outer sector north
 
 
 class RealRecordings(CliTest):
@@ -30,7 +41,8 @@ class RealRecordings(CliTest):
         report = json.loads((self.dir / "city" / "report.json").read_text())
         self.assertTrue(report["complete"])
         self.assertEqual(report["map"]["known_cells"], 0)
-        self.assertIn("beyond the map", report["map"]["reason"])
+        self.assertIn("depth points", report["map"]["reason"])
+        self.assertGreater(report["counts"]["outside"], 0)
 
     def test_kitti_city_road_ahead(self):
         city = self.data("sequences", "kitti_city")
@@ -157,12 +169,83 @@ class Simulation(CliTest):
                         "--out", self.dir / f"threads{threads}")
         self.assertEqual(digest(self.dir / "threads1"), digest(self.dir / "threads2"))
 
-    def verdict(self, pose, command, *extra):
-        process = surefoot("gate", "--map", self.demo, "--pose", ",".join(map(str, pose)), "--command", command,
+    def test_speed_and_memory(self):
+        timing = self.report["timing"]
+        print(f"demo: {timing['frames_per_s']:.1f} full frames/s, peak {timing['peak_memory_mb']:.0f} MB")
+        self.assertLessEqual(timing["peak_memory_mb"], 500)
+
+    def verdict(self, map_dir, pose, command, *extra):
+        process = surefoot("gate", "--map", map_dir, "--pose", ",".join(map(str, pose)), "--command", command,
                            "--json", *extra)
         verdict = json.loads(process.stdout)
         self.assertEqual(process.returncode, {"OK": 0, "NOT_TRAVERSABLE": 3, "ERROR": 4}[verdict["verdict"]])
         return verdict
+
+    def inhibited(self, reason, *question):
+        verdict = self.verdict(*question)
+        self.assertEqual(verdict["verdict"], "NOT_TRAVERSABLE", verdict)
+        self.assertIn(reason, verdict["reasons"], verdict)
+        self.assertTrue(verdict["text"])
+
+    def test_a_step_over_seen_floor_is_ok(self):
+        end = read_tum(self.demo / "trajectory.tum")[-1]
+        verdict = self.verdict(self.demo, (end[1], end[2], 0), FORWARD)
+        self.assertEqual((verdict["verdict"], verdict["reasons"]), ("OK", []), verdict)
+        self.assertTrue(any("start area" in line for line in verdict["assumed"]), verdict)
+
+    def test_the_first_step_needs_an_operators_word(self):
+        self.inhibited("UNKNOWN_CELLS", self.demo, (0, 0, 0), FORWARD)
+        verdict = self.verdict(self.demo, (0, 0, 0), FORWARD, "--vouch", "0.9")
+        self.assertEqual(verdict["verdict"], "OK", verdict)
+        self.assertGreater(verdict["evidence"]["vouched_cells"], 0)
+
+    def test_into_the_table(self):
+        self.inhibited("CORRIDOR_BLOCKED", self.demo, (1.4, 1.0, 0), FORWARD)
+
+    def test_into_the_stairs(self):
+        self.inhibited("CORRIDOR_BLOCKED", self.demo, (3.2, 0, 0), FORWARD)
+
+    def test_off_the_map(self):
+        self.inhibited("OUTSIDE_MAP", self.demo, (5.1, 1.5, 0), FORWARD)
+
+    def test_onto_unseen_ground(self):
+        self.inhibited("UNKNOWN_CELLS", self.demo, (1.2, 0, math.pi), FORWARD)
+
+    def test_over_one_unknown_cell_under_the_foot(self):
+        folder = self.dir / "one_hole"
+        folder.mkdir()
+        write_floor(folder, holes=[])
+        self.assertEqual(self.verdict(folder, (0, 0, 0), FORWARD)["verdict"], "OK")
+        write_floor(folder, holes=[(0.46, 0.18)])  # under the left foot that lands
+        self.inhibited("UNKNOWN_CELLS", folder, (0, 0, 0), FORWARD)
+
+    def test_half_a_foot_over_a_platform_edge(self):
+        edge = self.dir / "edge"
+        self.run_ok("run", "sim:platform_edge", "--machine", "rex", "--out", edge)
+        end = read_tum(edge / "trajectory.tum")[-1]
+        self.inhibited("DROP_OFF", edge, (end[1], end[2], 0), FORWARD)
+
+    def test_assumed_gravity_and_unknown_commands_are_errors(self):
+        for command in (0, 27, 255):
+            verdict = self.verdict(self.demo, (2.4, 0, 0), command)
+            self.assertEqual((verdict["verdict"], verdict["reasons"]), ("ERROR", ["UNKNOWN_COMMAND"]))
+
+    def test_every_verdict_can_be_drawn(self):
+        picture = self.dir / "why.png"
+        self.verdict(self.demo, (1.4, 1.0, 0), FORWARD, "--explain", picture)
+        self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+
+def write_floor(folder, holes):
+    """A flat floor of 3 x 3 m, known to 3 mm, with single unknown cells, as elevation.asc and variance.asc."""
+    side, size, low = 120, 0.025, -1.5
+    unknown = {(int((x - low) / size), int((y - low) / size)) for x, y in holes}
+    for name, value in (("elevation", "0"), ("variance", "9e-6")):
+        rows = [" ".join("-9999" if (ix, iy) in unknown else value for ix in range(side))
+                for iy in reversed(range(side))]
+        (folder / f"{name}.asc").write_text(
+            f"ncols {side}\nnrows {side}\nxllcorner {low}\nyllcorner {low}\ncellsize {size}\nNODATA_value -9999\n" +
+            "\n".join(rows) + "\n")
 
 
 if __name__ == "__main__":
