@@ -96,6 +96,11 @@ TEST(ImageFile, EveryTruncationAndBitErrorOfAPngIsFound) {
         "a.png: truncated PNG"));
     EXPECT_EQ(message(parse_grey_image("", "a.png")),
               "a.png: empty file where an image is expected; copy or record this image again");
+    // The decoder would notice this one too, but it would not say where.
+    std::string damaged = png;
+    damaged[png.find("IDAT") + 10] ^= 1;
+    EXPECT_TRUE(contains(message(parse_grey_image(damaged, "a.png")),
+                         "a.png: damaged PNG: wrong checksum of the part 'IDAT' at byte 33"));
 }
 
 TEST(ImageFile, TruncatedJpegIsFoundWhereverItEnds) {

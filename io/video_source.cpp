@@ -98,7 +98,8 @@ Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
     cv::VideoCapture capture;
     bool opened = false;
     try {
-        opened = capture.open(path);
+        // Only backends that read files: asked in general, OpenCV also searches for cameras on USB.
+        opened = capture.open(path, cv::CAP_FFMPEG) || capture.open(path, cv::CAP_OPENCV_MJPEG);
     } catch (const cv::Exception&) {  // reported below, in our words
     }
     if (!opened)

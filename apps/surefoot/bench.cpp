@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <memory>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "apps/surefoot/bench_result.hpp"
 #include "apps/surefoot/json_output.hpp"
@@ -36,7 +36,8 @@ Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Execut
     if (!settings) return settings.error();
     auto source = open_source({"sim:demo_stairs", "", 0.0, 40, common.seed}, executor);
     if (!source) return source.error();
-    auto pipeline = pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor, steady_now_ns);
+    auto pipeline =
+        pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor, steady_now_ns);
     if (!pipeline) return pipeline.error();
     RunSession session(*pipeline, **source, 1);
     session.drive();
@@ -45,7 +46,10 @@ Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Execut
     std::vector<BenchResult> results;
     for (int i = 0; i < kStageCount; ++i) {
         const Percentiles p = stage_percentiles(record, static_cast<Stage>(i));
-        results.push_back({fmt::format("chain/{}", to_string(static_cast<Stage>(i))), p.median, p.p99, std::nullopt});
+        results.push_back({fmt::format("chain/{}", to_string(static_cast<Stage>(i))),
+                           p.median,
+                           p.p99,
+                           std::nullopt});
     }
     const Percentiles frame = frame_percentiles(record);
     results.push_back({"chain/whole_frame", frame.median, frame.p99, std::nullopt});
@@ -59,13 +63,15 @@ grid::Layer waved_floor() {
     for (int iy = 0; iy < kSide; ++iy) {
         for (int ix = 0; ix < kSide; ++ix) {
             const bool hole = (ix * 7 + iy * 13) % 41 == 0;
-            height_m.at(ix, iy) = hole ? std::nanf("") : 0.01F * std::sin(0.1F * static_cast<float>(ix + iy));
+            height_m.at(ix, iy) =
+                hole ? std::nanf("") : 0.01F * std::sin(0.1F * static_cast<float>(ix + iy));
         }
     }
     return height_m;
 }
 
-Result<std::vector<BenchResult>> bench_traversability(const CommonOptions& common, Executor& executor) {
+Result<std::vector<BenchResult>> bench_traversability(const CommonOptions& common,
+                                                      Executor& executor) {
     const auto settings = load_settings(common);
     if (!settings) return settings.error();
     const grid::Layer height_m = waved_floor();
@@ -99,7 +105,8 @@ Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
     const gate::Query query = gate::query_at_body(kForward, *snapshot);
     gate::Verdict verdict;
     std::vector<BenchResult> results{timed("gate/decide", 2000, [&] {
-        verdict = gate::decide(machine->value().machine, query, *snapshot, health, snapshot->frame_time_ns);
+        verdict = gate::decide(
+            machine->value().machine, query, *snapshot, health, snapshot->frame_time_ns);
     })};
     if (verdict.decision != gate::Decision::ok) {
         return input_error("bench gate: the flat floor was not OK; the timing would mean nothing");
@@ -126,7 +133,8 @@ int bench(const BenchOptions& options) {
         return kExitOk;
     }
     fmt::print("{:<28}{:>12}{:>12}\n", "what", "median ms", "p99 ms");
-    for (const BenchResult& r : all) fmt::print("{:<28}{:>12.3f}{:>12.3f}\n", r.name, r.median_ms, r.p99_ms);
+    for (const BenchResult& r : all)
+        fmt::print("{:<28}{:>12.3f}{:>12.3f}\n", r.name, r.median_ms, r.p99_ms);
     return kExitOk;
 }
 

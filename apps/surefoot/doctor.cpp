@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <thread>
-
-#include <fmt/format.h>
 
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 
-/// Nearest and farthest floor that the middle column of the rectified camera sees, from base_link [m].
+/// Nearest and farthest floor that the middle column of the rectified camera sees, from base_link
+/// [m].
 struct FloorView {
     double near_m = 0.0;
     double far_m = 0.0;  ///< infinite when the horizon is in view
@@ -41,7 +42,9 @@ void print_sigma(const camera::RectifiedRig& rig) {
     constexpr double kDisparitySigma_px = 0.25;
     fmt::print("depth sigma at {:.2f} px:", kDisparitySigma_px);
     for (const double z_m : {0.5, 1.0, 2.0, 3.0}) {
-        fmt::print("  {:.1f} mm at {:.1f} m", 1e3 * z_m * z_m * kDisparitySigma_px / rig.depth_to_disparity_px_m(), z_m);
+        fmt::print("  {:.1f} mm at {:.1f} m",
+                   1e3 * z_m * z_m * kDisparitySigma_px / rig.depth_to_disparity_px_m(),
+                   z_m);
     }
     fmt::print("\n");
 }
@@ -52,19 +55,30 @@ int print_blind_zone(const camera::StereoRig& rig, const io::MachineFile& machin
     const camera::RectifiedRig& r = rectifier->rig();
     const double base_height_m = 1e-4 * machine.machine.sole_depth_tenth_mm;
     const FloorView view = floor_view(r, base_height_m);
-    fmt::print("rig {}: {}x{}, f {:.1f} px, baseline {:.1f} mm\n", rig.name, r.width, r.height, r.fx_px,
+    fmt::print("rig {}: {}x{}, f {:.1f} px, baseline {:.1f} mm\n",
+               rig.name,
+               r.width,
+               r.height,
+               r.fx_px,
                1e3 * r.baseline_m);
     print_sigma(r);
-    fmt::print("blind zone: floor nearer than {:.2f} m ahead of base_link is never seen; view ends at {:.2f} m\n",
-               view.near_m, view.far_m);
+    fmt::print(
+        "blind zone: floor nearer than {:.2f} m ahead of base_link is never seen; view ends at "
+        "{:.2f} m\n",
+        view.near_m,
+        view.far_m);
     const GroundBox& foot = machine.machine.left_foot;
     for (int code = 0; code < Machine::kMovementCodes; ++code) {
         const Movement& m = machine.machine.movements[static_cast<std::size_t>(code)];
         if (!m.configured || m.forward_tenth_mm <= 0 || m.left_tenth_mm != 0) continue;
         const double toe_m =
             1e-4 * (m.forward_tenth_mm + foot.center_x_tenth_mm + 0.5 * foot.length_tenth_mm);
-        fmt::print("command {} ({}): the foot lands up to {:.2f} m ahead, {}\n", code, m.name.data(), toe_m,
-                   toe_m <= view.near_m ? "all of it on remembered ground" : "partly on ground seen now");
+        fmt::print(
+            "command {} ({}): the foot lands up to {:.2f} m ahead, {}\n",
+            code,
+            m.name.data(),
+            toe_m,
+            toe_m <= view.near_m ? "all of it on remembered ground" : "partly on ground seen now");
     }
     return kExitOk;
 }
@@ -72,7 +86,9 @@ int print_blind_zone(const camera::StereoRig& rig, const io::MachineFile& machin
 }  // namespace
 
 int doctor(const DoctorOptions& options) {
-    fmt::print("surefoot {}: {} threads, no GPU needed\n", SUREFOOT_VERSION, std::thread::hardware_concurrency());
+    fmt::print("surefoot {}: {} threads, no GPU needed\n",
+               SUREFOOT_VERSION,
+               std::thread::hardware_concurrency());
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
     fmt::print("settings: valid\n");

@@ -35,31 +35,45 @@ int eval_maps(const EvalMapsOptions& options) {
     if (!truth) return report(truth.error());
 
     const double resolution_m = live->geometry.resolution_m;
-    const grid::Layer truth_m = eval::resample_nearest(truth->geometry, truth->values, live->geometry);
+    const grid::Layer truth_m =
+        eval::resample_nearest(truth->geometry, truth->values, live->geometry);
     Serial serial;
     traversability::TraversabilityLayers rated;
-    traversability::rate(settings->pipeline.traversability.widened_to(resolution_m), truth_m.view(), resolution_m, serial,
+    traversability::rate(settings->pipeline.traversability.widened_to(resolution_m),
+                         truth_m.view(),
+                         resolution_m,
+                         serial,
                          rated);
 
     const auto all = eval::elevation_errors(live->values, truth_m, {}, settings->maps);
     if (all.count == 0) {
-        return report(input_error(fmt::format("{} and {} have no known cell in common: are both in the same frame?",
-                                              options.live_dir, options.truth_dir)));
+        return report(input_error(
+            fmt::format("{} and {} have no known cell in common: are both in the same frame?",
+                        options.live_dir,
+                        options.truth_dir)));
     }
-    const auto away =
-        eval::elevation_errors(live->values, truth_m, eval::away_from_edges(truth_m, settings->maps), settings->maps);
-    const auto calls = eval::classify(live_rating->values, rated.traversability, settings->maps.safe_threshold);
+    const auto away = eval::elevation_errors(
+        live->values, truth_m, eval::away_from_edges(truth_m, settings->maps), settings->maps);
+    const auto calls =
+        eval::classify(live_rating->values, rated.traversability, settings->maps.safe_threshold);
     const auto confusion = eval::traversability_errors(calls, {});
     const double coverage = eval::coverage(live->values, truth_m, {});
     if (options.common.json) {
         fmt::print("{}\n", maps_json(all, away, confusion, coverage));
     } else {
         fmt::print(
-            "elevation: median |error| {:.1f} mm, 90 % within {:.1f} mm, {} cells; away from edges {:.2f} % above 50 mm\n"
-            "traversability: {:.2f} % of the unsafe cells called safe, {:.2f} % of the safe ones called unsafe\n"
+            "elevation: median |error| {:.1f} mm, 90 % within {:.1f} mm, {} cells; away from edges "
+            "{:.2f} % above 50 mm\n"
+            "traversability: {:.2f} % of the unsafe cells called safe, {:.2f} % of the safe ones "
+            "called unsafe\n"
             "{:.1f} % of the true cells are known\n",
-            1e3 * all.median_abs_m, 1e3 * all.p90_abs_m, all.count, 100.0 * away.share_over_50mm,
-            100.0 * confusion.false_safe, 100.0 * confusion.false_unsafe, 100.0 * coverage);
+            1e3 * all.median_abs_m,
+            1e3 * all.p90_abs_m,
+            all.count,
+            100.0 * away.share_over_50mm,
+            100.0 * confusion.false_safe,
+            100.0 * confusion.false_unsafe,
+            100.0 * coverage);
     }
     return kExitOk;
 }

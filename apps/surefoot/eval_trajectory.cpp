@@ -12,11 +12,13 @@
 namespace surefoot::app {
 namespace {
 
-/// KITTI poses have no stamps. Without times.txt beside them (or with --rate) pose i belongs to frame i.
+/// KITTI poses have no stamps. Without times.txt beside them (or with --rate) pose i belongs to
+/// frame i.
 Result<Trajectory> read_truth(const EvalTrajectoryOptions& options, const Trajectory& estimate) {
     const std::string times_file = io::join_path(io::folder_of(options.truth), "times.txt");
     const auto poses = io::read_kitti_poses(options.truth);
-    if (!poses || (options.rate_hz <= 0.0 && io::is_file(times_file))) return io::read_trajectory(options.truth);
+    if (!poses || (options.rate_hz <= 0.0 && io::is_file(times_file)))
+        return io::read_trajectory(options.truth);
     const std::int64_t start_ns = estimate.empty() ? 0 : estimate.front().time_ns;
     const double rate_hz = options.rate_hz > 0.0 ? options.rate_hz : 10.0;
     Trajectory truth;
@@ -44,10 +46,16 @@ int eval_trajectory(const EvalTrajectoryOptions& options) {
         fmt::print("{}\n", trajectory_json(*errors));
     } else {
         fmt::print(
-            "{} poses matched over {:.2f} m (aligned: {})\nATE {:.4f} m rmse\nRPE {:.4f} m, {:.4f} deg rmse per pose\n"
+            "{} poses matched over {:.2f} m (aligned: {})\nATE {:.4f} m rmse\nRPE {:.4f} m, {:.4f} "
+            "deg rmse per pose\n"
             "drift {:.2f} %\n",
-            errors->matched, errors->path_length_m, options.align, errors->ate_rmse_m, errors->rpe_trans_rmse_m,
-            errors->rpe_rot_rmse_deg, errors->drift_percent);
+            errors->matched,
+            errors->path_length_m,
+            options.align,
+            errors->ate_rmse_m,
+            errors->rpe_trans_rmse_m,
+            errors->rpe_rot_rmse_deg,
+            errors->drift_percent);
     }
     return kExitOk;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/explain.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "eval/picture.hpp"
 #include "io/file.hpp"
@@ -24,12 +24,15 @@ struct View {
 View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
     const double resolution_m = kTenthMm_m * map.resolution_tenth_mm;
     const auto first = [&](std::int64_t center, std::int64_t origin) {
-        return static_cast<int>(std::floor((kTenthMm_m * static_cast<double>(center - origin) - kViewHalf_m) / resolution_m));
+        return static_cast<int>(std::floor(
+            (kTenthMm_m * static_cast<double>(center - origin) - kViewHalf_m) / resolution_m));
     };
     const int side = static_cast<int>(2.0 * kViewHalf_m / resolution_m);
     const int ix0 = first(query.x_tenth_mm, map.origin_x_tenth_mm);
     const int iy0 = first(query.y_tenth_mm, map.origin_y_tenth_mm);
-    View view{{resolution_m, side, side,
+    View view{{resolution_m,
+               side,
+               side,
                {kTenthMm_m * static_cast<double>(map.origin_x_tenth_mm) + ix0 * resolution_m,
                 kTenthMm_m * static_cast<double>(map.origin_y_tenth_mm) + iy0 * resolution_m}},
               grid::Layer(side, side, std::nanf(""))};
@@ -38,7 +41,8 @@ View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
             const int mx = ix0 + ix;
             const int my = iy0 + iy;
             if (mx < 0 || my < 0 || mx >= map.nx || my >= map.ny) continue;
-            const std::int32_t height = map.height_tenth_mm[static_cast<std::size_t>(my * map.nx + mx)];
+            const std::int32_t height =
+                map.height_tenth_mm[static_cast<std::size_t>(my * map.nx + mx)];
             if (height != grid::MapSnapshot::kUnknownHeight) {
                 view.height_m.at(ix, iy) = static_cast<float>(kTenthMm_m * height);
             }
@@ -48,17 +52,23 @@ View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
 }
 
 Pose planar(double x_m, double y_m, double cos_yaw, double sin_yaw) {
-    return {Eigen::Quaterniond(Eigen::AngleAxisd(std::atan2(sin_yaw, cos_yaw), Eigen::Vector3d::UnitZ())),
+    return {Eigen::Quaterniond(
+                Eigen::AngleAxisd(std::atan2(sin_yaw, cos_yaw), Eigen::Vector3d::UnitZ())),
             Eigen::Vector3d(x_m, y_m, 0.0)};
 }
 
-eval::Outline outline(const GroundBox& box, const Pose& T_odom_body, eval::Rgb8 color, const char* label) {
+eval::Outline outline(const GroundBox& box,
+                      const Pose& T_odom_body,
+                      eval::Rgb8 color,
+                      const char* label) {
     eval::Outline result;
     result.color = color;
     result.label = label;
     for (const auto& [sx, sy] : {std::pair{0.5, 0.5}, {0.5, -0.5}, {-0.5, -0.5}, {-0.5, 0.5}}) {
-        const Eigen::Vector3d p_body(kTenthMm_m * (box.center_x_tenth_mm + sx * box.length_tenth_mm),
-                                     kTenthMm_m * (box.center_y_tenth_mm + sy * box.width_tenth_mm), 0.0);
+        const Eigen::Vector3d p_body(
+            kTenthMm_m * (box.center_x_tenth_mm + sx * box.length_tenth_mm),
+            kTenthMm_m * (box.center_y_tenth_mm + sy * box.width_tenth_mm),
+            0.0);
         result.points_m.emplace_back((T_odom_body * p_body).head<2>());
     }
     return result;
@@ -74,7 +84,9 @@ Status write_explanation(const std::string& file,
                          const std::string& text) {
     const View view = view_around(query, map);
     const Pose T_odom_body = planar(kTenthMm_m * static_cast<double>(query.x_tenth_mm),
-                                    kTenthMm_m * static_cast<double>(query.y_tenth_mm), query.cos_yaw, query.sin_yaw);
+                                    kTenthMm_m * static_cast<double>(query.y_tenth_mm),
+                                    query.cos_yaw,
+                                    query.sin_yaw);
     eval::Overlays overlays;
     overlays.T_odom_body = T_odom_body;
     constexpr eval::Rgb8 kPresent{90, 90, 90};
@@ -85,17 +97,21 @@ Status write_explanation(const std::string& file,
     }
     if (query.command < Machine::kMovementCodes && machine.movements[query.command].configured) {
         const Movement& m = machine.movements[query.command];
-        const Pose T_odom_target = T_odom_body * planar(kTenthMm_m * m.forward_tenth_mm, kTenthMm_m * m.left_tenth_mm,
-                                                        m.cos_turn, m.sin_turn);
+        const Pose T_odom_target = T_odom_body * planar(kTenthMm_m * m.forward_tenth_mm,
+                                                        kTenthMm_m * m.left_tenth_mm,
+                                                        m.cos_turn,
+                                                        m.sin_turn);
         for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
             overlays.outlines.push_back(outline(*foot, T_odom_target, kLanding, "feet landing"));
         }
-        overlays.outlines.push_back(outline(machine.body.box, T_odom_target, kBody, "body landing"));
+        overlays.outlines.push_back(
+            outline(machine.body.box, T_odom_target, kBody, "body landing"));
     }
     if (verdict.evidence.has_worst_cell) {
-        overlays.marks.push_back({{kTenthMm_m * static_cast<double>(verdict.evidence.worst_x_tenth_mm),
-                                   kTenthMm_m * static_cast<double>(verdict.evidence.worst_y_tenth_mm)},
-                                  "this decided"});
+        overlays.marks.push_back(
+            {{kTenthMm_m * static_cast<double>(verdict.evidence.worst_x_tenth_mm),
+              kTenthMm_m * static_cast<double>(verdict.evidence.worst_y_tenth_mm)},
+             "this decided"});
     }
     eval::LayerStyle style = eval::elevation_style();
     style.text = {fmt::format("Command {}: {}", query.command, to_string(verdict.decision)), text};

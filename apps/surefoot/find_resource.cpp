@@ -11,7 +11,8 @@ Result<std::string> find_resource(std::string_view folder, std::string_view name
     for (const Resource& resource : resources()) {
         if (resource.name == wanted) return std::string(resource.text);
         if (resource.name.starts_with(fmt::format("{}/", folder))) {
-            const auto stem = resource.name.substr(folder.size() + 1, resource.name.size() - folder.size() - 6);
+            const auto stem =
+                resource.name.substr(folder.size() + 1, resource.name.size() - folder.size() - 6);
             known += fmt::format("{}{}", known.empty() ? "" : ", ", stem);
         }
     }

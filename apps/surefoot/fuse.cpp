@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstring>
-
 #include <fmt/format.h>
+
+#include <cstring>
 
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/resources.hpp"
@@ -26,13 +26,16 @@ Result<elevation::AncestorConfig> load(const CommonOptions& options) {
     FuseSettings settings;
     const auto describe = io::describe_config(settings);
     if (options.preset != "ethz") {
-        return usage_error(fmt::format("fuse --preset '{}': 'ethz' is the update that this verb compares with",
-                                       options.preset));
+        return usage_error(
+            fmt::format("fuse --preset '{}': 'ethz' is the update that this verb compares with",
+                        options.preset));
     }
     if (!options.config_file.empty()) {
-        if (auto status = io::read_config(options.config_file, describe); !status) return status.error();
+        if (auto status = io::read_config(options.config_file, describe); !status)
+            return status.error();
     }
-    if (auto status = io::override_config_in(settings, options.settings); !status) return status.error();
+    if (auto status = io::override_config_in(settings, options.settings); !status)
+        return status.error();
     return settings.ancestor;
 }
 
@@ -40,8 +43,10 @@ Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& pat
     const auto values = io::read_floats(path);
     if (!values) return values.error();
     if (values->size() % 4 != 0) {
-        return input_error(fmt::format("{}: {} values are no whole number of points (x, y, z, variance)", path,
-                                       values->size()));
+        return input_error(
+            fmt::format("{}: {} values are no whole number of points (x, y, z, variance)",
+                        path,
+                        values->size()));
     }
     std::vector<elevation::AncestorPoint> points(values->size() / 4);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -51,22 +56,30 @@ Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& pat
     return points;
 }
 
-/// "K time T move_to X Y ..." per step; indented lines are remarks. Cloud K is cloudK.f32 beside the file.
-Result<elevation::FuseStep> parse_step(std::string_view line, const std::string& where, const std::string& folder) {
+/// "K time T move_to X Y ..." per step; indented lines are remarks. Cloud K is cloudK.f32 beside
+/// the file.
+Result<elevation::FuseStep> parse_step(std::string_view line,
+                                       const std::string& where,
+                                       const std::string& folder) {
     std::vector<std::string_view> words;
     for (const std::string_view word : io::split(line, " \t")) {
         if (!word.empty()) words.push_back(word);
     }
     if (words.size() < 6 || words[1] != "time" || words[3] != "move_to") {
-        return input_error(fmt::format("{}: 'K time T move_to X Y' is expected, found '{}'", where, line));
+        return input_error(
+            fmt::format("{}: 'K time T move_to X Y' is expected, found '{}'", where, line));
     }
     const auto index = io::parse_int64(words[0]);
     const auto time_s = io::parse_double(words[2]);
     const auto x_m = io::parse_double(words[4]);
     const auto y_m = io::parse_double(words[5]);
     if (!index || !time_s || !x_m || !y_m) {
-        return input_error(fmt::format("{}: one of '{}', '{}', '{}', '{}' is no number", where, words[0], words[2],
-                                       words[4], words[5]));
+        return input_error(fmt::format("{}: one of '{}', '{}', '{}', '{}' is no number",
+                                       where,
+                                       words[0],
+                                       words[2],
+                                       words[4],
+                                       words[5]));
     }
     auto cloud = read_points(fmt::format("{}/cloud{}.f32", folder, *index));
     if (!cloud) return cloud.error();
@@ -101,10 +114,13 @@ int fuse(const FuseOptions& options) {
     for (std::size_t k = 0; k < results.size(); ++k) {
         const auto& result = results[k];
         const std::pair<const char*, const grid::Layer*> layers[] = {
-            {"elevation", &result.elevation_m}, {"variance", &result.variance_m2}, {"time", &result.time_s}};
+            {"elevation", &result.elevation_m},
+            {"variance", &result.variance_m2},
+            {"time", &result.time_s}};
         for (const auto& [name, layer] : layers) {
             const std::string file = fmt::format("{}/step{}_{}.asc", options.out_dir, k, name);
-            if (auto status = io::write_esri_grid(file, result.geometry, *layer); !status) return report(status.error());
+            if (auto status = io::write_esri_grid(file, result.geometry, *layer); !status)
+                return report(status.error());
         }
     }
     fmt::print("{} steps fused, layers of each in {}/\n", results.size(), options.out_dir);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/gate/gate.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "apps/surefoot/explain.hpp"
 #include "apps/surefoot/json_output.hpp"
@@ -32,7 +32,8 @@ int gate(const GateOptions& options) {
     const auto pose = parse_three_numbers("--pose", options.pose, "x,y,yaw (m, m, rad)");
     if (!pose) return report(pose.error());
     if (options.command < 0 || options.command > 255) {
-        return report(usage_error(fmt::format("--command {}: a code from 0 to 255 is needed", options.command)));
+        return report(usage_error(
+            fmt::format("--command {}: a code from 0 to 255 is needed", options.command)));
     }
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
@@ -40,20 +41,25 @@ int gate(const GateOptions& options) {
     auto map = load_offline_map(options.map_dir);
     if (!map) return report(map.error());
 
-    gate::Query query = gate::make_query(static_cast<std::uint8_t>(options.command), (*pose)[0], (*pose)[1],
-                                         std::cos((*pose)[2]), std::sin((*pose)[2]));
+    gate::Query query = gate::make_query(static_cast<std::uint8_t>(options.command),
+                                         (*pose)[0],
+                                         (*pose)[1],
+                                         std::cos((*pose)[2]),
+                                         std::sin((*pose)[2]));
     std::vector<std::string> assumed = map->assumed;
     assumed.push_back("frame and pose are as fresh as when the map was written");
     assumed.push_back("perception was ready");
     if (options.vouch_radius_m != 0.0) {
-        const auto vouched = vouch_for_start(machine->value().machine, query, *map->snapshot, options.vouch_radius_m, assumed);
+        const auto vouched = vouch_for_start(
+            machine->value().machine, query, *map->snapshot, options.vouch_radius_m, assumed);
         if (!vouched) return report(vouched.error());
         query.vouched = *vouched;
     }
     gate::GateHealth health;
     health.state = gate::GateState::ready;
     const Machine& m = machine->value().machine;
-    const gate::Verdict verdict = gate::decide(m, query, *map->snapshot, health, map->snapshot->frame_time_ns);
+    const gate::Verdict verdict =
+        gate::decide(m, query, *map->snapshot, health, map->snapshot->frame_time_ns);
     const std::string text = gate::text_of(verdict, query, m);
 
     if (options.common.json) {
@@ -62,7 +68,8 @@ int gate(const GateOptions& options) {
         fmt::print("{}: {}\n", to_string(verdict.decision), text);
     }
     if (!options.explain_file.empty()) {
-        const auto status = write_explanation(options.explain_file, m, query, *map->snapshot, verdict, text);
+        const auto status =
+            write_explanation(options.explain_file, m, query, *map->snapshot, verdict, text);
         if (!status) log_error(status.error().message);  // the verdict stands without its picture
     }
     return exit_code_of(verdict.decision);

@@ -20,24 +20,31 @@ int ground(const GroundOptions& options) {
     if (!cloud) return report(cloud.error());
     // Organised clouds come straight from a camera: optical axes, y down. Others have z up.
     const bool optical = options.frame.empty() ? cloud->organised() : options.frame == "optical";
-    const Eigen::Vector3d up = optical ? Eigen::Vector3d(0.0, -1.0, 0.0) : Eigen::Vector3d(0.0, 0.0, 1.0);
+    const Eigen::Vector3d up =
+        optical ? Eigen::Vector3d(0.0, -1.0, 0.0) : Eigen::Vector3d(0.0, 0.0, 1.0);
     // A camera may look far down: with optical axes the hint is only a direction to begin with.
     constexpr double kAnyMountTilt_deg = 60.0;
     ground::GroundConfig config = settings->pipeline.ground;
     if (optical) config.max_tilt_deg = std::max(config.max_tilt_deg, kAnyMountTilt_deg);
 
     const auto sighting =
-        ground::sight_ground(config, cloud->points_m, up, Eigen::Vector3d((*origin)[0], (*origin)[1], (*origin)[2]),
+        ground::sight_ground(config,
+                             cloud->points_m,
+                             up,
+                             Eigen::Vector3d((*origin)[0], (*origin)[1], (*origin)[2]),
                              options.common.seed);
     if (options.common.json) {
         fmt::print("{}\n", ground_json(sighting));
     } else if (sighting.observation.accepted) {
-        fmt::print("tilt {:.2f} deg, height {:.3f} m, {:.0f} % inliers, rms {:.1f} mm\n", sighting.tilt_rad * 180.0 / M_PI,
-                   sighting.observation.height_m, 100.0 * sighting.observation.inlier_ratio,
+        fmt::print("tilt {:.2f} deg, height {:.3f} m, {:.0f} % inliers, rms {:.1f} mm\n",
+                   sighting.tilt_rad * 180.0 / M_PI,
+                   sighting.observation.height_m,
+                   100.0 * sighting.observation.inlier_ratio,
                    1e3 * sighting.observation.rms_m);
     }
     if (!sighting.observation.accepted) {
-        return report(input_error(fmt::format("{}: no ground plane: {}", options.cloud, to_string(sighting.reason))));
+        return report(input_error(
+            fmt::format("{}: no ground plane: {}", options.cloud, to_string(sighting.reason))));
     }
     return kExitOk;
 }

@@ -2,9 +2,9 @@
 // Only here is nlohmann-json included (it costs six seconds a translation unit).
 #include "apps/surefoot/json_output.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
+
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "apps/surefoot/run_output.hpp"
@@ -18,7 +18,9 @@ using Json = nlohmann::ordered_json;
 constexpr double kTenthMm_m = 1e-4;
 constexpr double kDegPerRad = 180.0 / M_PI;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 const char* name_of(grid::GravitySource source) {
     switch (source) {
@@ -43,14 +45,19 @@ Json counts_json(const FusionCounts& f) {
 }
 
 Json elevation_json(const eval::ElevationErrors& e) {
-    return {{"median_abs_m", number(e.median_abs_m)}, {"p90_abs_m", number(e.p90_abs_m)},
-            {"mean_m", number(e.mean_m)},             {"rmse_m", number(e.rmse_m)},
-            {"share_over_50mm", number(e.share_over_50mm)}, {"count", e.count}};
+    return {{"median_abs_m", number(e.median_abs_m)},
+            {"p90_abs_m", number(e.p90_abs_m)},
+            {"mean_m", number(e.mean_m)},
+            {"rmse_m", number(e.rmse_m)},
+            {"share_over_50mm", number(e.share_over_50mm)},
+            {"count", e.count}};
 }
 
 Json traversability_json(const eval::TraversabilityErrors& t) {
-    return {{"false_safe", number(t.false_safe)},   {"false_unsafe", number(t.false_unsafe)},
-            {"true_safe", number(t.true_safe)},     {"true_unsafe", number(t.true_unsafe)},
+    return {{"false_safe", number(t.false_safe)},
+            {"false_unsafe", number(t.false_unsafe)},
+            {"true_safe", number(t.true_safe)},
+            {"true_unsafe", number(t.true_unsafe)},
             {"unknown", number(t.unknown)}};
 }
 
@@ -111,7 +118,8 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
                    {"error", record.error ? Json(record.error->message) : Json(nullptr)},
                    {"gravity_source", name_of(alignment.gravity_source)},
                    {"gravity_reason", alignment.reason},
-                   {"ground_height_m", alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
+                   {"ground_height_m",
+                    alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
                    {"health", health_json(record)},
                    {"counts", counts_json(record.fusion)},
                    {"map",
@@ -142,7 +150,9 @@ constexpr int kIndent = 2;
 
 }  // namespace
 
-std::string report_json(const RunRecord& record, const pipeline::Pipeline& pipeline, const Status& written) {
+std::string report_json(const RunRecord& record,
+                        const pipeline::Pipeline& pipeline,
+                        const Status& written) {
     Json object = run_object(record, pipeline);
     if (!written) object["output_error"] = written.error().message;
     Json frames = Json::array();
@@ -164,21 +174,24 @@ std::string verdict_json(const gate::Verdict& verdict,
         if (verdict.reasons.contains(reason)) reasons.push_back(to_string(reason));
     }
     const gate::Evidence& e = verdict.evidence;
-    Json evidence = {{"primary", to_string(verdict.primary)},
-                     {"worst_cell_m", e.has_worst_cell ? Json{kTenthMm_m * static_cast<double>(e.worst_x_tenth_mm),
-                                                              kTenthMm_m * static_cast<double>(e.worst_y_tenth_mm)}
-                                                       : Json(nullptr)},
-                     {"value_m", kTenthMm_m * static_cast<double>(e.value_tenth_mm)},
-                     {"limit_m", kTenthMm_m * static_cast<double>(e.limit_tenth_mm)},
-                     {"stance_height_m",
-                      e.stance_known ? Json(kTenthMm_m * static_cast<double>(e.stance_height_tenth_mm)) : Json(nullptr)},
-                     {"height_delta_m", kTenthMm_m * static_cast<double>(e.height_delta_tenth_mm)},
-                     {"max_tilt_deg", number(std::atan(std::sqrt(e.max_tilt_tan_sq)) * kDegPerRad)},
-                     {"max_patch_sigma_m", number(kTenthMm_m * std::sqrt(e.max_patch_sigma_sq_tenth_mm2))},
-                     {"max_drift_m", kTenthMm_m * static_cast<double>(e.max_drift_tenth_mm)},
-                     {"cells", e.cells},
-                     {"known_cells", e.known_cells},
-                     {"vouched_cells", e.vouched_cells}};
+    Json evidence = {
+        {"primary", to_string(verdict.primary)},
+        {"worst_cell_m",
+         e.has_worst_cell ? Json{kTenthMm_m * static_cast<double>(e.worst_x_tenth_mm),
+                                 kTenthMm_m * static_cast<double>(e.worst_y_tenth_mm)}
+                          : Json(nullptr)},
+        {"value_m", kTenthMm_m * static_cast<double>(e.value_tenth_mm)},
+        {"limit_m", kTenthMm_m * static_cast<double>(e.limit_tenth_mm)},
+        {"stance_height_m",
+         e.stance_known ? Json(kTenthMm_m * static_cast<double>(e.stance_height_tenth_mm))
+                        : Json(nullptr)},
+        {"height_delta_m", kTenthMm_m * static_cast<double>(e.height_delta_tenth_mm)},
+        {"max_tilt_deg", number(std::atan(std::sqrt(e.max_tilt_tan_sq)) * kDegPerRad)},
+        {"max_patch_sigma_m", number(kTenthMm_m * std::sqrt(e.max_patch_sigma_sq_tenth_mm2))},
+        {"max_drift_m", kTenthMm_m * static_cast<double>(e.max_drift_tenth_mm)},
+        {"cells", e.cells},
+        {"known_cells", e.known_cells},
+        {"vouched_cells", e.vouched_cells}};
     const Json object = {{"verdict", to_string(verdict.decision)},
                          {"reasons", reasons},
                          {"text", text},
@@ -190,7 +203,9 @@ std::string verdict_json(const gate::Verdict& verdict,
     return object.dump(kIndent);
 }
 
-std::string trajectory_json(const eval::TrajectoryErrors& errors) { return errors_json(errors).dump(kIndent); }
+std::string trajectory_json(const eval::TrajectoryErrors& errors) {
+    return errors_json(errors).dump(kIndent);
+}
 
 std::string maps_json(const eval::ElevationErrors& all,
                       const eval::ElevationErrors& away_from_edges,
@@ -205,27 +220,32 @@ std::string maps_json(const eval::ElevationErrors& all,
 
 std::string ground_json(const ground::GroundSighting& sighting) {
     const GroundObservation& o = sighting.observation;
-    const Json object = {{"accepted", o.accepted},
-                         {"reason", to_string(sighting.reason)},
-                         {"tilt_deg", number(sighting.tilt_rad * kDegPerRad)},
-                         {"height_m", number(o.height_m)},
-                         {"inlier_ratio", number(o.inlier_ratio)},
-                         {"rms_m", number(o.rms_m)},
-                         {"normal", {number(o.normal.x()), number(o.normal.y()), number(o.normal.z())}}};
+    const Json object = {
+        {"accepted", o.accepted},
+        {"reason", to_string(sighting.reason)},
+        {"tilt_deg", number(sighting.tilt_rad * kDegPerRad)},
+        {"height_m", number(o.height_m)},
+        {"inlier_ratio", number(o.inlier_ratio)},
+        {"rms_m", number(o.rms_m)},
+        {"normal", {number(o.normal.x()), number(o.normal.y()), number(o.normal.z())}}};
     return object.dump(kIndent);
 }
 
 std::string settings_json(const std::vector<io::ConfigEntry>& entries) {
     Json list = Json::array();
     for (const auto& entry : entries) {
-        list.push_back({{"key", entry.key}, {"value", entry.value}, {"range", entry.range}, {"comment", entry.comment}});
+        list.push_back({{"key", entry.key},
+                        {"value", entry.value},
+                        {"range", entry.range},
+                        {"comment", entry.comment}});
     }
     return Json{{"settings", list}}.dump(kIndent);
 }
 
 std::string scenes_json(const std::vector<sim::SceneInfo>& scenes) {
     Json list = Json::array();
-    for (const auto& scene : scenes) list.push_back({{"name", scene.name}, {"description", scene.description}});
+    for (const auto& scene : scenes)
+        list.push_back({{"name", scene.name}, {"description", scene.description}});
     return Json{{"scenes", list}}.dump(kIndent);
 }
 

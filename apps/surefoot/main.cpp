@@ -16,14 +16,18 @@ CLI::App* add_verb(CLI::App& app, const char* name, const char* what, const char
 }
 
 void add_common(CLI::App* verb, CommonOptions& common) {
-    verb->add_option("--config", common.config_file, "YAML file of settings; unknown keys are errors")
+    verb->add_option(
+            "--config", common.config_file, "YAML file of settings; unknown keys are errors")
         ->type_name("FILE");
     verb->add_option("--set", common.settings, "one setting, as key=value; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
-    verb->add_option("--preset", common.preset, "rex_zed, rex_demo_stairs, laser or ethz")->type_name("NAME");
+    verb->add_option("--preset", common.preset, "rex_zed, rex_demo_stairs, laser or ethz")
+        ->type_name("NAME");
     verb->add_flag("--json", common.json, "print one JSON object on stdout");
-    verb->add_option("--threads", common.threads, "threads to use (0 = all cores); results do not depend on it")
+    verb->add_option("--threads",
+                     common.threads,
+                     "threads to use (0 = all cores); results do not depend on it")
         ->check(CLI::Range(0, 256));
     verb->add_option("--seed", common.seed, "seed of everything random");
 }
@@ -54,75 +58,135 @@ struct AllOptions {
 };
 
 void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
-    CLI::App* verb = bind(add_verb(app, "run", "the whole chain over a recording, video or simulated scene",
+    CLI::App* verb = bind(add_verb(app,
+                                   "run",
+                                   "the whole chain over a recording, video or simulated scene",
                                    "surefoot run sim:floor --max-frames 8 --out out/floor"),
-                          o, run, exit_code);
-    verb->add_option("source", o.source, "EuRoC or KITTI folder, side-by-side folder or video, TUM RGB-D, sim:SCENE")
+                          o,
+                          run,
+                          exit_code);
+    verb->add_option("source",
+                     o.source,
+                     "EuRoC or KITTI folder, side-by-side folder or video, TUM RGB-D, sim:SCENE")
         ->required()
         ->type_name("SOURCE");
     verb->add_option("--out", o.out_dir, "folder for the results")->required()->type_name("DIR");
-    verb->add_option("--rig", o.rig_file, "calibration that replaces the recording's own")->type_name("FILE");
+    verb->add_option("--rig", o.rig_file, "calibration that replaces the recording's own")
+        ->type_name("FILE");
     verb->add_option("--machine", o.machine, "machine file or built-in name; sets the camera mount")
         ->type_name("FILE|NAME");
-    verb->add_option("--rate", o.rate_hz, "frame rate of a source without stamps")->type_name("HZ")->check(CLI::Range(0.01, 1000.0));
-    verb->add_option("--max-frames", o.max_frames, "stop after this many frames")->check(CLI::PositiveNumber);
-    verb->add_option("--depth-every", o.depth_every, "depth and map on every n-th frame; odometry runs on all")
+    verb->add_option("--rate", o.rate_hz, "frame rate of a source without stamps")
+        ->type_name("HZ")
+        ->check(CLI::Range(0.01, 1000.0));
+    verb->add_option("--max-frames", o.max_frames, "stop after this many frames")
+        ->check(CLI::PositiveNumber);
+    verb->add_option("--depth-every",
+                     o.depth_every,
+                     "depth and map on every n-th frame; odometry runs on all")
         ->check(CLI::Range(1, 1000));
     verb->add_flag("--layers", o.all_layers, "write every layer of the map");
 }
 
 void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
-    CLI::App* verb = bind(add_verb(app, "sim", "writes a simulated recording with its ground truth",
+    CLI::App* verb = bind(add_verb(app,
+                                   "sim",
+                                   "writes a simulated recording with its ground truth",
                                    "surefoot sim floor --frames 4 --out out/floor_recording"),
-                          o, simulate, exit_code);
+                          o,
+                          simulate,
+                          exit_code);
     verb->add_option("scene", o.scene, "which scene; see --list")->type_name("SCENE");
     verb->add_option("--out", o.out_dir, "folder for the recording")->type_name("DIR");
-    verb->add_option("--frames", o.frames, "stop after this many frames")->check(CLI::PositiveNumber);
-    verb->add_option("--rate", o.rate_hz, "frame rate")->type_name("HZ")->check(CLI::Range(0.1, 1000.0));
+    verb->add_option("--frames", o.frames, "stop after this many frames")
+        ->check(CLI::PositiveNumber);
+    verb->add_option("--rate", o.rate_hz, "frame rate")
+        ->type_name("HZ")
+        ->check(CLI::Range(0.1, 1000.0));
     verb->add_flag("--depth", o.depth, "write the exact depth of every frame too (PFM, 1 MB each)");
     verb->add_flag("--list", o.list, "print the scenes");
 }
 
 void add_rate(CLI::App& app, RateOptions& o, int& exit_code) {
-    CLI::App* verb = bind(add_verb(app, "rate", "traversability of a height map alone",
-                                   "surefoot rate out/floor/elevation.asc --preset rex_zed --out out/rated"),
-                          o, rate, exit_code);
-    verb->add_option("dem", o.dem, "ESRI ASCII grid, or a PNG with --scale and --height")->required()->type_name("DEM");
+    CLI::App* verb =
+        bind(add_verb(app,
+                      "rate",
+                      "traversability of a height map alone",
+                      "surefoot rate out/floor/elevation.asc --preset rex_zed --out out/rated"),
+             o,
+             rate,
+             exit_code);
+    verb->add_option("dem", o.dem, "ESRI ASCII grid, or a PNG with --scale and --height")
+        ->required()
+        ->type_name("DEM");
     verb->add_option("--out", o.out_dir, "folder for the layers")->required()->type_name("DIR");
-    verb->add_option("--scale", o.scale_m_per_px, "PNG: metres per pixel")->type_name("M")->check(CLI::PositiveNumber);
-    verb->add_option("--height", o.height_m, "PNG: height of the brightest value")->type_name("M")->check(CLI::PositiveNumber);
+    verb->add_option("--scale", o.scale_m_per_px, "PNG: metres per pixel")
+        ->type_name("M")
+        ->check(CLI::PositiveNumber);
+    verb->add_option("--height", o.height_m, "PNG: height of the brightest value")
+        ->type_name("M")
+        ->check(CLI::PositiveNumber);
 }
 
 void add_fuse(CLI::App& app, FuseOptions& o, int& exit_code) {
-    CLI::App* verb = bind(add_verb(app, "fuse", "the elevation update alone, on given clouds",
-                                   "surefoot fuse tests/conformance/elevation/steps.txt --preset ethz --out out/fused"),
-                          o, fuse, exit_code);
-    verb->add_option("steps", o.steps, "steps.txt beside cloud0.f32, cloud1.f32, ...")->required()->type_name("STEPS.txt");
+    CLI::App* verb = bind(
+        add_verb(
+            app,
+            "fuse",
+            "the elevation update alone, on given clouds",
+            "surefoot fuse tests/conformance/elevation/steps.txt --preset ethz --out out/fused"),
+        o,
+        fuse,
+        exit_code);
+    verb->add_option("steps", o.steps, "steps.txt beside cloud0.f32, cloud1.f32, ...")
+        ->required()
+        ->type_name("STEPS.txt");
     verb->add_option("--out", o.out_dir, "folder for the layers")->required()->type_name("DIR");
 }
 
 void add_ground(CLI::App& app, GroundOptions& o, int& exit_code) {
-    CLI::App* verb = bind(add_verb(app, "ground", "ground plane of a cloud: tilt, height, inliers",
+    CLI::App* verb = bind(add_verb(app,
+                                   "ground",
+                                   "ground plane of a cloud: tilt, height, inliers",
                                    "surefoot ground out/floor/map.ply --origin 0,0,0.95 --json"),
-                          o, ground, exit_code);
+                          o,
+                          ground,
+                          exit_code);
     verb->add_option("cloud", o.cloud, "PCD, PLY or XYZ")->required()->type_name("CLOUD");
-    verb->add_option("--origin", o.origin, "where the sensor is in the cloud; heights count from there")->type_name("X,Y,Z");
-    verb->add_option("--frame", o.frame, "axes of the cloud; without it organised clouds are optical")
+    verb->add_option(
+            "--origin", o.origin, "where the sensor is in the cloud; heights count from there")
+        ->type_name("X,Y,Z");
+    verb->add_option(
+            "--frame", o.frame, "axes of the cloud; without it organised clouds are optical")
         ->check(CLI::IsMember({"optical", "body"}));
 }
 
 void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
-    CLI::App* verb = bind(add_verb(app, "gate", "one verdict: may this step be taken? exit 0 OK, 3 NOT_TRAVERSABLE, 4 ERROR",
-                                   "surefoot gate --map out/floor --pose 0,0,0 --command 9"),
-                          o, gate, exit_code);
+    CLI::App* verb =
+        bind(add_verb(app,
+                      "gate",
+                      "one verdict: may this step be taken? exit 0 OK, 3 NOT_TRAVERSABLE, 4 ERROR",
+                      "surefoot gate --map out/floor --pose 0,0,0 --command 9"),
+             o,
+             gate,
+             exit_code);
     verb->add_option("--map", o.map_dir, "folder of a run")->required()->type_name("DIR");
-    verb->add_option("--pose", o.pose, "base_link in odom: metres and radians")->required()->type_name("X,Y,YAW");
-    verb->add_option("--command", o.command, "joystick sector 1-24, 25 turn left, 26 turn right")->required()->type_name("N");
-    verb->add_option("--machine", o.machine, "machine file or built-in name")->type_name("FILE|NAME");
-    verb->add_option("--explain", o.explain_file, "picture of footprint, corridor and deciding cell")->type_name("F.png");
-    verb->add_option("--vouch", o.vouch_radius_m,
-                     "radius around base_link that an operator answers for where nothing was measured; 0 = none; "
-                     "without it the ground under the present feet is assumed, and listed in 'assumed'")
+    verb->add_option("--pose", o.pose, "base_link in odom: metres and radians")
+        ->required()
+        ->type_name("X,Y,YAW");
+    verb->add_option("--command", o.command, "joystick sector 1-24, 25 turn left, 26 turn right")
+        ->required()
+        ->type_name("N");
+    verb->add_option("--machine", o.machine, "machine file or built-in name")
+        ->type_name("FILE|NAME");
+    verb->add_option(
+            "--explain", o.explain_file, "picture of footprint, corridor and deciding cell")
+        ->type_name("F.png");
+    verb->add_option(
+            "--vouch",
+            o.vouch_radius_m,
+            "radius around base_link that an operator answers for where nothing was measured; 0 = "
+            "none; "
+            "without it the ground under the present feet is assumed, and listed in 'assumed'")
         ->type_name("M")
         ->check(CLI::Range(0.0, 2.0));
 }
@@ -130,60 +194,116 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
 void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
     CLI::App* verb = app.add_subcommand("eval", "measure results against ground truth");
     verb->require_subcommand(1);
-    verb->footer("Example:\n  surefoot eval trajectory out/floor/trajectory.tum out/floor_recording/groundtruth.tum --json");
+    verb->footer(
+        "Example:\n  surefoot eval trajectory out/floor/trajectory.tum "
+        "out/floor_recording/groundtruth.tum --json");
     auto& t = all.eval_trajectory;
-    CLI::App* trajectory = bind(add_verb(*verb, "trajectory", "ATE, RPE and drift of a trajectory",
-                                         "surefoot eval trajectory out/floor/trajectory.tum out/floor_recording/groundtruth.tum --json"),
-                                t, eval_trajectory, exit_code);
+    CLI::App* trajectory = bind(add_verb(*verb,
+                                         "trajectory",
+                                         "ATE, RPE and drift of a trajectory",
+                                         "surefoot eval trajectory out/floor/trajectory.tum "
+                                         "out/floor_recording/groundtruth.tum --json"),
+                                t,
+                                eval_trajectory,
+                                exit_code);
     trajectory->add_option("estimate", t.estimate, "TUM trajectory")->required()->type_name("EST");
-    trajectory->add_option("truth", t.truth, "TUM trajectory, or KITTI 3x4 poses")->required()->type_name("TRUTH");
-    trajectory->add_option("--align", t.align, "how the estimate is laid onto the truth")->check(CLI::IsMember({"se3", "yaw", "none"}));
-    trajectory->add_option("--rate", t.rate_hz, "KITTI poses without times.txt")->type_name("HZ")->check(CLI::Range(0.01, 1000.0));
+    trajectory->add_option("truth", t.truth, "TUM trajectory, or KITTI 3x4 poses")
+        ->required()
+        ->type_name("TRUTH");
+    trajectory->add_option("--align", t.align, "how the estimate is laid onto the truth")
+        ->check(CLI::IsMember({"se3", "yaw", "none"}));
+    trajectory->add_option("--rate", t.rate_hz, "KITTI poses without times.txt")
+        ->type_name("HZ")
+        ->check(CLI::Range(0.01, 1000.0));
     auto& m = all.eval_maps;
-    CLI::App* maps = bind(add_verb(*verb, "maps", "elevation and traversability against a true map",
+    CLI::App* maps = bind(add_verb(*verb,
+                                   "maps",
+                                   "elevation and traversability against a true map",
                                    "surefoot eval maps out/floor out/floor_recording --json"),
-                          m, eval_maps, exit_code);
+                          m,
+                          eval_maps,
+                          exit_code);
     maps->add_option("live", m.live_dir, "folder of a run")->required()->type_name("LIVE_DIR");
-    maps->add_option("truth", m.truth_dir, "folder with the true elevation.asc")->required()->type_name("TRUTH_DIR");
+    maps->add_option("truth", m.truth_dir, "folder with the true elevation.asc")
+        ->required()
+        ->type_name("TRUTH_DIR");
 }
 
 void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
-    CLI::App* config_verb = bind(add_verb(app, "config", "every setting with value, range and reason; checks files",
-                                          "surefoot config --set elevation.length_m=8"),
-                                 all.config, config, exit_code);
-    config_verb->add_flag("--check", all.config.check_only, "only say whether the settings are valid");
+    CLI::App* config_verb =
+        bind(add_verb(app,
+                      "config",
+                      "every setting with value, range and reason; checks files",
+                      "surefoot config --set elevation.length_m=8"),
+             all.config,
+             config,
+             exit_code);
+    config_verb->add_flag(
+        "--check", all.config.check_only, "only say whether the settings are valid");
 
-    CLI::App* doctor_verb = bind(add_verb(app, "doctor", "what is missing on this machine; the blind zone of a rig",
-                                          "surefoot doctor --machine rex"),
-                                 all.doctor, doctor, exit_code);
+    CLI::App* doctor_verb =
+        bind(add_verb(app,
+                      "doctor",
+                      "what is missing on this machine; the blind zone of a rig",
+                      "surefoot doctor --machine rex"),
+             all.doctor,
+             doctor,
+             exit_code);
     doctor_verb->add_option("--rig", all.doctor.rig_file, "calibration file")->type_name("FILE");
-    doctor_verb->add_option("--machine", all.doctor.machine, "machine file or built-in name")->type_name("FILE|NAME");
+    doctor_verb->add_option("--machine", all.doctor.machine, "machine file or built-in name")
+        ->type_name("FILE|NAME");
 
-    CLI::App* bench_verb = bind(add_verb(app, "bench", "time of the chain and its parts on this machine",
-                                         "surefoot bench gate"),
-                                all.bench, bench, exit_code);
+    CLI::App* bench_verb = bind(
+        add_verb(
+            app, "bench", "time of the chain and its parts on this machine", "surefoot bench gate"),
+        all.bench,
+        bench,
+        exit_code);
     bench_verb->add_option("group", all.bench.group, "chain, traversability, gate; empty = all")
         ->check(CLI::IsMember({"chain", "traversability", "gate"}));
 
-    CLI::App* record_verb = bind(add_verb(app, "record", "writes any source as a recording (EuRoC layout)",
-                                          "surefoot record sim:floor --max-frames 4 --out out/copy"),
-                                 all.record, record, exit_code);
-    record_verb->add_option("source", all.record.source, "as for run")->required()->type_name("SOURCE");
-    record_verb->add_option("--out", all.record.out_dir, "folder for the recording")->required()->type_name("DIR");
+    CLI::App* record_verb =
+        bind(add_verb(app,
+                      "record",
+                      "writes any source as a recording (EuRoC layout)",
+                      "surefoot record sim:floor --max-frames 4 --out out/copy"),
+             all.record,
+             record,
+             exit_code);
+    record_verb->add_option("source", all.record.source, "as for run")
+        ->required()
+        ->type_name("SOURCE");
+    record_verb->add_option("--out", all.record.out_dir, "folder for the recording")
+        ->required()
+        ->type_name("DIR");
     record_verb->add_option("--rig", all.record.rig_file, "calibration")->type_name("FILE");
-    record_verb->add_option("--rate", all.record.rate_hz, "frame rate of a source without stamps")->check(CLI::Range(0.01, 1000.0));
-    record_verb->add_option("--max-frames", all.record.max_frames, "stop after this many frames")->check(CLI::PositiveNumber);
+    record_verb->add_option("--rate", all.record.rate_hz, "frame rate of a source without stamps")
+        ->check(CLI::Range(0.01, 1000.0));
+    record_verb->add_option("--max-frames", all.record.max_frames, "stop after this many frames")
+        ->check(CLI::PositiveNumber);
 
-    CLI::App* replay_verb = bind(add_verb(app, "replay", "plays a recording at its own speed and prints what is seen",
-                                          "surefoot replay out/floor_recording --speed 20"),
-                                 all.replay, replay, exit_code);
-    replay_verb->add_option("source", all.replay.source, "as for run")->required()->type_name("SOURCE");
+    CLI::App* replay_verb =
+        bind(add_verb(app,
+                      "replay",
+                      "plays a recording at its own speed and prints what is seen",
+                      "surefoot replay out/floor_recording --speed 20"),
+             all.replay,
+             replay,
+             exit_code);
+    replay_verb->add_option("source", all.replay.source, "as for run")
+        ->required()
+        ->type_name("SOURCE");
     replay_verb->add_option("--rig", all.replay.rig_file, "calibration")->type_name("FILE");
-    replay_verb->add_option("--speed", all.replay.speed, "times real time")->check(CLI::Range(0.01, 1000.0));
+    replay_verb->add_option("--speed", all.replay.speed, "times real time")
+        ->check(CLI::Range(0.01, 1000.0));
 
-    CLI::App* info_verb = bind(add_verb(app, "info", "what a recording holds: frames, rate, gaps, rig, IMU",
+    CLI::App* info_verb = bind(add_verb(app,
+                                        "info",
+                                        "what a recording holds: frames, rate, gaps, rig, IMU",
                                         "surefoot info out/floor_recording --json"),
-                               all.info, info, exit_code);
+                               all.info,
+                               info,
+                               exit_code);
     info_verb->add_option("source", all.info.source, "as for run")->required()->type_name("SOURCE");
     info_verb->add_option("--rig", all.info.rig_file, "calibration")->type_name("FILE");
 }
@@ -209,8 +329,8 @@ int main_with_arguments(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        // --help and --version are successes; everything else is a wrong call. A wrong call of `gate`
-        // must not look like permission, and 2 does not.
+        // --help and --version are successes; everything else is a wrong call. A wrong call of
+        // `gate` must not look like permission, and 2 does not.
         return app.exit(error) == 0 ? kExitOk : kExitUsage;
     }
     return exit_code;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/numbers.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "io/text.hpp"
 
@@ -16,9 +16,12 @@ Result<std::array<double, 3>> parse_three_numbers(const std::string& option,
     std::size_t begin = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const std::size_t end = i + 1 < values.size() ? text.find(',', begin) : text.size();
-        const auto value = end == std::string::npos ? std::nullopt : io::parse_double(text.substr(begin, end - begin));
+        const auto value = end == std::string::npos
+                               ? std::nullopt
+                               : io::parse_double(text.substr(begin, end - begin));
         if (!value || !std::isfinite(*value)) {
-            return usage_error(fmt::format("{} '{}': three finite numbers {} are needed", option, text, meaning));
+            return usage_error(
+                fmt::format("{} '{}': three finite numbers {} are needed", option, text, meaning));
         }
         values[i] = *value;
         begin = end + 1;

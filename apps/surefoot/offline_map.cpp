@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/offline_map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
@@ -20,9 +20,10 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     const std::string height_file = folder + "/elevation.asc";
     const std::string variance_file = folder + "/variance.asc";
     if (!io::is_file(height_file) || !io::is_file(variance_file)) {
-        return input_error(fmt::format("{}: holds neither map.snapshot nor elevation.asc with variance.asc; give the "
-                                       "output folder of 'surefoot run'",
-                                       folder));
+        return input_error(fmt::format(
+            "{}: holds neither map.snapshot nor elevation.asc with variance.asc; give the "
+            "output folder of 'surefoot run'",
+            folder));
     }
     const auto height = io::read_esri_grid(height_file);
     if (!height) return height.error();
@@ -30,8 +31,10 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     if (!variance) return variance.error();
     const auto& a = height->geometry;
     const auto& b = variance->geometry;
-    if (a.nx != b.nx || a.ny != b.ny || a.resolution_m != b.resolution_m || a.origin_m != b.origin_m) {
-        return input_error(fmt::format("{}: its cells differ from those of {}", variance_file, height_file));
+    if (a.nx != b.nx || a.ny != b.ny || a.resolution_m != b.resolution_m ||
+        a.origin_m != b.origin_m) {
+        return input_error(
+            fmt::format("{}: its cells differ from those of {}", variance_file, height_file));
     }
     const grid::Layer no_drift(a.nx, a.ny, 0.0F);
     grid::SnapshotInput input;
@@ -44,20 +47,26 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     input.version = 1;
     OfflineMap map{std::make_unique<grid::MapSnapshot>(), {}};
     if (auto status = grid::build_snapshot(input, *map.snapshot); !status) return status.error();
-    map.assumed = {"no drift since the cells were seen", "gravity is the z axis of the grid", "odometry was healthy"};
+    map.assumed = {"no drift since the cells were seen",
+                   "gravity is the z axis of the grid",
+                   "odometry was healthy"};
     return map;
 }
 
 /// Heights of the known cells around the query's pose [0.1 mm], sorted.
-std::vector<std::int64_t> heights_around(const gate::Query& query, const grid::MapSnapshot& map, std::int64_t radius) {
+std::vector<std::int64_t> heights_around(const gate::Query& query,
+                                         const grid::MapSnapshot& map,
+                                         std::int64_t radius) {
     std::vector<std::int64_t> heights;
     for (int iy = 0; iy < map.ny; ++iy) {
         for (int ix = 0; ix < map.nx; ++ix) {
             const auto cell = static_cast<std::size_t>(iy * map.nx + ix);
             if (map.height_tenth_mm[cell] == grid::MapSnapshot::kUnknownHeight) continue;
             const std::int64_t half = map.resolution_tenth_mm / 2;
-            const std::int64_t dx = map.origin_x_tenth_mm + ix * map.resolution_tenth_mm + half - query.x_tenth_mm;
-            const std::int64_t dy = map.origin_y_tenth_mm + iy * map.resolution_tenth_mm + half - query.y_tenth_mm;
+            const std::int64_t dx =
+                map.origin_x_tenth_mm + ix * map.resolution_tenth_mm + half - query.x_tenth_mm;
+            const std::int64_t dy =
+                map.origin_y_tenth_mm + iy * map.resolution_tenth_mm + half - query.y_tenth_mm;
             if (dx * dx + dy * dy <= radius * radius) heights.push_back(map.height_tenth_mm[cell]);
         }
     }
@@ -69,8 +78,10 @@ std::vector<std::int64_t> heights_around(const gate::Query& query, const grid::M
 double reach_of(const Machine& machine) {
     double reach = 0.0;
     for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
-        reach = std::max(reach, std::hypot(std::abs(foot->center_x_tenth_mm) + 0.5 * foot->length_tenth_mm,
-                                           std::abs(foot->center_y_tenth_mm) + 0.5 * foot->width_tenth_mm));
+        reach =
+            std::max(reach,
+                     std::hypot(std::abs(foot->center_x_tenth_mm) + 0.5 * foot->length_tenth_mm,
+                                std::abs(foot->center_y_tenth_mm) + 0.5 * foot->width_tenth_mm));
     }
     return reach;
 }
@@ -92,7 +103,8 @@ Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
                                           std::vector<std::string>& assumed) {
     const double limit_m = kTenthMm_m * machine.limits.vouch_radius_tenth_mm;
     if (radius_m > limit_m) {
-        return usage_error(fmt::format("--vouch {:g}: the machine file allows at most {:g} m", radius_m, limit_m));
+        return usage_error(
+            fmt::format("--vouch {:g}: the machine file allows at most {:g} m", radius_m, limit_m));
     }
     gate::VouchedArea area;
     area.active = true;
@@ -100,16 +112,19 @@ Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
     area.center_y_tenth_mm = query.y_tenth_mm;
     // Cells count only when they lie wholly inside: one diagonal more than the feet reach.
     const double feet_m = kTenthMm_m * (reach_of(machine) + 1.5 * map.resolution_tenth_mm);
-    area.radius_tenth_mm =
-        static_cast<std::int32_t>((radius_m < 0.0 ? std::min(feet_m, limit_m) : radius_m) / kTenthMm_m);
-    // The machine stands on the lower ground around it, not on the furniture beside it: lower quartile.
+    area.radius_tenth_mm = static_cast<std::int32_t>(
+        (radius_m < 0.0 ? std::min(feet_m, limit_m) : radius_m) / kTenthMm_m);
+    // The machine stands on the lower ground around it, not on the furniture beside it: lower
+    // quartile.
     const auto heights = heights_around(query, map, area.radius_tenth_mm);
-    if (!heights.empty()) area.height_tenth_mm = static_cast<std::int32_t>(heights[heights.size() / 4]);
-    assumed.push_back(fmt::format("start area: flat ground at z = {:.3f} m ({}) within {:.2f} m of base_link where nothing "
-                                  "was measured",
-                                  kTenthMm_m * area.height_tenth_mm,
-                                  heights.empty() ? "the ground plane of odom" : "from the cells around it",
-                                  kTenthMm_m * area.radius_tenth_mm));
+    if (!heights.empty())
+        area.height_tenth_mm = static_cast<std::int32_t>(heights[heights.size() / 4]);
+    assumed.push_back(fmt::format(
+        "start area: flat ground at z = {:.3f} m ({}) within {:.2f} m of base_link where nothing "
+        "was measured",
+        kTenthMm_m * area.height_tenth_mm,
+        heights.empty() ? "the ground plane of odom" : "from the cells around it",
+        kTenthMm_m * area.radius_tenth_mm));
     return area;
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/progress.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
 #include <cstdio>
-#include <unistd.h>
-
-#include <fmt/format.h>
 
 namespace surefoot::app {
 namespace {
@@ -14,7 +14,9 @@ namespace {
 std::atomic<bool> interrupt_seen{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
-void on_signal(int /*signal*/) { interrupt_seen.store(true); }
+void on_signal(int /*signal*/) {
+    interrupt_seen.store(true);
+}
 
 }  // namespace
 
@@ -36,12 +38,20 @@ void Progress::advance(int done) {
     last_percent_ = percent;
     constexpr int kBarWidth = 40;
     const auto filled = static_cast<std::size_t>(kBarWidth * done / *total_);
-    fmt::print(stderr, "\r{} [{:<{}}] {:3d} % ({}/{})", label_, std::string(filled, '#'), kBarWidth, percent, done,
+    fmt::print(stderr,
+               "\r{} [{:<{}}] {:3d} % ({}/{})",
+               label_,
+               std::string(filled, '#'),
+               kBarWidth,
+               percent,
+               done,
                *total_);
     std::fflush(stderr);
 }
 
-bool interrupted() { return interrupt_seen.load(); }
+bool interrupted() {
+    return interrupt_seen.load();
+}
 
 void watch_for_interrupts() {
     struct sigaction action = {};

@@ -16,15 +16,17 @@ namespace {
 Result<io::Dem> read_dem(const RateOptions& options) {
     if (io::extension_of(options.dem) != ".png") return io::read_esri_grid(options.dem);
     if (options.scale_m_per_px <= 0.0 || options.height_m <= 0.0) {
-        return usage_error(fmt::format("{}: a height image needs --scale (m per pixel) and --height (m at full white)",
-                                       options.dem));
+        return usage_error(fmt::format(
+            "{}: a height image needs --scale (m per pixel) and --height (m at full white)",
+            options.dem));
     }
     return io::read_dem_image(options.dem, options.scale_m_per_px, options.height_m);
 }
 
 eval::LayerStyle style_of(const std::string& name, double safe_threshold) {
     const bool is_normal = name.starts_with("normal");
-    eval::LayerStyle style = is_normal ? eval::LayerStyle{} : eval::traversability_style(safe_threshold);
+    eval::LayerStyle style =
+        is_normal ? eval::LayerStyle{} : eval::traversability_style(safe_threshold);
     style.text.title = name;
     return style;
 }
@@ -44,24 +46,36 @@ int rate(const RateOptions& options) {
 
     const auto executor = make_executor(options.common);
     traversability::TraversabilityLayers layers;
-    traversability::rate(settings->pipeline.traversability, dem->values.view(), resolution_m, *executor, layers);
+    traversability::rate(
+        settings->pipeline.traversability, dem->values.view(), resolution_m, *executor, layers);
 
     const std::pair<const char*, const grid::Layer*> outputs[] = {
-        {"slope", &layers.slope},       {"step", &layers.step},         {"roughness", &layers.roughness},
-        {"normal_x", &layers.normal_x}, {"normal_y", &layers.normal_y}, {"normal_z", &layers.normal_z},
+        {"slope", &layers.slope},
+        {"step", &layers.step},
+        {"roughness", &layers.roughness},
+        {"normal_x", &layers.normal_x},
+        {"normal_y", &layers.normal_y},
+        {"normal_z", &layers.normal_z},
         {"traversability", &layers.traversability}};
     Status first_failure = io::write_config_of(options.out_dir + "/config.yaml", *settings);
     for (const auto& [name, layer] : outputs) {
-        const auto png = encode_png(
-            render_layer(dem->geometry, *layer, style_of(name, settings->maps.safe_threshold), eval::Overlays{}));
-        for (Status status : {io::write_esri_grid(fmt::format("{}/{}.asc", options.out_dir, name), dem->geometry, *layer),
-                              io::write_file(fmt::format("{}/{}.png", options.out_dir, name),
-                                             std::string(png.begin(), png.end()))}) {
+        const auto png = encode_png(render_layer(dem->geometry,
+                                                 *layer,
+                                                 style_of(name, settings->maps.safe_threshold),
+                                                 eval::Overlays{}));
+        for (Status status :
+             {io::write_esri_grid(
+                  fmt::format("{}/{}.asc", options.out_dir, name), dem->geometry, *layer),
+              io::write_file(fmt::format("{}/{}.png", options.out_dir, name),
+                             std::string(png.begin(), png.end()))}) {
             if (!status && first_failure.ok()) first_failure = status;
         }
     }
     if (!first_failure) return report(first_failure.error());
-    fmt::print("{} x {} cells of {:g} m rated, layers in {}/\n", dem->geometry.nx, dem->geometry.ny, resolution_m,
+    fmt::print("{} x {} cells of {:g} m rated, layers in {}/\n",
+               dem->geometry.nx,
+               dem->geometry.ny,
+               resolution_m,
                options.out_dir);
     return kExitOk;
 }

@@ -15,7 +15,8 @@ namespace {
 /// RGB-D cameras bring the Kinect's error model unless the user chose one.
 void choose_sensor_model(const camera::StereoRig& rig, Settings& settings) {
     auto& model = settings.pipeline.elevation.sensor.model;
-    if (!rig.right && model == elevation::SensorModel::matcher) model = elevation::SensorModel::kinect;
+    if (!rig.right && model == elevation::SensorModel::matcher)
+        model = elevation::SensorModel::kinect;
 }
 
 /// Where base_link stands over its own ground is known from the machine file.
@@ -32,7 +33,11 @@ int run(const RunOptions& options) {
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
     const auto executor = make_executor(options.common);
-    auto source = open_source({options.source, options.rig_file, options.rate_hz, options.max_frames, options.common.seed},
+    auto source = open_source({options.source,
+                               options.rig_file,
+                               options.rate_hz,
+                               options.max_frames,
+                               options.common.seed},
                               *executor);
     if (!source) return report(source.error());
     const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);
@@ -40,7 +45,8 @@ int run(const RunOptions& options) {
     expect_machine_height(*machine, *settings);
     auto pipeline = pipeline::Pipeline::make(settings->pipeline, rig, *executor, steady_now_ns);
     if (!pipeline) return report(pipeline.error());
-    if (const auto status = io::make_folder(options.out_dir); !status) return report(status.error());
+    if (const auto status = io::make_folder(options.out_dir); !status)
+        return report(status.error());
 
     RunSession session(*pipeline, **source, options.depth_every);
     session.drive();

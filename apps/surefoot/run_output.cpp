@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/run_output.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/run_report.hpp"
@@ -72,12 +71,19 @@ void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline
     const auto& map = pipeline.map().layers();
     const auto& rating = pipeline.rating();
     const std::pair<const char*, const grid::Layer*> layers[] = {
-        {"drift", &map.horizontal_drift_m}, {"highest", &map.highest_m},  {"lowest", &map.lowest_m},
-        {"normal_x", &rating.normal_x},     {"normal_y", &rating.normal_y}, {"normal_z", &rating.normal_z},
-        {"slope", &rating.slope},           {"step", &rating.step},       {"roughness", &rating.roughness},
+        {"drift", &map.horizontal_drift_m},
+        {"highest", &map.highest_m},
+        {"lowest", &map.lowest_m},
+        {"normal_x", &rating.normal_x},
+        {"normal_y", &rating.normal_y},
+        {"normal_z", &rating.normal_z},
+        {"slope", &rating.slope},
+        {"step", &rating.step},
+        {"roughness", &rating.roughness},
     };
     for (const auto& [name, layer] : layers) {
-        writes += io::write_esri_grid(fmt::format("{}/{}.asc", out, name), geometry, or_unknown(*layer, geometry));
+        writes += io::write_esri_grid(
+            fmt::format("{}/{}.asc", out, name), geometry, or_unknown(*layer, geometry));
     }
 }
 
@@ -98,17 +104,20 @@ Status write_results(const RunOptions& options,
                                        trajectory_of(record, record.rig.body_from_left()));
     writes += io::write_esri_grid(out + "/elevation.asc", geometry, layers.height_m);
     writes += io::write_esri_grid(out + "/variance.asc", geometry, layers.height_var_m2);
-    writes += io::write_esri_grid(out + "/traversability.asc", geometry,
+    writes += io::write_esri_grid(out + "/traversability.asc",
+                                  geometry,
                                   or_unknown(pipeline.rating().traversability, geometry));
     if (options.all_layers) write_all_layers(out, pipeline, writes);
     writes += io::write_ply(out + "/map.ply", map_cloud(pipeline));
 
     const auto snapshot = std::make_unique<grid::MapSnapshot>();
     Status sealed = pipeline.snapshot(hash_of(settings), *snapshot);
-    writes += sealed.ok() ? io::write_snapshot(out + "/map.snapshot", *snapshot) : std::move(sealed);
+    writes +=
+        sealed.ok() ? io::write_snapshot(out + "/map.snapshot", *snapshot) : std::move(sealed);
 
     writes += write_pictures_and_report(options, settings, machine, pipeline, record);
-    writes += io::write_file(out + "/report.json", report_json(record, pipeline, writes.first()) + "\n");
+    writes +=
+        io::write_file(out + "/report.json", report_json(record, pipeline, writes.first()) + "\n");
     return writes.first();
 }
 
@@ -118,14 +127,19 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
     const auto& config = pipeline.config().elevation;
     if (f.points == 0) return "no frame had any depth: see the counts of each frame";
     const std::pair<std::int64_t, std::string> causes[] = {
-        {f.outside, fmt::format("lie beyond the map (elevation.length_m = {:g}, centred on base_link)", config.length_m)},
+        {f.outside,
+         fmt::format("lie beyond the map (elevation.length_m = {:g}, centred on base_link)",
+                     config.length_m)},
         {f.gated_range, "are nearer or farther than elevation.prefilter allows"},
         {f.gated_height, "are above or below the height cut of elevation.prefilter"},
-        {f.gated_confidence, "are at depth edges, seen too flat, or likely outliers (elevation.pixels)"},
+        {f.gated_confidence,
+         "are at depth edges, seen too flat, or likely outliers (elevation.pixels)"},
         {f.gated_density, "have too few neighbours (elevation.prefilter)"},
     };
-    const auto& worst = *std::max_element(std::begin(causes), std::end(causes),
-                                          [](const auto& a, const auto& b) { return a.first < b.first; });
+    const auto& worst =
+        *std::max_element(std::begin(causes), std::end(causes), [](const auto& a, const auto& b) {
+            return a.first < b.first;
+        });
     return fmt::format("{} of {} depth points {}", worst.first, f.points, worst.second);
 }
 
@@ -133,7 +147,8 @@ Percentiles percentiles(std::vector<double> values) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
     const auto at = [&](double share) {
-        return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+        return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) +
+                                               0.5)];
     };
     return {at(0.5), at(0.99), values.size()};
 }
@@ -165,23 +180,33 @@ double peak_memory_mb() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports kB
 }
 
-std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline, const std::string& out_dir) {
+std::string run_summary(const RunRecord& record,
+                        const pipeline::Pipeline& pipeline,
+                        const std::string& out_dir) {
     const Percentiles frame = frame_percentiles(record);
-    std::string text = fmt::format("{} frames, {:.1f} ms a full frame (median), {} cells known\n{}\n",
-                                   record.frames.size(), frame.median, pipeline.map().known_cells(),
-                                   pipeline.alignment().reason);
+    std::string text =
+        fmt::format("{} frames, {:.1f} ms a full frame (median), {} cells known\n{}\n",
+                    record.frames.size(),
+                    frame.median,
+                    pipeline.map().known_cells(),
+                    pipeline.alignment().reason);
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         text += fmt::format("the map is empty: {}\n", reason);
     }
     if (record.truth) {
         const TruthFigures& t = *record.truth;
         text += fmt::format(
-            "against the truth, nothing aligned: elevation median |error| {:.1f} mm, 90 % within {:.1f} mm; away from "
-            "edges {:.2f} % above 50 mm; {:.1f} % of the cells visible within 2.5 m known; trajectory {:.1f} mm rmse; "
+            "against the truth, nothing aligned: elevation median |error| {:.1f} mm, 90 % within "
+            "{:.1f} mm; away from "
+            "edges {:.2f} % above 50 mm; {:.1f} % of the cells visible within 2.5 m known; "
+            "trajectory {:.1f} mm rmse; "
             "{:.1f} % of depths within 3 sigma\n",
-            1e3 * t.elevation.median_abs_m, 1e3 * t.elevation.p90_abs_m,
-            100.0 * t.elevation_away_from_edges.share_over_50mm, 100.0 * t.coverage_within_2_5_m,
-            1e3 * t.trajectory.ate_rmse_m, 100.0 * t.depth.within_3_sigma);
+            1e3 * t.elevation.median_abs_m,
+            1e3 * t.elevation.p90_abs_m,
+            100.0 * t.elevation_away_from_edges.share_over_50mm,
+            100.0 * t.coverage_within_2_5_m,
+            1e3 * t.trajectory.ate_rmse_m,
+            100.0 * t.depth.within_3_sigma);
     }
     return text + fmt::format("results in {}/, start with {}/report.html\n", out_dir, out_dir);
 }

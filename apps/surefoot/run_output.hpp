@@ -11,8 +11,8 @@
 
 namespace surefoot::app {
 
-/// Writes everything that a run produced. Goes on after a failed file and returns the first failure, so
-/// that as much as possible is kept.
+/// Writes everything that a run produced. Goes on after a failed file and returns the first
+/// failure, so that as much as possible is kept.
 [[nodiscard]] Status write_results(const RunOptions& options,
                                    const Settings& settings,
                                    const std::optional<io::MachineFile>& machine,
@@ -25,7 +25,8 @@ namespace surefoot::app {
                                       const std::string& out_dir);
 
 /// Why the map holds no cell, in one sentence; empty when it holds some.
-[[nodiscard]] std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& pipeline);
+[[nodiscard]] std::string empty_map_reason(const RunRecord& record,
+                                           const pipeline::Pipeline& pipeline);
 
 /// Median and 99th percentile of what the frames report.
 struct Percentiles {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/run_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "eval/html_report.hpp"
 #include "eval/picture.hpp"
@@ -19,8 +19,10 @@ constexpr double kTenthMm_m = 1e-4;
 std::vector<Eigen::Vector2d> box_outline(const GroundBox& box, const Pose& T_odom_body) {
     std::vector<Eigen::Vector2d> corners;
     for (const auto& [sx, sy] : {std::pair{1, 1}, {1, -1}, {-1, -1}, {-1, 1}}) {
-        const Eigen::Vector3d p_body(kTenthMm_m * (box.center_x_tenth_mm + 0.5 * sx * box.length_tenth_mm),
-                                     kTenthMm_m * (box.center_y_tenth_mm + 0.5 * sy * box.width_tenth_mm), 0.0);
+        const Eigen::Vector3d p_body(
+            kTenthMm_m * (box.center_x_tenth_mm + 0.5 * sx * box.length_tenth_mm),
+            kTenthMm_m * (box.center_y_tenth_mm + 0.5 * sy * box.width_tenth_mm),
+            0.0);
         corners.push_back((T_odom_body * p_body).head<2>());
     }
     return corners;
@@ -57,13 +59,16 @@ void add_camera_pictures(const pipeline::Pipeline& pipeline, eval::ReportContent
     if (pipeline.pair().left.empty() || pipeline.depth().disparity_px.empty()) return;
     const double fb = pipeline.rig().depth_to_disparity_px_m();
     content.pictures.push_back({"What the left eye saw last, rectified",
-                                eval::encode_png(eval::render_camera_image(pipeline.pair().left, {"Left camera", "last full frame"}))});
+                                eval::encode_png(eval::render_camera_image(
+                                    pipeline.pair().left, {"Left camera", "last full frame"}))});
     content.pictures.push_back(
         {"Disparity and the depth it stands for; grey has no match",
-         eval::encode_png(eval::render_disparity(pipeline.depth().disparity_px, fb, {"Disparity", "last full frame"}))});
+         eval::encode_png(eval::render_disparity(
+             pipeline.depth().disparity_px, fb, {"Disparity", "last full frame"}))});
     content.pictures.push_back(
         {"One sigma of the disparity, pixel by pixel, as the map believes it",
-         eval::encode_png(eval::render_sigma(pipeline.depth().sigma_px, "px", {"Disparity sigma", "last full frame"}))});
+         eval::encode_png(eval::render_sigma(
+             pipeline.depth().sigma_px, "px", {"Disparity sigma", "last full frame"}))});
 }
 
 void add_truth(const RunRecord& record,
@@ -73,35 +78,54 @@ void add_truth(const RunRecord& record,
     if (!record.truth) return;
     const TruthFigures& t = *record.truth;
     const grid::GridGeometry& geometry = pipeline.map().geometry();
-    content.pictures.push_back({"Live height minus true height; nothing was aligned before",
-                                eval::encode_png(eval::render_error_map(geometry, t.error_m, {"Height error", "live - truth"}, drawn))});
+    content.pictures.push_back(
+        {"Live height minus true height; nothing was aligned before",
+         eval::encode_png(eval::render_error_map(
+             geometry, t.error_m, {"Height error", "live - truth"}, drawn))});
     content.pictures.push_back(
         {"What the map calls safe against the same rating of the true heights",
-         eval::encode_png(eval::render_confusion(geometry, t.calls, {"Safe or not, against the truth", "threshold 0.80"}, drawn))});
-    content.figures.push_back({"Elevation, median |error|", fmt::format("{:.1f}", 1e3 * t.elevation.median_abs_m), "mm",
+         eval::encode_png(eval::render_confusion(
+             geometry, t.calls, {"Safe or not, against the truth", "threshold 0.80"}, drawn))});
+    content.figures.push_back({"Elevation, median |error|",
+                               fmt::format("{:.1f}", 1e3 * t.elevation.median_abs_m),
+                               "mm",
                                "against the highest true surface of the cell"});
     content.figures.push_back(
         {"Elevation, 90 % within", fmt::format("{:.1f}", 1e3 * t.elevation.p90_abs_m), "mm", ""});
-    content.figures.push_back({"Above 50 mm away from edges",
-                               fmt::format("{:.2f}", 100.0 * t.elevation_away_from_edges.share_over_50mm), "%", ""});
+    content.figures.push_back(
+        {"Above 50 mm away from edges",
+         fmt::format("{:.2f}", 100.0 * t.elevation_away_from_edges.share_over_50mm),
+         "%",
+         ""});
     content.figures.push_back({"Known of what was visible within 2.5 m",
-                               fmt::format("{:.1f}", 100.0 * t.coverage_within_2_5_m), "%", ""});
-    content.figures.push_back({"Trajectory error", fmt::format("{:.1f}", 1e3 * t.trajectory.ate_rmse_m), "mm rmse",
+                               fmt::format("{:.1f}", 100.0 * t.coverage_within_2_5_m),
+                               "%",
+                               ""});
+    content.figures.push_back({"Trajectory error",
+                               fmt::format("{:.1f}", 1e3 * t.trajectory.ate_rmse_m),
+                               "mm rmse",
                                fmt::format("over {:.2f} m", t.trajectory.path_length_m)});
-    content.figures.push_back({"Depths within 3 sigma", fmt::format("{:.1f}", 100.0 * t.depth.within_3_sigma), "%", ""});
+    content.figures.push_back(
+        {"Depths within 3 sigma", fmt::format("{:.1f}", 100.0 * t.depth.within_3_sigma), "%", ""});
 }
 
 eval::ReportTable configuration_table(const Settings& settings) {
     eval::ReportTable table{"Configuration that the run used", {"key", "value", "what"}, {}};
-    for (const auto& entry : io::list_config_of(settings)) table.rows.push_back({entry.key, entry.value, entry.comment});
+    for (const auto& entry : io::list_config_of(settings))
+        table.rows.push_back({entry.key, entry.value, entry.comment});
     return table;
 }
 
-std::vector<std::string> summary_lines(const RunRecord& record, const pipeline::Pipeline& pipeline) {
-    return {fmt::format("{} frames of {} ({}), {} map cells known.", record.frames.size(), record.source.path,
-                        record.source.kind, pipeline.map().known_cells()),
+std::vector<std::string> summary_lines(const RunRecord& record,
+                                       const pipeline::Pipeline& pipeline) {
+    return {fmt::format("{} frames of {} ({}), {} map cells known.",
+                        record.frames.size(),
+                        record.source.path,
+                        record.source.kind,
+                        pipeline.map().known_cells()),
             fmt::format("Gravity and ground: {}.", pipeline.alignment().reason),
-            record.complete() ? "The run is complete." : fmt::format("The run ended early: {}", record.error->message)};
+            record.complete() ? "The run is complete."
+                              : fmt::format("The run ended early: {}", record.error->message)};
 }
 
 }  // namespace
@@ -114,26 +138,33 @@ Status write_pictures_and_report(const RunOptions& options,
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& layers = pipeline.map().layers();
     const eval::Overlays drawn = overlays(machine, record);
-    const auto elevation_png = eval::encode_png(eval::render_layer(geometry, layers.height_m, eval::elevation_style(), drawn));
+    const auto elevation_png = eval::encode_png(
+        eval::render_layer(geometry, layers.height_m, eval::elevation_style(), drawn));
     const grid::Layer unknown(geometry.nx, geometry.ny, std::nanf(""));
-    const grid::Layer& rating = pipeline.rating().traversability.empty() ? unknown : pipeline.rating().traversability;
-    const auto rating_png = eval::encode_png(
-        eval::render_layer(geometry, rating, eval::traversability_style(settings.maps.safe_threshold), drawn));
+    const grid::Layer& rating =
+        pipeline.rating().traversability.empty() ? unknown : pipeline.rating().traversability;
+    const auto rating_png = eval::encode_png(eval::render_layer(
+        geometry, rating, eval::traversability_style(settings.maps.safe_threshold), drawn));
 
     eval::ReportContent content;
     content.title = fmt::format("Surefoot: {}", record.source.path);
     content.summary = summary_lines(record, pipeline);
     content.pictures.push_back({"The ground, seen from above", elevation_png});
     content.pictures.push_back({"Safe to step or not; hatched was never seen", rating_png});
-    content.pictures.push_back({"How sure the map is of each height",
-                                eval::encode_png(eval::render_layer(geometry, sigma_of(layers.height_var_m2, layers.height_m),
-                                                        eval::height_sigma_style(), drawn))});
-    Trajectory estimate;
-    for (const FrameReport& frame : record.frames) estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
     content.pictures.push_back(
-        {"Where base_link went", eval::encode_png(eval::render_trajectory(
-                                     estimate, record.truth ? record.truth->truth_trajectory : Trajectory{},
-                                     {"Trajectory of base_link", "odom, from above"}))});
+        {"How sure the map is of each height",
+         eval::encode_png(eval::render_layer(geometry,
+                                             sigma_of(layers.height_var_m2, layers.height_m),
+                                             eval::height_sigma_style(),
+                                             drawn))});
+    Trajectory estimate;
+    for (const FrameReport& frame : record.frames)
+        estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
+    content.pictures.push_back({"Where base_link went",
+                                eval::encode_png(eval::render_trajectory(
+                                    estimate,
+                                    record.truth ? record.truth->truth_trajectory : Trajectory{},
+                                    {"Trajectory of base_link", "odom, from above"}))});
     add_camera_pictures(pipeline, content);
     add_truth(record, pipeline, drawn, content);
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
@@ -143,12 +174,18 @@ Status write_pictures_and_report(const RunOptions& options,
     eval::add_frames(content, record.frames);
     content.frame_limit_ms = record.rig.rate_hz > 0.0 ? 1e3 / record.rig.rate_hz : 0.0;
     content.configuration = configuration_table(settings);
-    content.footer = fmt::format("surefoot {}; peak memory {:.0f} MB", SUREFOOT_VERSION, peak_memory_mb());
+    content.footer =
+        fmt::format("surefoot {}; peak memory {:.0f} MB", SUREFOOT_VERSION, peak_memory_mb());
 
-    const auto as_text = [](const std::vector<std::uint8_t>& bytes) { return std::string(bytes.begin(), bytes.end()); };
-    Status elevation_written = io::write_file(options.out_dir + "/elevation.png", as_text(elevation_png));
-    Status rating_written = io::write_file(options.out_dir + "/traversability.png", as_text(rating_png));
-    Status report_written = io::write_file(options.out_dir + "/report.html", eval::render_html(content));
+    const auto as_text = [](const std::vector<std::uint8_t>& bytes) {
+        return std::string(bytes.begin(), bytes.end());
+    };
+    Status elevation_written =
+        io::write_file(options.out_dir + "/elevation.png", as_text(elevation_png));
+    Status rating_written =
+        io::write_file(options.out_dir + "/traversability.png", as_text(rating_png));
+    Status report_written =
+        io::write_file(options.out_dir + "/report.html", eval::render_html(content));
     for (Status* status : {&elevation_written, &rating_written, &report_written}) {
         if (!*status) return *status;
     }

@@ -31,7 +31,8 @@ void RunSession::drive() {
         progress.advance(static_cast<int>(record_.frames.size()));
     }
     if (record_.frames.empty() && !record_.error) {
-        record_.error = input_error(fmt::format("{}: the source holds no frame", record_.source.path));
+        record_.error =
+            input_error(fmt::format("{}: the source holds no frame", record_.source.path));
     }
     record_.truth = truth_.figures(pipeline_, record_.frames);
     record_.wall_s = seconds_from_ns(steady_now_ns() - start_ns);
@@ -49,7 +50,8 @@ std::vector<StereoFrame> RunSession::first_frames() {
 
 std::optional<StereoFrame> RunSession::next_frame() {
     if (interrupted()) {
-        record_.error = Error{ErrorCode::interrupted, "interrupted by the user; the results up to here are kept"};
+        record_.error = Error{ErrorCode::interrupted,
+                              "interrupted by the user; the results up to here are kept"};
         return std::nullopt;
     }
     auto frame = source_.next();

@@ -18,9 +18,9 @@ struct RunRecord {
     camera::SourceInfo source;
     camera::StereoRig rig;
     std::vector<FrameReport> frames;
-    FusionCounts fusion;               ///< summed over all frames
-    std::optional<Error> error;        ///< why it ended early
-    GreyImage last_left;               ///< rectified, for the report
+    FusionCounts fusion;         ///< summed over all frames
+    std::optional<Error> error;  ///< why it ended early
+    GreyImage last_left;         ///< rectified, for the report
     camera::DepthImage last_depth;
     std::optional<TruthFigures> truth;  ///< simulated sources only
     double wall_s = 0.0;
@@ -28,9 +28,9 @@ struct RunRecord {
     [[nodiscard]] bool complete() const noexcept { return !error.has_value(); }
 };
 
-/// Drives a pipeline over a source: buffers the first frames for the alignment, then processes every
-/// frame. Stops at the first error of the source or when the user interrupts; what was computed before
-/// stays in `record` and in the pipeline's map.
+/// Drives a pipeline over a source: buffers the first frames for the alignment, then processes
+/// every frame. Stops at the first error of the source or when the user interrupts; what was
+/// computed before stays in `record` and in the pipeline's map.
 class RunSession {
   public:
     RunSession(pipeline::Pipeline& pipeline, camera::FrameSource& source, int depth_every);

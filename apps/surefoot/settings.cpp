@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/settings.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <thread>
-
-#include <fmt/format.h>
 
 #include "apps/surefoot/resources.hpp"
 #include "apps/surefoot/thread_pool.hpp"
@@ -25,7 +25,9 @@ Result<Settings> load_settings(const CommonOptions& options) {
     if (!options.preset.empty()) {
         const auto text = find_resource("presets", options.preset);
         if (!text) return text.error();
-        if (auto status = io::parse_config(*text, fmt::format("preset {}", options.preset), describe); !status) {
+        if (auto status =
+                io::parse_config(*text, fmt::format("preset {}", options.preset), describe);
+            !status) {
             return status.error();
         }
     }
@@ -34,7 +36,8 @@ Result<Settings> load_settings(const CommonOptions& options) {
             return usage_error(status.error().message);
         }
     }
-    if (auto status = io::override_config_in(settings, options.settings); !status) return status.error();
+    if (auto status = io::override_config_in(settings, options.settings); !status)
+        return status.error();
     if (const auto problem = settings.pipeline.problem()) return usage_error(*problem);
     return settings;
 }
@@ -48,14 +51,16 @@ std::uint64_t hash_of(const Settings& settings) {
 }
 
 std::unique_ptr<Executor> make_executor(const CommonOptions& options) {
-    const int threads =
-        options.threads > 0 ? options.threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int threads = options.threads > 0
+                            ? options.threads
+                            : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     if (threads == 1) return std::make_unique<Serial>();
     return std::make_unique<ThreadPool>(threads);
 }
 
 std::int64_t steady_now_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
         .count();
 }
 

@@ -35,17 +35,22 @@ grid::Layer rated(const pipeline::Pipeline& pipeline, const grid::Layer& height_
     Serial serial;
     traversability::TraversabilityLayers layers;
     const double resolution_m = pipeline.map().geometry().resolution_m;
-    traversability::rate(pipeline.config().traversability.widened_to(resolution_m), height_m.view(), resolution_m,
-                         serial, layers);
+    traversability::rate(pipeline.config().traversability.widened_to(resolution_m),
+                         height_m.view(),
+                         resolution_m,
+                         serial,
+                         layers);
     return layers.traversability;
 }
 
 }  // namespace
 
-SimTruth::SimTruth(camera::FrameSource& source) : scene_(dynamic_cast<const sim::SceneSource*>(&source)) {}
+SimTruth::SimTruth(camera::FrameSource& source)
+    : scene_(dynamic_cast<const sim::SceneSource*>(&source)) {}
 
 void SimTruth::remember_depth(const StereoFrame& frame) {
-    if (scene_ != nullptr && scene_->rig().rectified) depths_.emplace_back(frame.index, scene_->last_depth_m());
+    if (scene_ != nullptr && scene_->rig().rectified)
+        depths_.emplace_back(frame.index, scene_->last_depth_m());
 }
 
 void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline) {
@@ -71,7 +76,9 @@ void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline&
         ++error_histogram_[std::min(bin, error_histogram_.size() - 1)];
         const double z_m = fb_px_m / disparity_px;
         const double sigma_z_m = z_m * sigma_px / disparity_px;
-        RangeMean* range = std::abs(z_m - 1.0) <= 0.05 ? &near_ : std::abs(z_m - 2.0) <= 0.1 ? &far_ : nullptr;
+        RangeMean* range = std::abs(z_m - 1.0) <= 0.05  ? &near_
+                           : std::abs(z_m - 2.0) <= 0.1 ? &far_
+                                                        : nullptr;
         if (range != nullptr) {
             range->sum_m += sigma_z_m;
             ++range->count;
@@ -93,20 +100,26 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     figures.truth_height_m = sim::dem(truth.scene, lattice);
     figures.error_m = eval::height_error(live_m, figures.truth_height_m);
     figures.elevation = eval::elevation_errors(live_m, figures.truth_height_m, {}, config);
-    figures.elevation_away_from_edges = eval::elevation_errors(
-        live_m, figures.truth_height_m, eval::away_from_edges(figures.truth_height_m, config), config);
+    figures.elevation_away_from_edges =
+        eval::elevation_errors(live_m,
+                               figures.truth_height_m,
+                               eval::away_from_edges(figures.truth_height_m, config),
+                               config);
     Serial serial;
     const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kVisibleRange_m}, serial);
     figures.coverage_within_2_5_m = eval::coverage(live_m, figures.truth_height_m, visible);
-    figures.calls = eval::classify(pipeline.rating().traversability, rated(pipeline, figures.truth_height_m),
+    figures.calls = eval::classify(pipeline.rating().traversability,
+                                   rated(pipeline, figures.truth_height_m),
                                    config.safe_threshold);
     figures.traversability = eval::traversability_errors(figures.calls, visible);
 
     Trajectory estimate;
-    for (const FrameReport& frame : frames) estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
-    for (const auto& pose : truth.trajectory) figures.truth_trajectory.push_back({pose.time_ns, pose.T_world_body});
-    if (const auto errors = eval::evaluate_trajectory(estimate, figures.truth_trajectory,
-                                                      {.align = eval::Alignment::none})) {
+    for (const FrameReport& frame : frames)
+        estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
+    for (const auto& pose : truth.trajectory)
+        figures.truth_trajectory.push_back({pose.time_ns, pose.T_world_body});
+    if (const auto errors = eval::evaluate_trajectory(
+            estimate, figures.truth_trajectory, {.align = eval::Alignment::none})) {
         figures.trajectory = *errors;
     }
 

@@ -13,10 +13,11 @@
 
 namespace surefoot::app {
 
-/// Reported depth against exact depth, over all pixels that the matcher does not itself call doubtful.
+/// Reported depth against exact depth, over all pixels that the matcher does not itself call
+/// doubtful.
 struct DepthFigures {
     std::int64_t pixels = 0;
-    double within_3_sigma = 0.0;       ///< share of |error| <= 3 sigma_z
+    double within_3_sigma = 0.0;  ///< share of |error| <= 3 sigma_z
     double within_1_sigma = 0.0;
     double median_abs_error_px = 0.0;  ///< of the disparity
     double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m
@@ -28,11 +29,12 @@ struct DepthFigures {
 struct TruthFigures {
     eval::ElevationErrors elevation;
     eval::ElevationErrors elevation_away_from_edges;
-    double coverage_within_2_5_m = 0.0;  ///< share known of the cells that both eyes saw within 2.5 m
+    double coverage_within_2_5_m =
+        0.0;  ///< share known of the cells that both eyes saw within 2.5 m
     eval::TraversabilityErrors traversability;
-    eval::TrajectoryErrors trajectory;   ///< alignment none
+    eval::TrajectoryErrors trajectory;  ///< alignment none
     DepthFigures depth;
-    grid::Layer truth_height_m;          ///< on the live map's cells
+    grid::Layer truth_height_m;  ///< on the live map's cells
     grid::Layer error_m;
     Image<eval::Call> calls;
     Trajectory truth_trajectory;
@@ -62,7 +64,8 @@ class SimTruth {
     std::int64_t within_1_sigma_ = 0;
     RangeMean near_;
     RangeMean far_;
-    std::vector<std::int64_t> error_histogram_ = std::vector<std::int64_t>(400, 0);  ///< 0.01 px bins
+    std::vector<std::int64_t> error_histogram_ =
+        std::vector<std::int64_t>(400, 0);  ///< 0.01 px bins
 };
 
 }  // namespace surefoot::app

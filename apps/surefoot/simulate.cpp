@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
@@ -39,7 +39,9 @@ sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
         high = high.cwiseMax(pose.T_world_body.translation_m.head<2>());
     }
     constexpr double kReach_m = 6.0;
-    const auto snapped = [&](double value_m) { return std::floor(value_m / resolution_m) * resolution_m; };
+    const auto snapped = [&](double value_m) {
+        return std::floor(value_m / resolution_m) * resolution_m;
+    };
     sim::Lattice lattice;
     lattice.resolution_m = resolution_m;
     lattice.origin_m = {snapped(low.x() - kReach_m), snapped(low.y() - kReach_m)};
@@ -49,18 +51,26 @@ sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
 }
 
 /// groundtruth.tum, elevation.asc (highest surface), labels.asc.
-Status write_truth(const std::string& out, const sim::SceneTruth& truth, std::size_t frames, double resolution_m) {
+Status write_truth(const std::string& out,
+                   const sim::SceneTruth& truth,
+                   std::size_t frames,
+                   double resolution_m) {
     Trajectory trajectory;
     for (std::size_t i = 0; i < std::min(frames, truth.trajectory.size()); ++i) {
         trajectory.push_back({truth.trajectory[i].time_ns, truth.trajectory[i].T_world_body});
     }
     const sim::Lattice lattice = lattice_around(trajectory, resolution_m);
-    const grid::GridGeometry geometry{lattice.resolution_m, lattice.nx, lattice.ny, lattice.origin_m};
+    const grid::GridGeometry geometry{
+        lattice.resolution_m, lattice.nx, lattice.ny, lattice.origin_m};
     grid::Layer labels(lattice.nx, lattice.ny);
     const auto label_codes = sim::labels(truth.scene, lattice);
-    for (std::size_t i = 0; i < labels.size(); ++i) labels.data()[i] = static_cast<float>(label_codes.data()[i]);
-    if (auto status = io::write_tum_trajectory(out + "/groundtruth.tum", trajectory); !status) return status;
-    if (auto status = io::write_esri_grid(out + "/elevation.asc", geometry, sim::dem(truth.scene, lattice)); !status) {
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        labels.data()[i] = static_cast<float>(label_codes.data()[i]);
+    if (auto status = io::write_tum_trajectory(out + "/groundtruth.tum", trajectory); !status)
+        return status;
+    if (auto status =
+            io::write_esri_grid(out + "/elevation.asc", geometry, sim::dem(truth.scene, lattice));
+        !status) {
         return status;
     }
     return io::write_esri_grid(out + "/labels.asc", geometry, labels);
@@ -71,7 +81,8 @@ Status write_truth(const std::string& out, const sim::SceneTruth& truth, std::si
 int simulate(const SimOptions& options) {
     if (options.list) return list(options.common.json);
     if (options.scene.empty() || options.out_dir.empty()) {
-        return report(usage_error("sim: a scene and --out are needed; 'surefoot sim --list' shows the scenes"));
+        return report(usage_error(
+            "sim: a scene and --out are needed; 'surefoot sim --list' shows the scenes"));
     }
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
@@ -86,7 +97,8 @@ int simulate(const SimOptions& options) {
     auto recorder = io::Recorder::create(options.out_dir, (*source)->rig());
     if (!recorder) return report(recorder.error());
     if (options.depth) {
-        if (auto status = io::make_folder(options.out_dir + "/depth"); !status) return report(status.error());
+        if (auto status = io::make_folder(options.out_dir + "/depth"); !status)
+            return report(status.error());
     }
 
     watch_for_interrupts();
@@ -98,18 +110,23 @@ int simulate(const SimOptions& options) {
         if (!frame->has_value()) break;
         if (auto status = recorder->add(**frame); !status) return report(status.error());
         if (options.depth) {
-            const std::string file = fmt::format("{}/depth/{}.pfm", options.out_dir, (*frame)->time_ns);
-            if (auto status = io::write_pfm(file, (*source)->last_depth_m()); !status) return report(status.error());
+            const std::string file =
+                fmt::format("{}/depth/{}.pfm", options.out_dir, (*frame)->time_ns);
+            if (auto status = io::write_pfm(file, (*source)->last_depth_m()); !status)
+                return report(status.error());
         }
         progress.advance(static_cast<int>(++frames));
     }
     const double resolution_m = settings->pipeline.elevation.resolution_m;
-    if (auto status = write_truth(options.out_dir, (*source)->truth(), frames, resolution_m); !status) {
+    if (auto status = write_truth(options.out_dir, (*source)->truth(), frames, resolution_m);
+        !status) {
         return report(status.error());
     }
     if (auto status = recorder->finish(); !status) return report(status.error());
-    fmt::print("{} frames of {} with ground truth in {}/\n", frames, options.scene, options.out_dir);
-    return interrupted() ? report({ErrorCode::interrupted, "interrupted by the user; the frames up to here are kept"})
+    fmt::print(
+        "{} frames of {} with ground truth in {}/\n", frames, options.scene, options.out_dir);
+    return interrupted() ? report({ErrorCode::interrupted,
+                                   "interrupted by the user; the frames up to here are kept"})
                          : kExitOk;
 }
 

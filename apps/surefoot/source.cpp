@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/source.hpp"
 
-#include <filesystem>
-
 #include <fmt/format.h>
+
+#include <filesystem>
 
 #include "apps/surefoot/resources.hpp"
 #include "io/recording.hpp"
@@ -34,9 +34,11 @@ class LimitedSource final : public camera::FrameSource {
     int left_;
 };
 
-Result<std::unique_ptr<camera::FrameSource>> open_simulation(const SourceRequest& request, Executor& executor) {
+Result<std::unique_ptr<camera::FrameSource>> open_simulation(const SourceRequest& request,
+                                                             Executor& executor) {
     if (!request.rig_file.empty()) {
-        return usage_error(fmt::format("--rig {}: simulated scenes bring their own rig", request.rig_file));
+        return usage_error(
+            fmt::format("--rig {}: simulated scenes bring their own rig", request.rig_file));
     }
     sim::SceneOptions options;
     options.scene = request.source.substr(kSimPrefix.size());
@@ -50,7 +52,8 @@ Result<std::unique_ptr<camera::FrameSource>> open_simulation(const SourceRequest
 
 }  // namespace
 
-Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& request, Executor& executor) {
+Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& request,
+                                                         Executor& executor) {
     if (request.source.starts_with(kSimPrefix)) return open_simulation(request, executor);
     io::OpenOptions options;
     if (!request.rig_file.empty()) options.rig_file = request.rig_file;
@@ -63,7 +66,8 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& re
 
 Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_name) {
     if (path_or_name.empty()) return std::optional<io::MachineFile>{};
-    const auto as_optional = [](Result<io::MachineFile> machine) -> Result<std::optional<io::MachineFile>> {
+    const auto as_optional =
+        [](Result<io::MachineFile> machine) -> Result<std::optional<io::MachineFile>> {
         if (!machine) return usage_error(machine.error().message);
         return std::optional<io::MachineFile>(std::move(machine).value());
     };
@@ -73,7 +77,8 @@ Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_n
     return as_optional(io::parse_machine(*text, fmt::format("machine {}", path_or_name)));
 }
 
-camera::StereoRig mounted_rig(const camera::StereoRig& rig, const std::optional<io::MachineFile>& machine) {
+camera::StereoRig mounted_rig(const camera::StereoRig& rig,
+                              const std::optional<io::MachineFile>& machine) {
     camera::StereoRig mounted = rig;
     if (!mounted.T_body_left && machine) mounted.T_body_left = machine->T_body_left;
     return mounted;

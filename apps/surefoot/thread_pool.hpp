@@ -20,7 +20,9 @@ class ThreadPool final : public Executor {
     ThreadPool& operator=(const ThreadPool&) = delete;
 
     void parallel_for(int count, const std::function<void(int)>& work) override;
-    [[nodiscard]] int width() const noexcept override { return static_cast<int>(workers_.size()) + 1; }
+    [[nodiscard]] int width() const noexcept override {
+        return static_cast<int>(workers_.size()) + 1;
+    }
 
   private:
     void run_worker();

@@ -70,7 +70,7 @@ struct GroundOptions {
     CommonOptions common;
     std::string cloud;
     std::string origin = "0,0,0";  ///< of the sensor, in the axes of the cloud
-    std::string frame;  ///< optical | body | "" = by the cloud
+    std::string frame;             ///< optical | body | "" = by the cloud
 };
 int ground(const GroundOptions& options);
 

@@ -27,9 +27,7 @@ struct ImageView {
     }
     [[nodiscard]] bool empty() const noexcept { return width == 0 || height == 0; }
 
-    operator ImageView<const T>() const noexcept
-        requires(!std::is_const_v<T>)
-    {
+    operator ImageView<const T>() const noexcept requires(!std::is_const_v<T>) {
         return {data, width, height, stride};
     }
 };

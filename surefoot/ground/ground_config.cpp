@@ -22,12 +22,13 @@ void GroundConfig::describe(ConfigVisitor& visitor) {
         "min_height_m", min_height_m, 0.0, 100.0, "least height of the sensor above the plane");
     visitor.number(
         "max_height_m", max_height_m, 0.0, 100.0, "largest height of the sensor above the plane");
-    visitor.number("expected_height_m",
-                   expected_height_m,
-                   0.0,
-                   5.0,
-                   "base_link over the ground it stands on; of several planes the one that fits wins, "
-                   "so that a landing below is not taken for it. 0 = unknown: the lowest plane wins");
+    visitor.number(
+        "expected_height_m",
+        expected_height_m,
+        0.0,
+        5.0,
+        "base_link over the ground it stands on; of several planes the one that fits wins, "
+        "so that a landing below is not taken for it. 0 = unknown: the lowest plane wins");
     visitor.integer("window", window, 1, 1000, "sightings that are averaged");
     visitor.integer("min_agreeing", min_agreeing, 1, 1000, "agreeing sightings needed");
     visitor.number("max_disagreement_deg",

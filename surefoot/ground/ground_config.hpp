@@ -18,7 +18,8 @@ struct GroundConfig {
     double max_rms_m = 0.025;        ///< clutter cut by a slab has tolerance / sqrt(3) = 0.029
     double min_height_m = 0.1;       ///< of the sensor above the plane
     double max_height_m = 3.0;
-    double expected_height_m = 0.0;  ///< of base_link over its own ground (machine file); 0 = unknown
+    double expected_height_m =
+        0.0;  ///< of base_link over its own ground (machine file); 0 = unknown
 
     int window = 10;                    ///< last sightings that are averaged
     int min_agreeing = 5;               ///< of them, to be accepted

@@ -138,7 +138,8 @@ bool is_more_ground(const GroundConfig& config, const Candidate& a, const Candid
     if (config.expected_height_m > 0.0) {
         const double a_off_m = std::abs(a.height_m() - config.expected_height_m);
         const double b_off_m = std::abs(b.height_m() - config.expected_height_m);
-        // Planes that fit about equally well (a ramp that begins at the feet) differ by the rules below.
+        // Planes that fit about equally well (a ramp that begins at the feet) differ by the rules
+        // below.
         if (std::abs(a_off_m - b_off_m) > config.max_disagreement_m) return a_off_m < b_off_m;
     }
     const double a_at_b =

@@ -34,8 +34,8 @@ struct GroundSighting {
 /// Finds the ground (RANSAC within the cone of allowed normals, thesis 4.3.1). The ground is
 /// *below*: every supported plane is considered, and the lowest wins even if a table top has more
 /// points, unless the height of the sensor is known (`expected_height_m`): then the plane that fits
-/// it wins, a platform over a lower floor. Where two planes cross between their points (a ramp and the floor before it), the one
-/// that begins nearer to the sensor wins.
+/// it wins, a platform over a lower floor. Where two planes cross between their points (a ramp and
+/// the floor before it), the one that begins nearer to the sensor wins.
 ///
 /// `points` in any frame (not finite = left out), `up_hint` roughly up in that frame,
 /// `sensor_origin` in that frame: heights are distances from it. The same input and seed give the

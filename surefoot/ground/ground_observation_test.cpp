@@ -162,10 +162,11 @@ TEST(GroundObservation, FloorWinsOverATableTopWithMorePoints) {
 
 TEST(GroundObservation, OfTwoFloorsTheOneThatFitsTheKnownHeightWins) {
     // The machine stands on a platform 0.17 m above the floor ahead; the floor has more points.
-    const Points points = Scene(31)
-                              .patch({0.5, -1.5, -kSensorHeight_m}, {1.0, 0, 0}, {0, 3.0, 0}, 1500)
-                              .patch({1.7, -1.5, -kSensorHeight_m - 0.17}, {3.0, 0, 0}, {0, 3.0, 0}, 4500)
-                              .seen_by(Eigen::Quaterniond::Identity());
+    const Points points =
+        Scene(31)
+            .patch({0.5, -1.5, -kSensorHeight_m}, {1.0, 0, 0}, {0, 3.0, 0}, 1500)
+            .patch({1.7, -1.5, -kSensorHeight_m - 0.17}, {3.0, 0, 0}, {0, 3.0, 0}, 4500)
+            .seen_by(Eigen::Quaterniond::Identity());
     GroundConfig config;
     const auto unknown = observe_ground(config, points, Eigen::Vector3d::UnitZ(), 1);
     EXPECT_NEAR(unknown.height_m, kSensorHeight_m + 0.17, kHeightLimit_m) << "the lowest plane";

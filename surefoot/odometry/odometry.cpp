@@ -19,7 +19,6 @@ constexpr double kKeyframeShare = 0.7;  ///< keyframe when fewer of the last one
 constexpr double kKeyframeParallax =
     0.035;                            ///< or when they moved by this share of the image width
 constexpr int kKeyframePeriod = 12;   ///< or after so many frames of motion
-constexpr double kPatchWorn = 0.8;    ///< correlation below which a keyframe renews the patch
 constexpr double kFewFollowed = 0.5;  ///< share below which points are followed a second time
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {
@@ -308,7 +307,7 @@ Pose Odometry::Impl::make_keyframe(const Pose& T, Executor& executor) {
     for (const Track& track : front.tracks()) {
         if (map.at(track.slot).id < 0) continue;
         map.add_sighting(track.slot, track.pixel_px, track.noise_factor);
-        if (track.correlation < kPatchWorn)
+        if (track.correlation == 0.0)  // it does not look like its patch any more
             map.renew_patch(track.slot, front.left().image(), track.raw_px);
     }
     front.seed(map, executor);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSize_px = 96;
 /// Both images are rounded to whole grey levels: about 0.3 grey of noise on gradients of some grey
-/// per pixel, averaged over 169 pixels; the rest is bilinear interpolation.
+/// per pixel, averaged over 81 pixels; the rest is bilinear interpolation.
 constexpr double kAlignment_px = 0.05;
 
 /// A texture seen by a view: pixel p shows the texture at `A p + shift`.

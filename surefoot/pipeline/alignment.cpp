@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/pipeline/alignment.hpp"
 
-#include <cmath>
-
 #include <fmt/format.h>
+
+#include <cmath>
 
 namespace surefoot::pipeline {
 namespace {
@@ -32,14 +32,28 @@ Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {
 }  // namespace
 
 void AlignmentConfig::describe(ConfigVisitor& visitor) {
-    visitor.number("pitch_deg", pitch_deg, -90.0, 90.0,
-                   "base_link looks this far below the horizon; used when neither plane nor IMU tells");
-    visitor.number("still_gyro_rad_s", still_gyro_rad_s, 0.0, 1.0,
+    visitor.number(
+        "pitch_deg",
+        pitch_deg,
+        -90.0,
+        90.0,
+        "base_link looks this far below the horizon; used when neither plane nor IMU tells");
+    visitor.number("still_gyro_rad_s",
+                   still_gyro_rad_s,
+                   0.0,
+                   1.0,
                    "turning faster than this, the accelerometer is not taken for gravity");
-    visitor.number("still_force_m_s2", still_force_m_s2, 0.0, 5.0,
+    visitor.number("still_force_m_s2",
+                   still_force_m_s2,
+                   0.0,
+                   5.0,
                    "largest deviation of the mean specific force from 9.81 when standing");
-    visitor.number("plane_imu_limit_deg", plane_imu_limit_deg, 0.1, 45.0,
-                   "plane and accelerometer farther apart than this: the floor is a ramp, gravity wins");
+    visitor.number(
+        "plane_imu_limit_deg",
+        plane_imu_limit_deg,
+        0.1,
+        45.0,
+        "plane and accelerometer farther apart than this: the floor is a ramp, gravity wins");
 }
 
 std::optional<Eigen::Vector3d> up_from_imu(const AlignmentConfig& config,
@@ -81,21 +95,28 @@ Alignment place_odom(const AlignmentConfig& config,
     if (ground.accepted && ramp_deg <= config.plane_imu_limit_deg) {
         up_body = ground.normal_body;
         alignment.gravity_source = grid::GravitySource::plane;
-        alignment.reason = fmt::format("tilt and height from the ground plane, {} sightings agree, {} do not",
-                                       ground.agreeing, ground.rejected);
+        alignment.reason =
+            fmt::format("tilt and height from the ground plane, {} sightings agree, {} do not",
+                        ground.agreeing,
+                        ground.rejected);
     } else if (up_imu_body) {
         up_body = *up_imu_body;
         alignment.gravity_source = grid::GravitySource::imu;
-        alignment.reason =
-            ground.accepted
-                ? fmt::format("tilt from the accelerometer: the ground leans {:.1f} deg (limit {:.1f}), a ramp",
-                              ramp_deg, config.plane_imu_limit_deg)
-                : fmt::format("tilt from the accelerometer; ground plane: {}", to_string(ground.reason));
+        alignment.reason = ground.accepted
+                               ? fmt::format(
+                                     "tilt from the accelerometer: the ground leans {:.1f} deg "
+                                     "(limit {:.1f}), a ramp",
+                                     ramp_deg,
+                                     config.plane_imu_limit_deg)
+                               : fmt::format("tilt from the accelerometer; ground plane: {}",
+                                             to_string(ground.reason));
     } else {
         alignment.reason = fmt::format(
-            "tilt assumed from mount.pitch_deg = {:.1f}; ground plane: {}; no accelerometer at rest. The gate "
+            "tilt assumed from mount.pitch_deg = {:.1f}; ground plane: {}; no accelerometer at "
+            "rest. The gate "
             "answers ERROR on such a map",
-            config.pitch_deg, to_string(ground.reason));
+            config.pitch_deg,
+            to_string(ground.reason));
     }
     alignment.T_odom_body.rotation = level(up_body);
     if (ground.accepted) {

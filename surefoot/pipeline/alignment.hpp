@@ -15,10 +15,11 @@
 namespace surefoot::pipeline {
 
 struct AlignmentConfig {
-    double pitch_deg = 0.0;             ///< of base_link below the horizon when nothing measures it
-    double still_gyro_rad_s = 0.15;     ///< MEMS bias (EuRoC 0.08) plus noise; above it the accelerometer is not taken for gravity
-    double still_force_m_s2 = 0.3;      ///< as above: deviation of the mean force from 9.81
-    double plane_imu_limit_deg = 3.0;   ///< plane and gravity farther apart: the floor is a ramp
+    double pitch_deg = 0.0;            ///< of base_link below the horizon when nothing measures it
+    double still_gyro_rad_s = 0.15;    ///< MEMS bias (EuRoC 0.08) plus noise; above it the
+                                       ///< accelerometer is not taken for gravity
+    double still_force_m_s2 = 0.3;     ///< as above: deviation of the mean force from 9.81
+    double plane_imu_limit_deg = 3.0;  ///< plane and gravity farther apart: the floor is a ramp
     void describe(ConfigVisitor& visitor);
 };
 
@@ -28,8 +29,8 @@ struct Alignment {
     Pose T_odom_body;  ///< of the first frame
     grid::GravitySource gravity_source = grid::GravitySource::assumed;
     bool has_ground = false;
-    double ground_height_m = 0.0;       ///< base_link above the ground; 0 without ground
-    std::string reason;                 ///< one sentence: what was used and what was not, and why
+    double ground_height_m = 0.0;  ///< base_link above the ground; 0 without ground
+    std::string reason;            ///< one sentence: what was used and what was not, and why
 };
 
 /// Gravity direction in base_link measured by the accelerometer while the rig stands still.

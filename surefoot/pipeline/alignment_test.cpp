@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/pipeline/alignment.hpp"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace surefoot::pipeline {
 namespace {
@@ -13,9 +13,9 @@ constexpr double kRadPerDeg = M_PI / 180.0;
 
 /// Up in a base_link that is pitched down and rolled.
 Eigen::Vector3d up_in_body(double pitch_down_rad, double roll_rad) {
-    const Eigen::Quaterniond R_odom_body = Eigen::Quaterniond(
-        Eigen::AngleAxisd(pitch_down_rad, Eigen::Vector3d::UnitY()) *
-        Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX()));
+    const Eigen::Quaterniond R_odom_body =
+        Eigen::Quaterniond(Eigen::AngleAxisd(pitch_down_rad, Eigen::Vector3d::UnitY()) *
+                           Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX()));
     return R_odom_body.conjugate() * Eigen::Vector3d::UnitZ();
 }
 
@@ -56,7 +56,8 @@ TEST(Alignment, without_a_plane_stays_at_base_link_and_says_what_it_used) {
     const Alignment by_imu = place_odom({}, {}, up_in_body(0.3, 0.1));
     EXPECT_EQ(by_imu.gravity_source, grid::GravitySource::imu);
     EXPECT_EQ(by_imu.T_odom_body.translation_m.norm(), 0.0);
-    EXPECT_NE(by_imu.reason.find(to_string(ground::CalibrationReason::no_observation)), std::string::npos);
+    EXPECT_NE(by_imu.reason.find(to_string(ground::CalibrationReason::no_observation)),
+              std::string::npos);
 
     AlignmentConfig config;
     config.pitch_deg = 30.0;
@@ -70,18 +71,24 @@ TEST(Alignment, without_a_plane_stays_at_base_link_and_says_what_it_used) {
 TEST(Alignment, a_base_link_that_looks_straight_down_has_a_finite_pose) {
     const Alignment a = place_odom({}, plane(-Eigen::Vector3d::UnitX(), 1.0), std::nullopt);
     EXPECT_TRUE(a.T_odom_body.all_finite());
-    EXPECT_LT((a.T_odom_body.rotation * -Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitZ()).norm(), kRounding);
+    EXPECT_LT(
+        (a.T_odom_body.rotation * -Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitZ()).norm(),
+        kRounding);
 }
 
 TEST(UpFromImu, needs_a_rig_at_rest) {
-    const Pose T_body_imu{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY())), Eigen::Vector3d::Zero()};
+    const Pose T_body_imu{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY())),
+                          Eigen::Vector3d::Zero()};
     const Eigen::Vector3d force(-9.80, 0.0, 0.0);  // the IMU's -x axis points up
     const auto up = up_from_imu({}, T_body_imu, resting_imu(force, {0.02, 0.0, 0.08}));
     ASSERT_TRUE(up.has_value());
     EXPECT_LT((*up - Eigen::Vector3d::UnitZ()).norm(), 1e-6);
 
-    EXPECT_FALSE(up_from_imu({}, T_body_imu, resting_imu(force, {0.5, 0.0, 0.0})).has_value()) << "turning";
-    EXPECT_FALSE(up_from_imu({}, T_body_imu, resting_imu(1.1 * force, Eigen::Vector3d::Zero())).has_value()) << "accelerating";
+    EXPECT_FALSE(up_from_imu({}, T_body_imu, resting_imu(force, {0.5, 0.0, 0.0})).has_value())
+        << "turning";
+    EXPECT_FALSE(
+        up_from_imu({}, T_body_imu, resting_imu(1.1 * force, Eigen::Vector3d::Zero())).has_value())
+        << "accelerating";
     EXPECT_FALSE(up_from_imu({}, T_body_imu, {}).has_value()) << "no IMU";
 }
 

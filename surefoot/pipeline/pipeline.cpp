@@ -16,10 +16,13 @@ constexpr std::uint64_t kGroundSeed = 1;  ///< the same points always give the s
 /// Measures the stages of one frame; without a clock all times are zero.
 class StageTimer {
   public:
-    StageTimer(Clock clock, FrameReport& report) : clock_(clock), report_(report) { start_ns_ = now(); }
+    StageTimer(Clock clock, FrameReport& report) : clock_(clock), report_(report) {
+        start_ns_ = now();
+    }
     void finished(Stage stage) {
         const std::int64_t end_ns = now();
-        report_.stage_ms[static_cast<std::size_t>(stage)] = static_cast<double>(end_ns - start_ns_) * 1e-6;
+        report_.stage_ms[static_cast<std::size_t>(stage)] =
+            static_cast<double>(end_ns - start_ns_) * 1e-6;
         start_ns_ = end_ns;
     }
 
@@ -31,7 +34,8 @@ class StageTimer {
 };
 
 std::int64_t count_valid(const Image<float>& disparity_px) {
-    return std::count_if(disparity_px.data(), disparity_px.data() + disparity_px.size(),
+    return std::count_if(disparity_px.data(),
+                         disparity_px.data() + disparity_px.size(),
                          [](float d) { return d > 0.0F; });
 }
 
@@ -60,7 +64,11 @@ Result<Pipeline> Pipeline::make(const PipelineConfig& config,
     if (const auto problem = config.problem()) return usage_error(*problem);
     auto rectifier = camera::Rectifier::make(rig);
     if (!rectifier) return rectifier.error();
-    return Pipeline(config, rig, std::make_unique<camera::Rectifier>(std::move(rectifier).value()), executor, clock);
+    return Pipeline(config,
+                    rig,
+                    std::make_unique<camera::Rectifier>(std::move(rectifier).value()),
+                    executor,
+                    clock);
 }
 
 Pipeline::Pipeline(const PipelineConfig& config,
@@ -84,7 +92,8 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
     const auto up_imu_body = up_from_imu(config_.mount, T_body_imu, first_frames);
     const Eigen::Vector3d up_hint_body = up_imu_body.value_or(assumed_up(config_.mount));
 
-    // A scout odometry brings all sightings into the first body frame: the machine may move already.
+    // A scout odometry brings all sightings into the first body frame: the machine may move
+    // already.
     odometry::Odometry scout(config_.odometry, *rectifier_);
     scout.start_at(Pose{});
     ground::GroundCalibration calibration(config_.ground);
@@ -92,7 +101,8 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
         const MotionEstimate motion = scout.update(frame, *executor_);
         rectifier_->rectify(frame, pair_);
         measure_depth(frame);
-        calibration.add(in_first_body(observe_ground(motion.T_odom_body, up_hint_body), motion.T_odom_body));
+        calibration.add(
+            in_first_body(observe_ground(motion.T_odom_body, up_hint_body), motion.T_odom_body));
     }
     alignment_ = place_odom(config_.mount, calibration.alignment(), up_imu_body);
     odometry_.start_at(alignment_.T_odom_body);
@@ -135,7 +145,8 @@ void Pipeline::measure_depth(const StereoFrame& frame) {
     }
 }
 
-GroundObservation Pipeline::observe_ground(const Pose& T_level_body, const Eigen::Vector3d& up_level) {
+GroundObservation Pipeline::observe_ground(const Pose& T_level_body,
+                                           const Eigen::Vector3d& up_level) {
     // The plane is looked for in base_link: its height is that of the machine, not of odom.
     constexpr int kStep_px = 4;
     ground::sample_points(rectifier_->rig(), depth_, kStep_px, ground_points_);

@@ -27,8 +27,8 @@ using Clock = std::int64_t (*)();
 
 /// Stereo frames in, rated map of the ground out: one frame is one call of `process`.
 ///
-/// Order of calls: `make`, `align` once with the first frames, then `process` for every frame in time
-/// order (those used for the alignment included). One thread at a time.
+/// Order of calls: `make`, `align` once with the first frames, then `process` for every frame in
+/// time order (those used for the alignment included). One thread at a time.
 class Pipeline {
   public:
     /// Fails with the first problem of the rig or the configuration.
@@ -68,7 +68,8 @@ class Pipeline {
              Clock clock);
 
     void measure_depth(const StereoFrame& frame);
-    [[nodiscard]] GroundObservation observe_ground(const Pose& T_level_body, const Eigen::Vector3d& up_level);
+    [[nodiscard]] GroundObservation observe_ground(const Pose& T_level_body,
+                                                   const Eigen::Vector3d& up_level);
     void follow(const MotionEstimate& motion);
     [[nodiscard]] FusionCounts fuse(const MotionEstimate& motion);
     void rate();

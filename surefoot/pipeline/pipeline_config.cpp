@@ -21,13 +21,17 @@ std::optional<std::string> PipelineConfig::problem() const {
     const double cells = elevation.length_m / elevation.resolution_m;
     if (cells > kMaxCellsPerSide) {
         return fmt::format(
-            "elevation.length_m / elevation.resolution_m = {:.0f} cells a side exceeds {}: enlarge the cells or "
+            "elevation.length_m / elevation.resolution_m = {:.0f} cells a side exceeds {}: enlarge "
+            "the cells or "
             "shorten the map",
-            cells, kMaxCellsPerSide);
+            cells,
+            kMaxCellsPerSide);
     }
     if (cells < 4) {
         return fmt::format(
-            "elevation.length_m / elevation.resolution_m = {:.1f} cells a side: a map needs at least 4", cells);
+            "elevation.length_m / elevation.resolution_m = {:.1f} cells a side: a map needs at "
+            "least 4",
+            cells);
     }
     return std::nullopt;
 }

@@ -10,7 +10,10 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// Depth of the raw pixel nearest to where a rectified pixel looks, NaN outside the image.
-float raw_depth_m(const camera::Rectifier& rectifier, ImageView<const float> depth_m, int u, int v) {
+float raw_depth_m(const camera::Rectifier& rectifier,
+                  ImageView<const float> depth_m,
+                  int u,
+                  int v) {
     const camera::RectifiedRig& rig = rectifier.rig();
     const Eigen::Vector3d ray((u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
     const auto raw = rectifier.raw_from_point(camera::Side::left, ray);
@@ -39,7 +42,8 @@ void depth_from_rgbd(const camera::Rectifier& rectifier,
             const auto variance = elevation::ray_variance(kinect, {.depth_m = z_m, .range_m = z_m});
             out.disparity_px.at(u, v) = known ? static_cast<float>(disparity_px) : kNaN;
             out.sigma_px.at(u, v) =
-                known ? static_cast<float>(disparity_px * std::sqrt(variance.along_m2) / z_m) : kNaN;
+                known ? static_cast<float>(disparity_px * std::sqrt(variance.along_m2) / z_m)
+                      : kNaN;
             out.outlier_probability.at(u, v) = known ? 0.0F : 1.0F;
         }
     }

@@ -60,9 +60,9 @@ struct TraversabilityConfig {
 
     /// First reason why this cannot rate a grid of that cell size, or nothing.
     [[nodiscard]] std::optional<std::string> problem(double resolution_m) const;
-    /// The same with every radius that is shorter than a cell widened to one cell, the smallest disc
-    /// that has neighbours: one configuration serves coarse maps too, and obstacles grow no more than
-    /// they must.
+    /// The same with every radius that is shorter than a cell widened to one cell, the smallest
+    /// disc that has neighbours: one configuration serves coarse maps too, and obstacles grow no
+    /// more than they must.
     [[nodiscard]] TraversabilityConfig widened_to(double resolution_m) const;
 };
 

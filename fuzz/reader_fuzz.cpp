@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes must end in a value or in an error with a sentence: no crash, no endless loop, no huge
+// allocation. SUREFOOT_FUZZ_READER names the function under test.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "io/config_yaml.hpp"
+#include "io/dem_file.hpp"
+#include "io/machine_file.hpp"
+#include "io/pfm.hpp"
+#include "io/point_cloud.hpp"
+#include "io/rig_file.hpp"
+#include "io/snapshot_file.hpp"
+#include "io/trajectory_file.hpp"
+#include "surefoot/pipeline/pipeline_config.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+template <typename T>
+void must_explain(const Result<T>& result) {
+    if (!result && result.error().message.empty()) std::abort();
+}
+
+[[maybe_unused]] void fuzz_ply(std::string_view bytes) { must_explain(io::parse_ply(bytes, "f")); }
+[[maybe_unused]] void fuzz_pcd(std::string_view bytes) { must_explain(io::parse_pcd(bytes, "f")); }
+[[maybe_unused]] void fuzz_text_cloud(std::string_view bytes) { must_explain(io::parse_text_cloud(bytes, "f")); }
+[[maybe_unused]] void fuzz_pfm(std::string_view bytes) { must_explain(io::parse_pfm(bytes, "f")); }
+[[maybe_unused]] void fuzz_esri_grid(std::string_view bytes) { must_explain(io::parse_esri_grid(bytes, "f")); }
+[[maybe_unused]] void fuzz_tum_trajectory(std::string_view bytes) {
+    must_explain(io::parse_tum_trajectory(bytes, "f"));
+}
+[[maybe_unused]] void fuzz_rig_yaml(std::string_view bytes) { must_explain(io::parse_rig_yaml(bytes, "f")); }
+[[maybe_unused]] void fuzz_machine(std::string_view bytes) {
+    const auto machine = io::parse_machine(bytes, "f");
+    must_explain(machine);
+    if (machine && machine->machine.problem() != nullptr) std::abort();  // accepted but not usable
+}
+[[maybe_unused]] void fuzz_snapshot(std::string_view bytes) {
+    const auto snapshot = io::parse_snapshot(bytes, "f");
+    must_explain(snapshot);
+    if (snapshot && !grid::is_intact(**snapshot)) std::abort();
+}
+[[maybe_unused]] void fuzz_config(std::string_view bytes) {
+    pipeline::PipelineConfig config;
+    must_explain(io::parse_config(bytes, "f", io::describe_config(config)));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    SUREFOOT_FUZZ_READER({reinterpret_cast<const char*>(data), size});
+    return 0;
+}
