@@ -65,10 +65,34 @@ void add_camera_pictures(const pipeline::Pipeline& pipeline, eval::ReportContent
         {"Disparity and the depth it stands for; grey has no match",
          eval::encode_png(eval::render_disparity(
              pipeline.depth().disparity_px, fb, {"Disparity", "last full frame"}))});
+}
+
+void add_sigma_pictures(const pipeline::Pipeline& pipeline,
+                        const eval::Overlays& drawn,
+                        eval::ReportContent& content) {
+    const auto& layers = pipeline.map().layers();
+    content.pictures.push_back(
+        {"How sure the map is of each height",
+         eval::encode_png(eval::render_layer(pipeline.map().geometry(),
+                                             sigma_of(layers.height_var_m2, layers.height_m),
+                                             eval::height_sigma_style(),
+                                             drawn))});
+    if (pipeline.depth().sigma_px.empty()) return;
     content.pictures.push_back(
         {"One sigma of the disparity, pixel by pixel, as the map believes it",
          eval::encode_png(eval::render_sigma(
              pipeline.depth().sigma_px, "px", {"Disparity sigma", "last full frame"}))});
+}
+
+void add_trajectory_picture(const RunRecord& record, eval::ReportContent& content) {
+    Trajectory estimate;
+    for (const FrameReport& frame : record.frames)
+        estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
+    const Trajectory truth = record.truth ? record.truth->truth_trajectory : Trajectory{};
+    content.pictures.push_back(
+        {"Where base_link went",
+         eval::encode_png(eval::render_trajectory(
+             estimate, truth, {"Trajectory of base_link", "odom, from above"}))});
 }
 
 void add_truth(const RunRecord& record,
@@ -151,22 +175,10 @@ Status write_pictures_and_report(const RunOptions& options,
     content.summary = summary_lines(record, pipeline);
     content.pictures.push_back({"The ground, seen from above", elevation_png});
     content.pictures.push_back({"Safe to step or not; hatched was never seen", rating_png});
-    content.pictures.push_back(
-        {"How sure the map is of each height",
-         eval::encode_png(eval::render_layer(geometry,
-                                             sigma_of(layers.height_var_m2, layers.height_m),
-                                             eval::height_sigma_style(),
-                                             drawn))});
-    Trajectory estimate;
-    for (const FrameReport& frame : record.frames)
-        estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
-    content.pictures.push_back({"Where base_link went",
-                                eval::encode_png(eval::render_trajectory(
-                                    estimate,
-                                    record.truth ? record.truth->truth_trajectory : Trajectory{},
-                                    {"Trajectory of base_link", "odom, from above"}))});
     add_camera_pictures(pipeline, content);
+    add_sigma_pictures(pipeline, drawn, content);
     add_truth(record, pipeline, drawn, content);
+    add_trajectory_picture(record, content);
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         content.reasons.push_back("The map is empty: " + reason);
     }
