@@ -1,5 +1,8 @@
 # The two commands of the README, and what is long. Set-up included: both work on a fresh Debian 12.
 SHELL := /bin/bash
+# One cache for all clones: paths below the clone count as relative.
+export CCACHE_BASEDIR := $(CURDIR)
+export CCACHE_NOHASHDIR := true
 BUILD := build/release
 OUT ?= out
 JOBS ?= $(shell nproc)

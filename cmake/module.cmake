@@ -51,8 +51,10 @@ function(surefoot_test name)
     surefoot_opencv(${target} ${ARG_OPENCV})
   endif()
   target_compile_definitions(${target} PRIVATE
-    SUREFOOT_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-    SUREFOOT_DEFAULT_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+    SUREFOOT_SOURCE_DIR="."
+    SUREFOOT_DEFAULT_DATA_DIR="../shared/data")
+  # Tests run in the source folder; paths in the code are relative, so that ccache serves every clone.
   gtest_discover_tests(${target} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     PROPERTIES TIMEOUT 300 ENVIRONMENT "ASAN_OPTIONS=detect_leaks=1")
 endfunction()

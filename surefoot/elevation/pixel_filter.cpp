@@ -28,17 +28,38 @@ void PixelFilterConfig::describe(ConfigVisitor& visitor) {
                    1.0,
                    90.0,
                    "largest angle between line of sight and surface normal");
+    visitor.number("max_incidence_level_deg",
+                   max_incidence_level_deg,
+                   1.0,
+                   90.0,
+                   "the same for level surfaces: table tops seen from afar");
+    visitor.number(
+        "level_deg", level_deg, 0.0, 45.0, "surfaces that lean less against gravity are level");
 }
 
-SurfaceCheck::SurfaceCheck(const PixelFilterConfig& config, double fx_px, double fy_px)
+namespace {
+
+float squared_cosine(double angle_deg) {
+    const double cosine = std::cos(angle_deg * std::numbers::pi / 180.0);
+    return static_cast<float>(cosine * cosine);
+}
+
+}  // namespace
+
+SurfaceCheck::SurfaceCheck(const PixelFilterConfig& config,
+                           double fx_px,
+                           double fy_px,
+                           const Eigen::Vector3d& up_camera)
     : fx_px_(static_cast<float>(fx_px)),
       fy_px_(static_cast<float>(fy_px)),
       per_reach_(1.0F / static_cast<float>(config.reach_px)),
       jump_px_(static_cast<float>(config.jump_px)),
       jump_sigma_(static_cast<float>(config.jump_sigma)),
-      min_cosine_sq_(0.0F) {
-    const double cosine = std::cos(config.max_incidence_deg * std::numbers::pi / 180.0);
-    min_cosine_sq_ = static_cast<float>(cosine * cosine);
-}
+      up_x_(static_cast<float>(up_camera.x())),
+      up_y_(static_cast<float>(up_camera.y())),
+      up_z_(static_cast<float>(up_camera.z())),
+      min_cosine_sq_(squared_cosine(config.max_incidence_deg)),
+      min_cosine_when_level_sq_(squared_cosine(config.max_incidence_level_deg)),
+      min_level_cosine_sq_(squared_cosine(config.level_deg)) {}
 
 }  // namespace surefoot::elevation

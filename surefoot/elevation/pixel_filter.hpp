@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <Eigen/Core>
+
 #include "surefoot/core/config.hpp"
 
 namespace surefoot::elevation {
@@ -15,9 +17,12 @@ struct PixelFilterConfig {
     int reach_px = 3;           ///< neighbours left, right, above and below at this distance
     double jump_px = 0.5;     ///< a plane's disparity is linear in the pixel: largest departure ...
     double jump_sigma = 2.0;  ///< ... plus this many sigma of the disparity
-    /// Matchers bridge depth edges with ramps along the line of sight. Not lower: a table top is seen
-    /// at 80-84 deg from afar, and what is dropped there leaves the floor under it as the surface.
-    double max_incidence_deg = 85.0;
+    double max_incidence_deg =
+        80.0;  ///< matchers bridge depth edges with ramps along the line of sight
+    /// A table top is seen at 80-84 deg from afar, and what is dropped there leaves the floor under it
+    /// as the surface. It is level, which a bridge that follows the line of sight down is not.
+    double max_incidence_level_deg = 85.0;
+    double level_deg = 8.0;  ///< surfaces that lean less against gravity are level
 
     void describe(ConfigVisitor& visitor);
 };
@@ -38,7 +43,12 @@ struct Neighbours {
 /// so the angle between normal and ray follows from the gradient alone.
 class SurfaceCheck {
   public:
-    SurfaceCheck(const PixelFilterConfig& config, double fx_px, double fy_px);
+    /// `up_camera`: unit vector against gravity in the camera frame; zero = not known, no surface is
+    /// level.
+    SurfaceCheck(const PixelFilterConfig& config,
+                 double fx_px,
+                 double fy_px,
+                 const Eigen::Vector3d& up_camera = Eigen::Vector3d::Zero());
 
     /// False for a disparity jump, a pixel without neighbours in one direction, grazing incidence.
     [[nodiscard]] bool accepts(const Neighbours& around,
@@ -50,8 +60,13 @@ class SurfaceCheck {
         const float a = gradient(around.left_px, around.right_px, disparity_px, limit_px) * fx_px_;
         const float b = gradient(around.above_px, around.below_px, disparity_px, limit_px) * fy_px_;
         const float c = disparity_px - a * ray_x - b * ray_y;
-        const float norms_sq = (a * a + b * b + c * c) * (ray_x * ray_x + ray_y * ray_y + 1.0F);
-        return disparity_px * disparity_px >= min_cosine_sq_ * norms_sq;  // false for NaN
+        const float normal_sq = a * a + b * b + c * c;
+        const float norms_sq = normal_sq * (ray_x * ray_x + ray_y * ray_y + 1.0F);
+        const float facing_sq = disparity_px * disparity_px;  // comparisons are false for NaN
+        if (facing_sq >= min_cosine_sq_ * norms_sq) return true;
+        const float upward = a * up_x_ + b * up_y_ + c * up_z_;
+        return upward * upward >= min_level_cosine_sq_ * normal_sq &&
+               facing_sq >= min_cosine_when_level_sq_ * norms_sq && upward != 0.0F;
     }
 
   private:
@@ -72,7 +87,12 @@ class SurfaceCheck {
     float per_reach_;
     float jump_px_;
     float jump_sigma_;
+    float up_x_;
+    float up_y_;
+    float up_z_;
     float min_cosine_sq_;
+    float min_cosine_when_level_sq_;
+    float min_level_cosine_sq_;
 };
 
 }  // namespace surefoot::elevation

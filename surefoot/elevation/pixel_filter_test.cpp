@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <Eigen/Core>
 #include <limits>
 #include <numbers>
@@ -56,6 +58,23 @@ TEST(PixelFilter, RejectsPlanesExactlyBeyondTheIncidenceLimit) {
         accepted += incidence_deg < config.max_incidence_deg ? 1 : 0;
     }
     EXPECT_GT(accepted, 500);
+}
+
+TEST(PixelFilter, LevelSurfacesMayBeSeenFlatterThanBridgesThatLean) {
+    // A plane whose normal leaves the line of sight (0, 0, 1) by 83 deg: n ~ (0, b f, d).
+    const float d = 17.0F;
+    const double angle_rad = 83.0 * std::numbers::pi / 180.0;
+    const auto step_px = static_cast<float>(3.0 * std::tan(angle_rad) / kFocal_px) * d;
+    const Neighbours around{d, d, d - step_px, d + step_px};
+    const Eigen::Vector3d normal(0.0, std::sin(angle_rad), std::cos(angle_rad));
+    const auto accepts = [&](const Eigen::Vector3d& up_camera) {
+        return SurfaceCheck({}, kFocal_px, kFocal_px, up_camera).accepts(around, d, 0.1F, 0.0F, 0.0F);
+    };
+    EXPECT_TRUE(accepts(normal)) << "a table top";
+    EXPECT_TRUE(accepts(-normal)) << "the sign of a fitted normal means nothing";
+    const Eigen::AngleAxisd lean(12.0 * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX());
+    EXPECT_FALSE(accepts(lean * normal)) << "leans 12 deg";
+    EXPECT_FALSE(accepts(Eigen::Vector3d::Zero())) << "gravity unknown";
 }
 
 TEST(PixelFilter, RejectsJumpsAndPixelsWithoutNeighbours) {
