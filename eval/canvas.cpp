@@ -189,10 +189,10 @@ Rgb8 hatched_grey(int u, int v) noexcept {
     constexpr Rgb8 kStripe{221, 223, 227};
     constexpr Rgb8 kFlank{231, 232, 235};
     switch ((u + v) % 12) {
-        case 0: return kFlank;
-        case 1: return kStripe;
-        case 2: return kStripe;
+        case 0:
         case 3: return kFlank;
+        case 1:
+        case 2: return kStripe;
         default: return kGround;
     }
 }

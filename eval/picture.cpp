@@ -28,7 +28,7 @@ double px_per_cell(const grid::GridGeometry& geometry, int smallest_px) {
 struct MapFigure {
     Figure figure;
     MapView view;
-    double cell_px;
+    double cell_px = 1.0;
 };
 
 MapFigure make_map_figure(const grid::GridGeometry& geometry,
@@ -127,7 +127,8 @@ void draw_note(Picture& picture, const RectPx& plot, const std::string& note) {
 struct CallColors {
     Rgb8 ground;
     Rgb8 dot;
-    double dot_share;  ///< of the cell's side; errors are larger than hits so that few still show
+    double dot_share =
+        0.0;  ///< of the cell's side; errors are larger than hits so that few still show
 };
 
 CallColors colors_of(Call call) {

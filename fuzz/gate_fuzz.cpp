@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate on arbitrary bytes as machine, query, health and map: it must neither crash nor allow a step
-// on a map whose checksum is wrong.
+// The gate on arbitrary bytes as machine, query, health and map: it must neither crash nor allow a
+// step on a map whose checksum is wrong.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -42,7 +42,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     bytes.into(&query.sin_yaw, sizeof query.sin_yaw);
     std::int64_t now_ns = 0;
     bytes.into(&now_ns, sizeof now_ns);
-    // Header and first cells; a valid seal half of the time, so that the search gets behind the checksum.
+    // Header and first cells; a valid seal half of the time, so that the search gets behind the
+    // checksum.
     std::uint8_t sealed = 0;
     bytes.into(&sealed, sizeof sealed);
     bytes.into(static_cast<void*>(&map->frame_time_ns), 128);

@@ -25,15 +25,27 @@ void must_explain(const Result<T>& result) {
     if (!result && result.error().message.empty()) std::abort();
 }
 
-[[maybe_unused]] void fuzz_ply(std::string_view bytes) { must_explain(io::parse_ply(bytes, "f")); }
-[[maybe_unused]] void fuzz_pcd(std::string_view bytes) { must_explain(io::parse_pcd(bytes, "f")); }
-[[maybe_unused]] void fuzz_text_cloud(std::string_view bytes) { must_explain(io::parse_text_cloud(bytes, "f")); }
-[[maybe_unused]] void fuzz_pfm(std::string_view bytes) { must_explain(io::parse_pfm(bytes, "f")); }
-[[maybe_unused]] void fuzz_esri_grid(std::string_view bytes) { must_explain(io::parse_esri_grid(bytes, "f")); }
+[[maybe_unused]] void fuzz_ply(std::string_view bytes) {
+    must_explain(io::parse_ply(bytes, "f"));
+}
+[[maybe_unused]] void fuzz_pcd(std::string_view bytes) {
+    must_explain(io::parse_pcd(bytes, "f"));
+}
+[[maybe_unused]] void fuzz_text_cloud(std::string_view bytes) {
+    must_explain(io::parse_text_cloud(bytes, "f"));
+}
+[[maybe_unused]] void fuzz_pfm(std::string_view bytes) {
+    must_explain(io::parse_pfm(bytes, "f"));
+}
+[[maybe_unused]] void fuzz_esri_grid(std::string_view bytes) {
+    must_explain(io::parse_esri_grid(bytes, "f"));
+}
 [[maybe_unused]] void fuzz_tum_trajectory(std::string_view bytes) {
     must_explain(io::parse_tum_trajectory(bytes, "f"));
 }
-[[maybe_unused]] void fuzz_rig_yaml(std::string_view bytes) { must_explain(io::parse_rig_yaml(bytes, "f")); }
+[[maybe_unused]] void fuzz_rig_yaml(std::string_view bytes) {
+    must_explain(io::parse_rig_yaml(bytes, "f"));
+}
 [[maybe_unused]] void fuzz_machine(std::string_view bytes) {
     const auto machine = io::parse_machine(bytes, "f");
     must_explain(machine);

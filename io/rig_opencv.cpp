@@ -171,15 +171,18 @@ Result<camera::StereoRig> opencv_rig(const YamlNode& root,
     camera::StereoRig rig;
     rig.name = "opencv";
     const ImageSize image = find_size(yaml, size);
-    const Named K1 =
+    const Named left_matrix =
         require_any(yaml, {"M1", "K1", "cameraMatrix1", "camera_matrix_1", "camera_matrix_left"});
-    const Named K2 =
+    const Named right_matrix =
         require_any(yaml, {"M2", "K2", "cameraMatrix2", "camera_matrix_2", "camera_matrix_right"});
-    const Named D1 = require_any(yaml, {"D1", "distCoeffs1", "dist_coeffs_1", "dist_coeffs_left"});
-    const Named D2 = require_any(yaml, {"D2", "distCoeffs2", "dist_coeffs_2", "dist_coeffs_right"});
+    const Named left_distortion =
+        require_any(yaml, {"D1", "distCoeffs1", "dist_coeffs_1", "dist_coeffs_left"});
+    const Named right_distortion =
+        require_any(yaml, {"D2", "distCoeffs2", "dist_coeffs_2", "dist_coeffs_right"});
     if (yaml.error()) return *yaml.error();
-    rig.left = {read_lens(yaml, K1, D1), image.width, image.height};
-    rig.right = camera::Camera{read_lens(yaml, K2, D2), image.width, image.height};
+    rig.left = {read_lens(yaml, left_matrix, left_distortion), image.width, image.height};
+    rig.right =
+        camera::Camera{read_lens(yaml, right_matrix, right_distortion), image.width, image.height};
     rig.T_left_right = read_extrinsics(yaml);
     if (yaml.error()) return *yaml.error();
     mark_if_rectified(rig);

@@ -33,8 +33,11 @@ GreyImage grey_of(const cv::Mat& image) {
 /// Side-by-side frames of a video file at a constant rate.
 class VideoSource final : public camera::FrameSource {
   public:
-    VideoSource(std::string path, cv::VideoCapture capture, camera::StereoRig rig, double rate_hz)
-        : capture_(std::move(capture)), rig_(std::move(rig)), rate_hz_(rate_hz) {
+    VideoSource(std::string path,
+                const cv::VideoCapture& capture,
+                camera::StereoRig rig,
+                double rate_hz)
+        : capture_(capture), rig_(std::move(rig)), rate_hz_(rate_hz) {
         rig_.rate_hz = rate_hz;
         info_.kind = "video";
         info_.path = std::move(path);
@@ -81,10 +84,9 @@ class VideoSource final : public camera::FrameSource {
 }  // namespace
 
 bool is_video_name(const std::string& path) {
-    static const std::vector<std::string> kExtensions{
+    static const std::vector<std::string> extensions{
         ".avi", ".mp4", ".mkv", ".mov", ".webm", ".mpg", ".m4v"};
-    return std::find(kExtensions.begin(), kExtensions.end(), extension_of(path)) !=
-           kExtensions.end();
+    return std::find(extensions.begin(), extensions.end(), extension_of(path)) != extensions.end();
 }
 
 Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,

@@ -17,8 +17,6 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / M_PI;
-
 /// Nearest and farthest floor that the middle column of the rectified camera sees, from base_link
 /// [m].
 struct FloorView {

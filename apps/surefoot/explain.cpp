@@ -41,8 +41,9 @@ View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
             const int mx = ix0 + ix;
             const int my = iy0 + iy;
             if (mx < 0 || my < 0 || mx >= map.nx || my >= map.ny) continue;
-            const std::int32_t height =
-                map.height_tenth_mm[static_cast<std::size_t>(my * map.nx + mx)];
+            const std::int32_t height = map.height_tenth_mm[static_cast<std::size_t>(my) *
+                                                                static_cast<std::size_t>(map.nx) +
+                                                            static_cast<std::size_t>(mx)];
             if (height != grid::MapSnapshot::kUnknownHeight) {
                 view.height_m.at(ix, iy) = static_cast<float>(kTenthMm_m * height);
             }

@@ -60,7 +60,8 @@ std::vector<std::int64_t> heights_around(const gate::Query& query,
     std::vector<std::int64_t> heights;
     for (int iy = 0; iy < map.ny; ++iy) {
         for (int ix = 0; ix < map.nx; ++ix) {
-            const auto cell = static_cast<std::size_t>(iy * map.nx + ix);
+            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(map.nx) +
+                              static_cast<std::size_t>(ix);
             if (map.height_tenth_mm[cell] == grid::MapSnapshot::kUnknownHeight) continue;
             const std::int64_t half = map.resolution_tenth_mm / 2;
             const std::int64_t dx =

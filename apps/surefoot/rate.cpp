@@ -63,7 +63,7 @@ int rate(const RateOptions& options) {
                                                  *layer,
                                                  style_of(name, settings->maps.safe_threshold),
                                                  eval::Overlays{}));
-        for (Status status :
+        for (const Status& status :
              {io::write_esri_grid(
                   fmt::format("{}/{}.asc", options.out_dir, name), dem->geometry, *layer),
               io::write_file(fmt::format("{}/{}.png", options.out_dir, name),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
@@ -32,7 +33,7 @@ int list(bool json) {
 
 /// Cells that hold the whole path and what can be seen from it.
 sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(INFINITY);
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector2d high = -low;
     for (const auto& pose : trajectory) {
         low = low.cwiseMin(pose.T_world_body.translation_m.head<2>());

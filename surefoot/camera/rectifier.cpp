@@ -123,8 +123,8 @@ void Rectifier::rectify_depth(const Image<float>& raw_depth_m, Image<float>& out
             // Averaging across an edge would invent a surface: the nearest pixel, or none.
             const bool seen = raw && raw->x() > -0.5 && raw->y() > -0.5 &&
                               raw->x() < rig.width - 0.5 && raw->y() < rig.height - 0.5;
-            out.at(u, v) = seen ? raw_depth_m.at(static_cast<int>(raw->x() + 0.5),
-                                                 static_cast<int>(raw->y() + 0.5))
+            out.at(u, v) = seen ? raw_depth_m.at(static_cast<int>(std::lround(raw->x())),
+                                                 static_cast<int>(std::lround(raw->y())))
                                 : std::numeric_limits<float>::quiet_NaN();
         }
     }

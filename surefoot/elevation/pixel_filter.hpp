@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
-
-#include <Eigen/Core>
 
 #include "surefoot/core/config.hpp"
 
@@ -19,8 +18,8 @@ struct PixelFilterConfig {
     double jump_sigma = 2.0;  ///< ... plus this many sigma of the disparity
     double max_incidence_deg =
         80.0;  ///< matchers bridge depth edges with ramps along the line of sight
-    /// A table top is seen at 80-84 deg from afar, and what is dropped there leaves the floor under it
-    /// as the surface. It is level, which a bridge that follows the line of sight down is not.
+    /// A table top is seen at 80-84 deg from afar, and what is dropped there leaves the floor under
+    /// it as the surface. It is level, which a bridge that follows the line of sight down is not.
     double max_incidence_level_deg = 85.0;
     double level_deg = 8.0;  ///< surfaces that lean less against gravity are level
 
@@ -43,8 +42,8 @@ struct Neighbours {
 /// so the angle between normal and ray follows from the gradient alone.
 class SurfaceCheck {
   public:
-    /// `up_camera`: unit vector against gravity in the camera frame; zero = not known, no surface is
-    /// level.
+    /// `up_camera`: unit vector against gravity in the camera frame; zero = not known, no surface
+    /// is level.
     SurfaceCheck(const PixelFilterConfig& config,
                  double fx_px,
                  double fy_px,

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -68,7 +68,8 @@ TEST(PixelFilter, LevelSurfacesMayBeSeenFlatterThanBridgesThatLean) {
     const Neighbours around{d, d, d - step_px, d + step_px};
     const Eigen::Vector3d normal(0.0, std::sin(angle_rad), std::cos(angle_rad));
     const auto accepts = [&](const Eigen::Vector3d& up_camera) {
-        return SurfaceCheck({}, kFocal_px, kFocal_px, up_camera).accepts(around, d, 0.1F, 0.0F, 0.0F);
+        return SurfaceCheck({}, kFocal_px, kFocal_px, up_camera)
+            .accepts(around, d, 0.1F, 0.0F, 0.0F);
     };
     EXPECT_TRUE(accepts(normal)) << "a table top";
     EXPECT_TRUE(accepts(-normal)) << "the sign of a fitted normal means nothing";

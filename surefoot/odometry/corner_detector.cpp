@@ -33,7 +33,7 @@ void detect_in_cell(const cv::Mat& image,
                     const Cell& cell,
                     int wanted,
                     const CornerConfig& config,
-                    std::vector<Eigen::Vector2d> taken,
+                    const std::vector<Eigen::Vector2d>& taken,
                     std::vector<Eigen::Vector2d>& corners) {
     cv::Mat strength;
     cv::cornerMinEigenVal(image(cv::Rect(cell.u0, cell.v0, cell.u1 - cell.u0, cell.v1 - cell.v0)),

@@ -69,15 +69,17 @@ struct Odometry::Impl {
                         Executor& executor);
     PoseSolution solve(const Pose& predicted, Executor& executor);
     PoseSolution rough_pose(const Pose& predicted, Executor& executor);
-    HealthEvidence examine(const StereoFrame& frame, const PoseSolution& pose) const;
-    double scene_depth_m(const PoseSolution& pose) const;
-    Pose predict(double dt_s) const;
-    Matrix6 systematic_covariance(const Pose& T_before, const Pose& T_after, double depth_m) const;
-    bool wants_keyframe() const;
+    [[nodiscard]] HealthEvidence examine(const StereoFrame& frame, const PoseSolution& pose) const;
+    [[nodiscard]] double scene_depth_m(const PoseSolution& pose) const;
+    [[nodiscard]] Pose predict(double dt_s) const;
+    [[nodiscard]] Matrix6 systematic_covariance(const Pose& T_before,
+                                                const Pose& T_after,
+                                                double depth_m) const;
+    [[nodiscard]] bool wants_keyframe() const;
     Pose make_keyframe(const Pose& T, Executor& executor);
     bool seed_landmarks(Executor& executor);
     MotionEstimate publish(const Pose& T_camera, const Matrix6& covariance, const Matrix6& extra);
-    Pose body_from(const Pose& T_camera) const {
+    [[nodiscard]] Pose body_from(const Pose& T_camera) const {
         return T_camera * rectifier.rig().T_body_camera.inverse();
     }
 

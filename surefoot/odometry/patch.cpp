@@ -120,7 +120,7 @@ std::optional<PatchTemplate> warp_patch(const HostPatch& host,
                                         const Eigen::Matrix2d& host_from_view) {
     constexpr int kRadius = PatchTemplate::kRadius + 1;  // one more for the gradients
     constexpr int kSize = 2 * kRadius + 1;
-    std::array<float, kSize * kSize> warped;
+    std::array<float, kSize * kSize> warped{};
     const Eigen::Matrix2f A = host_from_view.cast<float>();
     std::size_t i = 0;
     for (int v = -kRadius; v <= kRadius; ++v) {
@@ -139,8 +139,8 @@ std::optional<PatchTemplate> warp_patch(const HostPatch& host,
         }
     }
     PatchTemplate patch;
-    std::array<float, PatchTemplate::kCount> gradient_u;
-    std::array<float, PatchTemplate::kCount> gradient_v;
+    std::array<float, PatchTemplate::kCount> gradient_u{};
+    std::array<float, PatchTemplate::kCount> gradient_v{};
     i = 0;
     for (int v = 1; v < kSize - 1; ++v) {
         for (int u = 1; u < kSize - 1; ++u, ++i) {
@@ -160,7 +160,7 @@ std::optional<Alignment> align_patch(const PatchTemplate& patch,
                                      ImageView<const std::uint8_t> image,
                                      const Eigen::Vector2d& start_px,
                                      double max_shift_px) {
-    std::array<float, PatchTemplate::kCount> window;
+    std::array<float, PatchTemplate::kCount> window{};
     Eigen::Vector2d at_px = start_px;
     float norm = 0.0F;
     float product = 0.0F;

@@ -85,9 +85,9 @@ NormalEquations build(const camera::RectifiedRig& rig,
             continue;
         }
         const double weight = huber_weight(norm, config.huber_sigmas);
-        const Eigen::Matrix<double, 3, 6> WJ = weight * (W * residual.d_pose);
-        normal.H.noalias() += residual.d_pose.transpose() * WJ;
-        normal.b.noalias() += WJ.transpose() * residual.value;
+        const Eigen::Matrix<double, 3, 6> weighted_jacobian = weight * (W * residual.d_pose);
+        normal.H.noalias() += residual.d_pose.transpose() * weighted_jacobian;
+        normal.b.noalias() += weighted_jacobian.transpose() * residual.value;
         normal.cost +=
             weight < 1.0 ? config.huber_sigmas * (2.0 * norm - config.huber_sigmas) : chi2;
         normal.chi2 += chi2;

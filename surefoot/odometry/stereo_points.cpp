@@ -22,7 +22,7 @@ constexpr double kRefineShift_px = 2.0;
 constexpr double kDepthEdge = 0.03;  ///< relative depth step within the 3x3 neighbourhood
 
 struct Window {
-    std::array<float, kCount> value;
+    std::array<float, kCount> value{};
     float norm = 0.0F;
 };
 

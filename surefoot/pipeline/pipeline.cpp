@@ -139,7 +139,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
 
 void Pipeline::measure_depth(const StereoFrame& frame) {
     if (pair_.right.empty()) {
-        depth_from_rgbd(*rectifier_, config_.elevation.sensor, frame.depth_m.view(), depth_);
+        depth_from_rgbd(*rectifier_, config_.elevation.sensor, frame.depth_m, depth_);
     } else {
         matcher_->match(pair_.left.view(), pair_.right.view(), *executor_, depth_);
     }

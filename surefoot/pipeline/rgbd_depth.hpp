@@ -13,7 +13,7 @@ namespace surefoot::pipeline {
 /// filter decides.
 void depth_from_rgbd(const camera::Rectifier& rectifier,
                      const elevation::SensorConfig& sensor,
-                     ImageView<const float> depth_m,
+                     const Image<float>& depth_m,
                      camera::DepthImage& out);
 
 }  // namespace surefoot::pipeline
