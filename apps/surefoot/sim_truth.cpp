@@ -60,15 +60,15 @@ void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline&
     const camera::DepthImage& depth = pipeline.depth();
     const double fb_px_m = pipeline.rig().depth_to_disparity_px_m();
     for (std::size_t i = 0; i < truth_m.size(); ++i) {
-        const double disparity_px{depth.disparity_px.data()[i]};
-        const double true_z_m{truth_m.data()[i]};
+        const double disparity_px = static_cast<double>(depth.disparity_px.data()[i]);
+        const double true_z_m = static_cast<double>(truth_m.data()[i]);
         if (!(disparity_px > 0.0) || !(true_z_m > 0.0)) continue;
         if (depth.outlier_probability.data()[i] > kDoubtful) {
             ++doubtful_;
             continue;
         }
         const double error_px = std::abs(disparity_px - fb_px_m / true_z_m);
-        const double sigma_px{depth.sigma_px.data()[i]};
+        const double sigma_px = static_cast<double>(depth.sigma_px.data()[i]);
         ++compared_;
         within_3_sigma_ += error_px <= 3.0 * sigma_px ? 1 : 0;
         within_1_sigma_ += error_px <= sigma_px ? 1 : 0;

@@ -18,7 +18,7 @@ void depth_from_rgbd(const camera::Rectifier& rectifier,
     rectifier.rectify_depth(depth_m,
                             out.disparity_px);  // depths first, turned to disparities below
     for (std::size_t i = 0; i < out.disparity_px.size(); ++i) {
-        const double z_m{out.disparity_px.data()[i]};
+        const auto z_m = static_cast<double>(out.disparity_px.data()[i]);
         const bool known = z_m > 0.0 && std::isfinite(z_m);
         const double disparity_px = fb_px_m / z_m;
         const auto variance = elevation::ray_variance(kinect, {.depth_m = z_m, .range_m = z_m});
