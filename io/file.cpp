@@ -112,6 +112,13 @@ Status write_file(const std::string& path, std::string_view bytes) {
     return cannot_write(path, error);
 }
 
+Status remove_file(const std::string& path) {
+    std::error_code error;
+    std::filesystem::remove(path, error);
+    if (error) return output_error(fmt::format("{}: cannot be removed: {}", path, error.message()));
+    return {};
+}
+
 Status make_folder(const std::string& path) {
     std::error_code error;
     fs::create_directories(path, error);

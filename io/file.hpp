@@ -23,6 +23,8 @@ inline constexpr std::uint64_t kMaxFileBytes = 4ULL << 30;
 /// pipe) is written to directly. On failure (disk full, no permission) the old file stays as it
 /// was.
 [[nodiscard]] Status write_file(const std::string& path, std::string_view bytes);
+/// Removes a file; one that is not there is no error.
+[[nodiscard]] Status remove_file(const std::string& path);
 
 /// Makes a folder and those above it; fine when it exists.
 [[nodiscard]] Status make_folder(const std::string& path);

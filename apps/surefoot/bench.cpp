@@ -39,7 +39,7 @@ Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Execut
     auto pipeline =
         pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor, steady_now_ns);
     if (!pipeline) return pipeline.error();
-    RunSession session(*pipeline, **source, 1);
+    RunSession session(*pipeline, **source, (*source)->rig(), 1, settings->maps);
     session.drive();
     const RunRecord& record = session.record();
     if (record.error) return *record.error;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/surefoot/explain.hpp"
@@ -26,6 +27,13 @@ int exit_code_of(gate::Decision decision) {
     return kExitGateError;
 }
 
+/// No map is no permission: the default verdict, an ERROR, with the reason in words.
+int refuse(const GateOptions& options, const Error& error) {
+    log_error(error.message);
+    if (options.common.json) fmt::print("{}\n", verdict_json(gate::Verdict{}, error.message, {}));
+    return kExitGateError;
+}
+
 }  // namespace
 
 int gate(const GateOptions& options) {
@@ -39,7 +47,7 @@ int gate(const GateOptions& options) {
     if (!machine) return report(machine.error());
     if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));
     auto map = load_offline_map(options.map_dir);
-    if (!map) return report(map.error());
+    if (!map) return refuse(options, map.error());
 
     gate::Query query = gate::make_query(static_cast<std::uint8_t>(options.command),
                                          (*pose)[0],
@@ -55,11 +63,12 @@ int gate(const GateOptions& options) {
         if (!vouched) return report(vouched.error());
         query.vouched = *vouched;
     }
+    // As if asked right after the last thing that the run did; an old depth frame stays old.
+    const std::int64_t now_ns = std::max(map->snapshot->frame_time_ns, map->snapshot->pose_time_ns);
     gate::GateHealth health;
     health.state = gate::GateState::ready;
     const Machine& m = machine->value().machine;
-    const gate::Verdict verdict =
-        gate::decide(m, query, *map->snapshot, health, map->snapshot->frame_time_ns);
+    const gate::Verdict verdict = gate::decide(m, query, *map->snapshot, health, now_ns);
     const std::string text = gate::text_of(verdict, query, m);
 
     if (options.common.json) {

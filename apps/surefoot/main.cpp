@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command line: only here is CLI11 included (it costs ten seconds a translation unit).
 #include <CLI/CLI.hpp>
+#include <opencv2/core/utility.hpp>
 
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
@@ -311,6 +312,7 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
 }  // namespace
 
 int main_with_arguments(int argc, char** argv) {
+    cv::setNumThreads(1);  // threads are the executor's alone
     CLI::App app{"surefoot: is it safe to step there?"};
     app.set_version_flag("--version", SUREFOOT_VERSION);
     app.require_subcommand(1);

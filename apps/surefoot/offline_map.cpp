@@ -25,6 +25,12 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
             "output folder of 'surefoot run'",
             folder));
     }
+    if (io::is_file(folder + "/report.json")) {
+        return input_error(fmt::format(
+            "{}: a run without map.snapshot: its health and gravity are not known, so there "
+            "is no verdict; its report.json says what failed",
+            folder));
+    }
     const auto height = io::read_esri_grid(height_file);
     if (!height) return height.error();
     const auto variance = io::read_esri_grid(variance_file);

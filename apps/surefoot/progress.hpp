@@ -22,7 +22,7 @@ class Progress {
     int last_percent_ = -1;
 };
 
-/// True once the user pressed Ctrl-C (or SIGTERM came); the first call installs the handlers.
+/// True once the user pressed Ctrl-C (or SIGTERM came) after watch_for_interrupts().
 [[nodiscard]] bool interrupted();
 void watch_for_interrupts();
 

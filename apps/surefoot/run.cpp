@@ -48,7 +48,14 @@ int run(const RunOptions& options) {
     if (const auto status = io::make_folder(options.out_dir); !status)
         return report(status.error());
 
-    RunSession session(*pipeline, **source, options.depth_every);
+    // What an earlier run left must not be taken for this one's, least of all by the gate.
+    for (const char* name :
+         {"map.snapshot", "elevation.asc", "variance.asc", "traversability.asc", "report.json"}) {
+        if (auto status = io::remove_file(io::join_path(options.out_dir, name)); !status) {
+            return report(status.error());
+        }
+    }
+    RunSession session(*pipeline, **source, rig, options.depth_every, settings->maps);
     session.drive();
     const RunRecord& record = session.record();
 
@@ -56,7 +63,8 @@ int run(const RunOptions& options) {
     if (options.common.json) {
         fmt::print("{}\n", run_json(record, *pipeline));
     } else {
-        fmt::print("{}", run_summary(record, *pipeline, options.out_dir));
+        fmt::print("{}", run_summary(record, *pipeline));
+        if (written) fmt::print("results in {0}/, start with {0}/report.html\n", options.out_dir);
     }
     // Both may have failed; each is said once, the run's own error decides the exit code.
     if (!written) log_error(written.error().message);

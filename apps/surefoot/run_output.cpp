@@ -125,6 +125,15 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
     if (pipeline.map().known_cells() > 0) return "";
     const FusionCounts& f = record.fusion;
     const auto& config = pipeline.config().elevation;
+    const auto lost =
+        std::count_if(record.frames.begin(), record.frames.end(), [](const FrameReport& frame) {
+            return frame.motion.health == Health::lost;
+        });
+    if (f.points == 0 && lost > 0) {
+        return fmt::format("odometry was lost in {} of {} frames, and such frames are not mapped",
+                           lost,
+                           record.frames.size());
+    }
     if (f.points == 0) return "no frame had any depth: see the counts of each frame";
     const std::pair<std::int64_t, std::string> causes[] = {
         {f.outside,
@@ -180,9 +189,7 @@ double peak_memory_mb() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports kB
 }
 
-std::string run_summary(const RunRecord& record,
-                        const pipeline::Pipeline& pipeline,
-                        const std::string& out_dir) {
+std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const Percentiles frame = frame_percentiles(record);
     std::string text =
         fmt::format("{} frames, {:.1f} ms a full frame (median), {} cells known\n{}\n",
@@ -208,7 +215,7 @@ std::string run_summary(const RunRecord& record,
             1e3 * t.trajectory.ate_rmse_m,
             100.0 * t.depth.within_3_sigma);
     }
-    return text + fmt::format("results in {}/, start with {}/report.html\n", out_dir, out_dir);
+    return text;
 }
 
 }  // namespace surefoot::app

@@ -20,9 +20,7 @@ namespace surefoot::app {
                                    const RunRecord& record);
 
 /// A few lines for the terminal.
-[[nodiscard]] std::string run_summary(const RunRecord& record,
-                                      const pipeline::Pipeline& pipeline,
-                                      const std::string& out_dir);
+[[nodiscard]] std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline);
 
 /// Why the map holds no cell, in one sentence; empty when it holds some.
 [[nodiscard]] std::string empty_map_reason(const RunRecord& record,

@@ -8,10 +8,14 @@
 
 namespace surefoot::app {
 
-RunSession::RunSession(pipeline::Pipeline& pipeline, camera::FrameSource& source, int depth_every)
-    : pipeline_(pipeline), source_(source), depth_every_(depth_every), truth_(source) {
+RunSession::RunSession(pipeline::Pipeline& pipeline,
+                       camera::FrameSource& source,
+                       const camera::StereoRig& rig,
+                       int depth_every,
+                       const eval::EvalMapsConfig& maps)
+    : pipeline_(pipeline), source_(source), depth_every_(depth_every), maps_(maps), truth_(source) {
     record_.source = source.info();
-    record_.rig = source.rig();
+    record_.rig = rig;
 }
 
 void RunSession::drive() {
@@ -34,7 +38,7 @@ void RunSession::drive() {
         record_.error =
             input_error(fmt::format("{}: the source holds no frame", record_.source.path));
     }
-    record_.truth = truth_.figures(pipeline_, record_.frames);
+    record_.truth = truth_.figures(pipeline_, record_.frames, maps_);
     record_.wall_s = seconds_from_ns(steady_now_ns() - start_ns);
 }
 

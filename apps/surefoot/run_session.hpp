@@ -33,7 +33,12 @@ struct RunRecord {
 /// computed before stays in `record` and in the pipeline's map.
 class RunSession {
   public:
-    RunSession(pipeline::Pipeline& pipeline, camera::FrameSource& source, int depth_every);
+    /// `rig`: the source's with its mount, as the pipeline uses it.
+    RunSession(pipeline::Pipeline& pipeline,
+               camera::FrameSource& source,
+               const camera::StereoRig& rig,
+               int depth_every,
+               const eval::EvalMapsConfig& maps);
     /// Returns when the source ends, fails or is interrupted.
     void drive();
     [[nodiscard]] RunRecord& record() noexcept { return record_; }
@@ -46,6 +51,7 @@ class RunSession {
     pipeline::Pipeline& pipeline_;
     camera::FrameSource& source_;
     int depth_every_;
+    eval::EvalMapsConfig maps_;
     SimTruth truth_;
     RunRecord record_;
 };

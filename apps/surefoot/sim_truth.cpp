@@ -87,12 +87,12 @@ void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline&
 }
 
 std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline,
-                                              const std::vector<FrameReport>& frames) const {
+                                              const std::vector<FrameReport>& frames,
+                                              const eval::EvalMapsConfig& config) const {
     if (scene_ == nullptr || frames.empty()) return std::nullopt;
     TruthFigures figures;
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const grid::Layer& live_m = pipeline.map().layers().height_m;
-    const eval::EvalMapsConfig config;
     const sim::Lattice lattice = lattice_of(geometry);
     sim::SceneTruth truth = scene_->truth();
     truth.trajectory.resize(std::min(truth.trajectory.size(), frames.size()));

@@ -49,7 +49,8 @@ class SimTruth {
     void remember_depth(const StereoFrame& frame);
     void compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline);
     [[nodiscard]] std::optional<TruthFigures> figures(const pipeline::Pipeline& pipeline,
-                                                      const std::vector<FrameReport>& frames) const;
+                                                      const std::vector<FrameReport>& frames,
+                                                      const eval::EvalMapsConfig& config) const;
 
   private:
     struct RangeMean {

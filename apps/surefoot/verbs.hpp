@@ -8,7 +8,7 @@
 
 namespace surefoot::app {
 
-/// Exit codes of every verb but `gate`.
+/// Exit codes of every verb; `gate` gives 2 for a wrong call only.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;

@@ -90,7 +90,6 @@ class Pipeline {
     camera::DepthImage depth_;
     std::vector<Eigen::Vector3d> ground_points_;
     MotionEstimate last_motion_;
-    Matrix6 covariance_since_map_ = Matrix6::Zero();  ///< of the motion since the map last followed
     std::int64_t last_fused_ns_ = 0;
     std::uint64_t version_ = 0;  ///< counts fused frames
 };

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "surefoot/grid/map_snapshot.hpp"
+#include <cmath>
 
 namespace surefoot::pipeline {
 
@@ -17,23 +17,16 @@ void PipelineConfig::describe(ConfigVisitor& visitor) {
 }
 
 std::optional<std::string> PipelineConfig::problem() const {
-    constexpr int kMaxCellsPerSide = 4000;
-    const double cells = elevation.length_m / elevation.resolution_m;
-    if (cells > kMaxCellsPerSide) {
+    if (auto found = stereo.problem()) return found;
+    if (auto found = elevation.problem()) return found;
+    // The gate's snapshot counts in 0.1 mm: a cell must be a whole number of them.
+    const double tenths = elevation.resolution_m * 1e4;
+    if (std::abs(tenths - std::round(tenths)) > 1e-6) {
         return fmt::format(
-            "elevation.length_m / elevation.resolution_m = {:.0f} cells a side exceeds {}: enlarge "
-            "the cells or "
-            "shorten the map",
-            cells,
-            kMaxCellsPerSide);
+            "elevation.resolution_m = {}: must be a whole number of 0.1 mm, for example 0.025",
+            elevation.resolution_m);
     }
-    if (cells < 4) {
-        return fmt::format(
-            "elevation.length_m / elevation.resolution_m = {:.1f} cells a side: a map needs at "
-            "least 4",
-            cells);
-    }
-    return std::nullopt;
+    return traversability.widened_to(elevation.resolution_m).problem(elevation.resolution_m);
 }
 
 }  // namespace surefoot::pipeline

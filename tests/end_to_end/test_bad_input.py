@@ -124,8 +124,9 @@ class BadInput(CliTest):
     def test_value_out_of_range(self):
         self.fails(self.run_broken(self.good, "--set", "elevation.resolution_m=-1"), "elevation.resolution_m", "-1",
                    code=2)
-        self.fails(self.run_broken(self.good, "--set", "elevation.resolution_m=nan"), "elevation.resolution_m",
-                   code=2)
+        for setting in ("elevation.resolution_m=nan", "elevation.resolution_m=0.03333", "stereo.disparities=100",
+                        "elevation.prefilter.min_range_m=90"):
+            self.fails(self.run_broken(self.good, "--set", setting), setting.split("=")[0], code=2)
 
     def test_output_not_writable(self):
         (self.dir / "file").write_text("in the way")

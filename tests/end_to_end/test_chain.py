@@ -230,6 +230,17 @@ class Simulation(CliTest):
             verdict = self.verdict(self.demo, (2.4, 0, 0), command)
             self.assertEqual((verdict["verdict"], verdict["reasons"]), ("ERROR", ["UNKNOWN_COMMAND"]))
 
+    def test_a_run_without_snapshot_gives_no_verdict(self):
+        for name in ("elevation.asc", "variance.asc", "report.json"):
+            (self.dir / name).write_bytes((self.demo / name).read_bytes())
+        verdict = self.verdict(self.dir, (2.4, 0, 0), FORWARD)
+        self.assertEqual(verdict["verdict"], "ERROR", verdict)
+
+    def test_odometry_only_frames_at_the_end_do_not_look_like_the_future(self):
+        self.run_ok("run", "sim:floor", "--max-frames", 8, "--depth-every", 6, "--out", self.dir / "sparse")
+        verdict = self.verdict(self.dir / "sparse", (0, 0, 0), FORWARD)
+        self.assertNotIn("TIME_SKEW", verdict["reasons"], verdict)
+
     def test_every_verdict_can_be_drawn(self):
         picture = self.dir / "why.png"
         self.verdict(self.demo, (1.4, 1.0, 0), FORWARD, "--explain", picture)
