@@ -147,7 +147,9 @@ class BadInput(CliTest):
         out = self.dir / "out"
         process = subprocess.Popen([str(BINARY), "run", "sim:demo_stairs", "--out", str(out)],
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(4.0)
+        while not out.exists() and process.poll() is None:  # the run has begun; its handler is there
+            time.sleep(0.05)
+        time.sleep(3.0)
         process.send_signal(signal.SIGINT)
         _, log = process.communicate(timeout=120)
         self.assertEqual(process.returncode, 1, log)
