@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/surefoot/ground_box.hpp"
 #include "eval/picture.hpp"
 #include "io/file.hpp"
 
 namespace surefoot::app {
 namespace {
 
-constexpr double kTenthMm_m = 1e-4;
 constexpr double kViewHalf_m = 1.5;
 
 /// The heights around the query as a layer.
@@ -63,15 +63,9 @@ eval::Outline outline(const GroundBox& box,
                       eval::Rgb8 color,
                       const char* label) {
     eval::Outline result;
+    result.points_m = box_outline(box, T_odom_body);
     result.color = color;
     result.label = label;
-    for (const auto& [sx, sy] : {std::pair{0.5, 0.5}, {0.5, -0.5}, {-0.5, -0.5}, {-0.5, 0.5}}) {
-        const Eigen::Vector3d p_body(
-            kTenthMm_m * (box.center_x_tenth_mm + sx * box.length_tenth_mm),
-            kTenthMm_m * (box.center_y_tenth_mm + sy * box.width_tenth_mm),
-            0.0);
-        result.points_m.emplace_back((T_odom_body * p_body).head<2>());
-    }
     return result;
 }
 

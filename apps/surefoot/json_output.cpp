@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/surefoot/ground_box.hpp"
 #include "apps/surefoot/run_output.hpp"
 
 namespace surefoot::app {
@@ -15,7 +16,6 @@ namespace {
 // Keys keep the order in which they are written: the same run gives the same bytes.
 using Json = nlohmann::ordered_json;
 
-constexpr double kTenthMm_m = 1e-4;
 constexpr double kDegPerRad = 180.0 / M_PI;
 
 Json number(double value) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/surefoot/ground_box.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
 #include "io/snapshot_file.hpp"
@@ -13,8 +14,6 @@
 
 namespace surefoot::app {
 namespace {
-
-constexpr double kTenthMm_m = 1e-4;
 
 Result<OfflineMap> map_from_grids(const std::string& folder) {
     const std::string height_file = folder + "/elevation.asc";

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/surefoot/ground_box.hpp"
 #include "eval/html_report.hpp"
 #include "eval/picture.hpp"
 #include "io/config_yaml.hpp"
@@ -13,20 +14,6 @@
 
 namespace surefoot::app {
 namespace {
-
-constexpr double kTenthMm_m = 1e-4;
-
-std::vector<Eigen::Vector2d> box_outline(const GroundBox& box, const Pose& T_odom_body) {
-    std::vector<Eigen::Vector2d> corners;
-    for (const auto& [sx, sy] : {std::pair{1, 1}, {1, -1}, {-1, -1}, {-1, 1}}) {
-        const Eigen::Vector3d p_body(
-            kTenthMm_m * (box.center_x_tenth_mm + 0.5 * sx * box.length_tenth_mm),
-            kTenthMm_m * (box.center_y_tenth_mm + 0.5 * sy * box.width_tenth_mm),
-            0.0);
-        corners.push_back((T_odom_body * p_body).head<2>());
-    }
-    return corners;
-}
 
 eval::Overlays overlays(const std::optional<io::MachineFile>& machine, const RunRecord& record) {
     eval::Overlays result;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "surefoot/core/machine.hpp"
+#include "surefoot/core/pose.hpp"
+
+namespace surefoot::app {
+
+/// The gate's unit of length.
+inline constexpr double kTenthMm_m = 1e-4;
+
+/// Corners of a machine's box on the ground, in odom [m].
+[[nodiscard]] std::vector<Eigen::Vector2d> box_outline(const GroundBox& box,
+                                                       const Pose& T_odom_body);
+
+}  // namespace surefoot::app
