@@ -22,6 +22,7 @@ demo: build
 
 test: build
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+	@echo "$$(grep -cE 'skipped 1 check' $(BUILD)/Testing/Temporary/LastTest.log) checks skipped for want of data"
 
 # Readers and gate under AddressSanitizer and UndefinedBehaviorSanitizer.
 asan: setup

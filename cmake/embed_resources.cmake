@@ -1,5 +1,5 @@
-# Writes OUTPUT: a C++ source with every preset and machine file as a string literal.
-file(GLOB files ${SOURCE_DIR}/presets/*.yaml ${SOURCE_DIR}/machines/*.yaml)
+# Writes OUTPUT: a C++ source with every machine file as a string literal.
+file(GLOB files ${SOURCE_DIR}/machines/*.yaml)
 set(entries "")
 foreach(file IN LISTS files)
   get_filename_component(name ${file} NAME)
@@ -8,7 +8,7 @@ foreach(file IN LISTS files)
   file(READ ${file} text)
   string(APPEND entries "    {\"${folder}/${name}\", R\"yaml(${text})yaml\"},\n")
 endforeach()
-file(WRITE ${OUTPUT} "// Generated from presets/ and machines/.
+file(WRITE ${OUTPUT} "// Generated from machines/.
 #include \"apps/surefoot/resources.hpp\"
 
 namespace surefoot::app {

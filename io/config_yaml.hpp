@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,13 +54,6 @@ template <typename Config>
 template <typename Config>
 [[nodiscard]] Status read_config_into(const std::string& path, Config& config) {
     return read_config(path, describe_config(config));
-}
-template <typename Config>
-[[nodiscard]] Status override_config_in(Config& config, std::span<const std::string> overrides) {
-    for (const std::string& text : overrides) {
-        if (Status status = override_config(text, describe_config(config)); !status) return status;
-    }
-    return {};
 }
 template <typename Config>
 [[nodiscard]] Status write_config_of(const std::string& path, Config config) {

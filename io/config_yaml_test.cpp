@@ -109,10 +109,8 @@ TEST(ConfigYaml, AnErrorLeavesTheConfigUnchanged) {
 
 TEST(ConfigYaml, OverridesFollowTheSameRules) {
     TopConfig config;
-    ASSERT_TRUE(
-        override_config_in(
-            config, std::vector<std::string>{"elevation.length_m=40", "deep.deeper.chunking=false"})
-            .ok());
+    for (const char* setting : {"elevation.length_m=40", "deep.deeper.chunking=false"})
+        ASSERT_TRUE(override_config(setting, describe_config(config)).ok()) << setting;
     EXPECT_EQ(config.elevation.length_m, 40.0);
     EXPECT_FALSE(config.chunking);
     const auto message = [&](const char* text) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "io/recording.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/frame.hpp"
 #include "surefoot/core/result.hpp"
@@ -61,6 +62,7 @@ struct RecordingInfo {
     bool has_truth = false;  ///< groundtruth.tum, groundtruth.txt or poses.txt is there
 };
 
-[[nodiscard]] Result<RecordingInfo> inspect(const std::string& path);
+[[nodiscard]] Result<RecordingInfo> inspect(const std::string& path,
+                                            const OpenOptions& options = {});
 
 }  // namespace surefoot::io

@@ -64,8 +64,8 @@ void describe_imu(const std::vector<ImuSample>& samples, RecordingInfo& info) {
     if (!intervals_ns.empty()) info.imu_rate_hz = 1e9 / static_cast<double>(median(intervals_ns));
 }
 
-Result<RecordingInfo> inspect_video(const std::string& path) {
-    const auto source = open_video(path, {});
+Result<RecordingInfo> inspect_video(const std::string& path, const OpenOptions& options) {
+    const auto source = open_video(path, options);
     if (!source) return source.error();
     RecordingInfo info;
     info.kind = (*source)->info().kind;
@@ -80,9 +80,9 @@ Result<RecordingInfo> inspect_video(const std::string& path) {
 
 }  // namespace
 
-Result<RecordingInfo> inspect(const std::string& path) {
-    if (is_file(path) && is_video_name(path)) return inspect_video(path);
-    const Result<Recording> recording = index_recording(path, {});
+Result<RecordingInfo> inspect(const std::string& path, const OpenOptions& options) {
+    if (is_file(path) && is_video_name(path)) return inspect_video(path, options);
+    const Result<Recording> recording = index_recording(path, options);
     if (!recording) return recording.error();
     RecordingInfo info;
     info.kind = recording->info.kind;

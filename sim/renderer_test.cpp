@@ -23,7 +23,6 @@ class Backwards final : public Executor {
     void parallel_for(int count, const std::function<void(int)>& work) override {
         for (int index = count - 1; index >= 0; --index) work(index);
     }
-    [[nodiscard]] int width() const noexcept override { return 1; }
 };
 
 class ThreeThreads final : public Executor {
@@ -38,7 +37,6 @@ class ThreeThreads final : public Executor {
         }
         for (std::thread& thread : threads) thread.join();
     }
-    [[nodiscard]] int width() const noexcept override { return 3; }
 };
 
 camera::StereoRig zed() {

@@ -13,9 +13,12 @@ namespace surefoot::app {
 
 int config(const ConfigOptions& options) {
     const auto settings = load_settings(options.common);
+    if (options.check_only && options.common.json) {
+        fmt::print("{}\n", check_json(settings ? "" : settings.error().message));
+    }
     if (!settings) return report(settings.error());
     if (options.check_only) {
-        fmt::print("the settings are valid\n");
+        if (!options.common.json) fmt::print("the settings are valid\n");
     } else if (options.common.json) {
         fmt::print("{}\n", settings_json(io::list_config_of(*settings)));
     } else {

@@ -5,26 +5,22 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "eval/trajectory.hpp"
-#include "io/file.hpp"
 #include "io/trajectory_file.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
 namespace {
 
-/// KITTI poses have no stamps. Without times.txt beside them (or with --rate) pose i belongs to
-/// frame i.
+/// KITTI poses have no stamps; --rate says when pose i was, counted from the first estimate.
 Result<Trajectory> read_truth(const EvalTrajectoryOptions& options, const Trajectory& estimate) {
-    const std::string times_file = io::join_path(io::folder_of(options.truth), "times.txt");
+    if (options.rate_hz <= 0.0) return io::read_trajectory(options.truth);
     const auto poses = io::read_kitti_poses(options.truth);
-    if (!poses || (options.rate_hz <= 0.0 && io::is_file(times_file)))
-        return io::read_trajectory(options.truth);
+    if (!poses) return poses.error();
     const std::int64_t start_ns = estimate.empty() ? 0 : estimate.front().time_ns;
-    const double rate_hz = options.rate_hz > 0.0 ? options.rate_hz : 10.0;
     Trajectory truth;
     for (const Pose& pose : *poses) {
         const auto index = static_cast<double>(truth.size());
-        truth.push_back({start_ns + ns_from_seconds(index / rate_hz), pose});
+        truth.push_back({start_ns + ns_from_seconds(index / options.rate_hz), pose});
     }
     return truth;
 }

@@ -3,10 +3,10 @@
 
 #include <cstring>
 
+#include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/resources.hpp"
+#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
 #include "io/raw_floats.hpp"
@@ -24,17 +24,12 @@ struct FuseSettings {
 
 Result<elevation::AncestorConfig> load(const CommonOptions& options) {
     FuseSettings settings;
-    const auto describe = io::describe_config(settings);
     if (options.preset != "ethz") {
         return usage_error(
             fmt::format("fuse --preset '{}': 'ethz' is the update that this verb compares with",
                         options.preset));
     }
-    if (!options.config_file.empty()) {
-        if (auto status = io::read_config(options.config_file, describe); !status)
-            return status.error();
-    }
-    if (auto status = io::override_config_in(settings, options.settings); !status)
+    if (auto status = apply_overrides(options, io::describe_config(settings)); !status)
         return status.error();
     return settings.ancestor;
 }
@@ -123,7 +118,11 @@ int fuse(const FuseOptions& options) {
                 return report(status.error());
         }
     }
-    fmt::print("{} steps fused, layers of each in {}/\n", results.size(), options.out_dir);
+    if (options.common.json) {
+        fmt::print("{}\n", fuse_json(results.size(), options.out_dir));
+    } else {
+        fmt::print("{} steps fused, layers of each in {}/\n", results.size(), options.out_dir);
+    }
     return kExitOk;
 }
 

@@ -269,6 +269,71 @@ std::string recording_json(const io::RecordingInfo& info) {
     return object.dump(kIndent);
 }
 
+std::string copied_json(const Copied& copied, const std::string& folder) {
+    const Json object = {{"frames", copied.frames},
+                         {"complete", !copied.error.has_value()},
+                         {"error", copied.error ? Json(copied.error->message) : Json(nullptr)},
+                         {"folder", folder}};
+    return object.dump(kIndent);
+}
+
+std::string replay_json(const std::vector<FrameReport>& frames, double speed, std::int64_t late) {
+    Json list = Json::array();
+    for (const FrameReport& frame : frames) list.push_back(frame_json(frame));
+    const Json object = {
+        {"frames", frames.size()}, {"late", late}, {"speed", speed}, {"per_frame", list}};
+    return object.dump(kIndent);
+}
+
+std::string rate_json(const grid::GridGeometry& geometry, const std::string& folder) {
+    const Json object = {{"width", geometry.nx},
+                         {"height", geometry.ny},
+                         {"resolution_m", geometry.resolution_m},
+                         {"folder", folder}};
+    return object.dump(kIndent);
+}
+
+std::string fuse_json(std::size_t steps, const std::string& folder) {
+    return Json{{"steps", steps}, {"folder", folder}}.dump(kIndent);
+}
+
+std::string doctor_json(const std::string& version,
+                        int threads,
+                        const std::string& machine,
+                        const RigView& view) {
+    Json depths = Json::array();
+    for (const auto& depth : view.depths)
+        depths.push_back({{"z_m", depth.z_m}, {"sigma_m", depth.sigma_m}});
+    Json steps = Json::array();
+    for (const auto& step : view.steps) {
+        steps.push_back({{"command", step.command},
+                         {"name", step.name},
+                         {"toe_m", step.toe_m},
+                         {"remembered", step.remembered}});
+    }
+    const Json object = {
+        {"version", version},
+        {"threads", threads},
+        {"machine", machine},
+        {"rig",
+         {{"name", view.name},
+          {"width", view.width},
+          {"height", view.height},
+          {"focal_px", view.focal_px},
+          {"baseline_m", view.baseline_m}}},
+        {"disparity_sigma_px", view.disparity_sigma_px},
+        {"depth_sigma", depths},
+        {"floor", {{"near_m", number(view.floor.near_m)}, {"far_m", number(view.floor.far_m)}}},
+        {"steps", steps}};
+    return object.dump(kIndent);
+}
+
+std::string check_json(const std::string& problem) {
+    const Json object = {{"valid", problem.empty()},
+                         {"problem", problem.empty() ? Json(nullptr) : Json(problem)}};
+    return object.dump(kIndent);
+}
+
 std::string bench_json(const std::vector<BenchResult>& results) {
     Json list = Json::array();
     for (const auto& result : results) {

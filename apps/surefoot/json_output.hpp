@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "apps/surefoot/bench_result.hpp"
+#include "apps/surefoot/copy_frames.hpp"
+#include "apps/surefoot/rig_view.hpp"
 #include "apps/surefoot/run_session.hpp"
 #include "eval/maps.hpp"
 #include "eval/trajectory.hpp"
@@ -35,6 +37,18 @@ namespace surefoot::app {
 [[nodiscard]] std::string settings_json(const std::vector<io::ConfigEntry>& entries);
 [[nodiscard]] std::string scenes_json(const std::vector<sim::SceneInfo>& scenes);
 [[nodiscard]] std::string recording_json(const io::RecordingInfo& info);
+[[nodiscard]] std::string copied_json(const Copied& copied, const std::string& folder);
+[[nodiscard]] std::string replay_json(const std::vector<FrameReport>& frames,
+                                      double speed,
+                                      std::int64_t late);
+[[nodiscard]] std::string rate_json(const grid::GridGeometry& geometry, const std::string& folder);
+[[nodiscard]] std::string fuse_json(std::size_t steps, const std::string& folder);
+[[nodiscard]] std::string doctor_json(const std::string& version,
+                                      int threads,
+                                      const std::string& machine,
+                                      const RigView& view);
+/// `problem` is empty when the settings are valid.
+[[nodiscard]] std::string check_json(const std::string& problem);
 [[nodiscard]] std::string bench_json(const std::vector<BenchResult>& results);
 
 }  // namespace surefoot::app

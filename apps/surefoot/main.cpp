@@ -4,6 +4,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 
 namespace surefoot::app {
@@ -30,14 +31,36 @@ void add_common(CLI::App* verb, CommonOptions& common) {
                      common.threads,
                      "threads to use (0 = all cores); results do not depend on it")
         ->check(CLI::Range(0, 256));
-    verb->add_option("--seed", common.seed, "seed of everything random");
+    verb->add_option(
+        "--seed", common.seed, "seed of simulated scenes, the only thing that is random");
+}
+
+/// Which settings a verb reads. For those that read none --config, --set and --preset are still
+/// checked, so that one call serves all verbs, and the user is told that they change nothing here.
+enum class Reads { settings, own_settings, no_settings };
+
+int check_settings(const CommonOptions& common, const std::string& verb, Reads reads) {
+    if (reads == Reads::own_settings) return kExitOk;
+    if (const auto settings = load_settings(common); !settings) return report(settings.error());
+    const bool given =
+        !common.config_file.empty() || !common.preset.empty() || !common.settings.empty();
+    if (reads == Reads::no_settings && given)
+        log_warning(verb + ": --config, --set and --preset change nothing here");
+    return kExitOk;
 }
 
 /// Registers a verb whose options are kept in `options` and handled by `handler`.
 template <typename Options>
-CLI::App* bind(CLI::App* verb, Options& options, int (*handler)(const Options&), int& exit_code) {
+CLI::App* bind(CLI::App* verb,
+               Options& options,
+               int (*handler)(const Options&),
+               int& exit_code,
+               Reads reads = Reads::settings) {
     add_common(verb, options.common);
-    verb->callback([&options, handler, &exit_code] { exit_code = handler(options); });
+    verb->callback([&options, handler, &exit_code, reads, name = verb->get_name()] {
+        exit_code = check_settings(options.common, name, reads);
+        if (exit_code == kExitOk) exit_code = handler(options);
+    });
     return verb;
 }
 
@@ -137,7 +160,8 @@ void add_fuse(CLI::App& app, FuseOptions& o, int& exit_code) {
             "surefoot fuse tests/conformance/elevation/steps.txt --preset ethz --out out/fused"),
         o,
         fuse,
-        exit_code);
+        exit_code,
+        Reads::own_settings);
     verb->add_option("steps", o.steps, "steps.txt beside cloud0.f32, cloud1.f32, ...")
         ->required()
         ->type_name("STEPS.txt");
@@ -169,7 +193,8 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
                       "surefoot gate --map out/floor --pose 0,0,0 --command 9"),
              o,
              gate,
-             exit_code);
+             exit_code,
+             Reads::no_settings);
     verb->add_option("--map", o.map_dir, "folder of a run")->required()->type_name("DIR");
     verb->add_option("--pose", o.pose, "base_link in odom: metres and radians")
         ->required()
@@ -206,7 +231,8 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
                                          "out/floor_recording/groundtruth.tum --json"),
                                 t,
                                 eval_trajectory,
-                                exit_code);
+                                exit_code,
+                                Reads::no_settings);
     trajectory->add_option("estimate", t.estimate, "TUM trajectory")->required()->type_name("EST");
     trajectory->add_option("truth", t.truth, "TUM trajectory, or KITTI 3x4 poses")
         ->required()
@@ -223,7 +249,8 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
                                    "surefoot eval maps out/floor out/floor_recording --json"),
                           m,
                           eval_maps,
-                          exit_code);
+                          exit_code,
+                          Reads::own_settings);
     maps->add_option("live", m.live_dir, "folder of a run")->required()->type_name("LIVE_DIR");
     maps->add_option("truth", m.truth_dir, "folder with the true elevation.asc")
         ->required()
@@ -238,7 +265,8 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
                       "surefoot config --set elevation.length_m=8"),
              all.config,
              config,
-             exit_code);
+             exit_code,
+             Reads::own_settings);
     config_verb->add_flag(
         "--check", all.config.check_only, "only say whether the settings are valid");
 
@@ -270,7 +298,8 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
                       "surefoot record sim:floor --max-frames 4 --out out/copy"),
              all.record,
              record,
-             exit_code);
+             exit_code,
+             Reads::no_settings);
     record_verb->add_option("source", all.record.source, "as for run")
         ->required()
         ->type_name("SOURCE");
@@ -295,6 +324,10 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
         ->required()
         ->type_name("SOURCE");
     replay_verb->add_option("--rig", all.replay.rig_file, "calibration")->type_name("FILE");
+    replay_verb
+        ->add_option(
+            "--machine", all.replay.machine, "machine file or built-in name; sets the camera mount")
+        ->type_name("FILE|NAME");
     replay_verb->add_option("--speed", all.replay.speed, "times real time")
         ->check(CLI::Range(0.01, 1000.0));
 
@@ -304,7 +337,8 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
                                         "surefoot info out/floor_recording --json"),
                                all.info,
                                info,
-                               exit_code);
+                               exit_code,
+                               Reads::no_settings);
     info_verb->add_option("source", all.info.source, "as for run")->required()->type_name("SOURCE");
     info_verb->add_option("--rig", all.info.rig_file, "calibration")->type_name("FILE");
 }

@@ -4,22 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 
 namespace surefoot::app {
-namespace {
-
-std::atomic<bool> interrupt_seen{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-
-void on_signal(int /*signal*/) {
-    interrupt_seen.store(true);
-}
-
-}  // namespace
-
 Progress::Progress(std::string label, std::optional<int> total)
     : label_(std::move(label)), total_(total), visible_(isatty(STDERR_FILENO) != 0) {}
 
@@ -47,18 +34,6 @@ void Progress::advance(int done) {
                done,
                *total_);
     std::fflush(stderr);
-}
-
-bool interrupted() {
-    return interrupt_seen.load();
-}
-
-void watch_for_interrupts() {
-    struct sigaction action = {};
-    action.sa_handler = on_signal;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
 }
 
 }  // namespace surefoot::app

@@ -22,8 +22,4 @@ class Progress {
     int last_percent_ = -1;
 };
 
-/// True once the user pressed Ctrl-C (or SIGTERM came) after watch_for_interrupts().
-[[nodiscard]] bool interrupted();
-void watch_for_interrupts();
-
 }  // namespace surefoot::app

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "apps/surefoot/writes.hpp"
 #include "eval/picture.hpp"
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
@@ -57,26 +59,28 @@ int rate(const RateOptions& options) {
         {"normal_y", &layers.normal_y},
         {"normal_z", &layers.normal_z},
         {"traversability", &layers.traversability}};
-    Status first_failure = io::write_config_of(options.out_dir + "/config.yaml", *settings);
+    Writes writes;
+    writes += io::write_config_of(options.out_dir + "/config.yaml", *settings);
     for (const auto& [name, layer] : outputs) {
         const auto png = encode_png(render_layer(dem->geometry,
                                                  *layer,
                                                  style_of(name, settings->maps.safe_threshold),
                                                  eval::Overlays{}));
-        for (const Status& status :
-             {io::write_esri_grid(
-                  fmt::format("{}/{}.asc", options.out_dir, name), dem->geometry, *layer),
-              io::write_file(fmt::format("{}/{}.png", options.out_dir, name),
-                             std::string(png.begin(), png.end()))}) {
-            if (!status && first_failure.ok()) first_failure = status;
-        }
+        writes += io::write_esri_grid(
+            fmt::format("{}/{}.asc", options.out_dir, name), dem->geometry, *layer);
+        writes += io::write_file(fmt::format("{}/{}.png", options.out_dir, name),
+                                 std::string(png.begin(), png.end()));
     }
-    if (!first_failure) return report(first_failure.error());
-    fmt::print("{} x {} cells of {:g} m rated, layers in {}/\n",
-               dem->geometry.nx,
-               dem->geometry.ny,
-               resolution_m,
-               options.out_dir);
+    if (!writes.first()) return report(writes.first().error());
+    if (options.common.json) {
+        fmt::print("{}\n", rate_json(dem->geometry, options.out_dir));
+    } else {
+        fmt::print("{} x {} cells of {:g} m rated, layers in {}/\n",
+                   dem->geometry.nx,
+                   dem->geometry.ny,
+                   resolution_m,
+                   options.out_dir);
+    }
     return kExitOk;
 }
 

@@ -11,7 +11,7 @@ namespace surefoot::app {
 
 /// A file of the repository that travels inside the program.
 struct Resource {
-    std::string_view name;  ///< "presets/rex_zed.yaml"
+    std::string_view name;  ///< "machines/rex.yaml"
     std::string_view text;
 };
 [[nodiscard]] const std::vector<Resource>& resources();

@@ -9,6 +9,7 @@
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/run_report.hpp"
+#include "apps/surefoot/writes.hpp"
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
@@ -18,26 +19,6 @@
 
 namespace surefoot::app {
 namespace {
-
-/// Remembers the first failure of many writes.
-class Writes {
-  public:
-    void operator+=(Status status) {
-        if (!status && first_.ok()) first_ = std::move(status);
-    }
-    [[nodiscard]] const Status& first() const noexcept { return first_; }
-
-  private:
-    Status first_;
-};
-
-Trajectory trajectory_of(const RunRecord& record, const Pose& T_body_frame) {
-    Trajectory trajectory;
-    for (const FrameReport& frame : record.frames) {
-        trajectory.push_back({frame.time_ns, frame.motion.T_odom_body * T_body_frame});
-    }
-    return trajectory;
-}
 
 /// One point per known cell with its variance and rating.
 io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
@@ -60,6 +41,23 @@ io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
     cloud.width = static_cast<int>(cloud.points_m.size());
     cloud.scalars = {std::move(variance), std::move(traversability)};
     return cloud;
+}
+
+/// What is not a setting but decides the result, as a comment above the settings.
+std::string command_line(const RunOptions& options) {
+    std::string line = fmt::format("# surefoot {}: run {}", SUREFOOT_VERSION, options.source);
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) line += fmt::format(" {} {}", option, value);
+    };
+    const auto add_number = [&](const char* option, double value, double by_default) {
+        if (value != by_default) line += fmt::format(" {} {:g}", option, value);
+    };
+    add("--rig", options.rig_file);
+    add("--machine", options.machine);
+    add_number("--rate", options.rate_hz, 0.0);
+    add_number("--max-frames", options.max_frames, 0.0);
+    add_number("--depth-every", options.depth_every, 1.0);
+    return line + fmt::format(" --seed {}\n", options.common.seed);
 }
 
 grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry) {
@@ -98,10 +96,11 @@ Status write_results(const RunOptions& options,
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& layers = pipeline.map().layers();
     Writes writes;
-    writes += io::write_config_of(out + "/config.yaml", settings);
-    writes += io::write_tum_trajectory(out + "/trajectory.tum", trajectory_of(record, Pose{}));
+    writes += io::write_file(out + "/config.yaml",
+                             command_line(options) + io::format_config_of(settings));
+    writes += io::write_tum_trajectory(out + "/trajectory.tum", trajectory_of(record.frames));
     writes += io::write_tum_trajectory(out + "/trajectory_camera.tum",
-                                       trajectory_of(record, record.rig.body_from_left()));
+                                       trajectory_of(record.frames, record.rig.body_from_left()));
     writes += io::write_esri_grid(out + "/elevation.asc", geometry, layers.height_m);
     writes += io::write_esri_grid(out + "/variance.asc", geometry, layers.height_var_m2);
     writes += io::write_esri_grid(out + "/traversability.asc",
@@ -149,6 +148,10 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
         *std::max_element(std::begin(causes), std::end(causes), [](const auto& a, const auto& b) {
             return a.first < b.first;
         });
+    if (worst.first == 0) {
+        return fmt::format("none of {} depth points was gated, yet no cell got enough of them",
+                           f.points);
+    }
     return fmt::format("{} of {} depth points {}", worst.first, f.points, worst.second);
 }
 

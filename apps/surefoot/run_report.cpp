@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/surefoot/ground_box.hpp"
+#include "apps/surefoot/writes.hpp"
 #include "eval/html_report.hpp"
 #include "eval/picture.hpp"
 #include "io/config_yaml.hpp"
@@ -72,19 +73,18 @@ void add_sigma_pictures(const pipeline::Pipeline& pipeline,
 }
 
 void add_trajectory_picture(const RunRecord& record, eval::ReportContent& content) {
-    Trajectory estimate;
-    for (const FrameReport& frame : record.frames)
-        estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
     const Trajectory truth = record.truth ? record.truth->truth_trajectory : Trajectory{};
-    content.pictures.push_back(
-        {"Where base_link went",
-         eval::encode_png(eval::render_trajectory(
-             estimate, truth, {"Trajectory of base_link", "odom, from above"}))});
+    content.pictures.push_back({"Where base_link went",
+                                eval::encode_png(eval::render_trajectory(
+                                    trajectory_of(record.frames),
+                                    truth,
+                                    {"Trajectory of base_link", "odom, from above"}))});
 }
 
 void add_truth(const RunRecord& record,
                const pipeline::Pipeline& pipeline,
                const eval::Overlays& drawn,
+               double safe_threshold,
                eval::ReportContent& content) {
     if (!record.truth) return;
     const TruthFigures& t = *record.truth;
@@ -96,7 +96,10 @@ void add_truth(const RunRecord& record,
     content.pictures.push_back(
         {"What the map calls safe against the same rating of the true heights",
          eval::encode_png(eval::render_confusion(
-             geometry, t.calls, {"Safe or not, against the truth", "threshold 0.80"}, drawn))});
+             geometry,
+             t.calls,
+             {"Safe or not, against the truth", fmt::format("threshold {:.2f}", safe_threshold)},
+             drawn))});
     content.figures.push_back({"Elevation, median |error|",
                                fmt::format("{:.1f}", 1e3 * t.elevation.median_abs_m),
                                "mm",
@@ -164,7 +167,7 @@ Status write_pictures_and_report(const RunOptions& options,
     content.pictures.push_back({"Safe to step or not; hatched was never seen", rating_png});
     add_camera_pictures(pipeline, content);
     add_sigma_pictures(pipeline, drawn, content);
-    add_truth(record, pipeline, drawn, content);
+    add_truth(record, pipeline, drawn, settings.maps.safe_threshold, content);
     add_trajectory_picture(record, content);
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         content.reasons.push_back("The map is empty: " + reason);
@@ -179,16 +182,11 @@ Status write_pictures_and_report(const RunOptions& options,
     const auto as_text = [](const std::vector<std::uint8_t>& bytes) {
         return std::string(bytes.begin(), bytes.end());
     };
-    Status elevation_written =
-        io::write_file(options.out_dir + "/elevation.png", as_text(elevation_png));
-    Status rating_written =
-        io::write_file(options.out_dir + "/traversability.png", as_text(rating_png));
-    Status report_written =
-        io::write_file(options.out_dir + "/report.html", eval::render_html(content));
-    for (Status* status : {&elevation_written, &rating_written, &report_written}) {
-        if (!*status) return *status;
-    }
-    return {};
+    Writes writes;
+    writes += io::write_file(options.out_dir + "/elevation.png", as_text(elevation_png));
+    writes += io::write_file(options.out_dir + "/traversability.png", as_text(rating_png));
+    writes += io::write_file(options.out_dir + "/report.html", eval::render_html(content));
+    return writes.first();
 }
 
 }  // namespace surefoot::app

@@ -3,10 +3,21 @@
 
 #include <fmt/format.h>
 
+#include <exception>
+
+#include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/progress.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
+
+Trajectory trajectory_of(std::span<const FrameReport> frames, const Pose& T_body_fixed) {
+    Trajectory trajectory;
+    trajectory.reserve(frames.size());
+    for (const FrameReport& frame : frames)
+        trajectory.push_back({frame.time_ns, frame.motion.T_odom_body * T_body_fixed});
+    return trajectory;
+}
 
 RunSession::RunSession(pipeline::Pipeline& pipeline,
                        camera::FrameSource& source,
@@ -21,6 +32,24 @@ RunSession::RunSession(pipeline::Pipeline& pipeline,
 void RunSession::drive() {
     const std::int64_t start_ns = steady_now_ns();
     watch_for_interrupts();
+    try {
+        process_all();
+    } catch (const std::exception& error) {
+        // Not expected, but a library below may run out of memory: what was computed is kept.
+        record_.error = input_error(fmt::format("{}: after {} frames: {}; the results are kept",
+                                                record_.source.path,
+                                                record_.frames.size(),
+                                                error.what()));
+    }
+    if (record_.frames.empty() && !record_.error) {
+        record_.error =
+            input_error(fmt::format("{}: the source holds no frame", record_.source.path));
+    }
+    record_.truth = truth_.figures(pipeline_, record_.frames, maps_);
+    record_.wall_s = seconds_from_ns(steady_now_ns() - start_ns);
+}
+
+void RunSession::process_all() {
     Progress progress("run", record_.source.frames);
     const std::vector<StereoFrame> buffered = first_frames();
     if (!buffered.empty()) pipeline_.align(buffered);
@@ -34,12 +63,6 @@ void RunSession::drive() {
         process(*frame);
         progress.advance(static_cast<int>(record_.frames.size()));
     }
-    if (record_.frames.empty() && !record_.error) {
-        record_.error =
-            input_error(fmt::format("{}: the source holds no frame", record_.source.path));
-    }
-    record_.truth = truth_.figures(pipeline_, record_.frames, maps_);
-    record_.wall_s = seconds_from_ns(steady_now_ns() - start_ns);
 }
 
 std::vector<StereoFrame> RunSession::first_frames() {

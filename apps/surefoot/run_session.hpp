@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct RunRecord {
     [[nodiscard]] bool complete() const noexcept { return !error.has_value(); }
 };
 
+/// Poses of a frame that is fixed to the body, in odom; base_link itself by default.
+[[nodiscard]] Trajectory trajectory_of(std::span<const FrameReport> frames,
+                                       const Pose& T_body_fixed = Pose{});
+
 /// Drives a pipeline over a source: buffers the first frames for the alignment, then processes
 /// every frame. Stops at the first error of the source or when the user interrupts; what was
 /// computed before stays in `record` and in the pipeline's map.
@@ -46,6 +51,7 @@ class RunSession {
   private:
     [[nodiscard]] std::optional<StereoFrame> next_frame();
     [[nodiscard]] std::vector<StereoFrame> first_frames();
+    void process_all();
     void process(const StereoFrame& frame);
 
     pipeline::Pipeline& pipeline_;

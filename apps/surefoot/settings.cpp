@@ -2,13 +2,12 @@
 #include "apps/surefoot/settings.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <thread>
 
-#include "apps/surefoot/resources.hpp"
 #include "apps/surefoot/thread_pool.hpp"
-#include "io/config_yaml.hpp"
 
 namespace surefoot::app {
 
@@ -23,23 +22,29 @@ Result<Settings> load_settings(const CommonOptions& options) {
     Settings settings;
     const auto describe = io::describe_config(settings);
     if (!options.preset.empty()) {
-        const auto text = find_resource("presets", options.preset);
-        if (!text) return text.error();
-        if (auto status =
-                io::parse_config(*text, fmt::format("preset {}", options.preset), describe);
-            !status) {
-            return status.error();
+        const auto preset = traversability::preset(options.preset);
+        if (!preset) {
+            return usage_error(fmt::format("--preset {}: there is no such preset; there are {}",
+                                           options.preset,
+                                           fmt::join(traversability::kPresetNames, ", ")));
         }
+        settings.pipeline.traversability = *preset;
     }
-    if (!options.config_file.empty()) {
-        if (auto status = io::read_config(options.config_file, describe); !status) {
-            return usage_error(status.error().message);
-        }
-    }
-    if (auto status = io::override_config_in(settings, options.settings); !status)
-        return status.error();
+    if (auto status = apply_overrides(options, describe); !status) return status.error();
     if (const auto problem = settings.pipeline.problem()) return usage_error(*problem);
     return settings;
+}
+
+Status apply_overrides(const CommonOptions& options, const io::DescribeConfig& describe) {
+    if (!options.config_file.empty()) {
+        // A settings file that cannot be read is a wrong call, as a wrong key in it is.
+        if (auto status = io::read_config(options.config_file, describe); !status)
+            return usage_error(status.error().message);
+    }
+    for (const std::string& setting : options.settings) {
+        if (auto status = io::override_config(setting, describe); !status) return status;
+    }
+    return {};
 }
 
 std::uint64_t hash_of(const Settings& settings) {

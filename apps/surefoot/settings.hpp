@@ -6,6 +6,7 @@
 
 #include "apps/surefoot/verbs.hpp"
 #include "eval/maps.hpp"
+#include "io/config_yaml.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
@@ -22,6 +23,10 @@ struct Settings {
 
 /// Defaults, then the preset, then the file, then each --set: later ones win.
 [[nodiscard]] Result<Settings> load_settings(const CommonOptions& options);
+
+/// The file and each --set of `options` on top of what a config object holds.
+[[nodiscard]] Status apply_overrides(const CommonOptions& options,
+                                     const io::DescribeConfig& describe);
 
 /// Hash of every setting, as the map snapshot and the verdict carry it.
 [[nodiscard]] std::uint64_t hash_of(const Settings& settings);

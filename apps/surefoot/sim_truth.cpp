@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "apps/surefoot/run_session.hpp"
 #include "sim/truth.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
@@ -113,13 +114,10 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
                                    config.safe_threshold);
     figures.traversability = eval::traversability_errors(figures.calls, visible);
 
-    Trajectory estimate;
-    for (const FrameReport& frame : frames)
-        estimate.push_back({frame.time_ns, frame.motion.T_odom_body});
     for (const auto& pose : truth.trajectory)
         figures.truth_trajectory.push_back({pose.time_ns, pose.T_world_body});
     if (const auto errors = eval::evaluate_trajectory(
-            estimate, figures.truth_trajectory, {.align = eval::Alignment::none})) {
+            trajectory_of(frames), figures.truth_trajectory, {.align = eval::Alignment::none})) {
         figures.trajectory = *errors;
     }
 

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/surefoot/copy_frames.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/progress.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
 #include "io/pfm.hpp"
-#include "io/recorder.hpp"
 #include "io/trajectory_file.hpp"
 #include "sim/scene_source.hpp"
 #include "sim/scenes.hpp"
@@ -101,34 +100,29 @@ int simulate(const SimOptions& options) {
         if (auto status = io::make_folder(options.out_dir + "/depth"); !status)
             return report(status.error());
     }
-
-    watch_for_interrupts();
-    Progress progress("sim", (*source)->info().frames);
-    std::size_t frames = 0;
-    while (!interrupted()) {
-        auto frame = (*source)->next();
-        if (!frame) return report(frame.error());
-        if (!frame->has_value()) break;
-        if (auto status = recorder->add(**frame); !status) return report(status.error());
-        if (options.depth) {
-            const std::string file =
-                fmt::format("{}/depth/{}.pfm", options.out_dir, (*frame)->time_ns);
-            if (auto status = io::write_pfm(file, (*source)->last_depth_m()); !status)
-                return report(status.error());
-        }
-        progress.advance(static_cast<int>(++frames));
+    const auto write_depth = [&](const StereoFrame& frame) -> Status {
+        if (!options.depth) return {};
+        return io::write_pfm(fmt::format("{}/depth/{}.pfm", options.out_dir, frame.time_ns),
+                             (*source)->last_depth_m());
+    };
+    Copied copied = copy_frames("sim", **source, *recorder, write_depth);
+    // The truth of the frames that are there, also when the recording ended early.
+    if (copied.frames > 0) {
+        const auto status = write_truth(options.out_dir,
+                                        (*source)->truth(),
+                                        static_cast<std::size_t>(copied.frames),
+                                        settings->pipeline.elevation.resolution_m);
+        if (!status && !copied.error) copied.error = status.error();
     }
-    const double resolution_m = settings->pipeline.elevation.resolution_m;
-    if (auto status = write_truth(options.out_dir, (*source)->truth(), frames, resolution_m);
-        !status) {
-        return report(status.error());
+    if (options.common.json) {
+        fmt::print("{}\n", copied_json(copied, options.out_dir));
+    } else {
+        fmt::print("{} frames of {} with ground truth in {}/\n",
+                   copied.frames,
+                   options.scene,
+                   options.out_dir);
     }
-    if (auto status = recorder->finish(); !status) return report(status.error());
-    fmt::print(
-        "{} frames of {} with ground truth in {}/\n", frames, options.scene, options.out_dir);
-    return interrupted() ? report({ErrorCode::interrupted,
-                                   "interrupted by the user; the frames up to here are kept"})
-                         : kExitOk;
+    return copied.error ? report(*copied.error) : kExitOk;
 }
 
 }  // namespace surefoot::app

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/thread_pool.hpp"
 
+#include <utility>
+
 namespace surefoot::app {
 
 ThreadPool::ThreadPool(int threads) {
@@ -18,6 +20,11 @@ ThreadPool::~ThreadPool() {
 
 void ThreadPool::parallel_for(int count, const std::function<void(int)>& work) {
     std::unique_lock<std::mutex> lock(mutex_);
+    if (work_ != nullptr) {
+        lock.unlock();
+        Serial().parallel_for(count, work);
+        return;
+    }
     work_ = &work;
     count_ = count;
     next_ = 0;
@@ -25,6 +32,7 @@ void ThreadPool::parallel_for(int count, const std::function<void(int)>& work) {
     take_indices(lock);
     done_.wait(lock, [this] { return running_ == 0; });
     work_ = nullptr;
+    if (auto failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
 }
 
 void ThreadPool::take_indices(std::unique_lock<std::mutex>& lock) {
@@ -33,8 +41,17 @@ void ThreadPool::take_indices(std::unique_lock<std::mutex>& lock) {
         const auto* work = work_;
         ++running_;
         lock.unlock();
-        (*work)(index);
+        std::exception_ptr failure;
+        try {
+            (*work)(index);
+        } catch (...) {
+            failure = std::current_exception();
+        }
         lock.lock();
+        if (failure) {
+            if (!failure_) failure_ = failure;
+            next_ = count_;
+        }
         if (--running_ == 0 && next_ >= count_) done_.notify_all();
     }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -11,7 +12,9 @@
 
 namespace surefoot::app {
 
-/// Executor on `threads` threads, the calling one included. parallel_for must not be nested.
+/// Executor on `threads` threads, the calling one included. A call from within another (nested, or
+/// from a second thread) runs on its own thread alone. When a piece of work throws, the pieces that
+/// have begun are finished, the rest is left out, and the call rethrows the first exception.
 class ThreadPool final : public Executor {
   public:
     explicit ThreadPool(int threads);
@@ -20,9 +23,6 @@ class ThreadPool final : public Executor {
     ThreadPool& operator=(const ThreadPool&) = delete;
 
     void parallel_for(int count, const std::function<void(int)>& work) override;
-    [[nodiscard]] int width() const noexcept override {
-        return static_cast<int>(workers_.size()) + 1;
-    }
 
   private:
     void run_worker();
@@ -31,11 +31,12 @@ class ThreadPool final : public Executor {
     std::mutex mutex_;
     std::condition_variable wake_;
     std::condition_variable done_;
-    const std::function<void(int)>* work_ = nullptr;
+    const std::function<void(int)>* work_ = nullptr;  ///< null when no call is under way
     int count_ = 0;
     int next_ = 0;
     int running_ = 0;
     bool stopping_ = false;
+    std::exception_ptr failure_;
     std::vector<std::thread> workers_;
 };
 

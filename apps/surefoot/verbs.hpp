@@ -134,6 +134,7 @@ struct ReplayOptions {
     CommonOptions common;
     std::string source;
     std::string rig_file;
+    std::string machine;
     double speed = 1.0;
 };
 int replay(const ReplayOptions& options);

@@ -13,8 +13,6 @@ class Executor {
     virtual ~Executor() = default;
     /// Calls `work(index)` once for each index in [0, count) and returns when all are done.
     virtual void parallel_for(int count, const std::function<void(int)>& work) = 0;
-    /// How many indices may run at the same time (for choosing block sizes of equal results).
-    [[nodiscard]] virtual int width() const noexcept = 0;
 };
 
 /// One after the other, in order, on the calling thread.
@@ -23,7 +21,6 @@ class Serial final : public Executor {
     void parallel_for(int count, const std::function<void(int)>& work) override {
         for (int index = 0; index < count; ++index) work(index);
     }
-    [[nodiscard]] int width() const noexcept override { return 1; }
 };
 
 }  // namespace surefoot

@@ -63,7 +63,7 @@ void expect_same(const grid::Layer& layer,
 
 TEST(Ancestor, ReproducesTheReferenceVectors) {
     if (!std::filesystem::exists(vectors_folder())) {
-        std::printf("skipped 3 steps: no %s (set SUREFOOT_DATA_DIR)\n", vectors_folder().c_str());
+        std::printf("skipped 1 check: no %s (set SUREFOOT_DATA_DIR)\n", vectors_folder().c_str());
         return;
     }
     // Times and moves as in steps.txt of the vectors.

@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3d> truth_positions(const Recording& recording) {
 }
 
 bool missing(const std::optional<Recording>& recording, const char* name) {
-    if (!recording) std::printf("1 recording skipped: %s is not there\n", name);
+    if (!recording) std::printf("skipped 1 check: recording %s is not there\n", name);
     return !recording;
 }
 
@@ -78,7 +78,7 @@ TEST(Recordings, EurocStillDoesNotDrift) {
 TEST(Recordings, RenderedRoomFollowsTheTruth) {
     const char* folder = std::getenv("SUREFOOT_RENDERED_ROOM");  // written by render_room.py
     if (folder == nullptr) {
-        std::printf("1 recording skipped: SUREFOOT_RENDERED_ROOM is not set\n");
+        std::printf("skipped 1 check: SUREFOOT_RENDERED_ROOM is not set\n");
         return;
     }
     const auto recording = testing::rendered_room(folder);

@@ -154,7 +154,6 @@ class Backwards final : public Executor {
     void parallel_for(int count, const std::function<void(int)>& work) override {
         for (int index = count - 1; index >= 0; --index) work(index);
     }
-    [[nodiscard]] int width() const noexcept override { return 4; }
 };
 
 }  // namespace surefoot::odometry::testing

@@ -118,7 +118,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
 
     report.motion = odometry_.update(frame, *executor_);
     follow(report.motion);
-    timer.finished(Stage::odometry);
+    timer.finished(Stage::odometry);  // with the move of the map, which follows every frame
     if (work == Work::full) {
         rectifier_->rectify(frame, pair_);
         timer.finished(Stage::rectify);

@@ -13,7 +13,6 @@ class Backwards final : public Executor {
     void parallel_for(int count, const std::function<void(int)>& work) override {
         for (int index = count - 1; index >= 0; --index) work(index);
     }
-    [[nodiscard]] int width() const noexcept override { return 1; }
 };
 
 /// Even and odd indices on two threads.
@@ -26,7 +25,6 @@ class TwoThreads final : public Executor {
         for (int index = 0; index < count; index += 2) work(index);
         odd.join();
     }
-    [[nodiscard]] int width() const noexcept override { return 2; }
 };
 
 }  // namespace surefoot::stereo::test

@@ -81,7 +81,7 @@ TraversabilityConfig tiefree(Combine combine) {
 TEST(TraversabilityConformance, PublishedFiltersAreReproduced) {
     const auto height_m = read_layer("elevation.f32");
     if (!height_m) {
-        std::printf("1 test skipped: no conformance vectors in %s\n", folder().c_str());
+        std::printf("skipped 1 check: no conformance vectors in %s\n", folder().c_str());
         return;
     }
     Serial serial;

@@ -114,7 +114,7 @@ TraversabilityConfig TraversabilityConfig::widened_to(double resolution_m) const
 
 std::optional<TraversabilityConfig> preset(std::string_view name) {
     using Config = TraversabilityConfig;
-    if (name == "rex_zed") {
+    if (name == "rex_zed") {  // live on the REX with the ZED in 2016: comparison, not advice
         return Config{{0.075},
                       {1.047},
                       {0.075, 0.075, 0.075, 30},
@@ -122,7 +122,7 @@ std::optional<TraversabilityConfig> preset(std::string_view name) {
                       {0.2, 1.0, 0.2},
                       Combine::zero_dominates};
     }
-    if (name == "rex_demo_stairs") {
+    if (name == "rex_demo_stairs") {  // slope and roughness practically off
         return Config{{0.075},
                       {1.56},
                       {0.10, 0.06, 0.06, 10},
@@ -130,7 +130,7 @@ std::optional<TraversabilityConfig> preset(std::string_view name) {
                       {0.2, 1.0, 0.2},
                       Combine::zero_dominates};
     }
-    if (name == "laser") {
+    if (name == "laser") {  // for ground truth by the laser scanner
         return Config{{0.1},
                       {1.5708},
                       {0.1, 0.075, 0.10, 5},
@@ -138,7 +138,7 @@ std::optional<TraversabilityConfig> preset(std::string_view name) {
                       {1.0, 1.0, 1.0},
                       Combine::zero_dominates};
     }
-    if (name == "ethz") {
+    if (name == "ethz") {  // configuration of traversability_estimation
         return Config{
             {0.05}, {1.0}, {0.12, 0.04, 0.04, 4}, {0.05, 0.05}, {1.0, 1.0, 1.0}, Combine::mean_nan};
     }

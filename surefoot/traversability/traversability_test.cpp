@@ -107,7 +107,6 @@ class Reverse final : public Executor {
     void parallel_for(int count, const std::function<void(int)>& work) override {
         for (int index = count - 1; index >= 0; --index) work(index);
     }
-    [[nodiscard]] int width() const noexcept override { return 64; }
 };
 
 TEST(Traversability, EmptyMapHasEmptyLayers) {

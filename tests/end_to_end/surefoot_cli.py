@@ -2,9 +2,11 @@
 import json
 import os
 import pathlib
+import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 BINARY = pathlib.Path(os.environ["SUREFOOT_BINARY"])
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -34,12 +36,13 @@ class CliTest(unittest.TestCase):
         return json.loads(self.run_ok(*arguments, "--json", **options).stdout)
 
     def data(self, *parts):
-        """A folder of the optional data, or None with a printed line when it is not there."""
+        """A folder of the optional data; skips the test with a printed line when it is not there."""
         path = DATA.joinpath(*parts)
-        if path.exists():
-            return path
-        print(f"skipped 1 check: {path} is not there (set SUREFOOT_DATA_DIR)", flush=True)
-        return None
+        if not path.exists():
+            # `make test` counts these lines.
+            print(f"skipped 1 check: {path} is not there (set SUREFOOT_DATA_DIR)", flush=True)
+            self.skipTest(f"{path} is not there")
+        return path
 
 
 def read_tum(path):
@@ -57,3 +60,12 @@ def read_asc(path):
         elif words:
             rows.append([None if float(x) == header["nodata_value"] else float(x) for x in words])
     return header, rows
+
+
+def grey_png(width, height):
+    """A flat 8-bit grey PNG, by the book (W3C PNG specification, chunks IHDR, IDAT, IEND)."""
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    rows = b"".join(b"\0" + bytes([128]) * width for _ in range(height))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))

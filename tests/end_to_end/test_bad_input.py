@@ -4,25 +4,14 @@ import pathlib
 import resource
 import shutil
 import signal
-import struct
 import subprocess
 import tempfile
 import time
 import unittest
-import zlib
 
-from surefoot_cli import BINARY, CliTest, read_tum, surefoot
+from surefoot_cli import BINARY, CliTest, grey_png, read_tum, surefoot
 
 FRAMES = 6
-
-
-def grey_png(width, height):
-    """A flat 8-bit grey PNG, by the book (W3C PNG specification, chunks IHDR, IDAT, IEND)."""
-    def chunk(kind, body):
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-    rows = b"".join(b"\0" + bytes([128]) * width for _ in range(height))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)) +
-            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 class BadInput(CliTest):

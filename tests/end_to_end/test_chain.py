@@ -2,11 +2,11 @@
 import hashlib
 import json
 import math
+import shutil
 import statistics
 import unittest
 
-from surefoot_cli import CliTest, read_asc, read_tum, surefoot
-
+from surefoot_cli import CliTest, grey_png, read_asc, read_tum, surefoot
 
 
 def digest(folder):
@@ -30,8 +30,6 @@ FORWARD = 9  # outer sector north
 class RealRecordings(CliTest):
     def test_kitti_city_trajectory(self):
         city = self.data("sequences", "kitti_city")
-        if city is None:
-            return
         self.run_ok("run", city, "--out", self.dir / "city")
         self.assertEqual(len(read_tum(self.dir / "city" / "trajectory.tum")), 51)
         errors = self.json_of("eval", "trajectory", self.dir / "city" / "trajectory_camera.tum", city / "poses.txt")
@@ -46,8 +44,6 @@ class RealRecordings(CliTest):
 
     def test_kitti_city_road_ahead(self):
         city = self.data("sequences", "kitti_city")
-        if city is None:
-            return
         out = self.dir / "city"
         self.run_ok("run", city, "--out", out, "--set", "elevation.length_m=40", "--set",
                     "elevation.resolution_m=0.1")
@@ -59,8 +55,6 @@ class RealRecordings(CliTest):
 
     def test_zed_office_steps(self):
         office = self.data("sequences", "zed_office")
-        if office is None:
-            return
         self.run_ok("run", office, "--out", self.dir / "office")
         poses = read_tum(self.dir / "office" / "trajectory.tum")
         steps_mm = [1e3 * math.dist(a[1:4], b[1:4]) for a, b in zip(poses, poses[1:])]
@@ -69,10 +63,14 @@ class RealRecordings(CliTest):
         self.assertTrue(95 <= statistics.mean(steps_mm) <= 108, steps_mm)
         self.assertLessEqual(statistics.stdev(steps_mm), 8.0)
 
+    def test_the_machines_mount_is_used_where_the_rig_has_none(self):
+        office = self.data("sequences", "zed_office")
+        self.run_ok("run", office, "--machine", "rex", "--max-frames", 2, "--out", self.dir / "office")
+        base, camera = (read_tum(self.dir / "office" / f"trajectory{part}.tum")[0][1:4] for part in ("", "_camera"))
+        self.assertAlmostEqual(math.dist(base, camera), math.hypot(0.075, 0.25, 0.05), delta=1e-6)
+
     def test_euroc_still_does_not_drift(self):
         still = self.data("sequences", "euroc_still")
-        if still is None:
-            return
         self.run_ok("run", still, "--out", self.dir / "still")
         poses = read_tum(self.dir / "still" / "trajectory.tum")
         self.assertEqual(len(poses), 30)
@@ -225,7 +223,21 @@ class Simulation(CliTest):
         end = read_tum(edge / "trajectory.tum")[-1]
         self.inhibited("DROP_OFF", edge, (end[1], end[2], 0), FORWARD)
 
-    def test_assumed_gravity_and_unknown_commands_are_errors(self):
+    def test_assumed_gravity_is_an_error(self):
+        # Featureless images and no accelerometer: neither a plane nor an IMU tells where down is.
+        recording = self.dir / "grey"
+        self.run_ok("sim", "floor", "--frames", 3, "--out", recording)
+        for image in recording.rglob("*.png"):
+            image.write_bytes(grey_png(672, 376))
+        shutil.rmtree(recording / "mav0" / "imu0")
+        out = self.dir / "out"
+        self.run_ok("run", recording, "--out", out)
+        self.assertEqual(json.loads((out / "report.json").read_text())["gravity_source"], "assumed")
+        verdict = self.verdict(out, (0, 0, 0), FORWARD)
+        self.assertEqual(verdict["verdict"], "ERROR", verdict)
+        self.assertIn("PLANE_INVALID", verdict["reasons"], verdict)
+
+    def test_unknown_commands_are_errors(self):
         for command in (0, 27, 255):
             verdict = self.verdict(self.demo, (2.4, 0, 0), command)
             self.assertEqual((verdict["verdict"], verdict["reasons"]), ("ERROR", ["UNKNOWN_COMMAND"]))

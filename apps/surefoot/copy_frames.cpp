@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/copy_frames.hpp"
+
+#include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/progress.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// True when there was a frame to copy.
+Result<bool> copy_one(camera::FrameSource& source,
+                      io::Recorder& recorder,
+                      const std::function<Status(const StereoFrame&)>& after_frame) {
+    if (interrupted()) {
+        return Error{ErrorCode::interrupted,
+                     "interrupted by the user; the frames up to here are kept"};
+    }
+    const auto frame = source.next();
+    if (!frame) return frame.error();
+    if (!frame->has_value()) return false;
+    if (auto status = recorder.add(**frame); !status) return status.error();
+    if (after_frame) {
+        if (auto status = after_frame(**frame); !status) return status.error();
+    }
+    return true;
+}
+
+}  // namespace
+
+Copied copy_frames(const std::string& label,
+                   camera::FrameSource& source,
+                   io::Recorder& recorder,
+                   const std::function<Status(const StereoFrame&)>& after_frame) {
+    watch_for_interrupts();
+    Progress progress(label, source.info().frames);
+    Copied copied;
+    while (true) {
+        const auto copied_one = copy_one(source, recorder, after_frame);
+        copied.frames = recorder.frames();
+        if (!copied_one) copied.error = copied_one.error();
+        if (!copied_one || !*copied_one) break;
+        progress.advance(copied.frames);
+    }
+    if (auto status = recorder.finish(); !status && !copied.error) copied.error = status.error();
+    return copied;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "io/recorder.hpp"
+#include "surefoot/camera/frame_source.hpp"
+
+namespace surefoot::app {
+
+/// How far copying got, and why it ended early.
+struct Copied {
+    int frames = 0;
+    std::optional<Error> error;  ///< of source, recorder or `after_frame`; or the user's interrupt
+};
+
+/// Copies a source into a recording and closes it, frame by frame, with progress under `label`.
+/// What was copied before an error is a valid recording. `after_frame` may write more of each
+/// frame.
+[[nodiscard]] Copied copy_frames(const std::string& label,
+                                 camera::FrameSource& source,
+                                 io::Recorder& recorder,
+                                 const std::function<Status(const StereoFrame&)>& after_frame = {});
+
+}  // namespace surefoot::app

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "io/recorder.hpp"
+
+namespace surefoot::app {
+
+int info(const InfoOptions& options) {
+    io::OpenOptions open;
+    if (!options.rig_file.empty()) open.rig_file = options.rig_file;
+    const auto found = io::inspect(options.source, open);
+    if (!found) return report(found.error());
+    if (options.common.json) {
+        fmt::print("{}\n", recording_json(*found));
+        return kExitOk;
+    }
+    const io::RecordingInfo& i = *found;
+    fmt::print("{}: {} frames over {:.2f} s at {:.2f} Hz, {:.1f} MB of images\n",
+               i.kind,
+               i.frames,
+               i.duration_s,
+               i.rate_hz,
+               static_cast<double>(i.bytes) * 1e-6);
+    fmt::print("gaps: {} (longest {:.3f} s), frames without partner: {}, missing images: {}{}\n",
+               i.gaps,
+               i.longest_gap_s,
+               i.unpaired,
+               i.missing_images,
+               i.first_missing.empty() ? "" : fmt::format(" (first: {})", i.first_missing));
+    fmt::print("stamps that do not grow: {}, IMU: {} samples at {:.1f} Hz, ground truth: {}\n",
+               i.bad_stamps,
+               i.imu_samples,
+               i.imu_rate_hz,
+               i.has_truth ? "yes" : "no");
+    fmt::print("left camera {}x{}, baseline {:.1f} mm\n",
+               i.rig.left.width,
+               i.rig.left.height,
+               1e3 * i.rig.T_left_right.translation_m.norm());
+    return kExitOk;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "surefoot/core/time.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// When frames are due on the steady clock.
+class Schedule {
+  public:
+    Schedule(std::int64_t first_frame_ns, double speed)
+        : start_ns_(steady_now_ns()), first_frame_ns_(first_frame_ns), speed_(speed) {}
+
+    /// Sleeps until the frame is due; false when it was due before.
+    [[nodiscard]] bool wait_for(std::int64_t frame_ns) const {
+        const auto due_ns =
+            start_ns_ +
+            static_cast<std::int64_t>(static_cast<double>(frame_ns - first_frame_ns_) / speed_);
+        const std::int64_t wait_ns = due_ns - steady_now_ns();
+        if (wait_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(wait_ns));
+        return wait_ns >= 0;
+    }
+
+  private:
+    std::int64_t start_ns_;
+    std::int64_t first_frame_ns_;
+    double speed_;
+};
+
+void print_frame(const FrameReport& seen, std::int64_t first_frame_ns) {
+    const Eigen::Vector3d& p = seen.motion.T_odom_body.translation_m;
+    fmt::print(
+        "{:6d} {:9.3f} s  x {:7.3f} y {:7.3f} z {:7.3f} m  {:<8} {:4d} inliers {:6d} cells{}\n",
+        seen.index,
+        seconds_from_ns(seen.time_ns - first_frame_ns),
+        p.x(),
+        p.y(),
+        p.z(),
+        to_string(seen.motion.health),
+        seen.motion.inliers,
+        seen.known_cells,
+        seen.work == Work::odometry ? "  late" : "");
+}
+
+/// Plays to the end, the first error or the user's interrupt.
+Status play(const ReplayOptions& options,
+            camera::FrameSource& source,
+            pipeline::Pipeline& pipeline,
+            std::vector<FrameReport>& seen) {
+    std::optional<Schedule> schedule;
+    while (!interrupted()) {
+        const auto frame = source.next();
+        if (!frame) return frame.error();
+        if (!frame->has_value()) return {};
+        if (!schedule) {
+            pipeline.align({&**frame, 1});
+            schedule.emplace((*frame)->time_ns, options.speed);
+        }
+        // A frame that comes late gets odometry only, as in a live run.
+        const bool in_time = schedule->wait_for((*frame)->time_ns) || seen.empty();
+        seen.push_back(pipeline.process(**frame, in_time ? Work::full : Work::odometry));
+        if (!options.common.json) print_frame(seen.back(), seen.front().time_ns);
+    }
+    return Error{ErrorCode::interrupted, "interrupted by the user"};
+}
+
+}  // namespace
+
+int replay(const ReplayOptions& options) {
+    const auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
+    const auto machine = load_machine(options.machine);
+    if (!machine) return report(machine.error());
+    const auto executor = make_executor(options.common);
+    auto source =
+        open_source({options.source, options.rig_file, 0.0, 0, options.common.seed}, *executor);
+    if (!source) return report(source.error());
+    auto pipeline = pipeline::Pipeline::make(
+        settings->pipeline, mounted_rig((*source)->rig(), *machine), *executor, steady_now_ns);
+    if (!pipeline) return report(pipeline.error());
+    watch_for_interrupts();
+    std::vector<FrameReport> seen;
+    const Status played = play(options, **source, *pipeline, seen);
+    const auto late = std::count_if(seen.begin(), seen.end(), [](const FrameReport& frame) {
+        return frame.work == Work::odometry;
+    });
+    if (options.common.json) {
+        fmt::print("{}\n", replay_json(seen, options.speed, late));
+    } else {
+        fmt::print("{} frames at {:g} times real time, {} late (odometry only)\n",
+                   seen.size(),
+                   options.speed,
+                   late);
+    }
+    return played ? kExitOk : report(played.error());
+}
+
+}  // namespace surefoot::app
