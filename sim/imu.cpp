@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
@@ -39,12 +40,12 @@ void ImuNoiseConfig::describe(ConfigVisitor& visitor) {
         "accel_bias_sigma_m_s2", accel_bias_sigma_m_s2, 0.0, 10.0, "constant bias, drawn per seed");
 }
 
-ImuModel::ImuModel(const Trajectory& trajectory,
+ImuModel::ImuModel(std::shared_ptr<const Motion> motion,
                    const camera::ImuMount& mount,
                    const ImuNoiseConfig& noise,
                    std::int64_t start_ns,
                    std::uint64_t seed)
-    : trajectory_(trajectory), mount_(mount), noise_(noise), start_ns_(start_ns), seed_(seed) {
+    : motion_(std::move(motion)), mount_(mount), noise_(noise), start_ns_(start_ns), seed_(seed) {
     Rng rng(mix_seed(seed, kBiasStream));
     gyro_bias_rad_s_ = normal3(rng, noise.gyro_bias_sigma_rad_s);
     accel_bias_m_s2_ = normal3(rng, noise.accel_bias_sigma_m_s2);
@@ -55,7 +56,7 @@ std::int64_t ImuModel::stamp_ns(std::int64_t k) const {
 }
 
 ImuSample ImuModel::ideal(std::int64_t time_ns) const {
-    const MotionState state = trajectory_.at(seconds_from_ns(time_ns - start_ns_));
+    const MotionState state = motion_->at(seconds_from_ns(time_ns - start_ns_));
     const Vector3d& omega = state.angular_velocity_body_rad_s;
     const Vector3d& lever_m = mount_.T_body_imu.translation_m;
     const Vector3d up(0.0, 0.0, kGravity_m_s2);

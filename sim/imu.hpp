@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "sim/trajectory.hpp"
+#include "sim/motion.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/config.hpp"
 #include "surefoot/core/frame.hpp"
@@ -29,7 +30,7 @@ struct ImuNoiseConfig {
 class ImuModel {
   public:
     /// `start_ns` is the stamp at which the trajectory starts.
-    ImuModel(const Trajectory& trajectory,
+    ImuModel(std::shared_ptr<const Motion> motion,
              const camera::ImuMount& mount,
              const ImuNoiseConfig& noise,
              std::int64_t start_ns,
@@ -43,7 +44,7 @@ class ImuModel {
   private:
     [[nodiscard]] std::int64_t stamp_ns(std::int64_t k) const;
 
-    Trajectory trajectory_;
+    std::shared_ptr<const Motion> motion_;
     camera::ImuMount mount_;
     ImuNoiseConfig noise_;
     std::int64_t start_ns_ = 0;

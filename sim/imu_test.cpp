@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "sim/trolley_motion.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::sim {
@@ -16,9 +17,9 @@ using Eigen::Vector3d;
 constexpr std::int64_t kStart_ns = kNanosecondsPerSecond;
 constexpr ImuNoiseConfig kIdeal{0.0, 0.0, 0.0, 0.0};
 
-Trajectory tour() {
-    return Trajectory::trolley({{0.0, 0.0, 0.0, 0.5}, {1.0, 0.4, 0.6, 0.1}, {1.0, 0.4, -0.4, 0.4}},
-                               TrolleyConfig{});
+TrolleyMotion tour() {
+    return TrolleyMotion::trolley(
+        {{0.0, 0.0, 0.0, 0.5}, {1.0, 0.4, 0.6, 0.1}, {1.0, 0.4, -0.4, 0.4}}, TrolleyConfig{});
 }
 
 camera::ImuMount turned_mount() {
@@ -29,16 +30,20 @@ camera::ImuMount turned_mount() {
 }
 
 TEST(ImuTest, AtRestItFeelsGravityUpward) {
-    const ImuModel imu(Trajectory::stand({}, 0.95, 1.0), {}, kIdeal, kStart_ns, 1);
+    const ImuModel imu(std::make_shared<TrolleyMotion>(TrolleyMotion::stand({}, 0.95, 1.0)),
+                       {},
+                       kIdeal,
+                       kStart_ns,
+                       1);
     const ImuSample sample = imu.ideal(kStart_ns);
     EXPECT_EQ(sample.specific_force_m_s2, Vector3d(0.0, 0.0, kGravity_m_s2));
     EXPECT_EQ(sample.angular_velocity_rad_s, Vector3d::Zero());
 }
 
 TEST(ImuTest, IntegrationReturnsTheTrajectory) {
-    const Trajectory trajectory = tour();
+    const TrolleyMotion trajectory = tour();
     const camera::ImuMount mount = turned_mount();
-    const ImuModel imu(trajectory, mount, kIdeal, kStart_ns, 1);
+    const ImuModel imu(std::make_shared<TrolleyMotion>(trajectory), mount, kIdeal, kStart_ns, 1);
     constexpr double kStep_s = 0.001;
     Pose T_world_imu = trajectory.at(0.0).T_world_body * mount.T_body_imu;
     Vector3d velocity = Vector3d::Zero();
@@ -68,7 +73,7 @@ TEST(ImuTest, IntegrationReturnsTheTrajectory) {
 }
 
 TEST(ImuTest, SamplesFillIntervalsWithoutGapsOrRepeats) {
-    const ImuModel imu(tour(), {}, ImuNoiseConfig{}, kStart_ns, 3);
+    const ImuModel imu(std::make_shared<TrolleyMotion>(tour()), {}, ImuNoiseConfig{}, kStart_ns, 3);
     const std::int64_t from_ns = kStart_ns - 100'000'000;
     const std::int64_t middle_ns = kStart_ns + 66'666'667;
     const std::int64_t to_ns = kStart_ns + 500'000'000;
@@ -90,7 +95,11 @@ TEST(ImuTest, NoiseHasTheConfiguredDensity) {
     ImuNoiseConfig noise;
     noise.gyro_bias_sigma_rad_s = 0.0;
     noise.accel_bias_sigma_m_s2 = 0.0;
-    const ImuModel imu(Trajectory::stand({}, 0.95, 1.0), {}, noise, kStart_ns, 3);
+    const ImuModel imu(std::make_shared<TrolleyMotion>(TrolleyMotion::stand({}, 0.95, 1.0)),
+                       {},
+                       noise,
+                       kStart_ns,
+                       3);
     const auto samples = imu.samples(0, 50 * kNanosecondsPerSecond);
     double gyro2 = 0.0;
     double accel2 = 0.0;

@@ -18,9 +18,6 @@ using Eigen::Vector3d;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// Grey value where no surface is.
 constexpr float kBackground_dn = 30.0F;
-/// Light of an evenly lit room, and of one lamp above and to the right of the path.
-constexpr double kAmbient = 0.45;
-constexpr double kLamp = 0.55;
 /// Nearest to grazing incidence (1.1 deg) that the footprint of a pixel is stretched to.
 constexpr double kLeastCosine = 0.02;
 
@@ -65,7 +62,7 @@ Renderer::Renderer(const Scene& scene,
       left_rays_(rig.left),
       right_rays_(*rig.right),
       textures_(scene.materials(), seed),
-      towards_lamp_(Vector3d(0.30, -0.40, 0.87).normalized()) {}
+      towards_lamp_(scene.lighting().towards_lamp()) {}
 
 void Renderer::render(const Pose& T_world_body,
                       int frame,
@@ -167,7 +164,9 @@ float Renderer::signal_dn(int surface,
     }
     const int material = scene_->surfaces()[static_cast<std::size_t>(surface)].material;
     const float reflectance = textures_.reflectance(material, surface, at.u_m, at.v_m, footprint);
-    const double light = kAmbient + kLamp * std::max(0.0, at.normal.dot(towards_lamp_));
+    const Lighting& lighting = scene_->lighting();
+    const double light =
+        lighting.ambient + lighting.lamp * std::max(0.0, at.normal.dot(towards_lamp_));
     return static_cast<float>(255.0 * imaging_.exposure * light) * reflectance;
 }
 

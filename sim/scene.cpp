@@ -18,17 +18,7 @@ constexpr double kTouch_m = 1e-9;
 }  // namespace
 
 const char* to_string(Label label) noexcept {
-    switch (label) {
-        case Label::none: return "none";
-        case Label::floor: return "floor";
-        case Label::step: return "step";
-        case Label::ramp: return "ramp";
-        case Label::table: return "table";
-        case Label::drop: return "drop";
-        case Label::wall: return "wall";
-        case Label::object: return "object";
-    }
-    return "none";
+    return kLabelNames[static_cast<std::size_t>(label)];
 }
 
 int Scene::add_material(const Material& material) {

@@ -6,13 +6,39 @@
 #include <span>
 #include <vector>
 
+#include "sim/lighting.hpp"
 #include "sim/primitives.hpp"
 #include "sim/texture.hpp"
 
 namespace surefoot::sim {
 
 /// What a surface is, for ground truth.
-enum class Label : std::uint8_t { none, floor, step, ramp, table, drop, wall, object };
+enum class Label : std::uint8_t {
+    none,
+    floor,
+    step,
+    ramp,
+    table,
+    drop,
+    wall,
+    object,
+    kerb,
+    sill,
+    door,
+    overhang
+};
+inline constexpr const char* kLabelNames[] = {"none",
+                                              "floor",
+                                              "step",
+                                              "ramp",
+                                              "table",
+                                              "drop",
+                                              "wall",
+                                              "object",
+                                              "kerb",
+                                              "sill",
+                                              "door",
+                                              "overhang"};
 [[nodiscard]] const char* to_string(Label label) noexcept;
 
 /// A face of a primitive as the scene numbers it.
@@ -55,6 +81,9 @@ class Scene {
     /// Bottoms of the pits of a floor are labelled as a drop and may look different.
     void add_floor(const Floor& floor, int material, int pit_material);
 
+    void light(const Lighting& lighting) { lighting_ = lighting; }
+    [[nodiscard]] const Lighting& lighting() const noexcept { return lighting_; }
+
     /// First surface along a ray (unit direction), the side that faces the origin only.
     [[nodiscard]] std::optional<Hit> intersect(const Eigen::Vector3d& origin_m,
                                                const Eigen::Vector3d& direction) const;
@@ -88,6 +117,7 @@ class Scene {
     std::vector<Sphere> bounds_;
     std::vector<Surface> surfaces_;
     std::vector<Material> materials_;
+    Lighting lighting_;
 };
 
 }  // namespace surefoot::sim

@@ -38,16 +38,15 @@ std::optional<Error> problem(const SceneOptions& options) {
     return std::nullopt;
 }
 
-std::vector<StampedPose> sampled(const Trajectory& trajectory, int frames, double rate_hz) {
+std::vector<StampedPose> sampled(const Motion& motion, int frames, double rate_hz) {
     // Half a nanosecond of slack: the last frame belongs to the path when it falls on its end.
-    const int whole_path =
-        static_cast<int>(std::floor(trajectory.duration_s() * rate_hz + 1e-6)) + 1;
+    const int whole_path = static_cast<int>(std::floor(motion.duration_s() * rate_hz + 1e-6)) + 1;
     const int count = frames > 0 ? frames : whole_path;
     std::vector<StampedPose> poses;
     for (int i = 0; i < count; ++i) {
         const std::int64_t since_start_ns = ns_from_seconds(i / rate_hz);
-        poses.push_back({kStart_ns + since_start_ns,
-                         trajectory.at(seconds_from_ns(since_start_ns)).T_world_body});
+        poses.push_back(
+            {kStart_ns + since_start_ns, motion.at(seconds_from_ns(since_start_ns)).T_world_body});
     }
     return poses;
 }
@@ -75,9 +74,9 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
     source->truth_.rig = *rig;
     source->truth_.rig.rate_hz = options.rate_hz;
     if (!options.imu) source->truth_.rig.imu.reset();
-    source->truth_.trajectory = sampled(script->trajectory, options.frames, options.rate_hz);
+    source->truth_.trajectory = sampled(*script->motion, options.frames, options.rate_hz);
     if (source->truth_.rig.imu) {
-        source->imu_.emplace(script->trajectory,
+        source->imu_.emplace(script->motion,
                              *source->truth_.rig.imu,
                              options.imu_noise,
                              kStart_ns,

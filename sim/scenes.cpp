@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/motion_script.hpp"
 #include "sim/rigs.hpp"
 #include "surefoot/core/rng.hpp"
 
@@ -106,18 +107,10 @@ void add_demo_ramp(Scene& scene) {
               Label::step);
 }
 
-/// Moves all stops but the first by about a centimetre and a third of a degree.
-Trajectory trolley(std::vector<Waypoint> stops, std::uint64_t seed) {
-    constexpr std::uint64_t kPathStream = 0x70617468;
-    Rng rng(mix_seed(seed, kPathStream));
-    for (std::size_t i = 1; i < stops.size(); ++i) {
-        stops[i].x_m += rng.uniform(-0.01, 0.01);
-        stops[i].y_m += rng.uniform(-0.01, 0.01);
-        stops[i].yaw_rad += rng.uniform(-deg(0.3), deg(0.3));
-    }
-    TrolleyConfig config;
-    config.height_m = kBodyHeight_m;
-    return Trajectory::trolley(stops, config);
+std::shared_ptr<const Motion> trolley(std::vector<Waypoint> stops, std::uint64_t seed) {
+    MotionScript script;
+    script.waypoints = std::move(stops);
+    return make_motion(script, seed)->motion;  // a trolley follows any waypoints
 }
 
 void make_demo_stairs(ScriptedScene& out, std::uint64_t seed) {
@@ -131,20 +124,20 @@ void make_demo_stairs(ScriptedScene& out, std::uint64_t seed) {
     add_table(
         out.scene, {{kTableMin_x_m, kTableMin_y_m}, {kTableMax_x_m, kTableMax_y_m}}, kTableTop_m);
     add_walls(out.scene, 0.0);
-    out.trajectory = trolley({{0.0, 0.0, 0.0, 1.0},
-                              {1.0, 0.0, 0.0, 0.2},
-                              {1.0, 0.0, deg(15.0), 0.2},
-                              {1.0, 0.0, -deg(15.0), 0.2},
-                              {1.2, 0.0, 0.0, 0.2},
-                              {kPathEnd_x_m, 0.0, 0.0, 0.5}},
-                             seed);
+    out.motion = trolley({{0.0, 0.0, 0.0, 1.0},
+                          {1.0, 0.0, 0.0, 0.2},
+                          {1.0, 0.0, deg(15.0), 0.2},
+                          {1.0, 0.0, -deg(15.0), 0.2},
+                          {1.2, 0.0, 0.0, 0.2},
+                          {kPathEnd_x_m, 0.0, 0.0, 0.5}},
+                         seed);
 }
 
 void make_floor(ScriptedScene& out, std::uint64_t seed) {
     const int carpet = material(out.scene, Pattern::carpet, 0.4, 0.7, 0.002);
     out.scene.add_floor(Floor(room_area(), 0.0), carpet, carpet);
     add_walls(out.scene, 0.0);
-    out.trajectory = trolley({{0.0, 0.0, 0.0, 1.0}, {1.5, 0.0, 0.0, 0.5}}, seed);
+    out.motion = trolley({{0.0, 0.0, 0.0, 1.0}, {1.5, 0.0, 0.0, 0.5}}, seed);
 }
 
 void make_platform_edge(ScriptedScene& out, std::uint64_t seed) {
@@ -161,7 +154,7 @@ void make_platform_edge(ScriptedScene& out, std::uint64_t seed) {
                   Label::floor);
     out.scene.add(Floor(area, -kHeight_m), ground, Label::drop);
     add_walls(out.scene, -kHeight_m);
-    out.trajectory = trolley({{0.0, 0.0, 0.0, 1.0}, {kPathEnd_x_m, 0.0, 0.0, 0.5}}, seed);
+    out.motion = trolley({{0.0, 0.0, 0.0, 1.0}, {kPathEnd_x_m, 0.0, 0.0, 0.5}}, seed);
 }
 
 void make_table(ScriptedScene& out, std::uint64_t seed) {
@@ -169,7 +162,7 @@ void make_table(ScriptedScene& out, std::uint64_t seed) {
     out.scene.add_floor(Floor(room_area(), 0.0), carpet, carpet);
     add_table(out.scene, {{2.2, -0.7}, {3.0, 0.7}}, 0.72);
     add_walls(out.scene, 0.0);
-    out.trajectory = trolley({{0.0, 0.0, 0.0, 1.0}, {1.75, 0.0, 0.0, 0.5}}, seed);
+    out.motion = trolley({{0.0, 0.0, 0.0, 1.0}, {1.75, 0.0, 0.0, 0.5}}, seed);
 }
 
 struct Entry {

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "sim/motion.hpp"
 #include "sim/scene.hpp"
-#include "sim/trajectory.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::sim {
@@ -21,7 +22,7 @@ struct SceneInfo {
 struct ScriptedScene {
     SceneInfo info;
     Scene scene;
-    Trajectory trajectory;
+    std::shared_ptr<const Motion> motion;
 };
 
 [[nodiscard]] std::vector<SceneInfo> list_scenes();

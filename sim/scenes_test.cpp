@@ -19,8 +19,8 @@ SceneTruth whole_run(const std::string& name) {
     ScriptedScene script = make_scene(name, 1).value();
     SceneTruth truth;
     truth.rig = rig_preset("zed_vga").value();
-    for (double t_s = 0.0; t_s <= script.trajectory.duration_s(); t_s += 0.2) {
-        truth.trajectory.push_back({ns_from_seconds(t_s), script.trajectory.at(t_s).T_world_body});
+    for (double t_s = 0.0; t_s <= script.motion->duration_s(); t_s += 0.2) {
+        truth.trajectory.push_back({ns_from_seconds(t_s), script.motion->at(t_s).T_world_body});
     }
     truth.scene = std::move(script.scene);
     return truth;
@@ -47,8 +47,8 @@ TEST(ScenesTest, EveryListedSceneCanBeMadeAndIsClosed) {
         EXPECT_EQ(script.info.name, info.name);
         EXPECT_EQ(script.scene.height_at(0.0, 0.0)->z_m, 0.0) << info.name;
         // From every place of the path the view ends somewhere: on the ground or at a wall.
-        for (double t_s = 0.0; t_s < script.trajectory.duration_s(); t_s += 1.7) {
-            const Pose T = script.trajectory.at(t_s).T_world_body;
+        for (double t_s = 0.0; t_s < script.motion->duration_s(); t_s += 1.7) {
+            const Pose T = script.motion->at(t_s).T_world_body;
             for (double azimuth_rad = 0.0; azimuth_rad < 6.3; azimuth_rad += 0.1) {
                 const Vector3d level(std::cos(azimuth_rad), std::sin(azimuth_rad), -0.02);
                 EXPECT_TRUE(script.scene.intersect(T.translation_m, level.normalized()))
@@ -74,10 +74,10 @@ TEST(ScenesTest, UnknownNamesListWhatThereIs) {
 TEST(ScenesTest, TheSeedMovesThePathByCentimetresAndNothingElse) {
     const ScriptedScene a = make_scene("demo_stairs", 1).value();
     const ScriptedScene b = make_scene("demo_stairs", 2).value();
-    EXPECT_EQ(a.trajectory.at(0.0).T_world_body.translation_m, Vector3d(0.0, 0.0, kBodyHeight_m));
-    EXPECT_EQ(b.trajectory.at(0.0).T_world_body.translation_m, Vector3d(0.0, 0.0, kBodyHeight_m));
-    const Vector3d end_a = a.trajectory.at(1e3).T_world_body.translation_m;
-    const Vector3d end_b = b.trajectory.at(1e3).T_world_body.translation_m;
+    EXPECT_EQ(a.motion->at(0.0).T_world_body.translation_m, Vector3d(0.0, 0.0, kBodyHeight_m));
+    EXPECT_EQ(b.motion->at(0.0).T_world_body.translation_m, Vector3d(0.0, 0.0, kBodyHeight_m));
+    const Vector3d end_a = a.motion->at(1e3).T_world_body.translation_m;
+    const Vector3d end_b = b.motion->at(1e3).T_world_body.translation_m;
     EXPECT_NE(end_a, end_b);
     EXPECT_LT((end_a - end_b).norm(), 0.03);
     const Lattice lattice{{-1.0, -3.0}, 70, 60, 0.1};

@@ -51,9 +51,17 @@ Image<float> halved(const Image<float>& field) {
 }  // namespace
 
 const char* to_string(Pattern pattern) noexcept {
-    constexpr std::array<const char*, kPatterns> kNames{
-        "carpet", "tiles", "wood", "concrete", "patches", "plaster"};
-    return kNames[static_cast<std::size_t>(pattern)];
+    return kPatternNames[static_cast<std::size_t>(pattern)];
+}
+
+void Material::describe(ConfigVisitor& visitor) {
+    visitor.enumeration("pattern", pattern, kPatternNames, "kind of surface");
+    visitor.number("albedo", albedo, 0.0, 1.0, "mean reflectance");
+    visitor.number("contrast", contrast, 0.0, 1.0, "of the pattern; 0 = uniform");
+    visitor.number("texel_m", texel_m, 1e-4, 0.1, "size of the finest detail");
+    visitor.number("yaw_rad", yaw_rad, -10.0, 10.0, "turn of the pattern on the surface");
+    visitor.enumeration("finish", finish, kFinishNames, "what happens to light");
+    visitor.number("gloss", gloss, 0.0, 1.0, "mirror: share reflected; glass: share let through");
 }
 
 TextureTable::TextureTable(Pattern pattern, std::uint64_t seed) {

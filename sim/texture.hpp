@@ -5,12 +5,21 @@
 #include <cstdint>
 #include <vector>
 
+#include "surefoot/core/config.hpp"
+
 namespace surefoot::sim {
 
 /// Kinds of surface. Each has structure from millimetres to metres, as matchers and trackers need.
 enum class Pattern : std::uint8_t { carpet, tiles, wood, concrete, patches, plaster };
 inline constexpr int kPatterns = 6;
+inline constexpr const char* kPatternNames[kPatterns] = {
+    "carpet", "tiles", "wood", "concrete", "patches", "plaster"};
 [[nodiscard]] const char* to_string(Pattern pattern) noexcept;
+
+/// What happens to light at a surface: matte scatters it; a mirror shows the scene that it
+/// reflects; glass shows what is behind it and a little of what it reflects.
+enum class Finish : std::uint8_t { matte, mirror, glass };
+inline constexpr const char* kFinishNames[] = {"matte", "mirror", "glass"};
 
 /// How a surface looks. Reflectance = albedo (1 + contrast * pattern), pattern in [-1, 1].
 struct Material {
@@ -20,6 +29,10 @@ struct Material {
     double texel_m = 0.002;  ///< size of the finest detail
     double yaw_rad = 0.0;    ///< turn of the pattern on the surface
     std::uint64_t seed = 0;  ///< shifts the pattern; mixed with the seed of the scene
+    Finish finish = Finish::matte;
+    double gloss = 0.9;  ///< mirror: share reflected; glass: share that passes straight on
+
+    void describe(ConfigVisitor& visitor);
 };
 
 /// Ellipse that a pixel covers on a surface: half-power widths along its axes, and the direction of

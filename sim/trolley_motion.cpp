@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/trajectory.hpp"
+#include "sim/trolley_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,29 +33,29 @@ Progress progress(double length_m, double speed_m_s, double ramp_s, double durat
 
 }  // namespace
 
-Trajectory Trajectory::trolley(const std::vector<Waypoint>& waypoints,
-                               const TrolleyConfig& config) {
+TrolleyMotion TrolleyMotion::trolley(const std::vector<Waypoint>& waypoints,
+                                     const TrolleyConfig& config) {
     SUREFOOT_ASSERT(!waypoints.empty());
-    Trajectory trajectory;
-    trajectory.height_m_ = config.height_m;
-    trajectory.append_pause(waypoints.front());
+    TrolleyMotion motion;
+    motion.height_m_ = config.height_m;
+    motion.append_pause(waypoints.front());
     for (std::size_t i = 1; i < waypoints.size(); ++i) {
-        trajectory.append_way(waypoints[i - 1], waypoints[i], config);
-        trajectory.append_pause(waypoints[i]);
+        motion.append_way(waypoints[i - 1], waypoints[i], config);
+        motion.append_pause(waypoints[i]);
     }
-    return trajectory;
+    return motion;
 }
 
-Trajectory Trajectory::stand(const Waypoint& place, double height_m, double duration_s) {
-    Trajectory trajectory;
-    trajectory.height_m_ = height_m;
+TrolleyMotion TrolleyMotion::stand(const Waypoint& place, double height_m, double duration_s) {
+    TrolleyMotion motion;
+    motion.height_m_ = height_m;
     Waypoint standing = place;
     standing.pause_s = duration_s;
-    trajectory.append_pause(standing);
-    return trajectory;
+    motion.append_pause(standing);
+    return motion;
 }
 
-void Trajectory::append_pause(const Waypoint& place) {
+void TrolleyMotion::append_pause(const Waypoint& place) {
     Segment segment;
     segment.start_s = duration_s_;
     segment.duration_s = place.pause_s;
@@ -65,7 +65,9 @@ void Trajectory::append_pause(const Waypoint& place) {
     duration_s_ += segment.duration_s;
 }
 
-void Trajectory::append_way(const Waypoint& from, const Waypoint& to, const TrolleyConfig& config) {
+void TrolleyMotion::append_way(const Waypoint& from,
+                               const Waypoint& to,
+                               const TrolleyConfig& config) {
     Segment segment;
     segment.length_m = std::max(std::hypot(to.x_m - from.x_m, to.y_m - from.y_m),
                                 config.turn_lever_m * std::abs(to.yaw_rad - from.yaw_rad));
@@ -81,7 +83,7 @@ void Trajectory::append_way(const Waypoint& from, const Waypoint& to, const Trol
     duration_s_ += segment.duration_s;
 }
 
-MotionState Trajectory::at(double time_s) const {
+MotionState TrolleyMotion::at(double time_s) const {
     const double t_s = std::clamp(time_s, 0.0, duration_s_);
     const auto next = std::upper_bound(
         segments_.begin(), segments_.end(), t_s, [](double t, const Segment& segment) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "sim/motion.hpp"
 #include "surefoot/core/pose.hpp"
 
 namespace surefoot::sim {
@@ -14,15 +15,7 @@ struct Waypoint {
     double y_m = 0.0;
     double yaw_rad = 0.0;
     double pause_s = 0.0;
-};
-
-/// Pose of base_link with its exact derivatives.
-struct MotionState {
-    Pose T_world_body;
-    Eigen::Vector3d velocity_world_m_s = Eigen::Vector3d::Zero();
-    Eigen::Vector3d acceleration_world_m_s2 = Eigen::Vector3d::Zero();
-    Eigen::Vector3d angular_velocity_body_rad_s = Eigen::Vector3d::Zero();
-    Eigen::Vector3d angular_acceleration_body_rad_s2 = Eigen::Vector3d::Zero();
+    double ground_z_m = 0.0;  ///< height of the ground there
 };
 
 struct TrolleyConfig {
@@ -36,14 +29,15 @@ struct TrolleyConfig {
 /// and yaw follow one progress function s(t): speed rises as the smoothstep 3u^2 - 2u^3, stays,
 /// falls the same way, so acceleration is continuous. Before the start and after the end it stands
 /// still.
-class Trajectory {
+class TrolleyMotion final : public Motion {
   public:
     /// At least one waypoint; one alone stands for its pause.
-    static Trajectory trolley(const std::vector<Waypoint>& waypoints, const TrolleyConfig& config);
-    static Trajectory stand(const Waypoint& place, double height_m, double duration_s);
+    static TrolleyMotion trolley(const std::vector<Waypoint>& waypoints,
+                                 const TrolleyConfig& config);
+    static TrolleyMotion stand(const Waypoint& place, double height_m, double duration_s);
 
-    [[nodiscard]] MotionState at(double time_s) const;
-    [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
+    [[nodiscard]] MotionState at(double time_s) const override;
+    [[nodiscard]] double duration_s() const override { return duration_s_; }
 
   private:
     struct Segment {

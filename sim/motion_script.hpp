@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sim/motion.hpp"
+#include "sim/trolley_motion.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::sim {
+
+/// What carries the camera.
+enum class Carrier : std::uint8_t { trolley, rex, hand };
+inline constexpr const char* kCarrierNames[] = {"trolley", "rex", "hand"};
+
+/// A way through a scene as its file tells it.
+struct MotionScript {
+    Carrier carrier = Carrier::trolley;
+    double speed_m_s = 0.0;  ///< 0 = the carrier's own
+    std::vector<Waypoint> waypoints;
+};
+
+/// A movement that the user asks for at some time, as the joystick sends it.
+struct StepEvent {
+    double start_s = 0.0;  ///< when the code is given: the machine still stands
+    double end_s = 0.0;    ///< when it stands again
+    int command = 0;       ///< joystick code of the machine file
+    Pose T_world_before;   ///< base_link standing, level
+    Pose T_world_after;
+};
+
+struct ScriptedMotion {
+    std::shared_ptr<const Motion> motion;
+    std::vector<StepEvent> steps;  ///< of a walking machine; empty for the other carriers
+};
+
+/// The seed moves all waypoints but the first by about a centimetre and a third of a degree, and
+/// chooses what is irregular about the carrier. A script that cannot be walked is a usage error.
+[[nodiscard]] Result<ScriptedMotion> make_motion(const MotionScript& script, std::uint64_t seed);
+
+}  // namespace surefoot::sim
