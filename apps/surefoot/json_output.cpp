@@ -334,6 +334,20 @@ std::string check_json(const std::string& problem) {
     return object.dump(kIndent);
 }
 
+std::string suite_json(std::span<const SuiteResult> results) {
+    Json cases = Json::array();
+    for (const SuiteResult& result : results) {
+        Json figures = Json::object();
+        for (std::size_t i = 0; i < result.figures.size(); ++i)
+            figures[suite_figures()[i].name] = number(result.figures[i]);
+        cases.push_back({{"scene", result.which.scene},
+                         {"seed", result.which.seed},
+                         {"noise", result.which.noise},
+                         {"figures", figures}});
+    }
+    return Json{{"cases", cases}}.dump(kIndent);
+}
+
 std::string bench_json(const std::vector<BenchResult>& results) {
     Json list = Json::array();
     for (const auto& result : results) {

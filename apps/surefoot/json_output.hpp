@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "apps/surefoot/copy_frames.hpp"
 #include "apps/surefoot/rig_view.hpp"
 #include "apps/surefoot/run_session.hpp"
+#include "apps/surefoot/suite_case.hpp"
 #include "eval/maps.hpp"
 #include "eval/trajectory.hpp"
 #include "io/config_yaml.hpp"
@@ -49,6 +51,7 @@ namespace surefoot::app {
                                       const RigView& view);
 /// `problem` is empty when the settings are valid.
 [[nodiscard]] std::string check_json(const std::string& problem);
+[[nodiscard]] std::string suite_json(std::span<const SuiteResult> results);
 [[nodiscard]] std::string bench_json(const std::vector<BenchResult>& results);
 
 }  // namespace surefoot::app

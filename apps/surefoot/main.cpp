@@ -73,6 +73,7 @@ struct AllOptions {
     GateOptions gate;
     EvalTrajectoryOptions eval_trajectory;
     EvalMapsOptions eval_maps;
+    EvalSuiteOptions eval_suite;
     ConfigOptions config;
     DoctorOptions doctor;
     BenchOptions bench;
@@ -257,6 +258,32 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
         ->type_name("TRUTH_DIR");
 }
 
+void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
+    CLI::App* suite =
+        bind(add_verb(eval_verb,
+                      "suite",
+                      "scenes x seeds x noise through the whole chain against the truth; resumable",
+                      "surefoot eval suite --quick --scenes floor --noise 1 --out out/suite"),
+             s,
+             eval_suite,
+             exit_code);
+    suite->add_option("--out", s.out_dir, "folder for cases.csv, suite.json, suite.html")
+        ->required()
+        ->type_name("DIR");
+    suite->add_flag("--quick", s.quick, "a few short scenes, for every change of the code");
+    suite->add_option("--scenes", s.scenes, "names, separated by commas; default all")
+        ->delimiter(',')
+        ->type_name("NAMES");
+    suite->add_option("--seeds", s.seeds, "variants of each scene, from --seed on")
+        ->check(CLI::Range(1, 100000));
+    suite->add_option("--noise", s.noise, "factors on the noise amplitude, separated by commas")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 10.0))
+        ->type_name("FACTORS");
+    suite->add_option("--machine", s.machine, "machine file or built-in name")
+        ->type_name("FILE|NAME");
+}
+
 void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     CLI::App* config_verb =
         bind(add_verb(app,
@@ -361,6 +388,7 @@ int main_with_arguments(int argc, char** argv) {
     add_ground(app, all.ground, exit_code);
     add_gate(app, all.gate, exit_code);
     add_eval(app, all, exit_code);
+    add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);
     add_rest(app, all, exit_code);
     try {
         app.parse(argc, argv);

@@ -29,11 +29,11 @@ RunSession::RunSession(pipeline::Pipeline& pipeline,
     record_.rig = rig;
 }
 
-void RunSession::drive() {
+void RunSession::drive(const std::string& label) {
     const std::int64_t start_ns = steady_now_ns();
     watch_for_interrupts();
     try {
-        process_all();
+        process_all(label);
     } catch (const std::exception& error) {
         // Not expected, but a library below may run out of memory: what was computed is kept.
         record_.error = input_error(fmt::format("{}: after {} frames: {}; the results are kept",
@@ -49,8 +49,8 @@ void RunSession::drive() {
     record_.wall_s = seconds_from_ns(steady_now_ns() - start_ns);
 }
 
-void RunSession::process_all() {
-    Progress progress("run", record_.source.frames);
+void RunSession::process_all(const std::string& label) {
+    Progress progress(label, record_.source.frames);
     const std::vector<StereoFrame> buffered = first_frames();
     if (!buffered.empty()) pipeline_.align(buffered);
     for (const StereoFrame& frame : buffered) {

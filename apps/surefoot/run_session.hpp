@@ -44,14 +44,14 @@ class RunSession {
                const camera::StereoRig& rig,
                int depth_every,
                const eval::EvalMapsConfig& maps);
-    /// Returns when the source ends, fails or is interrupted.
-    void drive();
+    /// Returns when the source ends, fails or is interrupted. Progress is shown under `label`.
+    void drive(const std::string& label = "run");
     [[nodiscard]] RunRecord& record() noexcept { return record_; }
 
   private:
     [[nodiscard]] std::optional<StereoFrame> next_frame();
     [[nodiscard]] std::vector<StereoFrame> first_frames();
-    void process_all();
+    void process_all(const std::string& label);
     void process(const StereoFrame& frame);
 
     pipeline::Pipeline& pipeline_;

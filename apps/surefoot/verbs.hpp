@@ -101,6 +101,17 @@ struct EvalMapsOptions {
 };
 int eval_maps(const EvalMapsOptions& options);
 
+struct EvalSuiteOptions {
+    CommonOptions common;  ///< seed: the first one
+    std::string out_dir;
+    std::string machine = "rex";
+    std::vector<std::string> scenes;  ///< empty = all
+    int seeds = 1;
+    std::vector<double> noise = {1.0, 2.0};
+    bool quick = false;
+};
+int eval_suite(const EvalSuiteOptions& options);
+
 struct ConfigOptions {
     CommonOptions common;
     bool check_only = false;

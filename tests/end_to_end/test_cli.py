@@ -8,7 +8,7 @@ from surefoot_cli import ROOT, CliTest, surefoot
 
 # In the order in which one example needs another's results.
 VERBS = [["sim"], ["run"], ["rate"], ["fuse"], ["ground"], ["gate"], ["eval"], ["eval", "trajectory"],
-         ["eval", "maps"], ["config"], ["doctor"], ["bench"], ["record"], ["replay"], ["info"]]
+         ["eval", "maps"], ["eval", "suite"], ["config"], ["doctor"], ["bench"], ["record"], ["replay"], ["info"]]
 GATE_EXIT_CODES = (0, 3, 4)
 
 
@@ -71,6 +71,7 @@ class Verbs(CliTest):
             (["eval", "trajectory", run / "trajectory.tum", recording / "groundtruth.tum"],
              "ate_rmse_m rpe_trans_rmse_m rpe_rot_rmse_deg drift_percent matched"),
             (["eval", "maps", run, recording], "elevation traversability coverage"),
+            (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases"),
             (["config"], "settings"),
             (["config", "--check"], "valid problem"),
             (["doctor"], "version machine rig depth_sigma floor steps"),

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/suite_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/surefoot/run_output.hpp"
+#include "apps/surefoot/run_session.hpp"
+#include "sim/scene_source.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// The chain's settings on this machine, as `run --machine` has them.
+pipeline::PipelineConfig config_on(const io::MachineFile& machine, const Settings& settings) {
+    pipeline::PipelineConfig config = settings.pipeline;
+    if (config.ground.expected_height_m == 0.0)
+        config.ground.expected_height_m = 1e-4 * machine.machine.sole_depth_tenth_mm;
+    return config;
+}
+
+std::vector<double> figures_of(const RunRecord& record) {
+    const TruthFigures& t = *record.truth;
+    const auto healthy =
+        std::count_if(record.frames.begin(), record.frames.end(), [](const FrameReport& frame) {
+            return frame.motion.health == Health::ok;
+        });
+    return {static_cast<double>(record.frames.size()),
+            static_cast<double>(healthy) / static_cast<double>(record.frames.size()),
+            t.trajectory.ate_rmse_m,
+            t.trajectory.drift_percent,
+            t.elevation.median_abs_m,
+            t.elevation.p90_abs_m,
+            t.elevation_away_from_edges.share_over_50mm,
+            t.coverage_within_2_5_m,
+            t.traversability.false_safe,
+            t.traversability.false_unsafe,
+            t.depth.within_1_sigma,
+            t.depth.within_3_sigma,
+            t.depth.median_abs_error_px};
+}
+
+}  // namespace
+
+std::string SuiteCase::name() const {
+    return fmt::format("{}/seed {}/noise {:g}", scene, seed, noise);
+}
+
+const std::vector<SuiteFigure>& suite_figures() {
+    static const std::vector<SuiteFigure> all = {
+        {"frames", "", false, "frames that were processed"},
+        {"healthy", "", false, "share of frames with odometry OK"},
+        {"ate_rmse_m", "m", true, "trajectory error, not aligned"},
+        {"drift_percent", "%", true, "of the way"},
+        {"height_median_m", "m", true, "median |height error|"},
+        {"height_p90_m", "m", true, "90 % of |height error|"},
+        {"share_over_50mm", "", true, "of the cells away from edges"},
+        {"coverage", "", false, "known of what both eyes saw within 2.5 m"},
+        {"false_safe", "", true, "truly unsafe cells called safe"},
+        {"false_unsafe", "", true, "truly safe cells called unsafe"},
+        {"depth_1_sigma", "", false, "depths within 1 sigma"},
+        {"depth_3_sigma", "", false, "depths within 3 sigma"},
+        {"disparity_error_px", "px", true, "median |disparity error|"},
+    };
+    return all;
+}
+
+Result<SuiteResult> run_suite_case(const SuiteCase& which,
+                                   const Settings& settings,
+                                   const io::MachineFile& machine,
+                                   Executor& executor,
+                                   const std::string& progress_label) {
+    sim::SceneOptions options;
+    options.scene = which.scene;
+    options.seed = which.seed;
+    options.frames = which.max_frames;
+    options.imaging.read_noise_dn *= which.noise;
+    options.imaging.shot_noise_dn *= which.noise * which.noise;  // a variance
+    auto source = sim::open_scene(options, &executor);
+    if (!source) return source.error();
+    auto pipeline = pipeline::Pipeline::make(
+        config_on(machine, settings), (*source)->rig(), executor, steady_now_ns);
+    if (!pipeline) return pipeline.error();
+    RunSession session(*pipeline, **source, (*source)->rig(), 1, settings.maps);
+    session.drive(progress_label);
+    const RunRecord& record = session.record();
+    if (record.error) return *record.error;
+    return SuiteResult{which, figures_of(record)};
+}
+
+}  // namespace surefoot::app
