@@ -19,12 +19,14 @@ namespace {
 
 /// Few, short, and of every kind: for every change of the code.
 constexpr int kQuickFrames = 40;
-const std::vector<std::string> kQuickScenes = {"demo_stairs", "floor", "platform_edge", "table"};
+constexpr const char* kQuickScenes[] = {"demo_stairs", "floor", "platform_edge", "table"};
 
 Result<std::vector<std::string>> chosen_scenes(const EvalSuiteOptions& options) {
     std::vector<std::string> known;
     for (const auto& scene : sim::list_scenes()) known.push_back(scene.name);
-    if (options.scenes.empty()) return options.quick ? kQuickScenes : known;
+    if (options.scenes.empty() && options.quick)
+        return std::vector<std::string>(std::begin(kQuickScenes), std::end(kQuickScenes));
+    if (options.scenes.empty()) return known;
     for (const std::string& scene : options.scenes) {
         if (std::find(known.begin(), known.end(), scene) == known.end()) {
             return usage_error(fmt::format(
