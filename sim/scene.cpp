@@ -135,6 +135,10 @@ std::optional<double> Scene::highest_over(const Rect& cell) const {
     return highest;
 }
 
+const Primitive& Scene::primitive(int index) const {
+    return primitives_[static_cast<std::size_t>(index)];
+}
+
 const Sphere& Scene::bounds(int primitive) const {
     return bounds_[static_cast<std::size_t>(primitive)];
 }

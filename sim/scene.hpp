@@ -107,6 +107,7 @@ class Scene {
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
 
     [[nodiscard]] int primitives() const noexcept { return static_cast<int>(primitives_.size()); }
+    [[nodiscard]] const Primitive& primitive(int index) const;
     [[nodiscard]] const Sphere& bounds(int primitive) const;
     [[nodiscard]] const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
     [[nodiscard]] const std::vector<Material>& materials() const noexcept { return materials_; }
