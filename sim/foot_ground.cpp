@@ -77,6 +77,8 @@ FootGround ground_under(const GroundField& field,
                         const PlanarPose& T_field_body) {
     FootGround under;
     const Vector2d middle = 0.5 * (foot.min_m + foot.max_m);
+    const Vector2d samples = (foot.max_m - foot.min_m) / GroundField::kSpacing_m;
+    under.points.reserve(static_cast<std::size_t>((samples.x() + 2.0) * (samples.y() + 2.0)));
     double sum_m = 0.0;
     for_samples_under(
         field, foot, T_field_body, [&](int i, int j, const Vector2d& p_field, const Vector2d& p) {

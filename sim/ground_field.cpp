@@ -170,6 +170,15 @@ GroundField::Range GroundField::range_of(const Rect& area) const {
 }
 
 std::vector<char> GroundField::reached_from(const std::vector<Range>& seeds, double jump_m) const {
+    double lowest_m = std::numeric_limits<double>::infinity();
+    double highest_m = -lowest_m;
+    for (const Tile& tile : tiles_) {
+        lowest_m = std::min(lowest_m, tile.lowest_ground_m);
+        highest_m = std::max(highest_m, tile.highest_ground_m);
+    }
+    // Without a jump anywhere (false with a void, whose height is -inf) all is joined.
+    if (highest_m - lowest_m <= jump_m) return std::vector<char>(samples_.size(), 1);
+
     std::vector<char> reached(samples_.size(), 0);
     std::vector<std::pair<int, int>> open;
     const auto visit = [&](int i, int j) {

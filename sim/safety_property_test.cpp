@@ -72,7 +72,7 @@ int mirrored(int command) {
 TEST(SafetyPropertyTest, AMirroredWorldHasTheMirroredAnswer) {
     Rng rng(11);
     int unsafe = 0;
-    constexpr int kWorlds = 120;
+    constexpr int kWorlds = 80;
     for (int k = 0; k < kWorlds; ++k) {
         const Hazard hazard = draw(rng);
         const int command = kCommands[rng.below(kCommands.size())];
@@ -95,7 +95,7 @@ TEST(SafetyPropertyTest, AMirroredWorldHasTheMirroredAnswer) {
 
 TEST(SafetyPropertyTest, TurningTheWorldAndTheMachineTogetherChangesNothing) {
     Rng rng(12);
-    for (int k = 0; k < 120; ++k) {
+    for (int k = 0; k < 80; ++k) {
         const Hazard hazard = draw(rng);
         const int command = kCommands[rng.below(kCommands.size())];
         const double yaw = rng.uniform(-3.1, 3.1);
@@ -117,7 +117,7 @@ TEST(SafetyPropertyTest, TurningTheWorldAndTheMachineTogetherChangesNothing) {
 TEST(SafetyPropertyTest, ALargerHazardIsNeverSafer) {
     Rng rng(13);
     int became_unsafe = 0;
-    for (int k = 0; k < 120; ++k) {
+    for (int k = 0; k < 80; ++k) {
         Hazard hazard = draw(rng);
         // Ahead of where the machine stands: ground under its feet is what heights count from.
         const double ahead_m = 0.25 - hazard.x[0];
