@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/run_session.hpp"
+#include "apps/surefoot/suite_verdicts.hpp"
 #include "sim/scene_source.hpp"
 
 namespace surefoot::app {
@@ -20,7 +23,14 @@ pipeline::PipelineConfig config_on(const io::MachineFile& machine, const Setting
     return config;
 }
 
-std::vector<double> figures_of(const RunRecord& record) {
+double share(int part, int whole) {
+    return whole > 0 ? static_cast<double>(part) / whole : std::nan("");
+}
+
+/// How far around the last pose the gate is asked.
+constexpr double kVerdictReach_m = 0.8;
+
+std::vector<double> figures_of(const RunRecord& record, const VerdictCounts& verdicts) {
     const TruthFigures& t = *record.truth;
     const auto healthy =
         std::count_if(record.frames.begin(), record.frames.end(), [](const FrameReport& frame) {
@@ -38,7 +48,11 @@ std::vector<double> figures_of(const RunRecord& record) {
             t.traversability.false_unsafe,
             t.depth.within_1_sigma,
             t.depth.within_3_sigma,
-            t.depth.median_abs_error_px};
+            t.depth.median_abs_error_px,
+            static_cast<double>(verdicts.safe + verdicts.unsafe),
+            static_cast<double>(verdicts.unsafe_ok),
+            static_cast<double>(verdicts.borderline_missed),
+            share(verdicts.safe_ok, verdicts.safe)};
 }
 
 }  // namespace
@@ -62,6 +76,10 @@ const std::vector<SuiteFigure>& suite_figures() {
         {"depth_1_sigma", "", false, "depths within 1 sigma"},
         {"depth_3_sigma", "", false, "depths within 3 sigma"},
         {"disparity_error_px", "px", true, "median |disparity error|"},
+        {"questions", "", false, "clear-cut questions that the gate was asked at the end"},
+        {"missed_hazards", "", true, "clearly dangerous, and the gate said OK"},
+        {"borderline_missed", "", true, "dangerous by less than the margin, and OK"},
+        {"allowed", "", false, "share of the clearly safe movements that the gate allowed"},
     };
     return all;
 }
@@ -86,7 +104,13 @@ Result<SuiteResult> run_suite_case(const SuiteCase& which,
     session.drive(progress_label);
     const RunRecord& record = session.record();
     if (record.error) return *record.error;
-    return SuiteResult{which, figures_of(record)};
+    const auto snapshot = std::make_unique<grid::MapSnapshot>();
+    if (auto status = pipeline->snapshot(hash_of(settings), *snapshot); !status)
+        return status.error();
+    const Pose T_world_body = (*source)->truth().trajectory[record.frames.size() - 1].T_world_body;
+    const VerdictCounts verdicts = compare_verdicts(
+        (*source)->truth(), T_world_body, machine.machine, *snapshot, kVerdictReach_m);
+    return SuiteResult{which, figures_of(record, verdicts)};
 }
 
 }  // namespace surefoot::app

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/suite_verdicts.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/offline_map.hpp"
+#include "sim/safety_oracle.hpp"
+#include "surefoot/gate/gate.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Same place, seen from the world frame and from odom, which start as one and drift apart.
+struct Stance {
+    Pose T_world_body;
+    double x_odom_m = 0.0;
+    double y_odom_m = 0.0;
+    double yaw_odom_rad = 0.0;
+};
+
+double yaw_of(const Pose& pose) {
+    const Eigen::Vector3d ahead = pose.rotation * Eigen::Vector3d::UnitX();
+    return std::atan2(ahead.y(), ahead.x());
+}
+
+std::vector<Stance> stances_around(const Pose& T_world_body,
+                                   const grid::MapSnapshot& map,
+                                   double reach_m) {
+    constexpr double kGrid_m = 0.2;
+    const gate::Query here = gate::query_at_body(0, map);
+    const double yaw_odom_rad = std::atan2(here.sin_yaw, here.cos_yaw);
+    const double turn_rad = yaw_of(T_world_body) - yaw_odom_rad;
+    const int steps = static_cast<int>(reach_m / kGrid_m);
+    std::vector<Stance> stances;
+    for (int i = -steps; i <= steps; ++i) {
+        for (int j = -steps; j <= steps; ++j) {
+            const Eigen::Vector2d offset_odom_m(i * kGrid_m, j * kGrid_m);
+            if (offset_odom_m.norm() > reach_m) continue;
+            Stance stance;
+            stance.x_odom_m = 1e-4 * static_cast<double>(here.x_tenth_mm) + offset_odom_m.x();
+            stance.y_odom_m = 1e-4 * static_cast<double>(here.y_tenth_mm) + offset_odom_m.y();
+            stance.yaw_odom_rad = yaw_odom_rad;
+            stance.T_world_body = T_world_body;
+            stance.T_world_body.translation_m.head<2>() +=
+                Eigen::Rotation2Dd(turn_rad) * offset_odom_m;
+            stances.push_back(stance);
+        }
+    }
+    return stances;
+}
+
+gate::Verdict ask(const Machine& machine,
+                  const grid::MapSnapshot& map,
+                  const Stance& stance,
+                  int command) {
+    gate::Query query = gate::make_query(static_cast<std::uint8_t>(command),
+                                         stance.x_odom_m,
+                                         stance.y_odom_m,
+                                         std::cos(stance.yaw_odom_rad),
+                                         std::sin(stance.yaw_odom_rad));
+    std::vector<std::string> assumed;
+    if (const auto area = vouch_for_start(machine, query, map, -1.0, assumed))
+        query.vouched = *area;
+    gate::GateHealth health;
+    health.state = gate::GateState::ready;
+    return gate::decide(machine, query, map, health, std::max(map.frame_time_ns, map.pose_time_ns));
+}
+
+}  // namespace
+
+VerdictCounts compare_verdicts(const sim::SceneTruth& truth,
+                               const Pose& T_world_body_true,
+                               const Machine& machine,
+                               const grid::MapSnapshot& map,
+                               double reach_m) {
+    VerdictCounts counts;
+    for (const Stance& stance : stances_around(T_world_body_true, map, reach_m)) {
+        for (int command = 1; command < Machine::kMovementCodes; ++command) {
+            if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
+            const sim::SafetyAnswer answer =
+                sim::judge(truth.scene, machine, stance.T_world_body, command);
+            // Where the machine cannot stand nobody asks.
+            if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
+                continue;
+            const bool ok = ask(machine, map, stance, command).decision == gate::Decision::ok;
+            if (!answer.clear_cut) {
+                ++counts.borderline;
+                counts.borderline_ok += ok ? 1 : 0;
+                counts.borderline_missed += ok && !answer.safe ? 1 : 0;
+            } else if (answer.safe) {
+                ++counts.safe;
+                counts.safe_ok += ok ? 1 : 0;
+            } else {
+                ++counts.unsafe;
+                counts.unsafe_ok += ok ? 1 : 0;
+            }
+        }
+    }
+    return counts;
+}
+
+}  // namespace surefoot::app
