@@ -22,9 +22,9 @@ SafetyAnswer ask(const World& world, int command, const Pose& T = standing(0.0, 
     return judge(world.scene, rex(), T, command);
 }
 
-const Finding& first(const SafetyAnswer& answer) {
-    EXPECT_FALSE(answer.dangers.empty());
-    return answer.dangers.front();
+Finding first(const SafetyAnswer& answer) {
+    EXPECT_FALSE(answer.dangers.empty()) << "thought safe";
+    return answer.dangers.empty() ? Finding{} : answer.dangers.front();
 }
 
 TEST(SafetyOracleTest, EveryMovementOnAWideFlatFloorIsSafeAndClearCut) {
@@ -103,9 +103,19 @@ TEST(SafetyOracleTest, AnEdgeIsDangerousUnderTheFootAndInsideTheBandBeforeIt) {
     EXPECT_TRUE(far.safe) << far.sentence();
     EXPECT_FALSE(far.clear_cut);
     EXPECT_TRUE(ask(platform(0.14), kForward).clear_cut);
-    // A ledge that is no drop may be near.
-    const World ledge = World().floor(-0.045).box({-3.0, toe_m + 0.03}, {-3.0, 3.0}, {-0.045, 0.0});
-    EXPECT_TRUE(ask(ledge, kForward).safe);
+    // What is no drop may be near; what is one by a little may not.
+    const auto ledge = [&](double down_m) {
+        return World().floor(-down_m).box({-3.0, toe_m + 0.03}, {-3.0, 3.0}, {-down_m, 0.0});
+    };
+    EXPECT_TRUE(ask(ledge(0.049), kForward).safe);
+    EXPECT_TRUE(ask(ledge(0.051), kForward).has(Danger::edge_too_near));
+    // Depth counts from where the foot landed, here a little higher than it stood.
+    for (const double plateau_m : {0.005, 0.015}) {
+        World world;
+        world.floor(-0.04).box({-3.0, 0.25}, {-3.0, 3.0}, {-0.04, 0.0});
+        world.box({0.25, toe_m + 0.03}, {-3.0, 3.0}, {-0.04, plateau_m});
+        EXPECT_EQ(ask(world, kForward).safe, plateau_m < 0.01) << plateau_m;
+    }
 }
 
 TEST(SafetyOracleTest, TheEndOfTheWorldIsAnEdge) {
