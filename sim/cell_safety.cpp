@@ -108,12 +108,17 @@ bool edge_near(const GroundField& field,
     const Rect& foot = figures.feet[0];
     const Rect band = SweptBox(grown(foot, figures.band_m), T_field_foot, PlanarPose()).bounds();
     const auto range = field.range_of(band);
-    for (int j = range.min_j; j <= range.max_j; ++j) {
-        for (int i = range.min_i; i <= range.max_i; ++i) {
-            if (field.at(i, j).ground_m >= lowest_m) continue;
-            const Vector2d p = T_field_foot.inverse_times(GroundField::point_m(i, j));
-            const Vector2d nearest = p.cwiseMax(foot.min_m).cwiseMin(foot.max_m);
-            if ((p - nearest).norm() <= figures.band_m + kRounding) return true;
+    for (const GroundField::Tile& tile : field.tiles()) {
+        if (tile.lowest_ground_m >= lowest_m) continue;
+        const int max_i = std::min(range.max_i, tile.range.max_i);
+        const int max_j = std::min(range.max_j, tile.range.max_j);
+        for (int j = std::max(range.min_j, tile.range.min_j); j <= max_j; ++j) {
+            for (int i = std::max(range.min_i, tile.range.min_i); i <= max_i; ++i) {
+                if (field.at(i, j).ground_m >= lowest_m) continue;
+                const Vector2d p = T_field_foot.inverse_times(GroundField::point_m(i, j));
+                const Vector2d nearest = p.cwiseMax(foot.min_m).cwiseMin(foot.max_m);
+                if ((p - nearest).norm() <= figures.band_m + kRounding) return true;
+            }
         }
     }
     return false;
