@@ -97,7 +97,8 @@ TEST(ScenesTest, PresetCameraIsOneMetreHighAnd32DegreesDown) {
         EXPECT_NEAR(kBodyHeight_m + rig.T_body_left->translation_m.z(), 1.0, 1e-12);
         // The right camera is to the right: at smaller y.
         const Pose T_body_right = *rig.T_body_left * rig.T_left_right;
-        EXPECT_NEAR(T_body_right.translation_m.y(), 0.25 - 0.12, 1e-12);
+        const double baseline_m = rig.T_left_right.translation_m.x();
+        EXPECT_NEAR(T_body_right.translation_m.y(), 0.25 - baseline_m, 1e-12);
     }
 }
 
