@@ -192,6 +192,28 @@ TEST(DepthCameraTest, LateralNoiseFraysEdgesAndNothingElse) {
     EXPECT_GT(rows_moved, 50);
 }
 
+/// Two floors with a drop between them, seen from above: pixels either stay or jump over the edge
+/// (0.15 m lower, by more than 0.2 m in depth); none slides along its floor.
+TEST(DepthCameraTest, LateralNoiseMovesNothingAlongASurface) {
+    DepthCameraConfig config = noiseless();
+    config.lateral_share = 1.5 / 200.0;
+    Pose T_world_camera = T_body_optical();
+    T_world_camera.rotation =
+        Eigen::Quaterniond(Eigen::AngleAxisd(0.55, Vector3d::UnitY())) * T_world_camera.rotation;
+    T_world_camera.translation_m.z() = 1.0;
+    const Scene scene = test::drop_ahead(1.5, 0.15);
+    const DepthFrame frayed = shot(scene, config, T_world_camera);
+    const DepthFrame sharp = shot(scene, noiseless(), T_world_camera);
+    int jumped = 0;
+    for (std::size_t i = 0; i < sharp.depth_m.size(); ++i) {
+        const float change_m = std::abs(frayed.depth_m.data()[i] - sharp.depth_m.data()[i]);
+        if (!(change_m > 0.0F)) continue;
+        EXPECT_GT(change_m, 0.1F) << i;
+        ++jumped;
+    }
+    EXPECT_GT(jumped, 50);
+}
+
 TEST(DepthCameraTest, TimeOfFlightMixesDepthsOnEdgesOnly) {
     DepthCameraConfig config = noiseless();
     config.mixes_edges = true;

@@ -23,7 +23,7 @@ constexpr int kBatch = 16;
 /// of third degree: Abramowitz and Stegun 25.4.61).
 constexpr double kCenterWeight = 0.25;
 constexpr double kRingWeight = 0.1875;
-const double kRingRadius = std::sqrt(2.0 / 3.0);
+constexpr double kRingRadius = 0.816496580927726;
 /// Reflectance to which the greatest range belongs.
 constexpr double kWhite = 0.9;
 

@@ -13,7 +13,10 @@ namespace surefoot::sim {
 namespace {
 
 constexpr double kPitchDown_rad = 32.0 * std::numbers::pi / 180.0;
-const Eigen::Vector3d kMount_m(0.075, 0.25, 0.05);
+
+Eigen::Vector3d armrest_m() {
+    return {0.075, 0.25, 0.05};
+}
 
 /// A mode of a stereo camera with ideal, rectified images.
 struct Mode {
@@ -41,9 +44,9 @@ camera::StereoRig mounted(const char* name, const camera::Camera& eye, double ba
     rig.left = eye;
     rig.right = eye;
     rig.T_left_right.translation_m = {baseline_m, 0.0, 0.0};
-    rig.T_body_left = looking_down(kMount_m, kPitchDown_rad);
+    rig.T_body_left = looking_down(armrest_m(), kPitchDown_rad);
     camera::ImuMount imu;
-    imu.T_body_imu.translation_m = kMount_m - Eigen::Vector3d(0.0, 0.5 * baseline_m, 0.0);
+    imu.T_body_imu.translation_m = armrest_m() - Eigen::Vector3d(0.0, 0.5 * baseline_m, 0.0);
     rig.imu = imu;
     return rig;
 }
