@@ -96,6 +96,7 @@ constexpr std::array<NamedImu, 3> kImus{
 
 std::vector<std::string> imu_presets() {
     std::vector<std::string> names;
+    names.reserve(kImus.size());
     for (const NamedImu& imu : kImus) names.emplace_back(imu.name);
     return names;
 }

@@ -21,21 +21,18 @@ struct Behind {
     float front_px = 0.0F;
 };
 
-/// Follows one line of pixels away from the jumps on it.
+/// Follows one line of pixels away from the jumps on it. Where no surface is, disparity is NaN.
 class LineWalk {
   public:
     LineWalk(float jump_px, int reach) : jump_px_(jump_px), reach_(reach) {}
 
     void step(float disparity_px, int surface, Behind& behind) {
-        if (surface < 0 || std::isnan(disparity_px)) {
-            steps_ = 0;
-        } else if (before_surface_ >= 0 && surface != before_surface_ &&
-                   before_px_ - disparity_px > jump_px_) {
+        const bool border = before_surface_ >= 0 && surface != before_surface_;
+        if (border && before_px_ - disparity_px > jump_px_) {
             steps_ = 1;
             front_px_ = before_px_;
-        } else if (before_surface_ >= 0 && surface != before_surface_ &&
-                   disparity_px - before_px_ > jump_px_) {
-            steps_ = 0;
+        } else if (surface < 0 || (border && disparity_px - before_px_ > jump_px_)) {
+            steps_ = 0;  // nothing here, or the front itself
         } else if (steps_ > 0) {
             steps_ = steps_ < reach_ ? steps_ + 1 : 0;
         }
