@@ -1,13 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/motion_script.hpp"
 
-#include <numbers>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "sim/hand_motion.hpp"
+#include "sim/rex_gait.hpp"
+#include "sim/rex_plan.hpp"
 #include "sim/rigs.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
 namespace {
+
+struct Limits {
+    double slowest_m_s;
+    double fastest_m_s;
+};
+/// The rex between 4 and 20 s a step; what rolls or is carried up to a brisk walk.
+constexpr Limits kSpeeds[] = {{0.01, 2.0}, {0.02, 0.10}, {0.2, 2.0}};
+constexpr double kFarthest_m = 1000.0;
+constexpr double kLongestPause_s = 3600.0;
+constexpr double kSteepest = 0.5;  ///< of a ramp between two waypoints: stairs are for feet
 
 /// Moves all stops but the first by about a centimetre and a third of a degree.
 void vary(std::vector<Waypoint>& stops, std::uint64_t seed) {
@@ -21,12 +40,136 @@ void vary(std::vector<Waypoint>& stops, std::uint64_t seed) {
     }
 }
 
+/// Height of the way through the waypoints at its point nearest to (x, y).
+double way_height_m(const std::vector<Waypoint>& stops, double x_m, double y_m) {
+    double nearest_sq = std::numeric_limits<double>::infinity();
+    double z_m = stops.front().ground_z_m;
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+        const Waypoint& a = stops[i == 0 ? 0 : i - 1];
+        const Waypoint& b = stops[i];
+        const double dx = b.x_m - a.x_m;
+        const double dy = b.y_m - a.y_m;
+        const double length_sq = dx * dx + dy * dy;
+        const double along =
+            length_sq == 0.0
+                ? 1.0
+                : std::clamp(((x_m - a.x_m) * dx + (y_m - a.y_m) * dy) / length_sq, 0.0, 1.0);
+        const double off_x = x_m - a.x_m - along * dx;
+        const double off_y = y_m - a.y_m - along * dy;
+        const double distance_sq = off_x * off_x + off_y * off_y;
+        if (distance_sq >= nearest_sq) continue;
+        nearest_sq = distance_sq;
+        z_m = a.ground_z_m + along * (b.ground_z_m - a.ground_z_m);
+    }
+    return z_m;
+}
+
+Status check_waypoint(std::size_t i, const Waypoint& stop) {
+    const bool usable = std::abs(stop.x_m) <= kFarthest_m && std::abs(stop.y_m) <= kFarthest_m &&
+                        std::abs(stop.ground_z_m) <= kFarthest_m &&
+                        std::abs(stop.yaw_rad) <= kFarthest_m;  // false for NaN too
+    if (!usable) {
+        return usage_error(fmt::format(
+            "simulator: waypoint {} is at x {} y {} z {} yaw {} rad, allowed are finite numbers "
+            "up to {:.0f}",
+            i,
+            stop.x_m,
+            stop.y_m,
+            stop.ground_z_m,
+            stop.yaw_rad,
+            kFarthest_m));
+    }
+    if (!(stop.pause_s >= 0.0 && stop.pause_s <= kLongestPause_s)) {
+        return usage_error(fmt::format("simulator: waypoint {} has pause_s {}, allowed are 0 to {}",
+                                       i,
+                                       stop.pause_s,
+                                       kLongestPause_s));
+    }
+    return {};
+}
+
+Status check_slope(std::size_t i, const Waypoint& from, const Waypoint& to) {
+    const double rise_m = to.ground_z_m - from.ground_z_m;
+    const double way_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
+    if (std::abs(rise_m) <= kSteepest * way_m) return {};
+    return usage_error(fmt::format(
+        "simulator: the way to waypoint {} rises by {:.3f} m over {:.3f} m, a trolley or a hand "
+        "takes 1:{:.0f} at most; put waypoints at the foot and the top of the ramp, or use the rex",
+        i,
+        rise_m,
+        way_m,
+        1.0 / kSteepest));
+}
+
+Status check(const MotionScript& script) {
+    if (script.waypoints.empty()) return usage_error("simulator: a motion has no waypoint");
+    const auto carrier = static_cast<std::size_t>(script.carrier);
+    const Limits& speeds = kSpeeds[carrier];
+    if (script.speed_m_s != 0.0 &&
+        !(script.speed_m_s >= speeds.slowest_m_s && script.speed_m_s <= speeds.fastest_m_s)) {
+        return usage_error(
+            fmt::format("simulator: speed_m_s is {}, a {} goes {} to {} (0 = its own)",
+                        script.speed_m_s,
+                        kCarrierNames[carrier],
+                        speeds.slowest_m_s,
+                        speeds.fastest_m_s));
+    }
+    for (std::size_t i = 0; i < script.waypoints.size(); ++i) {
+        if (Status status = check_waypoint(i, script.waypoints[i]); !status) return status;
+        if (i == 0 || script.carrier == Carrier::rex) continue;
+        if (Status status = check_slope(i, script.waypoints[i - 1], script.waypoints[i]); !status)
+            return status;
+    }
+    return {};
+}
+
+Result<ScriptedMotion> carried_by_rex(const std::vector<Waypoint>& stops,
+                           double speed_m_s,
+                           std::uint64_t seed,
+                           const GroundHeight& ground_z_m) {
+    constexpr std::uint64_t kPlanStream = 0x706c616e;
+    constexpr std::uint64_t kGaitStream = 0x67616974;
+    const RexStepSizes sizes;
+    Rng rng(mix_seed(seed, kPlanStream));
+    const auto plan = plan_rex_steps(stops, sizes, rng);
+    if (!plan) return plan.error();
+    RexGaitConfig config;
+    if (speed_m_s > 0.0) config.step_s = sizes.forward_m / speed_m_s;
+    config.ground_under_body = !ground_z_m;
+    const auto motion = RexMotion::make(
+        *plan,
+        config,
+        ground_z_m ? ground_z_m
+                   : [&stops](double x_m, double y_m) { return way_height_m(stops, x_m, y_m); },
+        mix_seed(seed, kGaitStream));
+    if (!motion) return motion.error();
+    ScriptedMotion result;
+    for (std::size_t i = 0; i < plan->steps.size(); ++i) {
+        const RexMotion::Span& span = motion->steps()[i];
+        result.steps.push_back({span.start_s,
+                                span.end_s,
+                                plan->steps[i].movement.command,
+                                span.T_world_before,
+                                span.T_world_after});
+    }
+    result.motion = std::make_shared<RexMotion>(*motion);
+    return result;
+}
+
 }  // namespace
 
-Result<ScriptedMotion> make_motion(const MotionScript& script, std::uint64_t seed) {
-    if (script.waypoints.empty()) return usage_error("simulator: a motion has no waypoint");
+Result<ScriptedMotion> make_motion(const MotionScript& script,
+                                   std::uint64_t seed,
+                                   const GroundHeight& ground_z_m) {
+    if (Status status = check(script); !status) return status.error();
     std::vector<Waypoint> stops = script.waypoints;
     vary(stops, seed);
+    if (script.carrier == Carrier::rex) return carried_by_rex(stops, script.speed_m_s, seed, ground_z_m);
+    if (script.carrier == Carrier::hand) {
+        HandConfig config;
+        if (script.speed_m_s > 0.0) config.speed_m_s = script.speed_m_s;
+        return ScriptedMotion{std::make_shared<HandMotion>(stops, config, seed), {}};
+    }
     TrolleyConfig config;
     config.height_m = kBodyHeight_m;
     if (script.speed_m_s > 0.0) config.speed_m_s = script.speed_m_s;

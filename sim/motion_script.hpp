@@ -7,6 +7,7 @@
 
 #include "sim/motion.hpp"
 #include "sim/trolley_motion.hpp"
+#include "sim/waypoint.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::sim {
@@ -18,7 +19,8 @@ inline constexpr const char* kCarrierNames[] = {"trolley", "rex", "hand"};
 /// A way through a scene as its file tells it.
 struct MotionScript {
     Carrier carrier = Carrier::trolley;
-    double speed_m_s = 0.0;  ///< 0 = the carrier's own
+    /// 0 = the carrier's own. Of the rex: length of a step ahead by the time that a step takes.
+    double speed_m_s = 0.0;
     std::vector<Waypoint> waypoints;
 };
 
@@ -38,6 +40,12 @@ struct ScriptedMotion {
 
 /// The seed moves all waypoints but the first by about a centimetre and a third of a degree, and
 /// chooses what is irregular about the carrier. A script that cannot be walked is a usage error.
-[[nodiscard]] Result<ScriptedMotion> make_motion(const MotionScript& script, std::uint64_t seed);
+///
+/// The feet of the rex land on `ground_z_m`, asked for under the middle of each sole. Without it
+/// the ground is what the waypoints say, straight between them, asked for under base_link. The
+/// other carriers follow the waypoints alone.
+[[nodiscard]] Result<ScriptedMotion> make_motion(const MotionScript& script,
+                                                 std::uint64_t seed,
+                                                 const GroundHeight& ground_z_m = {});
 
 }  // namespace surefoot::sim

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "sim/smooth_curve.hpp"
 #include "surefoot/core/assert.hpp"
 
 namespace surefoot::sim {
@@ -29,6 +31,53 @@ Progress progress(double length_m, double speed_m_s, double ramp_s, double durat
     if (t_s < duration_s - ramp_s) return {speed_m_s * (t_s - 0.5 * ramp_s), speed_m_s, 0.0};
     const Progress mirrored = speeding_up(speed_m_s, ramp_s, duration_s - t_s);
     return {length_m - mirrored.way_m, mirrored.speed_m_s, -mirrored.acceleration_m_s2};
+}
+
+/// Height gained and slope on a ramp after some way, the slope with its derivatives by that way.
+struct Ramp {
+    double rise_m = 0.0;
+    Jet slope;
+};
+
+/// The slope grows as 6u^5 - 15u^4 + 10u^3 over `blend`, stays, and vanishes the same way.
+Ramp starting_ramp(double steepest, double blend_m, double way_m) {
+    const double u = std::min(way_m / blend_m, 1.0);
+    const double rest_m = way_m - u * blend_m;
+    const double v = 1.0 - u;
+    return {steepest * (blend_m * u * u * u * u * (2.5 + u * (u - 3.0)) + rest_m),
+            {steepest * eased(u),
+             steepest / blend_m * 30.0 * u * u * v * v,
+             steepest / (blend_m * blend_m) * 60.0 * u * v * (v - u)}};
+}
+
+Ramp ramp(double length_m, double rise_m, double way_m) {
+    constexpr double kBlend_m = 0.3;
+    const double blend_m = std::min(kBlend_m, 0.5 * length_m);
+    const double steepest = rise_m / (length_m - blend_m);
+    if (way_m <= 0.5 * length_m) return starting_ramp(steepest, blend_m, way_m);
+    const Ramp mirrored = starting_ramp(steepest, blend_m, length_m - way_m);
+    return {rise_m - mirrored.rise_m,
+            {mirrored.slope.value, -mirrored.slope.rate, mirrored.slope.acceleration}};
+}
+
+/// A function of the way as a function of time.
+Jet in_time(const Jet& by_way, const Jet& way) {
+    return {by_way.value,
+            by_way.rate * way.rate,
+            by_way.acceleration * way.rate * way.rate + by_way.rate * way.acceleration};
+}
+
+Jet cosine(const Jet& angle, double offset_rad) {
+    const double c = std::cos(angle.value + offset_rad);
+    const double s = std::sin(angle.value + offset_rad);
+    return {c, -s * angle.rate, -c * angle.rate * angle.rate - s * angle.acceleration};
+}
+
+Jet arc_tangent(const Jet& x) {
+    const double by_x = 1.0 / (1.0 + x.value * x.value);
+    return {std::atan(x.value),
+            by_x * x.rate,
+            by_x * x.acceleration - 2.0 * x.value * by_x * by_x * x.rate * x.rate};
 }
 
 }  // namespace
@@ -77,6 +126,7 @@ void TrolleyMotion::append_way(const Waypoint& from,
     segment.ramp_s = config.ramp_s;
     segment.speed_m_s = std::min(config.speed_m_s, segment.length_m / config.ramp_s);
     segment.duration_s = segment.length_m / segment.speed_m_s + config.ramp_s;
+    segment.tilts = config.tilts;
     segment.from = from;
     segment.to = to;
     segments_.push_back(segment);
@@ -105,7 +155,8 @@ MotionState TrolleyMotion::at(double time_s) const {
 
     MotionState state;
     state.T_world_body.translation_m =
-        Eigen::Vector3d(segment.from.x_m, segment.from.y_m, height_m_) + share * way_m;
+        Eigen::Vector3d(segment.from.x_m, segment.from.y_m, height_m_ + segment.from.ground_z_m) +
+        share * way_m;
     const double half_yaw_rad = 0.5 * (segment.from.yaw_rad + share * turn_rad);
     state.T_world_body.rotation =
         Eigen::Quaterniond(std::cos(half_yaw_rad), 0.0, 0.0, std::sin(half_yaw_rad));
@@ -113,7 +164,28 @@ MotionState TrolleyMotion::at(double time_s) const {
     state.acceleration_world_m_s2 = scale * now.acceleration_m_s2 * way_m;
     state.angular_velocity_body_rad_s.z() = scale * now.speed_m_s * turn_rad;
     state.angular_acceleration_body_rad_s2.z() = scale * now.acceleration_m_s2 * turn_rad;
-    return state;
+    const double rise_m = segment.to.ground_z_m - segment.from.ground_z_m;
+    if (rise_m == 0.0 || way_m.norm() == 0.0) return state;
+
+    const double length_m = way_m.norm();
+    const Jet part{share, scale * now.speed_m_s, scale * now.acceleration_m_s2};
+    const Jet way = length_m * part;
+    const Ramp here = ramp(length_m, rise_m, way.value);
+    const Jet slope = in_time(here.slope, way);
+    const Jet height{height_m_ + segment.from.ground_z_m + here.rise_m,
+                     here.slope.value * way.rate,
+                     here.slope.rate * way.rate * way.rate + here.slope.value * way.acceleration};
+    const Jet yaw = Jet{segment.from.yaw_rad, 0.0, 0.0} + turn_rad * part;
+    // Seen from the body the slope rises toward the way's direction; a quarter turn more
+    // makes the cosine a sine.
+    const double direction_rad = std::atan2(way_m.y(), way_m.x());
+    const Jet ahead = slope * cosine(yaw, -direction_rad);
+    const Jet left = slope * cosine(yaw, 0.5 * std::numbers::pi - direction_rad);
+    const double tilts = segment.tilts ? 1.0 : 0.0;
+    return motion_state({Jet{segment.from.x_m, 0.0, 0.0} + way_m.x() * part,
+                         Jet{segment.from.y_m, 0.0, 0.0} + way_m.y() * part,
+                         height},
+                        {tilts * arc_tangent(left), -tilts * arc_tangent(ahead), yaw});
 }
 
 }  // namespace surefoot::sim

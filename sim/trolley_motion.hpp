@@ -5,30 +5,24 @@
 #include <vector>
 
 #include "sim/motion.hpp"
+#include "sim/waypoint.hpp"
 #include "surefoot/core/pose.hpp"
 
 namespace surefoot::sim {
 
-/// A place on the floor where the trolley stops, and how long it waits there.
-struct Waypoint {
-    double x_m = 0.0;
-    double y_m = 0.0;
-    double yaw_rad = 0.0;
-    double pause_s = 0.0;
-    double ground_z_m = 0.0;  ///< height of the ground there
-};
-
 struct TrolleyConfig {
-    double height_m = 0.95;     ///< of base_link above z = 0
+    double height_m = 0.95;     ///< of base_link above the ground
     double speed_m_s = 0.25;    ///< between waypoints
     double ramp_s = 1.0;        ///< time to reach that speed, and to stop
     double turn_lever_m = 0.8;  ///< a turn by 1 rad takes as long as this way
+    bool tilts = true;          ///< with the slope between two waypoints of different height
 };
 
-/// Motion of base_link through waypoints, level, at constant height. Between two waypoints position
-/// and yaw follow one progress function s(t): speed rises as the smoothstep 3u^2 - 2u^3, stays,
-/// falls the same way, so acceleration is continuous. Before the start and after the end it stands
-/// still.
+/// Motion of base_link through waypoints at constant height above the ground. Between two waypoints
+/// position and yaw follow one progress function s(t): speed rises as the smoothstep 3u^2 - 2u^3,
+/// stays, falls the same way, so acceleration is continuous. Before the start and after the end it
+/// stands still. It stands level at the waypoints; between two of different height the slope grows
+/// and vanishes smoothly over 0.3 m, so waypoints belong to the foot and to the top of a ramp.
 class TrolleyMotion final : public Motion {
   public:
     /// At least one waypoint; one alone stands for its pause.
@@ -46,6 +40,7 @@ class TrolleyMotion final : public Motion {
         double speed_m_s = 0.0;
         double ramp_s = 0.0;
         double duration_s = 0.0;
+        bool tilts = true;
         Waypoint from;
         Waypoint to;
     };

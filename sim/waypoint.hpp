@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace surefoot::sim {
+
+/// How a walking machine goes to a waypoint; the other carriers just go there.
+enum class Move : std::uint8_t { automatic, ahead, back, side };
+inline constexpr const char* kMoveNames[] = {"auto", "ahead", "back", "side"};
+
+/// A place on the floor, and how long the carrier waits there.
+struct Waypoint {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double yaw_rad = 0.0;
+    double pause_s = 0.0;
+    double ground_z_m = 0.0;      ///< height of the ground there
+    Move move = Move::automatic;  ///< automatic = whatever takes the fewest steps
+};
+
+/// Height of the ground at a point of the world.
+using GroundHeight = std::function<double(double x_m, double y_m)>;
+
+}  // namespace surefoot::sim
