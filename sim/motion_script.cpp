@@ -124,9 +124,9 @@ Status check(const MotionScript& script) {
 }
 
 Result<ScriptedMotion> carried_by_rex(const std::vector<Waypoint>& stops,
-                           double speed_m_s,
-                           std::uint64_t seed,
-                           const GroundHeight& ground_z_m) {
+                                      double speed_m_s,
+                                      std::uint64_t seed,
+                                      const GroundHeight& ground_z_m) {
     constexpr std::uint64_t kPlanStream = 0x706c616e;
     constexpr std::uint64_t kGaitStream = 0x67616974;
     const RexStepSizes sizes;
@@ -164,7 +164,8 @@ Result<ScriptedMotion> make_motion(const MotionScript& script,
     if (Status status = check(script); !status) return status.error();
     std::vector<Waypoint> stops = script.waypoints;
     vary(stops, seed);
-    if (script.carrier == Carrier::rex) return carried_by_rex(stops, script.speed_m_s, seed, ground_z_m);
+    if (script.carrier == Carrier::rex)
+        return carried_by_rex(stops, script.speed_m_s, seed, ground_z_m);
     if (script.carrier == Carrier::hand) {
         HandConfig config;
         if (script.speed_m_s > 0.0) config.speed_m_s = script.speed_m_s;

@@ -23,9 +23,10 @@ constexpr int kTrace = 64;
 constexpr int kLead = 5;
 constexpr int kSamples = kLead + kTrace + kLead;
 /// The sole left behind in the trace lies 42 mm high at the ankle before it swings: 10 deg about
-/// the toes. It rises during this many samples.
+/// the toes. It rises during this many samples, after
+/// the other foot has landed.
 constexpr double kHeelLift_rad = 10.0 * kRad;
-constexpr double kHeel = 9.0;
+constexpr double kHeel = 6.0;
 /// A difference of height from which a step is one on stairs.
 constexpr double kStair_m = 0.02;
 /// Highest riser: the stair limit of the machine file is 0.18 m; 20 mm for what is built badly.

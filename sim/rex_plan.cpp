@@ -31,6 +31,7 @@ struct Gait {
     Move move;
     double bearing_rad;
     double step_m;
+    bool any_sector = false;  ///< not only those about the direction
 };
 
 double distance_m(const RexStand& from, const Waypoint& to) {
@@ -117,6 +118,7 @@ Gait Planner::choose(const Waypoint& goal) const {
 
 bool Planner::allowed(const RexMovement& movement, const Gait& gait) const {
     if (movement.turn_rad != 0.0) return false;
+    if (gait.any_sector) return true;
     const double along = std::cos(gait.bearing_rad) * movement.forward_m +
                          std::sin(gait.bearing_rad) * movement.left_m;
     // The sectors about the direction, inner ring too. A sideways step is so short that a sector
@@ -145,9 +147,12 @@ void Planner::go_to(const Waypoint& goal) {
     // The shortest step ahead is half a step; what is nearer than half of that is reached.
     const double near_m = goal.move == Move::automatic ? 0.25 * sizes_.forward_m : kWorthwhile_m;
     if (distance_m(now_, goal) > near_m) {
-        const Gait gait = choose(goal);
+        Gait gait = choose(goal);
         turn_to(std::atan2(goal.y_m - now_.y_m, goal.x_m - now_.x_m) - gait.bearing_rad);
         walk(goal, gait);
+        // What the heading's 15 deg have left to the side is made good by other sectors.
+        gait.any_sector = true;
+        if (distance_m(now_, goal) > 0.4 * sizes_.forward_m) walk(goal, gait);
     }
     turn_to(goal.yaw_rad);
 }
