@@ -94,17 +94,6 @@ double path_length(const Eigen::Matrix3Xd& points_m) {
     return length_m;
 }
 
-/// How much the estimated motion from pair a to pair b differs from the true one.
-Pose relative_error(const Trajectory& estimate,
-                    const Trajectory& truth,
-                    const PosePair& a,
-                    const PosePair& b) {
-    const Pose moved =
-        estimate[a.estimate].T_world_body.inverse() * estimate[b.estimate].T_world_body;
-    const Pose true_move = truth[a.truth].T_world_body.inverse() * truth[b.truth].T_world_body;
-    return true_move.inverse() * moved;
-}
-
 /// The pair that ends an interval starting at pair `start`: the next one, or the one nearest to
 /// `interval_ns` later and at most half an interval off. Intervals that reach beyond the last pair
 /// are left out: a shorter one would flatter the error.
@@ -256,6 +245,16 @@ Pose align_positions(const Eigen::Matrix3Xd& estimate_m,
     }
     T_truth_estimate.translation_m = truth_mean - T_truth_estimate.rotation * estimate_mean;
     return T_truth_estimate;
+}
+
+Pose relative_error(const Trajectory& estimate,
+                    const Trajectory& truth,
+                    const PosePair& a,
+                    const PosePair& b) {
+    const Pose moved =
+        estimate[a.estimate].T_world_body.inverse() * estimate[b.estimate].T_world_body;
+    const Pose true_move = truth[a.truth].T_world_body.inverse() * truth[b.truth].T_world_body;
+    return true_move.inverse() * moved;
 }
 
 Result<TrajectoryErrors> evaluate_trajectory(const Trajectory& estimate,

@@ -44,6 +44,13 @@ struct PosePair {
                                    const Eigen::Matrix3Xd& truth_m,
                                    Alignment align);
 
+/// How much the estimated motion from pair a to pair b differs from the true one:
+/// (Q_a^-1 Q_b)^-1 (P_a^-1 P_b) with P estimated and Q true.
+[[nodiscard]] Pose relative_error(const Trajectory& estimate,
+                                  const Trajectory& truth,
+                                  const PosePair& a,
+                                  const PosePair& b);
+
 /// Errors over the matched poses (Sturm et al. 2012 for ATE and RPE).
 struct TrajectoryErrors {
     double ate_rmse_m = 0.0;        ///< positions after alignment

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::eval {
+
+/// Which height of its points a cell takes.
+enum class Reduce : std::uint8_t { max, mean, min };
+
+/// Where the cells of a height map lie.
+enum class Lattice : std::uint8_t {
+    cell,  ///< borders on multiples of the resolution (NOTATION.md): maps of one place fit together
+    node,  ///< centres at the smallest x and y and every resolution from there, as CloudCompare's
+           ///< RASTERIZE: a point belongs to the nearest centre, the greater one in the middle
+};
+
+/// The cells of a height map.
+struct DemGrid {
+    grid::GridGeometry geometry;
+    Lattice lattice = Lattice::cell;
+    /// node: the smallest centre [m]; cell: number of the first cell, counted from 0 m.
+    Eigen::Vector2d first = Eigen::Vector2d::Zero();
+};
+
+/// The box around points that are given in any number of pieces; points with a coordinate that is
+/// not finite are counted and left out.
+class CloudBounds {
+  public:
+    void add(std::span<const Eigen::Vector3d> points_m);
+
+    [[nodiscard]] std::int64_t points() const noexcept { return points_; }
+    [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
+
+    /// The cells that hold all points. Errors: no point; more cells than a map may have.
+    [[nodiscard]] Result<DemGrid> grid(double resolution_m, Lattice lattice) const;
+
+  private:
+    Eigen::Vector2d low_m_ = Eigen::Vector2d::Zero();
+    Eigen::Vector2d high_m_ = Eigen::Vector2d::Zero();
+    std::int64_t points_ = 0;
+    std::int64_t skipped_ = 0;
+};
+
+/// Heights of points on a grid, in any number of pieces: memory grows with the cells, not with the
+/// points. The highest and the lowest do not depend on the order of the points; the mean does by
+/// rounding alone (sums in double).
+class DemBuilder {
+  public:
+    DemBuilder(const DemGrid& grid, Reduce reduce);
+
+    /// Points outside the grid and points that are not finite are left out.
+    void add(std::span<const Eigen::Vector3d> points_m);
+
+    /// Heights so far; NaN where no point fell.
+    [[nodiscard]] grid::Layer heights_m() const;
+
+  private:
+    DemGrid grid_;
+    Reduce reduce_;
+    std::vector<double> value_m_;  ///< highest, lowest or sum
+    std::vector<std::int64_t> count_;
+};
+
+}  // namespace surefoot::eval
