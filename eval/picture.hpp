@@ -82,4 +82,16 @@ struct LayerStyle {
                                         const Trajectory& truth,
                                         const FigureText& text);
 
+/// How far a pose was from its true one.
+struct ErrorSample {
+    double time_s = 0.0;
+    double error_m = 0.0;
+};
+/// Error over time as a line, in mm or, from 1 m on, in m; samples in time order.
+[[nodiscard]] Picture render_error_over_time(const std::vector<ErrorSample>& samples,
+                                             const FigureText& text);
+
+/// Two pictures on one sheet, one below the other.
+[[nodiscard]] Picture stacked(const Picture& upper, const Picture& lower);
+
 }  // namespace surefoot::eval

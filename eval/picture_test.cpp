@@ -245,5 +245,45 @@ TEST(Picture, OddInputDrawsWithoutHarm) {
         render_layer(small_grid(), grid::Layer(4, 6, 0.0F), elevation_style(), overlays).empty());
 }
 
+/// Row of the highest pixel of the line in a column of the plot, or -1.
+int line_row(const Picture& picture, int u) {
+    for (int v = 0; v < picture.height(); ++v)
+        if (picture.at(u, v) == palette::kSafe) return v;
+    return -1;
+}
+
+TEST(Picture, TheErrorLineRisesWithTheErrorAndKeepsPeaks) {
+    std::vector<ErrorSample> samples;
+    for (int k = 0; k <= 10000; ++k) samples.push_back({0.01 * k, k == 5000 ? 0.020 : 0.005});
+    const Picture picture = render_error_over_time(samples, {"Error", ""});
+    const int low = line_row(picture, kLeft + 190);
+    const int peak = line_row(picture, kLeft + 380);
+    ASSERT_GT(peak, 0);
+    // 15 mm of the 22 mm on 400 px, and the line's own width.
+    EXPECT_NEAR(low - peak, 15.0 / 22.0 * 400.0, 4.0);
+    EXPECT_EQ(line_row(picture, kLeft - 20), -1);
+}
+
+TEST(Picture, ErrorsWithoutAnySampleOrSizeStillDraw) {
+    const float nan = kNan;
+    for (const auto& samples : {std::vector<ErrorSample>{},
+                                std::vector<ErrorSample>{{3.0, 0.0}},
+                                std::vector<ErrorSample>{{0.0, 0.0}, {1.0, 0.0}},
+                                std::vector<ErrorSample>{{0.0, double{nan}}, {0.0, 1e6}}}) {
+        const Picture picture = render_error_over_time(samples, {"Error", ""});
+        EXPECT_GE(picture.width(), 900);
+    }
+}
+
+TEST(Picture, StackedHoldsBoth) {
+    const Picture upper(20, 10, palette::kInk), lower(30, 5, palette::kGreen);
+    const Picture sheet = stacked(upper, lower);
+    EXPECT_EQ(sheet.width(), 30);
+    EXPECT_EQ(sheet.height(), 15);
+    EXPECT_EQ(sheet.at(19, 9), palette::kInk);
+    EXPECT_EQ(sheet.at(20, 9), palette::kPaper);
+    EXPECT_EQ(sheet.at(29, 14), palette::kGreen);
+}
+
 }  // namespace
 }  // namespace surefoot::eval

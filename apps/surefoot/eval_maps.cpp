@@ -5,10 +5,13 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "eval/maps.hpp"
+#include "apps/surefoot/writes.hpp"
+#include "eval/map_comparison.hpp"
+#include "eval/picture.hpp"
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
+#include "io/trajectory_file.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {
@@ -22,60 +25,160 @@ Result<Settings> settings_of(const EvalMapsOptions& options) {
     return load_settings(common);
 }
 
+/// How the live map's settings rate the true heights.
+grid::Layer rated(const Settings& settings, const grid::Layer& truth_m, double resolution_m) {
+    Serial serial;
+    traversability::TraversabilityLayers layers;
+    traversability::rate(settings.pipeline.traversability.widened_to(resolution_m),
+                         truth_m.view(),
+                         resolution_m,
+                         serial,
+                         layers);
+    return layers.traversability;
+}
+
+/// One more layer of the run on the cells of its elevation.
+Result<grid::Layer> read_layer(const std::string& path, const grid::GridGeometry& geometry) {
+    const auto dem = io::read_esri_grid(path);
+    if (!dem) return dem.error();
+    if (dem->geometry.nx == geometry.nx && dem->geometry.ny == geometry.ny) return dem->values;
+    return input_error(fmt::format("{}: {} x {} cells, but elevation.asc beside it has {} x {}",
+                                   path,
+                                   dem->geometry.nx,
+                                   dem->geometry.ny,
+                                   geometry.nx,
+                                   geometry.ny));
+}
+
+/// The poses and the camera of the run, where its folder has them.
+Status add_track(const EvalMapsOptions& options, const Settings& settings, eval::MapPair& maps) {
+    const std::string track_file = options.live_dir + "/trajectory.tum";
+    if (!io::is_file(track_file)) return {};
+    auto track = io::read_tum_trajectory(track_file);
+    if (!track) return track.error();
+    maps.trajectory = std::move(*track);
+    const std::string report_file = options.live_dir + "/report.json";
+    if (!io::is_file(report_file)) return {};
+    const auto text = io::read_file(report_file);
+    if (!text) return text.error();
+    const auto camera = parse_report_camera(*text);
+    if (!camera) return {};
+    eval::CameraTrack seen;
+    seen.view = camera->view;
+    seen.max_depth_m = settings.pipeline.elevation.prefilter.max_range_m;
+    for (const StampedPose& pose : maps.trajectory)
+        seen.T_world_camera.push_back({pose.time_ns, pose.T_world_body * camera->T_body_camera});
+    maps.camera = std::move(seen);
+    return {};
+}
+
+Result<eval::MapPair> read_maps(const EvalMapsOptions& options, const Settings& settings) {
+    const auto live = io::read_esri_grid(options.live_dir + "/elevation.asc");
+    if (!live) return live.error();
+    const auto truth = io::read_esri_grid(options.truth_dir + "/elevation.asc");
+    if (!truth) return truth.error();
+    eval::MapPair maps;
+    maps.geometry = live->geometry;
+    maps.live_m = live->values;
+    auto rating = read_layer(options.live_dir + "/traversability.asc", live->geometry);
+    if (!rating) return rating.error();
+    maps.live_traversability = std::move(*rating);
+    const std::string variance_file = options.live_dir + "/variance.asc";
+    if (io::is_file(variance_file)) {
+        auto variance = read_layer(variance_file, live->geometry);
+        if (!variance) return variance.error();
+        maps.live_var_m2 = std::move(*variance);
+    }
+    maps.truth_m = eval::resample_nearest(truth->geometry, truth->values, live->geometry);
+    maps.truth_traversability = rated(settings, maps.truth_m, live->geometry.resolution_m);
+    if (auto status = add_track(options, settings, maps); !status) return status.error();
+    return maps;
+}
+
+Status write_pictures(const EvalMapsOptions& options,
+                      const eval::MapPair& maps,
+                      const eval::MapComparison& result) {
+    if (auto status = io::make_folder(options.out_dir); !status) return status;
+    eval::Overlays overlays;
+    for (const StampedPose& pose : maps.trajectory)
+        overlays.trajectory_m.push_back(pose.T_world_body.translation_m.head<2>());
+    const auto write = [&](const char* name, const eval::Picture& picture) {
+        const auto png = eval::encode_png(picture);
+        return io::write_file(options.out_dir + "/" + name, std::string(png.begin(), png.end()));
+    };
+    Writes writes;
+    writes += write("confusion.png",
+                    eval::render_confusion(
+                        maps.geometry,
+                        result.calls,
+                        {"Traversability against the truth",
+                         fmt::format("{:.2f} % of the unsafe cells called safe, {:.2f} % of the "
+                                     "safe ones called unsafe",
+                                     100.0 * result.traversability.false_safe,
+                                     100.0 * result.traversability.false_unsafe)},
+                        overlays));
+    writes += write("error.png",
+                    eval::render_error_map(maps.geometry,
+                                           result.error_m,
+                                           {"Height error",
+                                            fmt::format("median {:.1f} mm, 90 % within {:.1f} mm",
+                                                        1e3 * result.elevation.median_abs_m,
+                                                        1e3 * result.elevation.p90_abs_m)},
+                                           overlays));
+    return writes.first();
+}
+
+void print_figures(const eval::MapComparison& result) {
+    fmt::print(
+        "elevation: median |error| {:.1f} mm, 90 % within {:.1f} mm, {} cells; away from edges "
+        "{:.2f} % above 50 mm\n"
+        "traversability: {:.2f} % of the unsafe cells called safe, {:.2f} % of the safe ones "
+        "called unsafe\n"
+        "{:.1f} % of the true cells are known\n",
+        1e3 * result.elevation.median_abs_m,
+        1e3 * result.elevation.p90_abs_m,
+        result.elevation.count,
+        100.0 * result.elevation_away_from_edges.share_over_50mm,
+        100.0 * result.traversability.false_safe,
+        100.0 * result.traversability.false_unsafe,
+        100.0 * result.coverage);
+    if (result.sigma.count > 0) {
+        fmt::print("within 1, 2, 3 sigma: {:.1f}, {:.1f}, {:.1f} % of the cells away from edges\n",
+                   100.0 * result.sigma.within_1_sigma,
+                   100.0 * result.sigma.within_2_sigma,
+                   100.0 * result.sigma.within_3_sigma);
+    }
+    if (result.floor.count > 0) {
+        fmt::print(
+            "level floor: spread {:.1f} mm, 99 % of the jumps between neighbours below "
+            "{:.1f} mm\n",
+            1e3 * result.floor.spread_m,
+            1e3 * result.edges.p99_abs);
+    }
+}
+
 }  // namespace
 
 int eval_maps(const EvalMapsOptions& options) {
     const auto settings = settings_of(options);
     if (!settings) return report(settings.error());
-    const auto live = io::read_esri_grid(options.live_dir + "/elevation.asc");
-    if (!live) return report(live.error());
-    const auto live_rating = io::read_esri_grid(options.live_dir + "/traversability.asc");
-    if (!live_rating) return report(live_rating.error());
-    const auto truth = io::read_esri_grid(options.truth_dir + "/elevation.asc");
-    if (!truth) return report(truth.error());
-
-    const double resolution_m = live->geometry.resolution_m;
-    const grid::Layer truth_m =
-        eval::resample_nearest(truth->geometry, truth->values, live->geometry);
-    Serial serial;
-    traversability::TraversabilityLayers rated;
-    traversability::rate(settings->pipeline.traversability.widened_to(resolution_m),
-                         truth_m.view(),
-                         resolution_m,
-                         serial,
-                         rated);
-
-    const auto all = eval::elevation_errors(live->values, truth_m, {}, settings->maps);
-    if (all.count == 0) {
+    const auto maps = read_maps(options, *settings);
+    if (!maps) return report(maps.error());
+    const eval::MapComparison result = eval::compare_maps(*maps, settings->maps);
+    if (result.elevation.count == 0) {
         return report(input_error(
             fmt::format("{} and {} have no known cell in common: are both in the same frame?",
                         options.live_dir,
                         options.truth_dir)));
     }
-    const auto away = eval::elevation_errors(
-        live->values, truth_m, eval::away_from_edges(truth_m, settings->maps), settings->maps);
-    const auto calls =
-        eval::classify(live_rating->values, rated.traversability, settings->maps.safe_threshold);
-    const auto confusion = eval::traversability_errors(calls, {});
-    const double coverage = eval::coverage(live->values, truth_m, {});
     if (options.common.json) {
-        fmt::print("{}\n", maps_json(all, away, confusion, coverage));
+        fmt::print("{}\n", maps_json(result));
     } else {
-        fmt::print(
-            "elevation: median |error| {:.1f} mm, 90 % within {:.1f} mm, {} cells; away from edges "
-            "{:.2f} % above 50 mm\n"
-            "traversability: {:.2f} % of the unsafe cells called safe, {:.2f} % of the safe ones "
-            "called unsafe\n"
-            "{:.1f} % of the true cells are known\n",
-            1e3 * all.median_abs_m,
-            1e3 * all.p90_abs_m,
-            all.count,
-            100.0 * away.share_over_50mm,
-            100.0 * confusion.false_safe,
-            100.0 * confusion.false_unsafe,
-            100.0 * coverage);
+        print_figures(result);
     }
-    return kExitOk;
+    if (options.out_dir.empty()) return kExitOk;
+    const auto status = write_pictures(options, *maps, result);
+    return status ? kExitOk : report(status.error());
 }
 
 }  // namespace surefoot::app

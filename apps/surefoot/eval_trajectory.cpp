@@ -4,7 +4,10 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "eval/path_errors.hpp"
+#include "eval/picture.hpp"
 #include "eval/trajectory.hpp"
+#include "io/file.hpp"
 #include "io/trajectory_file.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -25,6 +28,62 @@ Result<Trajectory> read_truth(const EvalTrajectoryOptions& options, const Trajec
     return truth;
 }
 
+eval::Alignment alignment_named(const std::string& name) {
+    if (name == "none") return eval::Alignment::none;
+    return name == "yaw" ? eval::Alignment::yaw : eval::Alignment::se3;
+}
+
+/// The aligned trajectory over the true one from above, and below it the error over time.
+Status write_plot(const EvalTrajectoryOptions& options,
+                  const Trajectory& estimate,
+                  const Trajectory& truth,
+                  const eval::TrajectoryErrors& errors) {
+    Trajectory matched_truth;
+    std::vector<eval::ErrorSample> samples;
+    for (std::size_t k = 0; k < errors.pairs.size(); ++k) {
+        const std::int64_t time_ns = estimate[errors.pairs[k].estimate].time_ns;
+        const std::int64_t start_ns = estimate[errors.pairs.front().estimate].time_ns;
+        matched_truth.push_back(truth[errors.pairs[k].truth]);
+        samples.push_back({seconds_from_ns(time_ns - start_ns), errors.position_error_m[k]});
+    }
+    const auto above =
+        eval::render_trajectory(eval::transformed(errors.T_truth_estimate, estimate),
+                                matched_truth,
+                                {"Trajectory from above",
+                                 fmt::format("{} poses matched over {:.2f} m, aligned: {}",
+                                             errors.matched,
+                                             errors.path_length_m,
+                                             options.align)});
+    const auto over_time = eval::render_error_over_time(
+        samples, {"Position error over time", fmt::format("ATE {:.4g} m rmse", errors.ate_rmse_m)});
+    const auto png = eval::encode_png(eval::stacked(above, over_time));
+    return io::write_file(options.plot_file, std::string(png.begin(), png.end()));
+}
+
+void print_errors(const EvalTrajectoryOptions& options,
+                  const eval::TrajectoryErrors& errors,
+                  const std::vector<eval::PathError>& by_length) {
+    fmt::print(
+        "{} poses matched over {:.2f} m (aligned: {})\nATE {:.4f} m rmse\nRPE {:.4f} m, {:.4f} "
+        "deg rmse per pose\n",
+        errors.matched,
+        errors.path_length_m,
+        options.align,
+        errors.ate_rmse_m,
+        errors.rpe_trans_rmse_m,
+        errors.rpe_rot_rmse_deg);
+    for (const eval::PathError& error : by_length) {
+        if (error.count == 0) continue;
+        fmt::print("RPE {:.4f} m ({:.2f} %), {:.4f} deg rmse over {:g} m of path ({} stretches)\n",
+                   error.trans_rmse_m,
+                   error.trans_percent,
+                   error.rot_rmse_deg,
+                   error.length_m,
+                   error.count);
+    }
+    fmt::print("drift {:.2f} %\n", errors.drift_percent);
+}
+
 }  // namespace
 
 int eval_trajectory(const EvalTrajectoryOptions& options) {
@@ -33,27 +92,22 @@ int eval_trajectory(const EvalTrajectoryOptions& options) {
     const auto truth = read_truth(options, *estimate);
     if (!truth) return report(truth.error());
     eval::EvalTrajectoryConfig config;
-    config.align = options.align == "none"  ? eval::Alignment::none
-                   : options.align == "yaw" ? eval::Alignment::yaw
-                                            : eval::Alignment::se3;
+    config.align = alignment_named(options.align);
     const auto errors = eval::evaluate_trajectory(*estimate, *truth, config);
     if (!errors) return report(errors.error());
+    const auto by_length = eval::errors_over_path(
+        *estimate,
+        *truth,
+        errors->pairs,
+        options.lengths_m.empty() ? eval::kPathLengths_m : options.lengths_m);
     if (options.common.json) {
-        fmt::print("{}\n", trajectory_json(*errors));
+        fmt::print("{}\n", trajectory_json(*errors, by_length));
     } else {
-        fmt::print(
-            "{} poses matched over {:.2f} m (aligned: {})\nATE {:.4f} m rmse\nRPE {:.4f} m, {:.4f} "
-            "deg rmse per pose\n"
-            "drift {:.2f} %\n",
-            errors->matched,
-            errors->path_length_m,
-            options.align,
-            errors->ate_rmse_m,
-            errors->rpe_trans_rmse_m,
-            errors->rpe_rot_rmse_deg,
-            errors->drift_percent);
+        print_errors(options, *errors, by_length);
     }
-    return kExitOk;
+    if (options.plot_file.empty()) return kExitOk;
+    const auto status = write_plot(options, *estimate, *truth, *errors);
+    return status ? kExitOk : report(status.error());
 }
 
 }  // namespace surefoot::app

@@ -70,6 +70,59 @@ Json errors_json(const eval::TrajectoryErrors& e) {
             {"path_length_m", number(e.path_length_m)}};
 }
 
+Json figures_json(const eval::ErrorFigures& e, const std::string& unit) {
+    return {{"median_abs_" + unit, number(e.median_abs)},
+            {"p90_abs_" + unit, number(e.p90_abs)},
+            {"p99_abs_" + unit, number(e.p99_abs)},
+            {"max_abs_" + unit, number(e.max_abs)},
+            {"mean_" + unit, number(e.mean)},
+            {"rmse_" + unit, number(e.rmse)},
+            {"count", e.count}};
+}
+
+/// Errors in m, by a key in `key_unit`.
+Json bins_json(const std::vector<eval::ErrorBin>& bins, const std::string& key_unit) {
+    Json list = Json::array();
+    for (const eval::ErrorBin& bin : bins) {
+        Json entry = {{"from_" + key_unit, bin.from}, {"to_" + key_unit, bin.to}};
+        entry.update(figures_json(bin.errors, "m"));
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+Json sigma_json(const eval::SigmaCoverage& s) {
+    return {{"within_1_sigma", number(s.within_1_sigma)},
+            {"within_2_sigma", number(s.within_2_sigma)},
+            {"within_3_sigma", number(s.within_3_sigma)},
+            {"count", s.count}};
+}
+
+Json camera_json(const camera::RectifiedRig& rig) {
+    const Eigen::Vector3d& t = rig.T_body_camera.translation_m;
+    const Eigen::Quaterniond& q = rig.T_body_camera.rotation;
+    return {{"width", rig.width},
+            {"height", rig.height},
+            {"focal_px", {rig.fx_px, rig.fy_px}},
+            {"principal_px", {rig.cx_px, rig.cy_px}},
+            {"baseline_m", rig.baseline_m},
+            {"T_body_camera", {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}}};
+}
+
+/// `count` finite numbers of a list; nothing else is taken.
+std::optional<std::vector<double>> numbers_of(const Json& object,
+                                              const char* name,
+                                              std::size_t count) {
+    const auto list = object.find(name);
+    if (list == object.end() || !list->is_array() || list->size() != count) return std::nullopt;
+    std::vector<double> numbers;
+    for (const Json& entry : *list) {
+        if (!entry.is_number()) return std::nullopt;
+        numbers.push_back(entry.get<double>());
+    }
+    return numbers;
+}
+
 Json truth_json(const TruthFigures& t) {
     const DepthFigures& d = t.depth;
     return {{"elevation", elevation_json(t.elevation)},
@@ -122,6 +175,7 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
                     alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
                    {"health", health_json(record)},
                    {"counts", counts_json(record.fusion)},
+                   {"camera", camera_json(pipeline.rig())},
                    {"map",
                     {{"known_cells", pipeline.map().known_cells()},
                      {"cells", geometry.nx * geometry.ny},
@@ -203,18 +257,103 @@ std::string verdict_json(const gate::Verdict& verdict,
     return object.dump(kIndent);
 }
 
-std::string trajectory_json(const eval::TrajectoryErrors& errors) {
-    return errors_json(errors).dump(kIndent);
+std::optional<ReportCamera> parse_report_camera(const std::string& report_json) {
+    const Json report = Json::parse(report_json, nullptr, false);
+    if (!report.is_object() || !report.contains("camera") || !report["camera"].is_object())
+        return std::nullopt;
+    const Json& object = report["camera"];
+    const auto focal_px = numbers_of(object, "focal_px", 2);
+    const auto principal_px = numbers_of(object, "principal_px", 2);
+    const auto pose = numbers_of(object, "T_body_camera", 7);
+    const auto width = object.find("width");
+    const auto height = object.find("height");
+    const bool sized = width != object.end() && width->is_number_integer() &&
+                       height != object.end() && height->is_number_integer();
+    if (!sized || !focal_px || !principal_px || !pose) return std::nullopt;
+    ReportCamera camera;
+    camera.view = {width->get<int>(),
+                   height->get<int>(),
+                   (*focal_px)[0],
+                   (*focal_px)[1],
+                   (*principal_px)[0],
+                   (*principal_px)[1]};
+    camera.T_body_camera.translation_m = {(*pose)[0], (*pose)[1], (*pose)[2]};
+    camera.T_body_camera.rotation =
+        Eigen::Quaterniond((*pose)[6], (*pose)[3], (*pose)[4], (*pose)[5]);
+    const bool whole = camera.view.width > 0 && camera.view.height > 0 &&
+                       std::abs(camera.T_body_camera.rotation.norm() - 1.0) < 1e-6;
+    return whole ? std::optional(camera) : std::nullopt;
 }
 
-std::string maps_json(const eval::ElevationErrors& all,
-                      const eval::ElevationErrors& away_from_edges,
-                      const eval::TraversabilityErrors& traversability,
-                      double coverage) {
-    const Json object = {{"elevation", elevation_json(all)},
-                         {"elevation_away_from_edges", elevation_json(away_from_edges)},
-                         {"traversability", traversability_json(traversability)},
-                         {"coverage", number(coverage)}};
+std::string trajectory_json(const eval::TrajectoryErrors& errors,
+                            const std::vector<eval::PathError>& by_length) {
+    Json list = Json::array();
+    for (const eval::PathError& error : by_length) {
+        list.push_back({{"length_m", error.length_m},
+                        {"trans_rmse_m", number(error.trans_rmse_m)},
+                        {"rot_rmse_deg", number(error.rot_rmse_deg)},
+                        {"trans_percent", number(error.trans_percent)},
+                        {"count", error.count}});
+    }
+    Json object = errors_json(errors);
+    object["rpe_by_length"] = list;
+    return object.dump(kIndent);
+}
+
+std::string maps_json(const eval::MapComparison& result) {
+    Json edges = figures_json(result.edges, "m");
+    edges["by_column"] = bins_json(result.edges_by_column, "px");
+    const Json object = {
+        {"elevation", elevation_json(result.elevation)},
+        {"elevation_away_from_edges", elevation_json(result.elevation_away_from_edges)},
+        {"traversability", traversability_json(result.traversability)},
+        {"coverage", number(result.coverage)},
+        {"sigma", sigma_json(result.sigma)},
+        {"by_distance", bins_json(result.by_distance, "m")},
+        {"by_range", bins_json(result.by_range, "m")},
+        {"by_column", bins_json(result.by_column, "px")},
+        {"edges", edges},
+        {"floor",
+         {{"spread_m", number(result.floor.spread_m)},
+          {"rms_m", number(result.floor.rms_m)},
+          {"p99_abs_m", number(result.floor.p99_abs_m)},
+          {"tilt_deg", number(result.floor.tilt_deg)},
+          {"count", result.floor.count}}}};
+    return object.dump(kIndent);
+}
+
+std::string depth_json(const eval::DepthErrors& errors) {
+    const Json object = {{"bad_0_5_percent", number(errors.bad.over_0_5_percent)},
+                         {"bad_1_percent", number(errors.bad.over_1_percent)},
+                         {"bad_2_percent", number(errors.bad.over_2_percent)},
+                         {"density_percent", number(errors.density_percent)},
+                         {"auc", number(errors.sparsification.auc)},
+                         {"known_bad_0_5_percent", number(errors.known_bad.over_0_5_percent)},
+                         {"known_bad_1_percent", number(errors.known_bad.over_1_percent)},
+                         {"known_bad_2_percent", number(errors.known_bad.over_2_percent)},
+                         {"pixels", errors.counted},
+                         {"error", figures_json(errors.known, "px")},
+                         {"sigma", sigma_json(errors.coverage)},
+                         {"sparsification",
+                          {{"area_px", number(errors.sparsification.area)},
+                           {"oracle_area_px", number(errors.sparsification.oracle_area)},
+                           {"random_area_px", number(errors.sparsification.random_area)},
+                           {"count", errors.sparsification.count}}}};
+    return object.dump(kIndent);
+}
+
+std::string dem_json(const grid::GridGeometry& geometry,
+                     std::int64_t known_cells,
+                     const eval::CloudBounds& bounds,
+                     const std::string& file) {
+    const Json object = {{"width", geometry.nx},
+                         {"height", geometry.ny},
+                         {"resolution_m", geometry.resolution_m},
+                         {"origin_m", {geometry.origin_m.x(), geometry.origin_m.y()}},
+                         {"known_cells", known_cells},
+                         {"points", bounds.points()},
+                         {"skipped", bounds.skipped()},
+                         {"file", file}};
     return object.dump(kIndent);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,7 +11,12 @@
 #include "apps/surefoot/rig_view.hpp"
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/suite_case.hpp"
+#include "eval/dem.hpp"
+#include "eval/depth_errors.hpp"
+#include "eval/map_comparison.hpp"
 #include "eval/maps.hpp"
+#include "eval/path_errors.hpp"
+#include "eval/sightings.hpp"
 #include "eval/trajectory.hpp"
 #include "io/config_yaml.hpp"
 #include "io/recorder.hpp"
@@ -25,16 +31,26 @@ namespace surefoot::app {
 [[nodiscard]] std::string report_json(const RunRecord& record,
                                       const pipeline::Pipeline& pipeline,
                                       const Status& written);
+/// The camera of a run as its report.json has it.
+struct ReportCamera {
+    eval::PinholeView view;
+    Pose T_body_camera;  ///< rectified left optical frame in base_link
+};
+/// Nothing where the report has no camera, or one that is not whole (an older or damaged file).
+[[nodiscard]] std::optional<ReportCamera> parse_report_camera(const std::string& report_json);
 /// The same without the list of frames, for stdout.
 [[nodiscard]] std::string run_json(const RunRecord& record, const pipeline::Pipeline& pipeline);
 [[nodiscard]] std::string verdict_json(const gate::Verdict& verdict,
                                        const std::string& text,
                                        const std::vector<std::string>& assumed);
-[[nodiscard]] std::string trajectory_json(const eval::TrajectoryErrors& errors);
-[[nodiscard]] std::string maps_json(const eval::ElevationErrors& all,
-                                    const eval::ElevationErrors& away_from_edges,
-                                    const eval::TraversabilityErrors& traversability,
-                                    double coverage);
+[[nodiscard]] std::string trajectory_json(const eval::TrajectoryErrors& errors,
+                                          const std::vector<eval::PathError>& by_length);
+[[nodiscard]] std::string maps_json(const eval::MapComparison& result);
+[[nodiscard]] std::string depth_json(const eval::DepthErrors& errors);
+[[nodiscard]] std::string dem_json(const grid::GridGeometry& geometry,
+                                   std::int64_t known_cells,
+                                   const eval::CloudBounds& bounds,
+                                   const std::string& file);
 [[nodiscard]] std::string ground_json(const ground::GroundSighting& sighting);
 [[nodiscard]] std::string settings_json(const std::vector<io::ConfigEntry>& entries);
 [[nodiscard]] std::string scenes_json(const std::vector<sim::SceneInfo>& scenes);

@@ -73,6 +73,8 @@ struct AllOptions {
     GateOptions gate;
     EvalTrajectoryOptions eval_trajectory;
     EvalMapsOptions eval_maps;
+    EvalDepthOptions eval_depth;
+    DemOptions dem;
     EvalSuiteOptions eval_suite;
     ConfigOptions config;
     DoctorOptions doctor;
@@ -218,6 +220,35 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
         ->check(CLI::Range(0.0, 2.0));
 }
 
+void add_eval_depth(CLI::App& eval_verb, EvalDepthOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(eval_verb,
+                                   "depth",
+                                   "a disparity image against the true one",
+                                   "surefoot eval depth tests/conformance/depth/disparity.pfm "
+                                   "tests/conformance/depth/truth.pfm --sigma "
+                                   "tests/conformance/depth/sigma.pfm --json"),
+                          o,
+                          eval_depth,
+                          exit_code,
+                          Reads::no_settings);
+    verb->add_option("estimate", o.estimate, "disparity in pixels, unknown = +inf")
+        ->required()
+        ->type_name("EST.pfm");
+    verb->add_option("truth", o.truth, "PFM, or a grey PNG in which 0 is unknown")
+        ->required()
+        ->type_name("TRUTH");
+    verb->add_option("--scale",
+                     o.scale,
+                     "the truth holds this times the disparity (default: 256 for 16-bit images as "
+                     "KITTI has them, 1 for others)")
+        ->type_name("S")
+        ->check(CLI::PositiveNumber);
+    verb->add_option("--mask", o.mask, "image; only pixels above 200 count (seen by both eyes)")
+        ->type_name("M");
+    verb->add_option("--sigma", o.sigma, "standard deviation of the estimate in pixels")
+        ->type_name("SIGMA.pfm");
+}
+
 void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
     CLI::App* verb = app.add_subcommand("eval", "measure results against ground truth");
     verb->require_subcommand(1);
@@ -243,6 +274,16 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
     trajectory->add_option("--rate", t.rate_hz, "KITTI poses without times.txt")
         ->type_name("HZ")
         ->check(CLI::Range(0.01, 1000.0));
+    trajectory
+        ->add_option("--delta",
+                     t.lengths_m,
+                     "length of path for relative errors; may be repeated (default 0.1, 0.5, 1, 2, "
+                     "5)")
+        ->type_name("M")
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1e-3, 1e6));
+    trajectory->add_option("--plot", t.plot_file, "picture: from above, and the error over time")
+        ->type_name("F.png");
     auto& m = all.eval_maps;
     CLI::App* maps = bind(add_verb(*verb,
                                    "maps",
@@ -256,6 +297,34 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
     maps->add_option("truth", m.truth_dir, "folder with the true elevation.asc")
         ->required()
         ->type_name("TRUTH_DIR");
+    maps->add_option("--out", m.out_dir, "folder for confusion.png and error.png")
+        ->type_name("DIR");
+    add_eval_depth(*verb, all.eval_depth, exit_code);
+}
+
+void add_dem(CLI::App& app, DemOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(app,
+                                   "dem",
+                                   "height map of a cloud",
+                                   "surefoot dem out/floor/map.ply --resolution 0.05 --out "
+                                   "out/floor_dem.asc"),
+                          o,
+                          dem,
+                          exit_code,
+                          Reads::no_settings);
+    verb->add_option("cloud", o.cloud, "PCD, PLY or XYZ, z up")->required()->type_name("CLOUD");
+    verb->add_option("--resolution", o.resolution_m, "side of a cell")
+        ->required()
+        ->type_name("M")
+        ->check(CLI::Range(1e-4, 1e3));
+    verb->add_option("--reduce", o.reduce, "which height a cell takes of its points")
+        ->check(CLI::IsMember({"max", "mean", "min"}));
+    verb->add_option("--lattice",
+                     o.lattice,
+                     "cell: borders on multiples of the resolution; node: centres counted from the "
+                     "smallest x and y")
+        ->check(CLI::IsMember({"cell", "node"}));
+    verb->add_option("--out", o.out_file, "ESRI ASCII grid")->required()->type_name("F.asc");
 }
 
 void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
@@ -386,6 +455,7 @@ int main_with_arguments(int argc, char** argv) {
     add_rate(app, all.rate, exit_code);
     add_fuse(app, all.fuse, exit_code);
     add_ground(app, all.ground, exit_code);
+    add_dem(app, all.dem, exit_code);
     add_gate(app, all.gate, exit_code);
     add_eval(app, all, exit_code);
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);

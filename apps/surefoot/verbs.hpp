@@ -91,6 +91,8 @@ struct EvalTrajectoryOptions {
     std::string truth;
     std::string align = "se3";
     double rate_hz = 0.0;
+    std::vector<double> lengths_m;  ///< of the stretches for relative errors; empty = the usual
+    std::string plot_file;
 };
 int eval_trajectory(const EvalTrajectoryOptions& options);
 
@@ -98,8 +100,29 @@ struct EvalMapsOptions {
     CommonOptions common;
     std::string live_dir;
     std::string truth_dir;
+    std::string out_dir;  ///< for pictures; may be empty
 };
 int eval_maps(const EvalMapsOptions& options);
+
+struct EvalDepthOptions {
+    CommonOptions common;
+    std::string estimate;
+    std::string truth;
+    double scale = 0.0;  ///< codes per pixel of disparity; 0 = by the file's depth
+    std::string mask;
+    std::string sigma;
+};
+int eval_depth(const EvalDepthOptions& options);
+
+struct DemOptions {
+    CommonOptions common;
+    std::string cloud;
+    double resolution_m = 0.0;
+    std::string reduce = "max";
+    std::string lattice = "cell";
+    std::string out_file;
+};
+int dem(const DemOptions& options);
 
 struct EvalSuiteOptions {
     CommonOptions common;  ///< seed: the first one

@@ -1,14 +1,17 @@
 """Every verb: help, its example, exit codes, JSON names."""
 import json
+import math
 import re
 import shlex
+import statistics
+import struct
 import unittest
 
-from surefoot_cli import ROOT, CliTest, surefoot
+from surefoot_cli import ROOT, CliTest, grey_png, read_asc, surefoot
 
 # In the order in which one example needs another's results.
-VERBS = [["sim"], ["run"], ["rate"], ["fuse"], ["ground"], ["gate"], ["eval"], ["eval", "trajectory"],
-         ["eval", "maps"], ["eval", "suite"], ["config"], ["doctor"], ["bench"], ["record"], ["replay"], ["info"]]
+VERBS = [["sim"], ["run"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"],
+         ["eval", "trajectory"], ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["config"], ["doctor"], ["bench"], ["record"], ["replay"], ["info"]]
 GATE_EXIT_CODES = (0, 3, 4)
 
 
@@ -62,6 +65,7 @@ class Verbs(CliTest):
         grid = "ncols 40\nnrows 40\nxllcorner 0\nyllcorner 0\ncellsize 0.05\nNODATA_value -9999\n" + "0 " * 1600
         (self.dir / "flat.asc").write_text(grid + "\n")
         steps = ROOT / "tests" / "conformance" / "elevation" / "steps.txt"
+        depth = ROOT / "tests" / "conformance" / "depth"
         promised = (  # in an order in which each finds what it needs
             (["sim", "floor", "--frames", 3, "--out", recording], "frames complete error folder"),
             (["run", recording, "--out", run, "--machine", "rex"], "source frames complete gravity_source map timing"),
@@ -69,9 +73,14 @@ class Verbs(CliTest):
             (["fuse", steps, "--preset", "ethz", "--out", self.dir / "fused"], "steps folder"),
             (["ground", run / "map.ply", "--origin", "0,0,0.95"], "tilt_deg height_m inlier_ratio normal"),
             (["eval", "trajectory", run / "trajectory.tum", recording / "groundtruth.tum"],
-             "ate_rmse_m rpe_trans_rmse_m rpe_rot_rmse_deg drift_percent matched"),
-            (["eval", "maps", run, recording], "elevation traversability coverage"),
+             "ate_rmse_m rpe_trans_rmse_m rpe_rot_rmse_deg drift_percent matched rpe_by_length"),
+            (["eval", "maps", run, recording],
+             "elevation traversability coverage sigma by_distance by_range by_column edges floor"),
+            (["eval", "depth", depth / "disparity.pfm", depth / "truth.pfm"],
+             "bad_1_percent bad_2_percent density_percent auc bad_0_5_percent error sigma sparsification"),
             (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases"),
+            (["dem", run / "map.ply", "--resolution", 0.1, "--out", self.dir / "dem.asc"],
+             "width height resolution_m origin_m known_cells points skipped file"),
             (["config"], "settings"),
             (["config", "--check"], "valid problem"),
             (["doctor"], "version machine rig depth_sigma floor steps"),
@@ -111,6 +120,127 @@ class Verbs(CliTest):
     def test_scene_list_is_json_too(self):
         scenes = json.loads(surefoot("sim", "--list", "--json").stdout)["scenes"]
         self.assertIn("demo_stairs", [scene["name"] for scene in scenes])
+
+
+def write_pfm(path, rows):
+    """One float channel, little-endian, bottom row first; None = +inf = unknown."""
+    values = [math.inf if x is None else x for row in reversed(rows) for x in row]
+    path.write_bytes(f"Pf\n{len(rows[0])} {len(rows)}\n-1.0\n".encode() + struct.pack(f"<{len(values)}f", *values))
+
+
+def read_png_size(path):
+    content = path.read_bytes()
+    assert content[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", content[16:24])
+
+
+class Measures(CliTest):
+    """The figures of the measuring verbs, worked out by hand or by a few lines of Python."""
+
+    def test_eval_depth_by_hand(self):
+        folder = ROOT / "tests" / "conformance" / "depth"
+        got = self.json_of("eval", "depth", folder / "disparity.pfm", folder / "truth.pfm", "--sigma",
+                           folder / "sigma.pfm")
+        # 11 pixels have a truth, 8 are known with errors 0 .75 -1.5 2.5 | 0 .25 3 0; the gaps are filled with
+        # 9.75 (error -.25) and twice 20.25 (.25).
+        self.assertEqual(got["pixels"], 11)
+        for name, value in (("density_percent", 800 / 11), ("bad_0_5_percent", 400 / 11), ("bad_1_percent", 300 / 11),
+                            ("bad_2_percent", 200 / 11), ("known_bad_0_5_percent", 50), ("known_bad_1_percent", 37.5),
+                            ("known_bad_2_percent", 25)):
+            self.assertAlmostEqual(got[name], value, places=9, msg=name)
+        self.assertAlmostEqual(got["error"]["mean_px"], 5 / 8)
+        # Error over sigma: 0 1.5 1.5 1.25 | 0 1 3 0.
+        self.assertEqual([got["sigma"][f"within_{k}_sigma"] for k in (1, 2, 3)], [4 / 8, 7 / 8, 1])
+        pairs = [(0.25, 0), (0.5, 0.75), (1, 1.5), (2, 2.5), (0.25, 0), (0.25, 0.25), (1, 3), (0.25, 0)]
+        # Equal sigmas share the mean of their errors.
+        tied = {s: statistics.mean(e for t, e in pairs if t == s) for s, _ in pairs}
+
+        def area(errors):
+            return statistics.mean(statistics.mean(errors[:m]) for m in range(1, len(errors) + 1))
+        ordered, oracle = area([tied[s] for s, _ in sorted(pairs)]), area(sorted(e for _, e in pairs))
+        chance = statistics.mean(e for _, e in pairs)
+        self.assertAlmostEqual(got["auc"], (ordered - oracle) / (chance - oracle), places=9)
+
+    def test_eval_depth_reads_scaled_truth_and_mask(self):
+        write_pfm(self.dir / "est.pfm", [[10.0] * 4] * 2)
+        truth = self.dir / "truth.png"
+        truth.write_bytes(grey_png(4, 2))  # all 128
+        answer = self.json_of("eval", "depth", self.dir / "est.pfm", truth, "--scale", 16)
+        self.assertAlmostEqual(answer["error"]["mean_px"], 10 - 128 / 16)
+        self.assertIsNone(answer["auc"])
+        process = surefoot("eval", "depth", self.dir / "est.pfm", truth, "--mask", truth)
+        self.assertEqual(process.returncode, 1)  # 128 is not "seen by both eyes"
+        self.assertIn("no pixel", process.stderr)
+        (self.dir / "small.png").write_bytes(grey_png(3, 2))
+        process = surefoot("eval", "depth", self.dir / "est.pfm", self.dir / "small.png")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("4 x 2", process.stderr)
+
+    def test_dem_by_hand_on_both_lattices(self):
+        (self.dir / "c.xyz").write_text("-0.1 0 1\n0.0 0.9 2\n0.4 0.9 5\n0.5 1.0 3\n")
+
+        def dem(*options):
+            answer = self.json_of("dem", self.dir / "c.xyz", "--resolution", 0.5, "--out", self.dir / "d.asc", *options)
+            return (answer, *read_asc(self.dir / "d.asc"))
+        answer, header, rows = dem()
+        self.assertEqual((answer["points"], answer["known_cells"], answer["skipped"]), (4, 3, 0))
+        self.assertEqual((header["xllcorner"], header["yllcorner"], header["cellsize"]), (-0.5, 0, 0.5))
+        self.assertEqual(rows, [[None, None, 3], [None, 5, None], [1, None, None]])  # largest y first
+        self.assertEqual(dem("--reduce", "min")[2][1][1], 2)
+        self.assertEqual(dem("--reduce", "mean")[2][1][1], 3.5)
+        _, header, rows = dem("--lattice", "node")
+        self.assertAlmostEqual(header["xllcorner"], -0.35)
+        # Centres at x -0.1, 0.4 and y 0, 0.5, 1: the last two points share one.
+        self.assertEqual(rows, [[2, 5], [None, None], [1, None]])
+
+    def test_dem_agrees_with_cloudcompare(self):
+        folder = self.data("conformance", "clouds")
+        self.run_ok("dem", folder / "ref_e1.ply", "--resolution", 0.025, "--lattice", "node", "--reduce", "max",
+                    "--out", self.dir / "d.asc")
+        header, rows = read_asc(self.dir / "d.asc")
+        known = {(ix, len(rows) - 1 - row): z for row, line in enumerate(rows) for ix, z in enumerate(line)
+                 if z is not None}
+        lines = [line.split() for line in (folder / "dem_0.025_MAX.asc").read_text().splitlines()
+                 if not line.startswith("//")]
+        points = [tuple(float(word) for word in line[:3]) for line in lines]
+        self.assertEqual(len(known), len(points))
+        for x, y, z in points:
+            cell = (round((x - header["xllcorner"]) / 0.025 - 0.5), round((y - header["yllcorner"]) / 0.025 - 0.5))
+            self.assertAlmostEqual(known[cell], z, delta=1e-6)
+
+    def test_dem_refuses_what_is_no_map(self):
+        (self.dir / "far.xyz").write_text("0 0 0\n1e9 1e9 0\n")
+        process = surefoot("dem", self.dir / "far.xyz", "--resolution", 0.01, "--out", self.dir / "d.asc")
+        self.assertEqual(process.returncode, 2, process.stderr)
+        self.assertIn("larger resolution", process.stderr)
+
+    def test_pictures_and_lengths(self):
+        recording, run = self.dir / "recording", self.dir / "run"
+        self.run_ok("sim", "floor", "--frames", 6, "--out", recording)
+        self.run_ok("run", recording, "--out", run, "--machine", "rex")
+        answer = self.json_of("eval", "trajectory", run / "trajectory.tum", recording / "groundtruth.tum", "--delta",
+                              0.02, "--delta", 7, "--plot", self.dir / "t.png")
+        self.assertEqual([entry["length_m"] for entry in answer["rpe_by_length"]], [0.02, 7])
+        self.assertEqual(answer["rpe_by_length"][1]["count"], 0)
+        self.assertIsNone(answer["rpe_by_length"][1]["trans_rmse_m"])
+        self.assertGreater(min(read_png_size(self.dir / "t.png")), 800)
+        maps = self.json_of("eval", "maps", run, recording, "--out", self.dir / "pictures")
+        for name in ("confusion.png", "error.png"):
+            self.assertGreater(min(read_png_size(self.dir / "pictures" / name)), 400)
+        print(f"floor map: spread {maps['floor']['spread_m']}, edges p99 {maps['edges']['p99_abs_m']}, {maps['sigma']}")
+        cells = maps["elevation_away_from_edges"]["count"]
+        self.assertGreater(cells, 1000)
+        self.assertEqual(sum(entry["count"] for entry in maps["by_distance"]), cells)
+        # Every mapped cell was seen by some frame: nearly all centres fall into an image.
+        self.assertGreater(sum(entry["count"] for entry in maps["by_column"]), 0.9 * cells)
+        self.assertEqual(len(maps["edges"]["by_column"]), 8)
+        self.assertLess(maps["floor"]["tilt_deg"], 1.0)
+        # Without its poses a map is still compared.
+        for name in ("trajectory.tum", "variance.asc", "report.json"):
+            (run / name).unlink()
+        less = self.json_of("eval", "maps", run, recording)
+        self.assertEqual((less["by_distance"], less["by_column"], less["sigma"]["count"]), ([], [], 0))
+        self.assertEqual(less["elevation"], maps["elevation"])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "eval/depth_errors.hpp"
+#include "io/file.hpp"
+#include "io/image_file.hpp"
+#include "io/pfm.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Codes per pixel of disparity where --scale says nothing: KITTI's 16-bit images hold 256ths,
+/// 8-bit images whole pixels.
+constexpr double kScale16 = 256.0;
+constexpr double kScale8 = 1.0;
+/// Middlebury's masks: 255 seen by both eyes, 128 hidden from one, 0 without truth; two-valued
+/// masks are 0 and 255. So only what is nearly white counts.
+constexpr int kLeastMask = 201;
+
+/// Code 0 is "no truth" in every data set that stores disparities as images.
+template <typename Code>
+Image<float> disparity_of(const Image<Code>& codes, double scale) {
+    Image<float> disparity_px(codes.width(), codes.height());
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        const auto code = codes.data()[i];
+        disparity_px.data()[i] = code == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                           : static_cast<float>(static_cast<double>(code) / scale);
+    }
+    return disparity_px;
+}
+
+Result<Image<float>> read_truth(const std::string& path, double scale) {
+    if (io::extension_of(path) == ".pfm") {
+        auto truth_px = io::read_pfm(path);
+        if (!truth_px || scale <= 0.0) return truth_px;
+        for (std::size_t i = 0; i < truth_px->size(); ++i)
+            truth_px->data()[i] =
+                static_cast<float>(static_cast<double>(truth_px->data()[i]) / scale);
+        return truth_px;
+    }
+    const auto bytes = io::read_file(path);
+    if (!bytes) return bytes.error();
+    const auto header = io::check_image(*bytes, path);
+    if (!header) return header.error();
+    if (header->bits == 16) {
+        const auto codes = io::parse_depth_codes(*bytes, path);
+        if (!codes) return codes.error();
+        return disparity_of(*codes, scale > 0.0 ? scale : kScale16);
+    }
+    const auto codes = io::parse_grey_image(*bytes, path);
+    if (!codes) return codes.error();
+    return disparity_of(*codes, scale > 0.0 ? scale : kScale8);
+}
+
+Result<GreyImage> read_mask(const std::string& path) {
+    if (path.empty()) return GreyImage{};
+    auto mask = io::read_grey_image(path);
+    if (!mask) return mask;
+    for (std::size_t i = 0; i < mask->size(); ++i)
+        mask->data()[i] = mask->data()[i] >= kLeastMask ? 255 : 0;
+    return mask;
+}
+
+void print_errors(const eval::DepthErrors& errors) {
+    fmt::print(
+        "{} pixels with truth, {:.2f} % of them known\n"
+        "gaps filled: {:.2f} % over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px\n"
+        "known only:  {:.2f} % over 0.5 px, {:.2f} % over 1 px, {:.2f} % over 2 px; median {:.3f} "
+        "px\n",
+        errors.counted,
+        errors.density_percent,
+        errors.bad.over_0_5_percent,
+        errors.bad.over_1_percent,
+        errors.bad.over_2_percent,
+        errors.known_bad.over_0_5_percent,
+        errors.known_bad.over_1_percent,
+        errors.known_bad.over_2_percent,
+        errors.known.median_abs);
+    if (errors.coverage.count == 0) return;
+    fmt::print(
+        "within 1, 2, 3 sigma: {:.1f}, {:.1f}, {:.1f} %; sparsification {:.3f} (0 = perfect order, "
+        "1 = chance)\n",
+        100.0 * errors.coverage.within_1_sigma,
+        100.0 * errors.coverage.within_2_sigma,
+        100.0 * errors.coverage.within_3_sigma,
+        errors.sparsification.auc);
+}
+
+}  // namespace
+
+int eval_depth(const EvalDepthOptions& options) {
+    const auto estimate_px = io::read_pfm(options.estimate);
+    if (!estimate_px) return report(estimate_px.error());
+    const auto truth_px = read_truth(options.truth, options.scale);
+    if (!truth_px) return report(truth_px.error());
+    const auto mask = read_mask(options.mask);
+    if (!mask) return report(mask.error());
+    const auto sigma_px = options.sigma.empty() ? Image<float>{} : io::read_pfm(options.sigma);
+    if (!sigma_px) return report(sigma_px.error());
+    const auto errors =
+        eval::depth_errors({estimate_px->view(), truth_px->view(), mask->view(), sigma_px->view()});
+    if (!errors) return report(errors.error());
+    if (errors->counted == 0) {
+        return report(
+            input_error(fmt::format("{}: no pixel has a truth{}",
+                                    options.truth,
+                                    options.mask.empty() ? "" : " that the mask lets through")));
+    }
+    if (options.common.json) {
+        fmt::print("{}\n", depth_json(*errors));
+    } else {
+        print_errors(*errors);
+    }
+    return kExitOk;
+}
+
+}  // namespace surefoot::app
