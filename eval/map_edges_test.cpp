@@ -109,6 +109,13 @@ TEST(LevelFloor, KeepsWhatIsWithinTheBandOnly) {
     const std::vector<int> expected = {1, 1, 1, 0, 0, 0};
     for (int ix = 0; ix < 6; ++ix)
         EXPECT_EQ(mask.at(ix, 0), expected[static_cast<std::size_t>(ix)]);
+    // Of two equal surfaces the lower one; the unknown cell between makes no edge.
+    const CellMask lower = level_floor(layer_of(5, {0.5F, 0.5F, kNan, 0.1F, 0.1F}), {});
+    EXPECT_EQ(lower.at(0, 0), 0);
+    EXPECT_EQ(lower.at(3, 0), 1);
+    const CellMask other_side = level_floor(layer_of(5, {0.1F, 0.1F, kNan, 0.5F, 0.5F}), {});
+    EXPECT_EQ(other_side.at(0, 0), 1);
+    EXPECT_EQ(other_side.at(3, 0), 0);
     const CellMask none = level_floor(grid::Layer(3, 3, kNan), {});
     for (std::size_t i = 0; i < none.size(); ++i) EXPECT_EQ(none.data()[i], 0);
 }

@@ -40,8 +40,8 @@ TEST(Sightings, TheLatestPoseCounts) {
     const grid::GridGeometry geometry{0.5, 20, 1, {0.0, -0.25}};
     const grid::Layer height(20, 1, 0.0F);
     const Trajectory there_and_round = {camera_at(0.0), camera_at(2.0), camera_at(2.0, M_PI)};
-    const Sightings seen = last_sightings(geometry, height, there_and_round, kView, 5.0);
-    EXPECT_NEAR(static_cast<double>(seen.range_m.at(10, 0)), 3.25, 1e-6);  // 5.25 m, from 2 m
+    const Sightings seen = last_sightings(geometry, height, there_and_round, kView, 6.0);
+    EXPECT_NEAR(static_cast<double>(seen.range_m.at(10, 0)), 3.25, 1e-6);  // seen from 0 m too
     EXPECT_NEAR(static_cast<double>(seen.range_m.at(6, 0)), 3.25, 1e-6);   // 3.25 m, from 0 m
     // Behind every camera but the last, which is too near to see it.
     EXPECT_TRUE(std::isnan(seen.range_m.at(1, 0)));

@@ -55,7 +55,7 @@ Status write_plot(const EvalTrajectoryOptions& options,
                                              errors.path_length_m,
                                              options.align)});
     const auto over_time = eval::render_error_over_time(
-        samples, {"Position error over time", fmt::format("ATE {:.4g} m rmse", errors.ate_rmse_m)});
+        samples, {"Position error over time", fmt::format("ATE {:.4f} m rmse", errors.ate_rmse_m)});
     const auto png = eval::encode_png(eval::stacked(above, over_time));
     return io::write_file(options.plot_file, std::string(png.begin(), png.end()));
 }
