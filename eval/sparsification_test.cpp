@@ -71,7 +71,8 @@ TEST(Sparsification, ARandomOrderIsOneAndAnHonestSigmaInBetween) {
         random_sum += sparsification(errors, random).auc;
         honest_sum += sparsification(errors, honest).auc;
     }
-    // The area of one random order scatters by about 0.04 here; its mean over 40 by 0.006.
+    // The figure of one random order scatters by about 0.053 here, the mean of 40 by 0.0084; three
+    // times that is allowed.
     EXPECT_NEAR(random_sum / kTrials, 1.0, 0.025);
     EXPECT_GT(honest_sum / kTrials, 0.1);
     EXPECT_LT(honest_sum / kTrials, 0.6);

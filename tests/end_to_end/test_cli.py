@@ -10,8 +10,9 @@ import unittest
 from surefoot_cli import ROOT, CliTest, grey_png, read_asc, surefoot
 
 # In the order in which one example needs another's results.
-VERBS = [["sim"], ["run"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"],
-         ["eval", "trajectory"], ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["config"], ["doctor"], ["bench"], ["record"], ["replay"], ["info"]]
+VERBS = [["sim"], ["run"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"], ["eval", "trajectory"],
+         ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["config"], ["doctor"], ["bench"], ["record"],
+         ["replay"], ["info"]]
 GATE_EXIT_CODES = (0, 3, 4)
 
 
