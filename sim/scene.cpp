@@ -36,9 +36,9 @@ void Scene::add(Primitive primitive, int material, Label label) {
     primitives_.push_back(std::move(primitive));
 }
 
-void Scene::add_floor(const Floor& floor, int material, int pit_material) {
+void Scene::add_floor(const Floor& floor, int material, int pit_material, Label label) {
     const std::size_t first = surfaces_.size();
-    add(floor, material, Label::floor);
+    add(floor, material, label);
     for (std::size_t face = first + 1; face < surfaces_.size(); ++face) {
         surfaces_[face].material = pit_material;
         surfaces_[face].label = Label::drop;
@@ -123,6 +123,16 @@ std::optional<SurfaceHeight> Scene::height_at(double x_m, double y_m) const {
         highest = SurfaceHeight{column->top_m, first_surface_[k] + column->face};
     }
     return highest;
+}
+
+std::optional<int> Scene::solid_at(const Vector3d& point_m) const {
+    for (int k = 0; k < primitives(); ++k) {
+        const auto column =
+            std::visit([&](const auto& shape) { return shape.column(point_m.x(), point_m.y()); },
+                       primitives_[static_cast<std::size_t>(k)]);
+        if (column && point_m.z() >= column->bottom_m && point_m.z() <= column->top_m) return k;
+    }
+    return std::nullopt;
 }
 
 std::optional<double> Scene::highest_over(const Rect& cell) const {

@@ -79,7 +79,7 @@ class Scene {
     int add_material(const Material& material);
     void add(Primitive primitive, int material, Label label);
     /// Bottoms of the pits of a floor are labelled as a drop and may look different.
-    void add_floor(const Floor& floor, int material, int pit_material);
+    void add_floor(const Floor& floor, int material, int pit_material, Label label = Label::floor);
 
     void light(const Lighting& lighting) { lighting_ = lighting; }
     [[nodiscard]] const Lighting& lighting() const noexcept { return lighting_; }
@@ -103,6 +103,8 @@ class Scene {
     /// Every upward surface that is not buried in another solid, highest first (table, floor under
     /// it).
     [[nodiscard]] std::vector<SurfaceHeight> surfaces_at(double x_m, double y_m) const;
+    /// The first primitive that is solid at a point, its surface included.
+    [[nodiscard]] std::optional<int> solid_at(const Eigen::Vector3d& point_m) const;
     /// Highest point over the inside of a cell, exact; nothing where there is no ground.
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/motion.hpp"
+#include "sim/motion_script.hpp"
 #include "sim/scene.hpp"
 #include "surefoot/core/result.hpp"
 
@@ -17,19 +18,32 @@ struct SceneInfo {
     std::string description;  ///< one line
 };
 
+/// What the seed has drawn.
+struct SceneParameter {
+    std::string name;
+    std::string value;
+
+    friend bool operator==(const SceneParameter&, const SceneParameter&) = default;
+};
+
 /// A place and the way through it. The world frame is the ground under the first base_link (z = 0
 /// on that floor, x ahead), which is also where odometry starts.
 struct ScriptedScene {
     SceneInfo info;
+    std::vector<SceneParameter> parameters;
     Scene scene;
+    MotionScript script;
     std::shared_ptr<const Motion> motion;
+    std::vector<StepEvent> steps;  ///< of a walking machine
 };
 
+/// The scenes of sim/scenes/, which travel inside the program.
 [[nodiscard]] std::vector<SceneInfo> list_scenes();
 
-/// The seed shifts the textures and moves the stops of the path by about a centimetre (never the
-/// first one); the geometry is always the same. An unknown name is a usage error that lists the
-/// names.
+/// The seed draws the parameters of the scene, shifts its textures and moves the stops of the path
+/// by about a centimetre (never the first one). `name` is one of the list, or a scene file that
+/// ends in ".yaml" ("my/kerb.yaml", or "my/kerbs.yaml#kerb_low" where it holds several). An unknown
+/// name is a usage error that lists the names.
 [[nodiscard]] Result<ScriptedScene> make_scene(const std::string& name, std::uint64_t seed);
 
 /// Where things stand in `demo_stairs`, for tests and demonstrations (metres, world frame).

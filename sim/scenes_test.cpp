@@ -4,7 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numbers>
+#include <set>
 
+#include "sim/embedded_scenes.hpp"
 #include "sim/rigs.hpp"
 #include "sim/truth.hpp"
 #include "surefoot/core/time.hpp"
@@ -39,13 +46,27 @@ double seen_share(const SceneTruth& truth, const Rect& area) {
     return seen / static_cast<double>(mask.size());
 }
 
+TEST(ScenesTest, EveryFileInTheProgramIsWellFormedAndNamesDiffer) {
+    std::set<std::string> names;
+    for (const SceneFile& file : embedded_scenes()) {
+        const auto infos = read_scene_infos(file);
+        ASSERT_TRUE(infos) << infos.error().message;
+        for (const SceneInfo& info : *infos) {
+            EXPECT_TRUE(names.insert(info.name).second) << info.name << " is there twice";
+        }
+    }
+    EXPECT_GE(names.size(), 40U);
+}
+
 TEST(ScenesTest, EveryListedSceneCanBeMadeAndIsClosed) {
     for (const SceneInfo& info : list_scenes()) {
         EXPECT_FALSE(info.description.empty()) << info.name;
         EXPECT_EQ(info.description.find('\n'), std::string::npos) << info.name;
-        const ScriptedScene script = make_scene(info.name, 3).value();
+        const auto made = make_scene(info.name, 3);
+        ASSERT_TRUE(made) << made.error().message;
+        const ScriptedScene& script = *made;
         EXPECT_EQ(script.info.name, info.name);
-        EXPECT_EQ(script.scene.height_at(0.0, 0.0)->z_m, 0.0) << info.name;
+        EXPECT_NEAR(script.scene.height_at(0.0, 0.0)->z_m, 0.0, 1e-12) << info.name;
         // From every place of the path the view ends somewhere: on the ground or at a wall.
         for (double t_s = 0.0; t_s < script.motion->duration_s(); t_s += 1.7) {
             const Pose T = script.motion->at(t_s).T_world_body;
@@ -62,9 +83,10 @@ TEST(ScenesTest, UnknownNamesListWhatThereIs) {
     const auto scene = make_scene("moon", 1);
     ASSERT_FALSE(scene);
     EXPECT_EQ(scene.error().code, ErrorCode::usage);
-    EXPECT_EQ(
-        scene.error().message,
-        "simulator: no scene is named 'moon'; there are: demo_stairs, floor, platform_edge, table");
+    EXPECT_EQ(scene.error().message.find("simulator: no scene is named 'moon'; there are: "), 0U);
+    for (const SceneInfo& info : list_scenes()) {
+        EXPECT_NE(scene.error().message.find(info.name), std::string::npos) << info.name;
+    }
     const auto rig = rig_preset("pinhole");
     ASSERT_FALSE(rig);
     EXPECT_EQ(rig.error().code, ErrorCode::usage);
@@ -132,6 +154,262 @@ TEST(ScenesTest, BeforeThePlatformEdgeTheNextStepIsHalfOverIt) {
     EXPECT_EQ(truth.scene.height_at(platform_edge::kEdge_x_m + 0.01, 0.0)->z_m,
               -platform_edge::kHeight_m);
     EXPECT_EQ(seen_share(truth, {{x_m - 0.2, -0.3}, {platform_edge::kEdge_x_m, 0.3}}), 1.0);
+}
+
+/// Feet and body of the machine on the ground: 0.65 m long, 0.66 m wide.
+constexpr double kHalfLength_m = 0.325;
+constexpr double kHalfWidth_m = 0.33;
+
+/// Largest height difference between the ground under the machine and z = 0, along the whole path.
+double worst_ground_m(const ScriptedScene& script) {
+    constexpr int kHalfGrid = 2;
+    double worst_m = 0.0;
+    for (double t_s = 0.0; t_s < script.motion->duration_s() + 0.5; t_s += 0.5) {
+        const Pose T = script.motion->at(t_s).T_world_body;
+        for (int ix = -kHalfGrid; ix <= kHalfGrid; ++ix) {
+            for (int iy = -kHalfGrid; iy <= kHalfGrid; ++iy) {
+                const Vector3d p =
+                    T *
+                    Vector3d(kHalfLength_m * ix / kHalfGrid, kHalfWidth_m * iy / kHalfGrid, 0.0);
+                const auto ground = script.scene.height_at(p.x(), p.y());
+                worst_m = std::max(worst_m, ground ? std::abs(ground->z_m) : 1e3);
+            }
+        }
+    }
+    return worst_m;
+}
+
+TEST(ScenesTest, EverySeedLeavesTheWayFreeAndDrawsItsOwnParameters) {
+    // Where the ground of the way is not flat: 1:50 across half the width, and a rug of 8 mm.
+    const std::map<std::string, double> uneven_m{{"cross_fall", 0.0075}, {"room", 0.008}};
+    const std::set<std::string> fixed{"demo_stairs", "floor", "platform_edge", "table"};
+    for (const SceneInfo& info : list_scenes()) {
+        const auto uneven = uneven_m.find(info.name);
+        const double limit_m = uneven != uneven_m.end() ? uneven->second : 1e-9;
+        std::set<std::string> drawn;
+        for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+            const auto script = make_scene(info.name, seed);
+            ASSERT_TRUE(script) << info.name << " seed " << seed << ": " << script.error().message;
+            EXPECT_LE(worst_ground_m(*script), limit_m) << info.name << " seed " << seed;
+            std::string all;
+            for (const auto& parameter : script->parameters) all += parameter.value + " ";
+            drawn.insert(all);
+        }
+        EXPECT_EQ(drawn.size(), fixed.contains(info.name) ? 1U : 20U) << info.name;
+    }
+}
+
+TEST(ScenesTest, TheSameSeedIsTheSameScene) {
+    for (const SceneInfo& info : list_scenes()) {
+        const ScriptedScene a = make_scene(info.name, 7).value();
+        const ScriptedScene b = make_scene(info.name, 7).value();
+        EXPECT_EQ(a.parameters, b.parameters) << info.name;
+        const Lattice lattice{{-1.0, -2.0}, 60, 40, 0.1};
+        const Image<float> dem_a = dem(a.scene, lattice);
+        const Image<float> dem_b = dem(b.scene, lattice);
+        // Bytes: NaN, where no ground is, equals itself.
+        EXPECT_EQ(std::memcmp(dem_a.data(), dem_b.data(), dem_a.size() * sizeof(float)), 0)
+            << info.name;
+        EXPECT_EQ(a.motion->at(5.0).T_world_body.translation_m,
+                  b.motion->at(5.0).T_world_body.translation_m);
+    }
+}
+
+/// Labels that the left camera sees in at least 1 in 500 of its rays from some place of the path.
+std::set<Label> seen_labels(const ScriptedScene& script) {
+    const camera::StereoRig rig = rig_preset("zed_vga").value();
+    std::set<Label> seen;
+    for (double share : {0.0, 0.5, 1.0}) {
+        const Pose T_world_camera =
+            script.motion->at(share * script.motion->duration_s()).T_world_body *
+            rig.body_from_left();
+        std::map<Label, int> count;
+        int rays = 0;
+        for (int v = 4; v < rig.left.height; v += 8) {
+            for (int u = 4; u < rig.left.width; u += 8) {
+                const auto ray = camera::unproject(rig.left.model, {u, v});
+                ++rays;
+                const auto hit = script.scene.intersect(
+                    T_world_camera.translation_m, T_world_camera.rotation * ray->normalized());
+                if (!hit) continue;
+                ++count[script.scene.surfaces()[static_cast<std::size_t>(hit->surface)].label];
+            }
+        }
+        for (const auto& [label, hits] : count) {
+            if (hits * 500 >= rays) seen.insert(label);
+        }
+    }
+    return seen;
+}
+
+TEST(ScenesTest, TheCameraSeesWhatTheSceneIsAbout) {
+    const std::vector<std::pair<std::string, Label>> subjects{
+        {"stairs", Label::step},  {"flight", Label::step},       {"spiral", Label::step},
+        {"kerb_up", Label::kerb}, {"kerb_down", Label::drop},    {"kerb_ramp", Label::ramp},
+        {"ramp_1", Label::ramp},  {"sill", Label::sill},         {"door", Label::door},
+        {"table", Label::table},  {"overhang", Label::overhang}, {"hole", Label::drop},
+        {"drop", Label::drop},    {"platform", Label::drop},     {"corridor", Label::door},
+        {"room", Label::table},   {"demo", Label::step},         {"cross_fall", Label::floor},
+        {"floor", Label::floor},
+    };
+    for (const SceneInfo& info : list_scenes()) {
+        const auto subject = std::find_if(subjects.begin(), subjects.end(), [&](const auto& entry) {
+            return info.name.starts_with(entry.first);
+        });
+        ASSERT_NE(subject, subjects.end()) << "no subject known for " << info.name;
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            const auto seen = seen_labels(make_scene(info.name, seed).value());
+            EXPECT_TRUE(seen.contains(subject->second)) << info.name << " seed " << seed;
+            EXPECT_TRUE(seen.contains(Label::floor)) << info.name << " seed " << seed;
+        }
+    }
+}
+
+/// Truth of a randomised scene: heights along the line through its subject.
+class Figures {
+  public:
+    Figures(const std::string& name, std::uint64_t seed)
+        : script_(make_scene(name, seed).value()) {}
+
+    [[nodiscard]] double parameter(const std::string& name) const {
+        for (const auto& drawn : script_.parameters) {
+            if (drawn.name == name) return std::stod(drawn.value);
+        }
+        ADD_FAILURE() << script_.info.name << " has no parameter " << name;
+        return 0.0;
+    }
+    /// `along_m` behind the first edge, `across_m` to the left, in the turned frame of the subject.
+    [[nodiscard]] double height_m(double along_m, double across_m) const {
+        const double yaw_rad = parameter("angle_deg") * std::numbers::pi / 180.0;
+        const double c = std::cos(yaw_rad);
+        const double s = std::sin(yaw_rad);
+        return script_.scene
+            .height_at(parameter("distance_m") + c * along_m - s * across_m,
+                       s * along_m + c * across_m)
+            ->z_m;
+    }
+
+  private:
+    ScriptedScene script_;
+};
+
+struct StairClass {
+    const char* name;
+    double rise_m;
+    double going_m;
+};
+
+TEST(ScenesTest, StairsHaveTheFiguresOfTheirClass) {
+    constexpr double kBeside_m = 1e-6;
+    const std::vector<StairClass> classes{{"nz_service", 0.22, 0.22},
+                                          {"nz_secondary", 0.20, 0.25},
+                                          {"nz_common", 0.19, 0.28},
+                                          {"nz_accessible", 0.18, 0.31},
+                                          {"ada", 0.15, 0.28}};
+    for (const StairClass& stair : classes) {
+        for (const int direction : {1, -1}) {
+            const std::string name =
+                std::string(direction > 0 ? "stairs_up_" : "stairs_down_") + stair.name;
+            for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+                const Figures figures(name, seed);
+                const int steps = static_cast<int>(figures.parameter("steps"));
+                for (int edge = 0; edge < steps; ++edge) {
+                    const double along_m = edge * stair.going_m;
+                    const double across_m = figures.parameter("lateral_m");
+                    const double before_m = figures.height_m(along_m - kBeside_m, across_m);
+                    const double behind_m = figures.height_m(along_m + kBeside_m, across_m);
+                    EXPECT_NEAR(before_m, direction * edge * stair.rise_m, 1e-9)
+                        << name << " seed " << seed << " edge " << edge;
+                    EXPECT_NEAR(behind_m - before_m, direction * stair.rise_m, 1e-9)
+                        << name << " seed " << seed << " edge " << edge;
+                }
+                const double end_m = (steps - 1) * stair.going_m + 0.5;
+                EXPECT_NEAR(figures.height_m(end_m, figures.parameter("lateral_m")),
+                            direction * steps * stair.rise_m,
+                            1e-9)
+                    << name << " seed " << seed;
+            }
+        }
+    }
+}
+
+TEST(ScenesTest, TwentyStepsHaveALandingAfterTen) {
+    for (const int direction : {1, -1}) {
+        const Figures figures(direction > 0 ? "flight_20_up" : "flight_20_down", 4);
+        const double across_m = figures.parameter("lateral_m");
+        const double rise_m = figures.parameter("rise_m");
+        const double going_m = figures.parameter("going_m");
+        EXPECT_GE(rise_m, 0.17);
+        EXPECT_LE(rise_m, 0.18);
+        int edges = 0;
+        double landing_m = 0.0;
+        double last_edge_m = 0.0;
+        double last_m = figures.height_m(-0.1, across_m);
+        for (double along_m = -0.1; along_m < 18 * going_m + 1.2 + 0.3; along_m += 0.001) {
+            const double now_m = figures.height_m(along_m, across_m);
+            if (now_m == last_m) continue;
+            EXPECT_NEAR(now_m - last_m, direction * rise_m, 1e-9) << "at " << along_m;
+            last_m = now_m;
+            if (++edges == 11) landing_m = along_m - last_edge_m;
+            last_edge_m = along_m;
+        }
+        EXPECT_EQ(edges, 20);
+        EXPECT_NEAR(landing_m, 1.2, 0.0021);
+        EXPECT_NEAR(last_m, direction * 20 * rise_m, 1e-9);
+    }
+}
+
+TEST(ScenesTest, KerbsRampsAndSillsHaveTheirFigures) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        for (const int height_mm : {75, 100, 150}) {
+            const std::string mm = std::to_string(height_mm);
+            const Figures up("kerb_up_" + mm, seed);
+            const Figures down("kerb_down_" + mm, seed);
+            for (const double across_m : {-0.8, 0.0, 0.8}) {
+                EXPECT_NEAR(up.height_m(-1e-6, across_m), 0.0, 1e-9);
+                EXPECT_NEAR(up.height_m(1e-6, across_m), 1e-3 * height_mm, 1e-9);
+                EXPECT_NEAR(up.height_m(0.5, across_m), 1e-3 * height_mm, 1e-9);
+                EXPECT_NEAR(down.height_m(-1e-6, across_m), 0.0, 1e-9);
+                EXPECT_NEAR(down.height_m(1e-6, across_m), -1e-3 * height_mm, 1e-9);
+            }
+        }
+        for (const auto& [name, slope] :
+             std::map<std::string, double>{{"kerb_ramp_up", 1.0 / 8},
+                                           {"kerb_ramp_down", -1.0 / 8},
+                                           {"ramp_1_12_up", 1.0 / 12},
+                                           {"ramp_1_12_down", -1.0 / 12}}) {
+            const Figures figures(name, seed);
+            const double across_m = figures.parameter("lateral_m");
+            for (const double along_m : {0.0, 0.1, 0.3, 0.6}) {
+                EXPECT_NEAR(figures.height_m(along_m, across_m), slope * along_m, 1e-9) << name;
+            }
+        }
+        for (const int sill_mm : {6, 13, 20}) {
+            const Figures figures("sill_" + std::to_string(sill_mm), seed);
+            const double across_m = 0.3 * figures.parameter("lateral_m");
+            EXPECT_NEAR(figures.height_m(-1e-6, across_m), 0.0, 1e-9);
+            EXPECT_NEAR(figures.height_m(1e-6, across_m), 1e-3 * sill_mm, 1e-9);
+            EXPECT_NEAR(figures.height_m(0.09, across_m), 1e-3 * sill_mm, 1e-9);
+        }
+        const Scene fall = make_scene("cross_fall", seed)->scene;
+        const double left_m = fall.height_at(1.0, 1.0)->z_m;
+        EXPECT_NEAR(std::abs(left_m), 1.0 / 50, 1e-9);
+        EXPECT_NEAR(fall.height_at(1.0, -1.0)->z_m, -left_m, 1e-9);
+        EXPECT_NEAR(fall.height_at(3.0, 1.0)->z_m, left_m, 1e-9);
+    }
+}
+
+TEST(ScenesTest, ASceneFileCanBeGivenByItsPath) {
+    const ScriptedScene built_in = make_scene("kerb_up_100", 3).value();
+    const ScriptedScene from_file = make_scene("sim/scenes/kerb_up.yaml#kerb_up_100", 3).value();
+    EXPECT_EQ(from_file.info.name, "kerb_up_100");
+    EXPECT_EQ(from_file.parameters, built_in.parameters);
+    EXPECT_EQ(make_scene("sim/scenes/table.yaml", 3)->info.name, "table");
+    EXPECT_EQ(make_scene("no/such.yaml", 3).error().message,
+              "no/such.yaml: cannot be opened for reading");
+    const auto folder = make_scene("sim/scenes/kerb_up.yaml", 3);
+    ASSERT_FALSE(folder);
+    EXPECT_NE(folder.error().message.find("add '#NAME'"), std::string::npos);
 }
 
 }  // namespace

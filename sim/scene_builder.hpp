@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/motion_script.hpp"
+#include "sim/scene.hpp"
+#include "sim/scene_node.hpp"
+#include "sim/scene_reader.hpp"
+#include "sim/solids.hpp"
+#include "surefoot/core/rng.hpp"
+
+namespace surefoot::sim {
+
+/// Turns the lists of a scene file into a scene. Problems are kept by the reader.
+class SceneBuilder {
+  public:
+    SceneBuilder(SceneReader& reader, std::uint64_t seed);
+
+    void add_materials(const SceneNode& group);
+    void add_lighting(const SceneNode& group);
+    /// The list in the frame of `place`.
+    void add_solids(const SceneNode& list, const Place& place);
+    [[nodiscard]] MotionScript read_motion(const SceneNode& group);
+
+    [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
+    [[nodiscard]] Scene take_scene() { return std::move(scene_); }
+    /// Line of the file that a primitive comes from.
+    [[nodiscard]] int line_of(int primitive) const {
+        return lines_[static_cast<std::size_t>(primitive)];
+    }
+
+  private:
+    void add_solid(const SceneNode& item, const Place& place);
+    template <typename Spec>
+    void add_one(const SceneNode& node, const Place& place);
+    template <typename Spec>
+    void place_one(const SceneNode& node, const Spec& spec, const Place& place);
+    void add_floor(const SceneNode& node, const Place& place);
+    void add_walls(const SceneNode& node, const Place& place);
+    void add_group(const SceneNode& node, const Place& place);
+    void add_repeat(const SceneNode& node, const Place& place);
+
+    SceneReader& reader_;
+    Rng rng_;
+    Scene scene_;
+    std::vector<std::string> material_texts_;
+    std::vector<const char*> material_names_;
+    std::vector<int> lines_;
+};
+
+}  // namespace surefoot::sim

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/scenes.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::sim {
+
+/// Scenes are data: a YAML file holds one scene, or one geometry with several `variants` (the same
+/// stairs with the figures of each class).
+///
+///     name: kerb_ahead                  # or  variants: {name: {description: ..., figure: ...}}
+///     description: one line
+///     parameters:                       # drawn by the seed, in this order
+///       distance_m: {uniform: [1.5, 2.5]}
+///       look: {choice: [concrete, patches]}
+///       end_m: distance_m - 0.45        # expressions of the parameters above
+///     lighting: {ambient: 0.5}          # keys of Lighting
+///     materials:
+///       ground: {pattern: look, albedo: 0.4}   # keys of Material
+///     solids:                           # keys of the structs of solids.hpp
+///       - floor: {min_x_m: -3, min_y_m: -5, max_x_m: 9, max_y_m: 5, material: ground}
+///       - group: {x_m: distance_m, heading_deg: 5, solids: [...]}
+///       - repeat: {count: 4, name: k, solids: [...]}      # k = 0, 1, 2, 3
+///     motion:
+///       carrier: trolley
+///       waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: end_m, y_m: 0}]
+///
+/// Strict: unknown keys, wrong types, values out of range, impossible geometry and a camera inside
+/// a solid are input errors that name file, line, value and limit.
+struct SceneFile {
+    std::string file;  ///< for messages
+    std::string_view text;
+};
+
+/// What a scene file may not exceed; images number surfaces with 15 bits.
+inline constexpr int kMaxPrimitives = 2000;
+
+/// The scenes that a file holds.
+[[nodiscard]] Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file);
+
+/// One scene of a file; `name` may be empty where the file holds only one.
+[[nodiscard]] Result<ScriptedScene> read_scene(const SceneFile& file,
+                                               const std::string& name,
+                                               std::uint64_t seed);
+
+}  // namespace surefoot::sim

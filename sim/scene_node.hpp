@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::sim {
+
+/// A scene file as a tree of texts in which every value knows its line. Keys of a group are unique
+/// and keep the order of the file.
+struct SceneNode {
+    enum class Kind : std::uint8_t { nothing, text, list, group };
+
+    Kind kind = Kind::nothing;
+    int line = 1;                  ///< from 1; of the key, for a value of a group
+    std::string key;               ///< of a value of a group
+    std::string text;              ///< of a single value
+    std::vector<SceneNode> items;  ///< of a list or a group
+
+    /// The value of a key of this group, or nullptr.
+    [[nodiscard]] const SceneNode* find(std::string_view name) const noexcept;
+};
+
+/// "a list", "a group of keys" ... for messages.
+[[nodiscard]] const char* to_string(SceneNode::Kind kind) noexcept;
+
+/// `file` is only a name for messages. Refuses more than 1 MB, 32 levels or 100 000 values, aliases
+/// counted each time.
+[[nodiscard]] Result<SceneNode> parse_scene_node(std::string_view text, const std::string& file);
+
+}  // namespace surefoot::sim
