@@ -25,7 +25,7 @@ struct RexGaitConfig {
     double step_s = 10.0;                 ///< 0.35 m at the data sheet's 0.0347 m/s
     double settle_s = 1.5;                ///< of it: standing until the frame has stopped ringing
     double foot_clearance_m = 0.01;       ///< of the toes of a swinging foot; ankles rise by 22 mm
-    Spread lateral_shift_m{0.10, 0.115};  ///< of base_link over the standing foot, to each side
+    Spread lateral_shift_m{0.10, 0.11};  ///< of base_link over the standing foot, to each side
     Spread roll_deg{3.0, 4.0};            ///< toward the standing foot
     Spread yaw_deg{1.5, 3.0};             ///< toward the foot behind
     Spread ring_hz{2.0, 6.0};             ///< structural ringing after a foot strike
