@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRing_s = 1.2;  ///< a ringing is over after this
 constexpr double kHanging_rad =
-    4.0 * std::numbers::pi / 180.0;  ///< ASSUMPTION: toes of a swinging foot
+    3.0 * std::numbers::pi / 180.0;  ///< ASSUMPTION: toes of a swinging foot
 constexpr double kPulse_s = 0.12;    ///< ASSUMPTION: length of a foot strike
 
 /// u^n of a time that runs from 0 to 1 within `length_s`.
