@@ -122,7 +122,9 @@ void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
                           o,
                           simulate,
                           exit_code);
-    verb->add_option("scene", o.scene, "which scene; see --list")->type_name("SCENE");
+    verb->add_option(
+            "scene", o.scene, "which scene; see --list; or a scene file: my/scene.yaml[#NAME]")
+        ->type_name("SCENE");
     verb->add_option("--out", o.out_dir, "folder for the recording")->type_name("DIR");
     verb->add_option("--frames", o.frames, "stop after this many frames")
         ->check(CLI::PositiveNumber);
@@ -130,7 +132,8 @@ void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
         ->type_name("HZ")
         ->check(CLI::Range(0.1, 1000.0));
     verb->add_flag("--depth", o.depth, "write the exact depth of every frame too (PFM, 1 MB each)");
-    verb->add_flag("--list", o.list, "print the scenes");
+    verb->add_flag(
+        "--list", o.list, "print the scenes; with --out also pictures of each, index.html");
 }
 
 void add_rate(CLI::App& app, RateOptions& o, int& exit_code) {

@@ -7,6 +7,7 @@
 #include "apps/surefoot/copy_frames.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/scene_gallery.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/dem_file.hpp"
@@ -20,14 +21,18 @@
 namespace surefoot::app {
 namespace {
 
-int list(bool json) {
+/// Names and descriptions; with a folder also a picture of each scene.
+int list(const SimOptions& options) {
     const auto scenes = sim::list_scenes();
-    if (json) {
+    if (options.common.json) {
         fmt::print("{}\n", scenes_json(scenes));
     } else {
-        for (const auto& scene : scenes) fmt::print("{:<16}{}\n", scene.name, scene.description);
+        for (const auto& scene : scenes) fmt::print("{:<26}{}\n", scene.name, scene.description);
     }
-    return kExitOk;
+    if (options.out_dir.empty()) return kExitOk;
+    const auto executor = make_executor(options.common);
+    const auto status = write_scene_gallery(options.out_dir, options.common.seed, *executor);
+    return status ? kExitOk : report(status.error());
 }
 
 /// Cells that hold the whole path and what can be seen from it.
@@ -79,7 +84,7 @@ Status write_truth(const std::string& out,
 }  // namespace
 
 int simulate(const SimOptions& options) {
-    if (options.list) return list(options.common.json);
+    if (options.list) return list(options);
     if (options.scene.empty() || options.out_dir.empty()) {
         return report(usage_error(
             "sim: a scene and --out are needed; 'surefoot sim --list' shows the scenes"));
