@@ -46,6 +46,7 @@ double median_of(std::vector<double> values) {
 double spread_of(const std::vector<double>& residuals_m) {
     const double middle_m = median_of(residuals_m);
     std::vector<double> off_m;
+    off_m.reserve(residuals_m.size());
     for (const double residual_m : residuals_m) off_m.push_back(std::abs(residual_m - middle_m));
     return kSigmaPerMad * median_of(std::move(off_m));
 }
@@ -53,6 +54,7 @@ double spread_of(const std::vector<double>& residuals_m) {
 std::vector<double> residuals_of(const std::vector<Eigen::Vector3d>& points_m,
                                  const geometry::Plane& plane) {
     std::vector<double> residuals_m;
+    residuals_m.reserve(points_m.size());
     for (const Eigen::Vector3d& p_m : points_m) residuals_m.push_back(plane.signed_distance_m(p_m));
     return residuals_m;
 }
