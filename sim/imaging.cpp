@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::size_t kQuantiles = 1U << 14U;
 
+/// A hash of 64 bits serves four neighbouring pixels, 14 bits each.
+constexpr std::uint32_t kPixelsPerHash = 4;
+
+std::size_t quantile(std::uint64_t hash, std::uint32_t lane) noexcept {
+    return static_cast<std::size_t>(hash >> (8U + 14U * lane)) & (kQuantiles - 1U);
+}
+
 /// Solves Phi(x) = p for p < 1/2. log Phi is concave and grows, so Newton's method on it goes left
 /// of the root at most once and then approaches it from there.
 double normal_quantile(double p) {
@@ -51,16 +58,63 @@ PixelNoise::PixelNoise() : quantiles_(kQuantiles) {
     }
 }
 
-float PixelNoise::normal(std::uint64_t seed, std::uint64_t stream, std::uint32_t pixel) const {
-    const std::uint64_t hash = mix_seed(mix_seed(seed, stream), pixel);
-    return quantiles_[static_cast<std::size_t>(hash >> 50U)];
+std::uint64_t PixelNoise::key(std::uint64_t seed, std::uint64_t stream) noexcept {
+    return mix_seed(seed, stream);
 }
 
-std::uint8_t exposed_pixel(const ImagingConfig& config, float signal_dn, float normal) {
-    const auto read = static_cast<float>(config.read_noise_dn);
-    const float variance = read * read + static_cast<float>(config.shot_noise_dn) * signal_dn;
-    const float value = signal_dn + std::sqrt(variance) * normal;
+float PixelNoise::normal(std::uint64_t key, std::uint32_t pixel) const noexcept {
+    return quantiles_[quantile(mix_seed(key, pixel / kPixelsPerHash), pixel % kPixelsPerHash)];
+}
+
+void PixelNoise::fill(std::uint64_t key,
+                      std::uint32_t first_pixel,
+                      std::span<float> out) const noexcept {
+    std::uint32_t pixel = first_pixel;
+    std::uint64_t hash = mix_seed(key, pixel / kPixelsPerHash);
+    for (float& normal : out) {
+        if (pixel % kPixelsPerHash == 0) hash = mix_seed(key, pixel / kPixelsPerHash);
+        normal = quantiles_[quantile(hash, pixel % kPixelsPerHash)];
+        ++pixel;
+    }
+}
+
+std::uint8_t exposed_pixel(const ImagingConfig& config,
+                           double gain,
+                           float signal_dn,
+                           float normal) {
+    const auto read = static_cast<float>(gain * config.read_noise_dn);
+    const auto shot = static_cast<float>(gain * config.shot_noise_dn);
+    const float value = signal_dn + std::sqrt(read * read + shot * signal_dn) * normal;
     return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
+}
+
+void expose_row(const ImagingConfig& config,
+                double gain,
+                double light,
+                std::span<const float> signal_dn,
+                std::span<const float> normals,
+                std::span<std::uint8_t> out) {
+    const auto factor = static_cast<float>(light);
+    const auto read = static_cast<float>(gain * config.read_noise_dn);
+    const auto shot = static_cast<float>(gain * config.shot_noise_dn);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const float signal = factor * signal_dn[i];
+        const float value = signal + std::sqrt(read * read + shot * signal) * normals[i];
+        out[i] =
+            static_cast<std::uint8_t>(static_cast<int>(std::clamp(value + 0.5F, 0.0F, 255.0F)));
+    }
+}
+
+void vignette_row(const ImagingConfig& config, int row, int height, std::span<float> signal_dn) {
+    const float half_width = 0.5F * static_cast<float>(signal_dn.size());
+    const float half_height = 0.5F * static_cast<float>(height);
+    const float loss = static_cast<float>(config.vignetting) /
+                       (half_width * half_width + half_height * half_height);
+    const float y = static_cast<float>(row) + 0.5F - half_height;
+    for (std::size_t u = 0; u < signal_dn.size(); ++u) {
+        const float x = static_cast<float>(u) + 0.5F - half_width;
+        signal_dn[u] *= 1.0F - loss * (x * x + y * y);
+    }
 }
 
 }  // namespace surefoot::sim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "surefoot/core/config.hpp"
@@ -18,21 +19,38 @@ struct ImagingConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Gaussian numbers addressed by (seed, stream, pixel): the same for any order of evaluation.
-/// `stream` numbers the image. Quantile table of the normal distribution with 2^14 entries, so
-/// beyond 4.0 sigma nothing occurs; unit variance.
+/// Gaussian numbers addressed by (image, pixel): the same for any order of evaluation. Quantile
+/// table of the normal distribution with 2^14 entries, so beyond 4.0 sigma nothing occurs; unit
+/// variance.
 class PixelNoise {
   public:
     PixelNoise();
-    [[nodiscard]] float normal(std::uint64_t seed, std::uint64_t stream, std::uint32_t pixel) const;
+    /// Chooses the numbers of one image.
+    [[nodiscard]] static std::uint64_t key(std::uint64_t seed, std::uint64_t stream) noexcept;
+    [[nodiscard]] float normal(std::uint64_t key, std::uint32_t pixel) const noexcept;
+    /// Numbers of consecutive pixels.
+    void fill(std::uint64_t key, std::uint32_t first_pixel, std::span<float> out) const noexcept;
 
   private:
     std::vector<float> quantiles_;
 };
 
-/// Grey value of a noiseless signal: noise with variance read^2 + shot * signal, rounded, clamped.
+/// Grey value of a noiseless signal: noise with variance (gain read)^2 + gain shot signal, rounded,
+/// clamped.
 [[nodiscard]] std::uint8_t exposed_pixel(const ImagingConfig& config,
+                                         double gain,
                                          float signal_dn,
                                          float normal);
+/// The same for a row of signals, each multiplied by `light` first.
+void expose_row(const ImagingConfig& config,
+                double gain,
+                double light,
+                std::span<const float> signal_dn,
+                std::span<const float> normals,
+                std::span<std::uint8_t> out);
+
+/// Darkens a row by the vignetting: a share of the light that grows with the square of the distance
+/// from the middle of the image.
+void vignette_row(const ImagingConfig& config, int row, int height, std::span<float> signal_dn);
 
 }  // namespace surefoot::sim

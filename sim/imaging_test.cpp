@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace surefoot::sim {
 namespace {
@@ -18,7 +19,7 @@ TEST(ImagingTest, PixelNoiseIsWhiteAndNormal) {
     int beyond_two = 0;
     double previous = 0.0;
     for (std::uint32_t i = 0; i < kCount; ++i) {
-        const double x = static_cast<double>(noise.normal(5, 9, i));
+        const double x = static_cast<double>(noise.normal(PixelNoise::key(5, 9), i));
         sum += x;
         squares += x * x;
         fourths += x * x * x * x;
@@ -40,8 +41,9 @@ TEST(ImagingTest, StreamsAreIndependentAndRepeatable) {
     double product = 0.0;
     constexpr std::uint32_t kCount = 100'000;
     for (std::uint32_t i = 0; i < kCount; ++i) {
-        EXPECT_EQ(noise.normal(1, 2, i), noise.normal(1, 2, i));
-        product += static_cast<double>(noise.normal(1, 2, i) * noise.normal(1, 3, i));
+        EXPECT_EQ(noise.normal(PixelNoise::key(1, 2), i), noise.normal(PixelNoise::key(1, 2), i));
+        product += static_cast<double>(noise.normal(PixelNoise::key(1, 2), i) *
+                                       noise.normal(PixelNoise::key(1, 3), i));
     }
     EXPECT_NEAR(product / kCount, 0.0, 5.0 / std::sqrt(static_cast<double>(kCount)));
 }
@@ -56,7 +58,8 @@ TEST(ImagingTest, GreyValuesHaveTheConfiguredVariance) {
         double sum = 0.0;
         double squares = 0.0;
         for (std::uint32_t i = 0; i < kCount; ++i) {
-            const double value = exposed_pixel(config, signal_dn, noise.normal(1, 1, i));
+            const double value =
+                exposed_pixel(config, 1.0, signal_dn, noise.normal(PixelNoise::key(1, 1), i));
             sum += value;
             squares += value * value;
         }
@@ -69,11 +72,40 @@ TEST(ImagingTest, GreyValuesHaveTheConfiguredVariance) {
     }
 }
 
+TEST(ImagingTest, ARowIsExposedLikeItsPixels) {
+    const PixelNoise noise;
+    const std::uint64_t key = PixelNoise::key(3, 4);
+    const ImagingConfig config;
+    constexpr std::uint32_t kFirst = 10'001;  // not a multiple of four
+    std::vector<float> signal(203);
+    for (std::size_t i = 0; i < signal.size(); ++i) signal[i] = 1.5F * static_cast<float>(i);
+    std::vector<float> normals(signal.size());
+    noise.fill(key, kFirst, normals);
+    for (const double gain : {1.0, 3.0}) {
+        std::vector<std::uint8_t> row(signal.size());
+        expose_row(config, gain, 0.75, signal, normals, row);
+        for (std::size_t i = 0; i < signal.size(); ++i) {
+            const float normal = noise.normal(key, kFirst + static_cast<std::uint32_t>(i));
+            ASSERT_EQ(normals[i], normal) << i;
+            EXPECT_EQ(row[i], exposed_pixel(config, gain, 0.75F * signal[i], normal)) << i;
+        }
+    }
+}
+
+TEST(ImagingTest, GainAmplifiesTheNoise) {
+    ImagingConfig config;
+    config.read_noise_dn = 1.5;
+    config.shot_noise_dn = 0.5;
+    // One sigma at signal 32: sqrt(3^2 + 2 * 0.5 * 32) = 6.4 with gain 2.
+    EXPECT_EQ(exposed_pixel(config, 2.0, 32.0F, 1.0F), 38);
+    EXPECT_EQ(exposed_pixel(config, 1.0, 32.0F, 1.0F), 36);
+}
+
 TEST(ImagingTest, ValuesSaturateAtBothEnds) {
     const ImagingConfig config;
-    EXPECT_EQ(exposed_pixel(config, 400.0F, 0.0F), 255);
-    EXPECT_EQ(exposed_pixel(config, 0.0F, -3.0F), 0);
-    EXPECT_EQ(exposed_pixel(config, 17.4F, 0.0F), 17);
+    EXPECT_EQ(exposed_pixel(config, 1.0, 400.0F, 0.0F), 255);
+    EXPECT_EQ(exposed_pixel(config, 1.0, 0.0F, -3.0F), 0);
+    EXPECT_EQ(exposed_pixel(config, 1.0, 17.4F, 0.0F), 17);
 }
 
 }  // namespace

@@ -3,12 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
-
-#include "sim/ray_caster.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -16,179 +13,298 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-/// Grey value where no surface is.
-constexpr float kBackground_dn = 30.0F;
-/// Nearest to grazing incidence (1.1 deg) that the footprint of a pixel is stretched to.
-constexpr double kLeastCosine = 0.02;
+/// Four places in a pixel that no row and no column share: an edge of any direction is graded.
+constexpr std::array<std::array<double, 2>, 4> kPlaces_px{
+    {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
 
-/// Calls `work(block_x, block_y)` for every block of pixels.
+/// Calls `work(block_x, block_y, block)` for every block of pixels; `block` is a workspace.
 template <typename Work>
 void for_each_block(const RayField& rays, Executor& executor, const Work& work) {
     executor.parallel_for(rays.blocks_y(), [&](int block_y) {
-        for (int block_x = 0; block_x < rays.blocks_x(); ++block_x) work(block_x, block_y);
+        CastBlock block;
+        for (int block_x = 0; block_x < rays.blocks_x(); ++block_x) work(block_x, block_y, block);
     });
 }
 
-bool on_edge(const Image<std::int16_t>& surface, int u, int v) {
-    const std::int16_t here = surface.row(v)[u];
-    return (u > 0 && surface.row(v)[u - 1] != here) ||
-           (u + 1 < surface.width() && surface.row(v)[u + 1] != here) ||
-           (v > 0 && surface.row(v - 1)[u] != here) ||
-           (v + 1 < surface.height() && surface.row(v + 1)[u] != here);
+bool on_edge(const Image<std::uint32_t>& key, int u, int v) {
+    const std::uint32_t here = key.row(v)[u];
+    return (u > 0 && key.row(v)[u - 1] != here) ||
+           (u + 1 < key.width() && key.row(v)[u + 1] != here) ||
+           (v > 0 && key.row(v - 1)[u] != here) ||
+           (v + 1 < key.height() && key.row(v + 1)[u] != here);
 }
+
+void resize(const RayField& rays, CleanImage& image) {
+    image.signal_dn.resize(rays.width(), rays.height());
+    image.depth_m.resize(rays.width(), rays.height());
+    image.surface.resize(rays.width(), rays.height());
+    image.key.resize(rays.width(), rays.height());
+}
+
+void store_geometry(const RayField& rays, const CastBlock& block, CleanImage& out) {
+    std::size_t i = 0;
+    for (int v = block.v0; v < block.v0 + block.height; ++v) {
+        for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
+            const RayHit& hit = block.hits[i];
+            out.surface.row(v)[u] = static_cast<std::int16_t>(hit.face);
+            out.depth_m.row(v)[u] =
+                hit.face < 0 ? kNan : static_cast<float>(hit.distance_m * rays.ray(u, v).z());
+        }
+    }
+}
+
+/// A body that does not move.
+class AtRest final : public Motion {
+  public:
+    explicit AtRest(const Pose& T_world_body) { state_.T_world_body = T_world_body; }
+    [[nodiscard]] MotionState at(double /*time_s*/) const override { return state_; }
+    [[nodiscard]] double duration_s() const override { return 0.0; }
+
+  private:
+    MotionState state_;
+};
 
 }  // namespace
 
 Result<Renderer> Renderer::make(const Scene& scene,
                                 const camera::StereoRig& rig,
-                                const ImagingConfig& imaging,
+                                const CameraConfig& config,
                                 std::uint64_t seed) {
     if (const auto problem = rig.problem()) return usage_error("simulator: rig: " + *problem);
     if (!rig.right) {
         return usage_error("simulator: rig '" + rig.name +
                            "' has no right camera; use a stereo rig");
     }
-    return Renderer(scene, rig, imaging, seed);
+    return Renderer(scene, rig, config, seed);
 }
 
 Renderer::Renderer(const Scene& scene,
                    const camera::StereoRig& rig,
-                   const ImagingConfig& imaging,
+                   const CameraConfig& config,
                    std::uint64_t seed)
     : scene_(&scene),
       rig_(rig),
-      imaging_(imaging),
+      config_(config),
       seed_(seed),
       left_rays_(rig.left),
       right_rays_(*rig.right),
-      textures_(scene.materials(), seed),
-      towards_lamp_(scene.lighting().towards_lamp()) {}
+      shader_(scene, seed) {}
 
 void Renderer::render(const Pose& T_world_body,
                       int frame,
                       Executor& executor,
                       RenderedPair& out) const {
-    const Pose T_world_left = T_world_body * rig_.body_from_left();
-    const auto stream = 2U * static_cast<std::uint64_t>(frame);
-    CleanImage clean;
-    render_clean(right_rays_, T_world_left * rig_.T_left_right, executor, clean);
-    add_noise(clean, stream + 1U, executor, out.right);
-    render_clean(left_rays_, T_world_left, executor, clean);
-    add_noise(clean, stream, executor, out.left);
-    out.depth_m = std::move(clean.depth_m);
+    CleanPair clean;
+    Shot shot;
+    shot.exposure_s = config_.exposure.exposure_s;
+    collect(AtRest(T_world_body), 0.0, shot.exposure_s, executor, clean);
+    expose(clean, shot, frame, executor, out);
+}
+
+void Renderer::collect(const Motion& motion,
+                       double stamp_s,
+                       double exposure_s,
+                       Executor& executor,
+                       CleanPair& out) const {
+    const Pose T_body_left = rig_.body_from_left();
+    const Pose T_body_right = T_body_left * rig_.T_left_right;
+    const auto look = [&](const RayField& rays, const Pose& T_body_camera, CleanImage& image) {
+        collect_eye(rays, motion, T_body_camera, stamp_s, exposure_s, executor, out.instant, image);
+        apply_optics(config_.optics, &rays == &left_rays_, executor, image.signal_dn);
+        executor.parallel_for(rays.height(), [&](int v) {
+            vignette_row(config_.imaging,
+                         v,
+                         rays.height(),
+                         {image.signal_dn.row(v), static_cast<std::size_t>(rays.width())});
+        });
+    };
+    look(left_rays_, T_body_left, out.left);
+    look(right_rays_, T_body_right, out.right);
+}
+
+void Renderer::collect_eye(const RayField& rays,
+                           const Motion& motion,
+                           const Pose& T_body_camera,
+                           double stamp_s,
+                           double exposure_s,
+                           Executor& executor,
+                           CleanImage& instant,
+                           CleanImage& out) const {
+    const double readout_s = config_.shutter.rolling ? rig_.readout_s : 0.0;
+    const auto views_at = [&](double offset_s) {
+        return ImageViews(motion, T_body_camera, stamp_s + offset_s, readout_s, rays.height());
+    };
+    const ImageViews middle = views_at(0.0);
+    std::vector<ImageViews> moving;
+    for (const double offset_s : blur_offsets_s(exposure_s, config_.shutter.blur_samples)) {
+        moving.push_back(views_at(offset_s));
+    }
+    const bool at_rest = std::all_of(
+        moving.begin(), moving.end(), [&](const ImageViews& views) { return views == middle; });
+    if (moving.size() < 2 || at_rest) {
+        render_instant(rays, middle, kPlaces_px, {}, executor, out);
+    } else {
+        blur(rays, middle, moving, executor, instant, out);
+    }
+}
+
+/// Depth of the middle of the exposure, mean signal of all its instants.
+void Renderer::blur(const RayField& rays,
+                    const ImageViews& middle,
+                    std::span<const ImageViews> moving,
+                    Executor& executor,
+                    CleanImage& instant,
+                    CleanImage& out) const {
+    resize(rays, out);
+    for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
+        cast_block(*scene_, rays, middle, block_x, block_y, block);
+        store_geometry(rays, block, out);
+    });
+    const auto planes = find_planes(*scene_, rays, middle, out.surface, out.depth_m);
+    const auto share = 1.0F / static_cast<float>(moving.size());
+    out.signal_dn.fill(0.0F);
+    for (std::size_t k = 0; k < moving.size(); ++k) {
+        const auto place = Places(kPlaces_px).subspan(k % kPlaces_px.size(), 1);
+        render_instant(rays, moving[k], place, {&middle, planes}, executor, instant);
+        executor.parallel_for(rays.height(), [&](int v) {
+            for (int u = 0; u < rays.width(); ++u) {
+                out.signal_dn.row(v)[u] += share * instant.signal_dn.row(v)[u];
+            }
+        });
+    }
+    std::swap(out.key, instant.key);
 }
 
 void Renderer::render_clean(const RayField& rays,
                             const Pose& T_world_camera,
                             Executor& executor,
                             CleanImage& out) const {
-    out.signal_dn.resize(rays.width(), rays.height());
-    out.depth_m.resize(rays.width(), rays.height());
-    out.surface.resize(rays.width(), rays.height());
-    for_each_block(rays, executor, [&](int block_x, int block_y) {
-        render_block(rays, T_world_camera, block_x, block_y, out);
-    });
-    executor.parallel_for(rays.height(),
-                          [&](int row) { soften_edges(rays, T_world_camera, row, out); });
+    render_instant(rays, ImageViews(T_world_camera), kPlaces_px, {}, executor, out);
 }
 
-void Renderer::render_block(const RayField& rays,
-                            const Pose& T_world_camera,
-                            int block_x,
-                            int block_y,
-                            CleanImage& out) const {
-    CastBlock block;
-    cast_block(*scene_, rays, T_world_camera, block_x, block_y, block);
+void Renderer::render_instant(const RayField& rays,
+                              const ImageViews& views,
+                              Places places,
+                              const Known& known,
+                              Executor& executor,
+                              CleanImage& out) const {
+    resize(rays, out);
+    for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
+        const auto index = static_cast<std::size_t>(block_y * rays.blocks_x() + block_x);
+        const bool plain =
+            !known.planes.empty() && known.planes[index].face >= 0 &&
+            cast_on_plane(
+                *scene_, rays, *known.views, views, known.planes[index], block_x, block_y, block);
+        if (!plain) cast_block(*scene_, rays, views, block_x, block_y, block);
+        store_geometry(rays, block, out);
+        shade_block(rays, views, block, out);
+    });
+    for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
+        soften_block(rays, views, places, block_x, block_y, block, out);
+    });
+}
+
+void Renderer::shade_block(const RayField& rays,
+                           const ImageViews& views,
+                           const CastBlock& block,
+                           CleanImage& out) const {
+    const auto white_dn = static_cast<float>(255.0 * config_.imaging.exposure);
     std::size_t i = 0;
     for (int v = block.v0; v < block.v0 + block.height; ++v) {
+        const Vector3d& origin_m = views.row(v).origin_m;
         for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
             const RayHit& hit = block.hits[i];
-            out.surface.row(v)[u] = static_cast<std::int16_t>(hit.face);
-            if (hit.face < 0) {
-                out.depth_m.row(v)[u] = kNan;
-                out.signal_dn.row(v)[u] = kBackground_dn;
-                continue;
-            }
             const Vector3d& direction = block.directions[i];
-            const Vector3d point_m = T_world_camera.translation_m + hit.distance_m * direction;
-            out.depth_m.row(v)[u] = static_cast<float>(hit.distance_m * rays.ray(u, v).z());
-            out.signal_dn.row(v)[u] =
-                signal_dn(hit.face, point_m, direction, hit.distance_m, rays.pixel_angle_rad(u, v));
+            const Seen seen = hit.face < 0 ? Shader::background()
+                                           : shader_.surface(hit.face,
+                                                             {origin_m + hit.distance_m * direction,
+                                                              direction,
+                                                              hit.distance_m,
+                                                              rays.pixel_angle_rad(u, v)});
+            out.signal_dn.row(v)[u] = white_dn * seen.radiance;
+            out.key.row(v)[u] = seen.key;
         }
     }
 }
 
-/// Pixels beside another surface mix what is seen at four places in them, as real pixels do.
-void Renderer::soften_edges(const RayField& rays,
-                            const Pose& T_world_camera,
-                            int row,
+/// Pixels beside another surface mix what is seen at several places in them, as real pixels do.
+void Renderer::soften_block(const RayField& rays,
+                            const ImageViews& views,
+                            Places places,
+                            int block_x,
+                            int block_y,
+                            CastBlock& block,
                             CleanImage& out) const {
-    for (int u = 0; u < rays.width(); ++u) {
-        if (!on_edge(out.surface, u, row)) continue;
-        out.signal_dn.row(row)[u] = softened_dn(rays, T_world_camera, u, row);
-    }
-}
-
-float Renderer::softened_dn(const RayField& rays, const Pose& T_world_camera, int u, int v) const {
-    // Four places that no row and no column share: an edge of any direction is graded.
-    static constexpr std::array<std::array<double, 2>, 4> kPlaces_px{
-        {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}}};
-    const double angle_rad = rays.pixel_angle_rad(u, v);
-    float sum_dn = 0.0F;
-    for (const auto& place : kPlaces_px) {
-        const Vector3d direction =
-            T_world_camera.rotation * rays.ray_within(u, v, place[0], place[1]);
-        const auto hit = scene_->intersect(T_world_camera.translation_m, direction);
-        sum_dn += hit ? signal_dn(hit->surface, hit->point_m, direction, hit->distance_m, angle_rad)
-                      : kBackground_dn;
-    }
-    return 0.25F * sum_dn;
-}
-
-float Renderer::signal_dn(int surface,
-                          const Vector3d& point_m,
-                          const Vector3d& direction,
-                          double distance_m,
-                          double pixel_angle_rad) const {
-    const SurfacePoint at = scene_->surface_point(surface, point_m);
-    const double cosine = std::max(-at.normal.dot(direction), kLeastCosine);
-    Footprint footprint;
-    footprint.minor_m = distance_m * pixel_angle_rad;
-    footprint.major_m = footprint.minor_m / cosine;
-    const double along_u = at.tangent_u.dot(direction);
-    const double along_v = at.tangent_v.dot(direction);
-    const double sine = std::sqrt(along_u * along_u + along_v * along_v);
-    if (sine > 1e-9) {
-        footprint.axis_u = along_u / sine;
-        footprint.axis_v = along_v / sine;
-    }
-    const int material = scene_->surfaces()[static_cast<std::size_t>(surface)].material;
-    const float reflectance = textures_.reflectance(material, surface, at.u_m, at.v_m, footprint);
-    const Lighting& lighting = scene_->lighting();
-    const double light =
-        lighting.ambient + lighting.lamp * std::max(0.0, at.normal.dot(towards_lamp_));
-    return static_cast<float>(255.0 * imaging_.exposure * light) * reflectance;
-}
-
-void Renderer::add_noise(const CleanImage& clean,
-                         std::uint64_t stream,
-                         Executor& executor,
-                         GreyImage& out) const {
-    const int width = clean.signal_dn.width();
-    const int height = clean.signal_dn.height();
-    out.resize(width, height);
-    const float half_width = 0.5F * static_cast<float>(width);
-    const float half_height = 0.5F * static_cast<float>(height);
-    const float loss = static_cast<float>(imaging_.vignetting) /
-                       (half_width * half_width + half_height * half_height);
-    executor.parallel_for(height, [&](int v) {
-        const float y = static_cast<float>(v) + 0.5F - half_height;
-        for (int u = 0; u < width; ++u) {
-            const float x = static_cast<float>(u) + 0.5F - half_width;
-            const float signal = clean.signal_dn.row(v)[u] * (1.0F - loss * (x * x + y * y));
-            const auto pixel = static_cast<std::uint32_t>(v * width + u);
-            out.row(v)[u] = exposed_pixel(imaging_, signal, noise_.normal(seed_, stream, pixel));
+    bool found = false;
+    const int u_end = std::min((block_x + 1) * RayField::kBlock, rays.width());
+    const int v_end = std::min((block_y + 1) * RayField::kBlock, rays.height());
+    for (int v = block_y * RayField::kBlock; v < v_end; ++v) {
+        for (int u = block_x * RayField::kBlock; u < u_end; ++u) {
+            if (!on_edge(out.key, u, v)) continue;
+            if (!found) find_primitives(*scene_, rays, views, block_x, block_y, block);
+            found = true;
+            out.signal_dn.row(v)[u] =
+                softened_dn(rays, views.row(v), places, block.primitives, u, v);
         }
+    }
+}
+
+float Renderer::softened_dn(const RayField& rays,
+                            const CameraView& view,
+                            Places places,
+                            std::span<const int> primitives,
+                            int u,
+                            int v) const {
+    float sum = 0.0F;
+    for (const auto& place : places) {
+        const Vector3d direction = view.R_world_camera * rays.ray_within(u, v, place[0], place[1]);
+        RayHit hit;
+        for (const int k : primitives) {
+            scene_->intersect_primitive(k, view.origin_m, {&direction, 1}, {&hit, 1});
+        }
+        const Sight sight{view.origin_m + hit.distance_m * direction,
+                          direction,
+                          hit.distance_m,
+                          rays.pixel_angle_rad(u, v)};
+        sum += hit.face < 0 ? Shader::background().radiance
+                            : shader_.surface(hit.face, sight).radiance;
+    }
+    return static_cast<float>(255.0 * config_.imaging.exposure) * sum /
+           static_cast<float>(places.size());
+}
+
+void Renderer::expose(const CleanPair& clean,
+                      const Shot& shot,
+                      int frame,
+                      Executor& executor,
+                      RenderedPair& out) const {
+    const auto stream = 2U * static_cast<std::uint64_t>(frame);
+    expose_eye(clean.left, shot, stream, executor, out.left);
+    Shot right = shot;
+    right.gain *= config_.exposure.right_gain;
+    right.light *= config_.exposure.right_gain;
+    expose_eye(clean.right, right, stream + 1U, executor, out.right);
+    out.depth_m = clean.left.depth_m;
+}
+
+void Renderer::expose_eye(const CleanImage& clean,
+                          const Shot& shot,
+                          std::uint64_t stream,
+                          Executor& executor,
+                          GreyImage& out) const {
+    const int width = clean.signal_dn.width();
+    const auto pixels = static_cast<std::size_t>(width);
+    out.resize(width, clean.signal_dn.height());
+    const std::uint64_t key = PixelNoise::key(seed_, stream);
+    executor.parallel_for(out.height(), [&](int v) {
+        std::vector<float> normals(pixels);
+        noise_.fill(key, static_cast<std::uint32_t>(v * width), normals);
+        expose_row(config_.imaging,
+                   shot.gain,
+                   shot.light,
+                   {clean.signal_dn.row(v), pixels},
+                   normals,
+                   {out.row(v), pixels});
     });
 }
 
@@ -215,9 +331,9 @@ Image<float> rectified_disparity_px(const Scene& scene,
     const RayField rays(camera::Camera{ideal, rig.width, rig.height});
     const Pose T_world_camera = T_world_body * rig.T_body_camera;
     Image<float> depth_m(rig.width, rig.height, kNan);
-    for_each_block(rays, executor, [&](int block_x, int block_y) {
-        CastBlock block;
-        cast_block(scene, rays, T_world_camera, block_x, block_y, block);
+    const ImageViews views(T_world_camera);
+    for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
+        cast_block(scene, rays, views, block_x, block_y, block);
         std::size_t i = 0;
         for (int v = block.v0; v < block.v0 + block.height; ++v) {
             for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <memory>
+#include <span>
 
+#include "sim/exposure.hpp"
 #include "sim/imaging.hpp"
+#include "sim/motion.hpp"
+#include "sim/optics.hpp"
+#include "sim/ray_caster.hpp"
 #include "sim/ray_field.hpp"
 #include "sim/scene.hpp"
+#include "sim/shader.hpp"
+#include "sim/shutter.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
@@ -14,12 +21,21 @@
 
 namespace surefoot::sim {
 
-/// What one camera sees, before noise. Depth is along the optical axis z, exact at pixel centres,
-/// NaN where no surface is; `surface` is -1 there.
+/// What one camera sees, before the sensor. Depth is along the optical axis z, exact at pixel
+/// centres in the middle of their exposure, NaN where no surface is; `surface` is -1 there. A
+/// mirror or a pane has the depth of its own surface.
 struct CleanImage {
     Image<float> signal_dn;
     Image<float> depth_m;
     Image<std::int16_t> surface;
+    Image<std::uint32_t> key;  ///< see Seen::key
+};
+
+/// Signals of both eyes behind their lenses, for the exposure of the configuration.
+struct CleanPair {
+    CleanImage left;
+    CleanImage right;
+    CleanImage instant;  ///< workspace
 };
 
 struct RenderedPair {
@@ -28,22 +44,42 @@ struct RenderedPair {
     Image<float> depth_m;  ///< of the raw left camera
 };
 
-/// Renders a scene by casting the exact ray of each pixel through its lens model. Textures are
-/// averaged over the pixel, edges of surfaces over 4 places in it, so that what is too small to be
-/// seen blurs as in a real camera. One lamp, diffuse surfaces. Blocks of pixels run through the
-/// executor; the same bytes for any executor. Immutable after construction.
+/// Everything between the light of a scene and a grey value.
+struct CameraConfig {
+    ImagingConfig imaging;
+    OpticsConfig optics;
+    ShutterConfig shutter;
+    ExposureConfig exposure;
+};
+
+/// Renders a scene by casting the exact ray of each pixel through its lens model, from where the
+/// camera is when that row is exposed. Textures are averaged over the pixel, edges of surfaces over
+/// 4 places in it, so that what is too small to be seen blurs as in a real camera. Blocks of pixels
+/// run through the executor; the same bytes for any executor. Immutable after construction.
 class Renderer {
   public:
     /// Fails with the rig's problem in words. The scene must outlive the renderer. An RGB-D rig
     /// (no right camera) is refused.
     [[nodiscard]] static Result<Renderer> make(const Scene& scene,
                                                const camera::StereoRig& rig,
-                                               const ImagingConfig& imaging,
+                                               const CameraConfig& config,
                                                std::uint64_t seed);
 
-    /// Both images of a body pose; `frame` selects the noise.
+    /// What both eyes of a moving rig collect round a stamp (see `row_offset_s`).
+    void collect(const Motion& motion,
+                 double stamp_s,
+                 double exposure_s,
+                 Executor& executor,
+                 CleanPair& out) const;
+    /// Turns it into grey values; `frame` selects the noise.
+    void expose(const CleanPair& clean,
+                const Shot& shot,
+                int frame,
+                Executor& executor,
+                RenderedPair& out) const;
+    /// Both images of a body at rest, exposed as configured.
     void render(const Pose& T_world_body, int frame, Executor& executor, RenderedPair& out) const;
-    /// One camera without noise.
+    /// One camera at rest behind an ideal lens.
     void render_clean(const RayField& rays,
                       const Pose& T_world_camera,
                       Executor& executor,
@@ -52,42 +88,69 @@ class Renderer {
     [[nodiscard]] const RayField& right_rays() const noexcept { return right_rays_; }
 
   private:
+    /// Places in a pixel, offsets from its centre in pixels.
+    using Places = std::span<const std::array<double, 2>>;
+    /// What another instant of the same exposure showed; empty = nothing is known.
+    struct Known {
+        const ImageViews* views = nullptr;
+        std::span<const BlockPlane> planes;
+    };
+
     Renderer(const Scene& scene,
              const camera::StereoRig& rig,
-             const ImagingConfig& imaging,
+             const CameraConfig& config,
              std::uint64_t seed);
-    void render_block(const RayField& rays,
-                      const Pose& T_world_camera,
+    void collect_eye(const RayField& rays,
+                     const Motion& motion,
+                     const Pose& T_body_camera,
+                     double stamp_s,
+                     double exposure_s,
+                     Executor& executor,
+                     CleanImage& instant,
+                     CleanImage& out) const;
+    void blur(const RayField& rays,
+              const ImageViews& middle,
+              std::span<const ImageViews> moving,
+              Executor& executor,
+              CleanImage& instant,
+              CleanImage& out) const;
+    void render_instant(const RayField& rays,
+                        const ImageViews& views,
+                        Places places,
+                        const Known& known,
+                        Executor& executor,
+                        CleanImage& out) const;
+    void shade_block(const RayField& rays,
+                     const ImageViews& views,
+                     const CastBlock& block,
+                     CleanImage& out) const;
+    void soften_block(const RayField& rays,
+                      const ImageViews& views,
+                      Places places,
                       int block_x,
                       int block_y,
-                      CleanImage& out) const;
-    void soften_edges(const RayField& rays,
-                      const Pose& T_world_camera,
-                      int row,
+                      CastBlock& block,
                       CleanImage& out) const;
     [[nodiscard]] float softened_dn(const RayField& rays,
-                                    const Pose& T_world_camera,
+                                    const CameraView& view,
+                                    Places places,
+                                    std::span<const int> primitives,
                                     int u,
                                     int v) const;
-    void add_noise(const CleanImage& clean,
-                   std::uint64_t stream,
-                   Executor& executor,
-                   GreyImage& out) const;
-    [[nodiscard]] float signal_dn(int surface,
-                                  const Eigen::Vector3d& point_m,
-                                  const Eigen::Vector3d& direction,
-                                  double distance_m,
-                                  double pixel_angle_rad) const;
+    void expose_eye(const CleanImage& clean,
+                    const Shot& shot,
+                    std::uint64_t stream,
+                    Executor& executor,
+                    GreyImage& out) const;
 
     const Scene* scene_;
     camera::StereoRig rig_;
-    ImagingConfig imaging_;
+    CameraConfig config_;
     std::uint64_t seed_ = 0;
     RayField left_rays_;
     RayField right_rays_;
-    Textures textures_;
+    Shader shader_;
     PixelNoise noise_;
-    Eigen::Vector3d towards_lamp_;
 };
 
 /// Exact disparity of a rectified left camera: fx * baseline / depth, NaN where no surface is.

@@ -5,39 +5,17 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <thread>
 
 #include "sim/ray_caster.hpp"
-#include "sim/rigs.hpp"
 #include "sim/scenes.hpp"
+#include "sim/test_cameras.hpp"
+#include "sim/test_executors.hpp"
 
 namespace surefoot::sim {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// Last index first: results must not depend on the order.
-class Backwards final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        for (int index = count - 1; index >= 0; --index) work(index);
-    }
-};
-
-class ThreeThreads final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        std::vector<std::thread> threads;
-        threads.reserve(3);
-        for (int first = 0; first < 3; ++first) {
-            threads.emplace_back([&, first] {
-                for (int index = first; index < count; index += 3) work(index);
-            });
-        }
-        for (std::thread& thread : threads) thread.join();
-    }
-};
 
 camera::StereoRig zed() {
     return rig_preset("zed_vga").value();
@@ -76,14 +54,6 @@ Pose body_at(double x_m) {
     return T;
 }
 
-ImagingConfig noiseless() {
-    ImagingConfig imaging;
-    imaging.read_noise_dn = 0.0;
-    imaging.shot_noise_dn = 0.0;
-    imaging.vignetting = 0.0;
-    return imaging;
-}
-
 float bilinear(const Image<float>& image, const Vector2d& pixel) {
     const int u = static_cast<int>(pixel.x());
     const int v = static_cast<int>(pixel.y());
@@ -97,7 +67,7 @@ float bilinear(const Image<float>& image, const Vector2d& pixel) {
 TEST(RendererTest, DepthOfTheFloorFollowsThePlaneEquation) {
     const Scene scene = make_scene("floor", 1).value().scene;
     for (const camera::StereoRig& rig : {zed(), odd_rig()}) {
-        const Renderer renderer = Renderer::make(scene, rig, noiseless(), 1).value();
+        const Renderer renderer = Renderer::make(scene, rig, test::noiseless(), 1).value();
         Serial serial;
         CleanImage image;
         const Pose T_world_left = body_at(0.0) * *rig.T_body_left;
@@ -123,10 +93,11 @@ TEST(RendererTest, SkippingPrimitivesByConeChangesNothing) {
     const camera::StereoRig rig = odd_rig();
     const RayField rays(rig.left);
     const Pose T_world_left = body_at(0.9) * *rig.T_body_left;
+    const ImageViews views(T_world_left);
     for (int block_y = 0; block_y < rays.blocks_y(); block_y += 2) {
         for (int block_x = 0; block_x < rays.blocks_x(); ++block_x) {
             CastBlock block;
-            cast_block(scene, rays, T_world_left, block_x, block_y, block);
+            cast_block(scene, rays, views, block_x, block_y, block);
             for (int i = 0; i < block.width * block.height; i += 7) {
                 const auto index = static_cast<std::size_t>(i);
                 const auto hit =
@@ -148,7 +119,7 @@ TEST(RendererTest, AWallAtWholeDisparityShiftsByExactlyThat) {
     Scene scene;
     scene.add(
         make_box({wall_m + 0.5, 0.0}, {1.0, 20.0}, -5.0, 5.0), scene.add_material({}), Label::wall);
-    const Renderer renderer = Renderer::make(scene, rig, noiseless(), 1).value();
+    const Renderer renderer = Renderer::make(scene, rig, test::noiseless(), 1).value();
     Serial serial;
     CleanImage left;
     CleanImage right;
@@ -218,7 +189,7 @@ Warp warp(const camera::StereoRig& rig, const CleanImage& left, const CleanImage
 TEST(RendererTest, ExactDepthWarpsTheRightImageOntoTheLeft) {
     const Scene scene = make_scene("demo_stairs", 1).value().scene;
     for (const camera::StereoRig& rig : {zed(), odd_rig()}) {
-        const Renderer renderer = Renderer::make(scene, rig, noiseless(), 1).value();
+        const Renderer renderer = Renderer::make(scene, rig, test::noiseless(), 1).value();
         Serial serial;
         CleanImage left;
         CleanImage right;
@@ -241,12 +212,12 @@ TEST(RendererTest, ExactDepthWarpsTheRightImageOntoTheLeft) {
 
 TEST(RendererTest, SameBytesForAnyExecutor) {
     const Scene scene = make_scene("demo_stairs", 1).value().scene;
-    const Renderer renderer = Renderer::make(scene, odd_rig(), ImagingConfig{}, 4).value();
+    const Renderer renderer = Renderer::make(scene, odd_rig(), CameraConfig{}, 4).value();
     Serial serial;
     RenderedPair reference;
     renderer.render(body_at(0.5), 3, serial, reference);
-    Backwards backwards;
-    ThreeThreads threads;
+    test::Backwards backwards;
+    test::Threads threads(3);
     for (Executor* executor :
          {static_cast<Executor*>(&backwards), static_cast<Executor*>(&threads)}) {
         RenderedPair other;
@@ -264,9 +235,9 @@ TEST(RendererTest, SameBytesForAnyExecutor) {
 TEST(RendererTest, ImagesCarryTheConfiguredNoise) {
     const Scene scene = make_scene("floor", 1).value().scene;
     const camera::StereoRig rig = zed();
-    ImagingConfig imaging = noiseless();
-    imaging.read_noise_dn = 2.0;
-    const Renderer renderer = Renderer::make(scene, rig, imaging, 1).value();
+    CameraConfig config = test::noiseless();
+    config.imaging.read_noise_dn = 2.0;
+    const Renderer renderer = Renderer::make(scene, rig, config, 1).value();
     Serial serial;
     RenderedPair a;
     RenderedPair b;
@@ -284,13 +255,13 @@ TEST(RendererTest, ImagesCarryTheConfiguredNoise) {
 
 TEST(RendererTest, VignettingDarkensCorners) {
     const Scene scene = make_scene("floor", 1).value().scene;
-    ImagingConfig imaging = noiseless();
+    CameraConfig config = test::noiseless();
     Serial serial;
     RenderedPair even;
-    Renderer::make(scene, zed(), imaging, 1).value().render(body_at(0.0), 0, serial, even);
-    imaging.vignetting = 0.5;
+    Renderer::make(scene, zed(), config, 1).value().render(body_at(0.0), 0, serial, even);
+    config.imaging.vignetting = 0.5;
     RenderedPair dark;
-    Renderer::make(scene, zed(), imaging, 1).value().render(body_at(0.0), 0, serial, dark);
+    Renderer::make(scene, zed(), config, 1).value().render(body_at(0.0), 0, serial, dark);
     EXPECT_EQ(even.left.at(336, 188), dark.left.at(336, 188));
     EXPECT_NEAR(dark.left.at(0, 375), 0.5 * even.left.at(0, 375), 1.0);
 }
@@ -300,7 +271,7 @@ TEST(RendererTest, DisparityIsThatOfTheRectifiedCamera) {
     const camera::StereoRig rig = zed();
     const camera::RectifiedRig rectified{
         672, 376, 342.0, 342.0, 335.5, 187.5, 0.12, *rig.T_body_left};
-    const Renderer renderer = Renderer::make(scene, rig, noiseless(), 1).value();
+    const Renderer renderer = Renderer::make(scene, rig, test::noiseless(), 1).value();
     Serial serial;
     RenderedPair pair;
     renderer.render(body_at(0.9), 0, serial, pair);
@@ -319,7 +290,7 @@ TEST(RendererTest, RefusesARigWithoutARightCamera) {
     const Scene scene = make_scene("floor", 1).value().scene;
     camera::StereoRig rig = zed();
     rig.right.reset();
-    const auto renderer = Renderer::make(scene, rig, ImagingConfig{}, 1);
+    const auto renderer = Renderer::make(scene, rig, CameraConfig{}, 1);
     ASSERT_FALSE(renderer);
     EXPECT_NE(renderer.error().message.find("no right camera"), std::string::npos);
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -21,6 +22,8 @@ constexpr double kMinRate_hz = 0.1;
 constexpr double kMaxRate_hz = 1000.0;
 constexpr std::uint64_t kNoiseStream = 1;
 constexpr std::uint64_t kImuStream = 2;
+constexpr std::uint64_t kFaultStream = 3;
+constexpr std::uint64_t kExposureStream = 4;
 
 std::optional<Error> problem(const SceneOptions& options) {
     if (!(options.rate_hz >= kMinRate_hz && options.rate_hz <= kMaxRate_hz)) {
@@ -57,7 +60,11 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
     visitor.boolean("imu", imu, "emit IMU samples, where the rig has an IMU");
-    visitor.group("imaging", imaging);
+    visitor.group("imaging", camera.imaging);
+    visitor.group("optics", camera.optics);
+    visitor.group("shutter", camera.shutter);
+    visitor.group("exposure", camera.exposure);
+    visitor.group("faults", faults);
     visitor.group("imu_noise", imu_noise);
 }
 
@@ -75,6 +82,7 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
     source->truth_.rig.rate_hz = options.rate_hz;
     if (!options.imu) source->truth_.rig.imu.reset();
     source->truth_.trajectory = sampled(*script->motion, options.frames, options.rate_hz);
+    source->motion_ = script->motion;
     if (source->truth_.rig.imu) {
         source->imu_.emplace(script->motion,
                              *source->truth_.rig.imu,
@@ -85,33 +93,77 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
     source->truth_.scene = std::move(script->scene);
     auto renderer = Renderer::make(source->truth_.scene,
                                    source->truth_.rig,
-                                   options.imaging,
+                                   options.camera,
                                    mix_seed(options.seed, kNoiseStream));
     if (!renderer) return renderer.error();
     source->renderer_.emplace(std::move(renderer).value());
-    source->info_ = {"sim",
-                     options.scene,
-                     static_cast<int>(source->truth_.trajectory.size()),
-                     source->imu_.has_value()};
+    const int frames = static_cast<int>(source->truth_.trajectory.size());
+    const int height = source->truth_.rig.left.height;
+    if (auto wrong = options.faults.problem(frames, height)) {
+        return usage_error("simulator: " + *wrong);
+    }
+    source->faults_ =
+        plan_faults(options.faults, frames, height, mix_seed(options.seed, kFaultStream));
+    const auto dropped =
+        std::count_if(source->faults_.begin(), source->faults_.end(), [](const auto& fault) {
+            return fault.kind == ImageFault::dropped;
+        });
+    source->control_.emplace(options.camera.exposure, mix_seed(options.seed, kExposureStream));
+    source->imu_until_ns_ = kStart_ns - kImuLead_ns;
+    source->info_ = {
+        "sim", options.scene, frames - static_cast<int>(dropped), source->imu_.has_value()};
     return source;
 }
 
-Result<std::optional<StereoFrame>> SceneSource::next() {
-    if (next_frame_ >= truth_.trajectory.size()) return std::optional<StereoFrame>{};
-    const StampedPose& now = truth_.trajectory[next_frame_];
-    StereoFrame frame;
-    frame.time_ns = now.time_ns;
-    frame.index = static_cast<int>(next_frame_);
-    renderer_->render(now.T_world_body, frame.index, *executor_, pair_);
-    frame.left = pair_.left;
-    frame.right = pair_.right;
-    if (imu_) {
-        const std::int64_t after_ns = next_frame_ == 0 ? now.time_ns - kImuLead_ns
-                                                       : truth_.trajectory[next_frame_ - 1].time_ns;
-        frame.imu = imu_->samples(after_ns, now.time_ns);
+/// Exposes both eyes at a stamp; the exposure control lives on, whatever becomes of the images.
+void SceneSource::take_pictures(const StampedPose& now) {
+    const double since_start_s = seconds_from_ns(now.time_ns - kStart_ns);
+    std::swap(older_left_, pair_.left);
+    std::swap(older_right_, pair_.right);
+    shot_ = control_->shot(since_start_s);
+    renderer_->collect(*motion_, since_start_s, shot_.exposure_s, *executor_, clean_);
+    if (next_pose_ == 0) {
+        control_->settle(clean_.left.signal_dn);
+        shot_ = control_->shot(since_start_s);
     }
-    ++next_frame_;
-    return std::optional<StereoFrame>{std::move(frame)};
+    renderer_->expose(clean_, shot_, static_cast<int>(next_pose_), *executor_, pair_);
+    control_->update(clean_.left.signal_dn, 1.0 / truth_.rig.rate_hz);
+}
+
+/// What arrives of the last exposure.
+void SceneSource::damage(const InjectedFault* fault) {
+    const bool stale = fault != nullptr &&
+                       (fault->kind == ImageFault::repeated || fault->kind == ImageFault::frozen);
+    if (stale) return;
+    shown_left_ = pair_.left;
+    shown_right_ = pair_.right;
+    if (fault == nullptr || fault->kind != ImageFault::torn) return;
+    tear(older_left_, fault->tear_row, shown_left_);
+    tear(older_right_, fault->tear_row, shown_right_);
+}
+
+Result<std::optional<StereoFrame>> SceneSource::next() {
+    while (next_pose_ < truth_.trajectory.size()) {
+        const StampedPose& now = truth_.trajectory[next_pose_];
+        const InjectedFault* fault = nullptr;
+        if (next_fault_ < faults_.size() &&
+            faults_[next_fault_].frame == static_cast<int>(next_pose_)) {
+            fault = &faults_[next_fault_++];
+        }
+        take_pictures(now);
+        ++next_pose_;
+        if (fault != nullptr && fault->kind == ImageFault::dropped) continue;
+        damage(fault);
+        StereoFrame frame;
+        frame.time_ns = now.time_ns;
+        frame.index = next_index_++;
+        frame.left = shown_left_;
+        frame.right = shown_right_;
+        if (imu_) frame.imu = imu_->samples(imu_until_ns_, now.time_ns);
+        imu_until_ns_ = now.time_ns;
+        return std::optional<StereoFrame>{std::move(frame)};
+    }
+    return std::optional<StereoFrame>{};
 }
 
 }  // namespace surefoot::sim

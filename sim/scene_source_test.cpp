@@ -4,10 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "sim/rigs.hpp"
+#include "sim/test_cameras.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -16,14 +17,7 @@ namespace {
 SceneOptions small(const std::string& scene) {
     SceneOptions options;
     options.scene = scene;
-    camera::StereoRig rig = rig_preset("zed_vga").value();
-    camera::PinholeRadTan lens;
-    lens.fx_px = lens.fy_px = 85.0;
-    lens.cx_px = 83.5;
-    lens.cy_px = 46.5;
-    rig.left = {lens, 168, 94};
-    rig.right = rig.left;
-    options.rig = rig;
+    options.rig = test::small_rig();
     return options;
 }
 
@@ -111,6 +105,89 @@ TEST(SceneSourceTest, SameSeedSameBytesOtherSeedOtherImages) {
     EXPECT_NE(a[0].left, a[0].right);
 }
 
+/// Eight frames, half a second from each other: the trolley moves in the later ones.
+SceneOptions moving_with(std::vector<InjectedFault> planned) {
+    SceneOptions options = small("floor");
+    options.rate_hz = 2.0;
+    options.frames = 8;
+    options.faults.planned = std::move(planned);
+    return options;
+}
+
+TEST(SceneSourceTest, ADroppedFrameLeavesItsInertialSamplesToTheNext) {
+    const auto whole = all_frames(moving_with({}));
+    const SceneOptions options = moving_with({{3, ImageFault::dropped, 0}});
+    const auto source = open_scene(options).value();
+    EXPECT_EQ(source->info().frames, 7);
+    EXPECT_EQ(source->faults(), options.faults.planned);
+    const auto frames = all_frames(options);
+    ASSERT_EQ(frames.size(), 7U);
+    EXPECT_EQ(frames[2].left, whole[2].left);
+    EXPECT_EQ(frames[3].left, whole[4].left);
+    EXPECT_EQ(frames[3].index, 3);
+    EXPECT_EQ(frames[3].time_ns, whole[4].time_ns);
+    EXPECT_EQ(frames[3].imu.size(), whole[3].imu.size() + whole[4].imu.size());
+    EXPECT_EQ(frames[3].imu.front().time_ns, whole[3].imu.front().time_ns);
+    EXPECT_EQ(frames[4].imu.size(), whole[5].imu.size());
+}
+
+TEST(SceneSourceTest, RepeatedAndFrozenFramesShowTheLastOneDelivered) {
+    const auto whole = all_frames(moving_with({}));
+    const auto frames = all_frames(moving_with({{2, ImageFault::dropped, 0},
+                                                {3, ImageFault::repeated, 0},
+                                                {5, ImageFault::frozen, 0},
+                                                {6, ImageFault::frozen, 0}}));
+    ASSERT_EQ(frames.size(), 7U);
+    EXPECT_EQ(frames[2].left, whole[1].left);
+    EXPECT_EQ(frames[2].right, whole[1].right);
+    EXPECT_EQ(frames[2].time_ns, whole[3].time_ns);
+    EXPECT_EQ(frames[3].left, whole[4].left);
+    EXPECT_EQ(frames[4].left, whole[4].left);
+    EXPECT_EQ(frames[5].left, whole[4].left);
+    EXPECT_EQ(frames[6].left, whole[7].left);
+}
+
+TEST(SceneSourceTest, ATornFrameContainsBothHalves) {
+    constexpr int kRow = 40;
+    const auto whole = all_frames(moving_with({}));
+    const auto frames = all_frames(moving_with({{6, ImageFault::torn, kRow}}));
+    ASSERT_EQ(frames.size(), 8U);
+    for (const auto eye : {&StereoFrame::left, &StereoFrame::right}) {
+        const GreyImage& torn = frames[6].*eye;
+        EXPECT_NE((whole[5].*eye), (whole[6].*eye));
+        for (int v = 0; v < torn.height(); ++v) {
+            const GreyImage& origin = v < kRow ? whole[6].*eye : whole[5].*eye;
+            EXPECT_TRUE(std::equal(torn.row(v), torn.row(v) + torn.width(), origin.row(v))) << v;
+        }
+    }
+    EXPECT_EQ(frames[7].left, whole[7].left);
+}
+
+double mean_dn(const GreyImage& image) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.size(); ++i) sum += image.data()[i];
+    return sum / static_cast<double>(image.size());
+}
+
+TEST(SceneSourceTest, TheExposureControlHoldsTheMeanAndTheRightEyeItsGain) {
+    SceneOptions options = small("floor");
+    options.frames = 4;
+    options.camera.exposure.automatic = true;
+    options.camera.exposure.target_dn = 90.0;
+    options.camera.exposure.right_gain = 1.2;
+    // Every fourth pixel is metered: the mean of the texture is known to about a grey value.
+    for (const StereoFrame& frame : all_frames(options)) {
+        EXPECT_NEAR(mean_dn(frame.left), 90.0, 1.5);
+        EXPECT_NEAR(mean_dn(frame.right) / mean_dn(frame.left), 1.2, 0.03);
+    }
+    options.camera.exposure.sun_warm_up = true;
+    options.rate_hz = 0.25;  // 0, 4, 8, ... 40 s
+    options.frames = 11;
+    const auto frames = all_frames(options);
+    EXPECT_GT(mean_dn(frames.front().left), 245.0);
+    EXPECT_NEAR(mean_dn(frames.back().left), 90.0, 2.0);
+}
+
 TEST(SceneSourceTest, WrongOptionsGetASentence) {
     const auto message = [](const SceneOptions& options) {
         const auto source = open_scene(options);
@@ -129,6 +206,10 @@ TEST(SceneSourceTest, WrongOptionsGetASentence) {
     SceneOptions rig = small("floor");
     rig.rig->right.reset();
     EXPECT_NE(message(rig).find("right camera"), std::string::npos);
+    SceneOptions fault = small("floor");
+    fault.frames = 5;
+    fault.faults.planned = {{5, ImageFault::dropped, 0}};
+    EXPECT_NE(message(fault).find("allowed are 1 to 4"), std::string::npos);
     SceneOptions preset;
     preset.rig_preset = "zed_42k";
     EXPECT_NE(message(preset).find("zed_42k"), std::string::npos);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -9,11 +11,33 @@
 
 namespace surefoot::sim {
 
-/// Kinds of surface. Each has structure from millimetres to metres, as matchers and trackers need.
-enum class Pattern : std::uint8_t { carpet, tiles, wood, concrete, patches, plaster };
-inline constexpr int kPatterns = 6;
-inline constexpr const char* kPatternNames[kPatterns] = {
-    "carpet", "tiles", "wood", "concrete", "patches", "plaster"};
+/// Kinds of surface, from a carpet full of structure, as matchers and trackers need it, to a
+/// painted wall that has nearly none.
+enum class Pattern : std::uint8_t {
+    carpet,
+    tiles,
+    wood,
+    concrete,
+    patches,
+    plaster,
+    white_wall,
+    terrazzo,
+    asphalt,
+    gravel,
+    grass
+};
+inline constexpr int kPatterns = 11;
+inline constexpr const char* kPatternNames[kPatterns] = {"carpet",
+                                                         "tiles",
+                                                         "wood",
+                                                         "concrete",
+                                                         "patches",
+                                                         "plaster",
+                                                         "white_wall",
+                                                         "terrazzo",
+                                                         "asphalt",
+                                                         "gravel",
+                                                         "grass"};
 [[nodiscard]] const char* to_string(Pattern pattern) noexcept;
 
 /// What happens to light at a surface: matte scatters it; a mirror shows the scene that it
@@ -21,7 +45,12 @@ inline constexpr const char* kPatternNames[kPatterns] = {
 enum class Finish : std::uint8_t { matte, mirror, glass };
 inline constexpr const char* kFinishNames[] = {"matte", "mirror", "glass"};
 
-/// How a surface looks. Reflectance = albedo (1 + contrast * pattern), pattern in [-1, 1].
+/// Share of a material's contrast that its pattern shows: paint from a roller hides nearly all of
+/// it (a contrast of 0.6 leaves 1.2 % rms). ASSUMPTION: no wall was measured.
+[[nodiscard]] float pattern_strength(Pattern pattern) noexcept;
+
+/// How a surface looks. Reflectance = albedo (1 + contrast * strength * pattern), pattern in
+/// [-1, 1].
 struct Material {
     Pattern pattern = Pattern::carpet;
     double albedo = 0.45;    ///< mean reflectance, 0..1
@@ -48,18 +77,42 @@ struct Footprint {
 class TextureTable {
   public:
     static constexpr int kSize = 1024;
+    /// Places are counted in 2^-16 of a texel of the finest level; they wrap with the tile, so any
+    /// multiple of the tile may be added or lost.
+    using Place = std::uint32_t;
+    [[nodiscard]] static Place place(double texels) noexcept {
+        return static_cast<Place>(static_cast<std::int64_t>(texels * 65536.0));
+    }
 
     TextureTable(Pattern pattern, std::uint64_t seed);
-    /// Pattern value in [-1, 1] at a place in texels (>= 0) of the finest level, blurred over
-    /// 2^level texels: linear in both directions and between levels (trilinear).
-    [[nodiscard]] float sample(double u_texel, double v_texel, float level) const noexcept;
+    /// Pattern value in [-1, 1] at a place, blurred over 2^level texels: linear in both directions
+    /// and between levels (trilinear).
+    [[nodiscard]] float sample(Place u, Place v, float level) const noexcept;
+    /// Mean of samples at `taps` places, 1 to 4, `du` and `dv` from each other.
+    [[nodiscard]] float mean(
+        Place u, Place v, Place du, Place dv, int taps, float level) const noexcept;
     /// A texel of a level, for tests.
     [[nodiscard]] float texel(int level, int x, int y) const noexcept;
-    [[nodiscard]] int levels() const noexcept { return static_cast<int>(levels_.size()); }
+    [[nodiscard]] static constexpr int levels() noexcept { return kLevels; }
 
   private:
-    [[nodiscard]] float bilinear(int level, double u_texel, double v_texel) const noexcept;
-    std::vector<std::vector<std::int8_t>> levels_;
+    static constexpr int kLevels = 11;
+
+    /// Rows of all levels, pattern value * 127 + 127; each row repeats its first texel at its end.
+    std::vector<std::uint8_t> texels_;
+    std::array<std::size_t, kLevels> first_{};
+};
+
+/// How a material lies on one surface; made once a surface.
+struct Placement {
+    std::size_t table = 0;
+    float albedo = 0.0F;
+    float contrast = 0.0F;  ///< of the material times the strength of its pattern
+    double texels_per_m = 0.0;
+    double along = 0.0;   ///< texels a metre times the cosine of the turn
+    double across = 0.0;  ///< texels a metre times its sine
+    double u_texel = 0.0;
+    double v_texel = 0.0;
 };
 
 /// The textures of a scene. Far and grazing surfaces are averaged over the pixel's footprint: up to
@@ -67,24 +120,28 @@ class TextureTable {
 class Textures {
   public:
     Textures(const std::vector<Material>& materials, std::uint64_t seed);
-    /// Reflectance in [0, 1] at surface coordinates. `surface` shifts the pattern so that faces of
-    /// one material differ.
-    [[nodiscard]] float reflectance(int material,
-                                    int surface,
+    /// `surface` shifts the pattern so that faces of one material differ.
+    [[nodiscard]] Placement place(int material, int surface) const noexcept;
+    /// Reflectance in [0, 1] at surface coordinates.
+    [[nodiscard]] float reflectance(const Placement& placement,
                                     double u_m,
                                     double v_m,
                                     const Footprint& footprint) const noexcept;
+    /// The same for a place in texels and the footprint of a pixel that covers `minor_texel` across
+    /// and is stretched by 1 / `cosine` along a direction of any length, in texels.
+    [[nodiscard]] float reflectance(const Placement& placement,
+                                    const Eigen::Vector2d& at_texel,
+                                    const Eigen::Vector2f& along_texel,
+                                    float minor_texel,
+                                    float cosine) const noexcept;
 
   private:
-    struct Placed {
+    struct Known {
         Material material;
         std::size_t table = 0;
-        double texels_per_m = 0.0;
-        double cos_yaw = 1.0;
-        double sin_yaw = 0.0;
         std::uint64_t seed = 0;
     };
-    std::vector<Placed> materials_;
+    std::vector<Known> materials_;
     std::vector<TextureTable> tables_;
 };
 

@@ -162,6 +162,70 @@ void draw_plaster(Image<float>& field, Rng& rng) {
     scatter(field, 400, 2.0F, 30.0F, false, rng);
 }
 
+/// What a paint roller leaves: dimples some texels wide, and patches where it passed twice.
+void draw_white_wall(Image<float>& field, Rng& rng) {
+    for (const int cell : {4, 8, 256}) add_noise(field, cell, cell, 0.5F, rng);
+    scatter(field, 3000, 2.0F, 5.0F, true, rng);
+}
+
+/// Chips of stone in a ground paste: sharp corners, sizes within a factor of six, nothing larger.
+void draw_terrazzo(Image<float>& field, Rng& rng) {
+    add_noise(field, 4, 4, 0.15F, rng);
+    scatter(field, 5000, 2.0F, 12.0F, false, rng);
+    add_noise(field, 256, 256, 0.1F, rng);
+}
+
+/// Dark binder with bright grit a texel or two wide, worn lanes.
+void draw_asphalt(Image<float>& field, Rng& rng) {
+    for (const int cell : {2, 2, 4}) add_noise(field, cell, cell, 0.5F, rng);
+    scatter(field, 9000, 1.0F, 3.5F, true, rng);
+    add_noise(field, 128, 128, 0.25F, rng);
+}
+
+/// Stones that lie on each other, each lit on one side and dark at its rim.
+void draw_gravel(Image<float>& field, Rng& rng) {
+    field.fill(-1.0F);
+    for (int i = 0; i < 7000; ++i) {
+        Patch stone;
+        stone.x = uniform(rng, 0.0F, static_cast<float>(field.width()));
+        stone.y = uniform(rng, 0.0F, static_cast<float>(field.height()));
+        stone.half_u = uniform(rng, 5.0F, 16.0F);
+        stone.half_v = stone.half_u * uniform(rng, 0.6F, 1.0F);
+        stone.yaw_rad = uniform(rng, 0.0F, std::numbers::pi_v<float>);
+        stone.value = -1.0F;
+        stone.round = true;
+        paint(field, stone);
+        const float shade = uniform(rng, -0.5F, 0.8F);
+        stone.half_u *= 0.8F;
+        stone.half_v *= 0.8F;
+        stone.value = shade;
+        paint(field, stone);
+        stone.x += 0.2F * stone.half_v;
+        stone.y -= 0.2F * stone.half_v;
+        stone.half_u *= 0.5F;
+        stone.half_v *= 0.5F;
+        stone.value = shade + 0.3F;
+        paint(field, stone);
+    }
+    add_noise(field, 2, 2, 0.15F, rng);
+}
+
+/// Blades in all directions, longer than they are wide, thin and thick places of the lawn.
+void draw_grass(Image<float>& field, Rng& rng) {
+    add_noise(field, 8, 8, 0.3F, rng);
+    for (int i = 0; i < 14000; ++i) {
+        Patch blade;
+        blade.x = uniform(rng, 0.0F, static_cast<float>(field.width()));
+        blade.y = uniform(rng, 0.0F, static_cast<float>(field.height()));
+        blade.half_u = uniform(rng, 6.0F, 16.0F);
+        blade.half_v = uniform(rng, 0.7F, 1.4F);
+        blade.yaw_rad = uniform(rng, 0.0F, std::numbers::pi_v<float>);
+        blade.value = uniform(rng, -1.0F, 1.0F);
+        paint(field, blade);
+    }
+    for (const int cell : {64, 256}) add_noise(field, cell, cell, 0.3F, rng);
+}
+
 void normalise(Image<float>& field) {
     double sum = 0.0;
     double sum_squares = 0.0;
@@ -196,6 +260,11 @@ Image<float> draw_pattern(Pattern pattern, int size, std::uint64_t seed) {
         case Pattern::concrete: draw_concrete(field, rng); break;
         case Pattern::patches: draw_patches(field, rng); break;
         case Pattern::plaster: draw_plaster(field, rng); break;
+        case Pattern::white_wall: draw_white_wall(field, rng); break;
+        case Pattern::terrazzo: draw_terrazzo(field, rng); break;
+        case Pattern::asphalt: draw_asphalt(field, rng); break;
+        case Pattern::gravel: draw_gravel(field, rng); break;
+        case Pattern::grass: draw_grass(field, rng); break;
     }
     normalise(field);
     return field;

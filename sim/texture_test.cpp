@@ -12,6 +12,10 @@
 namespace surefoot::sim {
 namespace {
 
+TextureTable::Place at(double texels) {
+    return TextureTable::place(texels);
+}
+
 struct Moments {
     double mean = 0.0;
     double sigma = 0.0;
@@ -54,13 +58,15 @@ TEST(TextureTest, EveryPatternHasContrastAndLosesItWithDistance) {
 TEST(TextureTest, SamplesInterpolateTexelsAndRepeat) {
     const TextureTable table(Pattern::carpet, 3);
     constexpr double kSize = TextureTable::kSize;
-    EXPECT_EQ(table.sample(10.5, 20.5, 0.0F), table.texel(0, 10, 20));
-    EXPECT_EQ(table.sample(10.5 + kSize, 20.5 - kSize, 0.0F), table.texel(0, 10, 20));
-    const float middle = table.sample(11.0, 20.5, 0.0F);
+    EXPECT_EQ(table.sample(at(10.5), at(20.5), 0.0F), table.texel(0, 10, 20));
+    EXPECT_EQ(table.sample(at(10.5 + kSize), at(20.5 - kSize), 0.0F), table.texel(0, 10, 20));
+    const float middle = table.sample(at(11.0), at(20.5), 0.0F);
     EXPECT_NEAR(middle, 0.5F * (table.texel(0, 10, 20) + table.texel(0, 11, 20)), 1e-6F);
     // Centre of texel (3, 5) of level 2 lies at (14, 22) of level 0.
-    EXPECT_NEAR(table.sample(14.0, 22.0, 2.0F), table.texel(2, 3, 5), 1e-6F);
-    EXPECT_NEAR(table.sample(0.25, 700.0, 0.5F), table.sample(kSize + 0.25, 700.0, 0.5F), 1e-6F);
+    EXPECT_NEAR(table.sample(at(14.0), at(22.0), 2.0F), table.texel(2, 3, 5), 1e-6F);
+    EXPECT_NEAR(table.sample(at(0.25), at(700.0), 0.5F),
+                table.sample(at(kSize + 0.25), at(700.0), 0.5F),
+                1e-6F);
 }
 
 TEST(TextureTest, TilesRepeatWithoutASeam) {
@@ -89,8 +95,7 @@ double brute_average(const Textures& textures, double u_m, double v_m, const Foo
         const int row = i / kSide;
         const double along = ((i % kSide + 0.5) / kSide - 0.5) * f.major_m;
         const double across = ((row + 0.5) / kSide - 0.5) * f.minor_m;
-        sum += static_cast<double>(textures.reflectance(0,
-                                                        0,
+        sum += static_cast<double>(textures.reflectance(textures.place(0, 0),
                                                         u_m + along * f.axis_u - across * f.axis_v,
                                                         v_m + along * f.axis_v + across * f.axis_u,
                                                         point));
@@ -114,7 +119,8 @@ TEST(TextureTest, AFootprintAveragesLikeManySamples) {
         for (int i = 0; i < kPlaces; ++i) {
             const double u_m = rng.uniform(-4.0, 4.0);
             const double v_m = rng.uniform(-4.0, 4.0);
-            const double filtered = static_cast<double>(textures.reflectance(0, 0, u_m, v_m, f));
+            const double filtered =
+                static_cast<double>(textures.reflectance(textures.place(0, 0), u_m, v_m, f));
             averages.push_back(brute_average(textures, u_m, v_m, f));
             error2 += (filtered - averages.back()) * (filtered - averages.back());
             mean += averages.back() / kPlaces;
@@ -132,12 +138,50 @@ TEST(TextureTest, FarSurfacesDoNotAlias) {
     const Footprint far{0.5, 1.0, 1.0, 0.0};
     const auto sigma = [&](const Footprint& f) {
         return moments(2000,
-                       [&](int i) { return textures.reflectance(0, 0, 0.0137 * i, 0.0071 * i, f); })
+                       [&](int i) {
+                           return textures.reflectance(
+                               textures.place(0, 0), 0.0137 * i, 0.0071 * i, f);
+                       })
             .sigma;
     };
     EXPECT_GT(sigma(near), 0.08);
     // What remains are true differences: blotches up to 3 m in size.
     EXPECT_LT(sigma(far), 0.25 * sigma(near));
+}
+
+TEST(TextureTest, AWhiteWallHasNearlyNoContrast) {
+    Material material;
+    material.pattern = Pattern::white_wall;
+    material.albedo = 0.8;
+    const Textures textures({material}, 11);
+    const Placement placement = textures.place(0, 0);
+    const Footprint near{0.003, 0.004, 1.0, 0.0};
+    const Moments m = moments(
+        4000, [&](int i) { return textures.reflectance(placement, 0.0137 * i, 0.0071 * i, near); });
+    EXPECT_NEAR(m.mean, 0.8, 0.01);
+    EXPECT_LT(m.sigma / m.mean, 0.015);
+    EXPECT_GT(m.sigma / m.mean, 0.002);
+}
+
+TEST(TextureTest, AMeanOfTapsIsTheMeanOfTheirSamples) {
+    const TextureTable table(Pattern::tiles, 3);
+    Rng rng(8);
+    for (int i = 0; i < 200; ++i) {
+        const auto u = at(rng.uniform(-3000.0, 3000.0));
+        const auto v = at(rng.uniform(-3000.0, 3000.0));
+        const auto du = at(rng.uniform(-9.0, 9.0));
+        const auto dv = at(rng.uniform(-9.0, 9.0));
+        const auto level = static_cast<float>(rng.uniform(-1.0, 11.0));
+        for (std::uint32_t taps = 1; taps <= 4; ++taps) {
+            float sum = 0.0F;
+            for (std::uint32_t k = 0; k < taps; ++k) {
+                sum += table.sample(u + k * du, v + k * dv, level);
+            }
+            EXPECT_NEAR(table.mean(u, v, du, dv, static_cast<int>(taps), level),
+                        sum / static_cast<float>(taps),
+                        2e-6F);
+        }
+    }
 }
 
 TEST(TextureTest, SeedsAndSurfacesDiffer) {
@@ -150,10 +194,16 @@ TEST(TextureTest, SeedsAndSurfacesDiffer) {
     int equal_surface = 0;
     for (int i = 0; i < 1000; ++i) {
         const double u_m = 0.01 * i;
-        EXPECT_EQ(a.reflectance(0, 0, u_m, 0.3, f), same.reflectance(0, 0, u_m, 0.3, f));
-        equal_seed += a.reflectance(0, 0, u_m, 0.3, f) == b.reflectance(0, 0, u_m, 0.3, f) ? 1 : 0;
+        EXPECT_EQ(a.reflectance(a.place(0, 0), u_m, 0.3, f),
+                  same.reflectance(same.place(0, 0), u_m, 0.3, f));
+        equal_seed +=
+            a.reflectance(a.place(0, 0), u_m, 0.3, f) == b.reflectance(b.place(0, 0), u_m, 0.3, f)
+                ? 1
+                : 0;
         equal_surface +=
-            a.reflectance(0, 0, u_m, 0.3, f) == a.reflectance(0, 1, u_m, 0.3, f) ? 1 : 0;
+            a.reflectance(a.place(0, 0), u_m, 0.3, f) == a.reflectance(a.place(0, 1), u_m, 0.3, f)
+                ? 1
+                : 0;
     }
     EXPECT_LT(equal_seed, 20);
     EXPECT_LT(equal_surface, 20);

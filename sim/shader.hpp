@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "sim/scene.hpp"
+#include "sim/texture.hpp"
+
+namespace surefoot::sim {
+
+/// A ray in the world that has come `way_m` from the camera to `point_m`, with the angle between
+/// the rays of neighbouring pixels.
+struct Sight {
+    Eigen::Vector3d point_m;
+    Eigen::Vector3d direction;
+    double way_m = 0.0;
+    double pixel_angle_rad = 0.0;
+};
+
+/// What a ray sees. Radiance 1 = a white surface under full light. Places with another `key` differ
+/// in more than texture: another face, light instead of shadow, another thing in the mirror.
+struct Seen {
+    float radiance = 0.0F;
+    std::uint32_t key = 0;
+};
+
+/// Light that comes from the surfaces of a scene: texture, lamp with hard shadows and stripes,
+/// mirrors and panes. A mirror or a pane seen by two of the kind is matte: no deeper recursion.
+/// Panes are thin: no refraction; they cast no shadow. Immutable after construction.
+class Shader {
+  public:
+    /// The scene must outlive the shader. The seed turns the textures.
+    Shader(const Scene& scene, std::uint64_t seed);
+
+    /// A point of a surface that was hit.
+    [[nodiscard]] Seen surface(int surface, const Sight& sight) const;
+    /// Where no surface is.
+    [[nodiscard]] static Seen background() noexcept;
+    /// Does the lamp shine on a point of a surface? Always, where the scene has no shadows.
+    [[nodiscard]] bool lit(const Eigen::Vector3d& point_m) const;
+
+  private:
+    struct Face {
+        Placement placement;
+        Eigen::Vector3d normal;
+        Eigen::Vector3d tangent_u;
+        Eigen::Vector3d tangent_v;
+        Eigen::Vector3d texel_u;  ///< of a plane: texels along the pattern's axes for each metre
+        Eigen::Vector3d texel_v;
+        Finish finish = Finish::matte;
+        bool curved = false;
+        float gloss = 0.0F;
+        double facing_lamp = 0.0;  ///< of a plane: cosine of the lamp's incidence
+    };
+    struct Blocker {
+        int primitive = 0;
+        Sphere bounds;
+    };
+
+    void add_face(const Surface& surface, const Material& material);
+    [[nodiscard]] Seen seen(int surface, const Sight& sight, int bounces) const;
+    [[nodiscard]] Seen matte(int surface, const Sight& sight) const;
+    [[nodiscard]] float reflectance(const Face& face, const Sight& sight) const;
+    [[nodiscard]] Seen along(const Sight& sight, int bounces) const;
+    [[nodiscard]] SurfacePoint point_on(int surface, const Eigen::Vector3d& point_m) const;
+    [[nodiscard]] double stripes(const Sight& sight, const SurfacePoint& at) const;
+
+    const Scene* scene_;
+    Lighting lighting_;
+    Textures textures_;
+    std::vector<Face> faces_;
+    Eigen::Vector3d towards_lamp_;
+    Eigen::Vector3d across_stripes_;
+    std::vector<Blocker> blockers_;
+    double lamp_plane_m_ = 0.0;  ///< along `towards_lamp_`: everything is behind it
+};
+
+}  // namespace surefoot::sim
