@@ -137,7 +137,8 @@ TEST(ShutterTest, ARollingShutterShearsAnUprightEdge) {
     const double speed_px_s = kSpeed_m_s * kFocal_px / kWall_m;
     for (int row = 0; row < 94; ++row) {
         // The optical axis meets the edge; pixel centres are whole numbers, the border is at -0.5.
-        const double expected_px = 83.5 + 0.5 + speed_px_s * row_offset_s(row, 94, kReadout_s);
+        const double expected_px =
+            83.5 + 0.5 + speed_px_s * kReadout_s * ((row + 0.5) / 94.0 - 0.5);
         EXPECT_NEAR(edge_px(edge_profile(pair.left, row)), expected_px, 0.26) << "row " << row;
     }
     CameraConfig global = test::noiseless();
@@ -157,7 +158,7 @@ TEST(ShutterTest, DepthIsThatOfTheMiddleOfEachRowsExposure) {
     CleanPair pair;
     Renderer::make(scene, rig, config, 1).value().collect(ahead, 0.2, 0.01, serial, pair);
     for (int row = 0; row < 94; row += 7) {
-        const double expected_m = kWall_m - 0.2 - row_offset_s(row, 94, 0.05);
+        const double expected_m = kWall_m - 0.2 - 0.05 * ((row + 0.5) / 94.0 - 0.5);
         EXPECT_NEAR(static_cast<double>(pair.left.depth_m.at(20, row)), expected_m, 1e-6);
         EXPECT_NEAR(static_cast<double>(pair.right.depth_m.at(20, row)), expected_m, 1e-6);
     }
