@@ -36,13 +36,15 @@ double second_moment(const std::vector<double>& weights) {
 constexpr int kLanes = 8;
 
 /// out[u] = sum over k of kernel[k] * rows[k][u], for a whole number of lanes.
-template <typename Row>
-void weigh(const std::vector<float>& kernel, int width, const Row& row, float* out) {
+void weigh(const std::vector<float>& kernel,
+           const std::vector<const float*>& rows,
+           int width,
+           float* out) {
     for (int u = 0; u < width; u += kLanes) {
         std::array<float, kLanes> sum{};
         for (std::size_t k = 0; k < kernel.size(); ++k) {
             const float weight = kernel[k];
-            const float* in = row(k) + u;
+            const float* in = rows[k] + u;
             for (std::size_t lane = 0; lane < kLanes; ++lane) sum[lane] += weight * in[lane];
         }
         std::copy(sum.begin(), sum.end(), out + u);
@@ -98,15 +100,17 @@ void smear(const std::vector<float>& kernel, Executor& executor, Image<float>& i
         for (int u = -radius; u < width + radius; ++u) {
             padded[static_cast<std::size_t>(u + radius)] = image.row(v)[std::clamp(u, 0, last)];
         }
-        weigh(
-            kernel, width, [&](std::size_t k) { return padded.data() + k; }, across.row(v));
+        std::vector<const float*> shifted;
+        for (std::size_t k = 0; k < kernel.size(); ++k) shifted.push_back(padded.data() + k);
+        weigh(kernel, shifted, width, across.row(v));
     });
     executor.parallel_for(height, [&](int v) {
         std::vector<float> sums(static_cast<std::size_t>(width));
-        const auto row = [&](std::size_t k) {
-            return across.row(std::clamp(v + static_cast<int>(k) - radius, 0, height - 1));
-        };
-        weigh(kernel, width, row, sums.data());
+        std::vector<const float*> rows;
+        for (int k = -radius; k <= radius; ++k) {
+            rows.push_back(across.row(std::clamp(v + k, 0, height - 1)));
+        }
+        weigh(kernel, rows, width, sums.data());
         std::copy_n(sums.begin(), image.width(), image.row(v));
     });
 }
