@@ -150,6 +150,7 @@ AnalyticStereo::AnalyticStereo(const Scene& scene,
 
 void AnalyticStereo::cast(const Pose& T_world_body, Executor& executor, View& out) const {
     const Pose T_world_camera = T_world_body * rig_.T_body_camera;
+    const ImageViews views(T_world_camera);
     out.disparity_px = Image<float>(rig_.width, rig_.height, kNan);
     out.surface = Image<std::int32_t>(rig_.width, rig_.height, -1);
     out.fixed.resize(rig_.width, rig_.height);
@@ -157,7 +158,7 @@ void AnalyticStereo::cast(const Pose& T_world_body, Executor& executor, View& ou
     executor.parallel_for(rays_.blocks_y(), [&](int block_y) {
         CastBlock block;
         for (int block_x = 0; block_x < rays_.blocks_x(); ++block_x) {
-            cast_block(*scene_, rays_, T_world_camera, block_x, block_y, block);
+            cast_block(*scene_, rays_, views, block_x, block_y, block);
             std::size_t i = 0;
             for (int v = block.v0; v < block.v0 + block.height; ++v) {
                 for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
@@ -269,13 +270,14 @@ void AnalyticStereo::measure_row(const View& view,
                                  camera::DepthImage& out) const {
     constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
     const Scales scale(config_);
+    const std::uint64_t white_key = PixelNoise::key(seed_, stream + white);
     for (int u = 0; u < rig_.width; ++u) {
         const auto column = static_cast<std::size_t>(u);
         const Match found = match(view, shadows, u, v, uniform_from(cdf_, luck[column]));
         const auto pixel = static_cast<std::uint32_t>(v * rig_.width + u);
-        float measured_px =
-            found.disparity_px + scale.white_px * noise_.normal(seed_, stream + white, pixel) +
-            scale.correlated_px * errors[column] + scale.fixed_px * view.fixed.row(v)[u];
+        float measured_px = found.disparity_px + scale.white_px * noise_.normal(white_key, pixel) +
+                            scale.correlated_px * errors[column] +
+                            scale.fixed_px * view.fixed.row(v)[u];
         if (scale.locking_px > 0.0F) {
             measured_px +=
                 scale.locking_px * std::sin(kTurn * scale.full_pixels * found.disparity_px);

@@ -127,7 +127,7 @@ double DepthCamera::sigma_m(double depth_m, double incidence_rad) const {
 }
 
 double DepthCamera::normal(std::uint64_t stream, std::uint32_t pixel) const {
-    return static_cast<double>(noise_.normal(seed_, stream, pixel));
+    return static_cast<double>(noise_.normal(PixelNoise::key(seed_, stream), pixel));
 }
 
 /// Depth between two neighbouring disparities, f b / d, at some depth.
@@ -150,10 +150,11 @@ void DepthCamera::render(const Pose& T_world_camera,
 }
 
 void DepthCamera::cast(const Pose& T_world_camera, Executor& executor, Image<Seen>& out) const {
+    const ImageViews views(T_world_camera);
     executor.parallel_for(rays_.blocks_y(), [&](int block_y) {
         CastBlock block;
         for (int block_x = 0; block_x < rays_.blocks_x(); ++block_x) {
-            cast_block(*scene_, rays_, T_world_camera, block_x, block_y, block);
+            cast_block(*scene_, rays_, views, block_x, block_y, block);
             std::size_t i = 0;
             for (int v = block.v0; v < block.v0 + block.height; ++v) {
                 for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {

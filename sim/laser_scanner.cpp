@@ -169,7 +169,8 @@ void LaserScanner::scan_column(const Pose& T_world_scanner,
         const double true_m = range_m(T_world_scanner, beams, row, point, share);
         if (!(share > 0.0) || true_m < config_.min_range_m) continue;
         if (true_m > config_.max_range_m * std::sqrt(std::min(share / kWhite, 1.0))) continue;
-        const float normal = noise_.normal(seed_, stream, static_cast<std::uint32_t>(row));
+        const float normal =
+            noise_.normal(PixelNoise::key(seed_, stream), static_cast<std::uint32_t>(row));
         const double error_m = sigma_m(true_m, share) * static_cast<double>(normal);
         point.point_scanner_m = (true_m + error_m) * beams.directions_scanner[row];
     }

@@ -22,7 +22,7 @@ std::vector<float> lattice(const PixelNoise& noise, std::uint64_t seed, int widt
         for (int x = 0; x < width; ++x) {
             const auto place =
                 (static_cast<std::uint32_t>(y) << 16U) | static_cast<std::uint32_t>(x);
-            nodes.push_back(noise.normal(seed, values, place));
+            nodes.push_back(noise.normal(PixelNoise::key(seed, values), place));
         }
     }
     return nodes;
@@ -96,7 +96,8 @@ float SurfaceNoise::at(const PixelNoise& noise, int surface, double u_m, double 
     const auto node = [&](int du, int dv) {
         const auto x = static_cast<std::uint32_t>(static_cast<std::int64_t>(u0) + du) & 0xFFFFU;
         const auto y = static_cast<std::uint32_t>(static_cast<std::int64_t>(v0) + dv) & 0xFFFFU;
-        return noise.normal(seed_, static_cast<std::uint64_t>(surface), (y << 16U) | x);
+        return noise.normal(PixelNoise::key(seed_, static_cast<std::uint64_t>(surface)),
+                            (y << 16U) | x);
     };
     const float sum = (1.0F - fv) * ((1.0F - fu) * node(0, 0) + fu * node(1, 0)) +
                       fv * ((1.0F - fu) * node(0, 1) + fu * node(1, 1));

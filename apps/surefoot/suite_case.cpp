@@ -93,8 +93,8 @@ Result<SuiteResult> run_suite_case(const SuiteCase& which,
     options.scene = which.scene;
     options.seed = which.seed;
     options.frames = which.max_frames;
-    options.imaging.read_noise_dn *= which.noise;
-    options.imaging.shot_noise_dn *= which.noise * which.noise;  // a variance
+    options.camera.imaging.read_noise_dn *= which.noise;
+    options.camera.imaging.shot_noise_dn *= which.noise * which.noise;  // a variance
     auto source = sim::open_scene(options, &executor);
     if (!source) return source.error();
     auto pipeline = pipeline::Pipeline::make(
