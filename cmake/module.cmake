@@ -53,8 +53,12 @@ function(surefoot_test name)
   target_compile_definitions(${target} PRIVATE
     SUREFOOT_SOURCE_DIR="."
     SUREFOOT_DEFAULT_DATA_DIR="../shared/data")
+  set(test_timeout_s 300)
+  if(SUREFOOT_SANITIZE)
+    set(test_timeout_s 1800)  # sanitizers slow code down five to twenty times
+  endif()
   # Tests run in the source folder; paths in the code are relative, so that ccache serves every clone.
   gtest_discover_tests(${target} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
-    PROPERTIES TIMEOUT 300 ENVIRONMENT "ASAN_OPTIONS=detect_leaks=1")
+    PROPERTIES TIMEOUT ${test_timeout_s} ENVIRONMENT "ASAN_OPTIONS=detect_leaks=1")
 endfunction()

@@ -39,12 +39,12 @@ struct Window {
     double inliers = 0.0;      ///< share of the matched pixels within 3 sigma
 };
 
-/// Root mean square of the central horizontal difference per pixel.
-double texture_of(const GreyImage& image, int u0, int v0) {
+/// Root mean square of the horizontal difference between pixels `reach` to either side, per pixel.
+double texture_of(const GreyImage& image, int u0, int v0, int reach) {
     double sum = 0.0;
     for (int v = v0; v < v0 + kWindow_px; ++v) {
         for (int u = u0; u < u0 + kWindow_px; ++u) {
-            const double step = 0.5 * (image.at(u + 1, v) - image.at(u - 1, v));
+            const double step = (image.at(u + reach, v) - image.at(u - reach, v)) / (2.0 * reach);
             sum += step * step;
         }
     }
@@ -104,6 +104,10 @@ Result<std::unique_ptr<camera::FrameSource>> open(const std::string& source,
     options.scene = source.substr(4);
     options.frames = max_frames;
     for (const std::string& setting : settings) {
+        if (setting.starts_with("seed=")) {
+            options.seed = std::strtoull(setting.c_str() + 5, nullptr, 10);
+            continue;
+        }
         if (auto status = io::override_config(setting, io::describe_config(options)); !status)
             return status.error();
     }
@@ -125,7 +129,7 @@ int run(const std::string& name,
     camera::RectifiedPair pair;
     camera::DepthImage depth;
     auto file = fmt::output_file(out);
-    file.print("frame,u,v,texture_dn,grey_dn,density,residual_px,inliers\n");
+    file.print("frame,u,v,texture_dn,coarse_dn,grey_dn,density,residual_px,inliers\n");
     for (int frame = 0;; ++frame) {
         const auto next = (*source)->next();
         if (!next) return app::report(next.error());
@@ -139,11 +143,12 @@ int run(const std::string& name,
                 double grey = 0.0;
                 for (int y = v; y < v + kWindow_px; ++y)
                     for (int x = u; x < u + kWindow_px; ++x) grey += pair.left.at(x, y);
-                file.print("{},{},{},{:.3f},{:.1f},{:.4f},{:.4f},{:.4f}\n",
+                file.print("{},{},{},{:.3f},{:.3f},{:.1f},{:.4f},{:.4f},{:.4f}\n",
                            frame,
                            u,
                            v,
-                           texture_of(pair.left, u, v),
+                           texture_of(pair.left, u, v, 1),
+                           texture_of(pair.left, u, v, 4),
                            grey / (kWindow_px * kWindow_px),
                            window.density,
                            window.residual_px,

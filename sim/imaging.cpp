@@ -41,6 +41,8 @@ void ImagingConfig::describe(ConfigVisitor& visitor) {
     visitor.number("vignetting", vignetting, 0.0, 0.9, "share of light lost in the image corner");
     visitor.number("read_noise_dn", read_noise_dn, 0.0, 50.0, "noise in the dark, one sigma");
     visitor.number("shot_noise_dn", shot_noise_dn, 0.0, 5.0, "noise variance per grey value");
+    visitor.number(
+        "noise_size_px", noise_size_px, 0.0, 10.0, "smoothed over; 0 = each pixel's own");
 }
 
 PixelNoise::PixelNoise() : quantiles_(kQuantiles) {

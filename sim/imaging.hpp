@@ -15,6 +15,8 @@ struct ImagingConfig {
     double vignetting = 0.25;    ///< light lost in the image corner, share
     double read_noise_dn = 1.0;  ///< one sigma that does not depend on the light
     double shot_noise_dn = 0.02;  ///< variance per grey value (inverse gain): sigma 1.6 at 128
+    double noise_size_px = 0.0;   ///< neighbours share the noise: one sigma of the Gaussian that it
+                                  ///< is smoothed with, as denoising and compression leave it
 
     void describe(ConfigVisitor& visitor);
 };

@@ -295,17 +295,39 @@ void Renderer::expose_eye(const CleanImage& clean,
     const int width = clean.signal_dn.width();
     const auto pixels = static_cast<std::size_t>(width);
     out.resize(width, clean.signal_dn.height());
-    const std::uint64_t key = PixelNoise::key(seed_, stream);
+    const Image<float> normals = noise_image(width, out.height(), stream, executor);
     executor.parallel_for(out.height(), [&](int v) {
-        std::vector<float> normals(pixels);
-        noise_.fill(key, static_cast<std::uint32_t>(v * width), normals);
         expose_row(config_.imaging,
                    shot.gain,
                    shot.light,
                    {clean.signal_dn.row(v), pixels},
-                   normals,
+                   {normals.row(v), pixels},
                    {out.row(v), pixels});
     });
+}
+
+Image<float> Renderer::noise_image(int width,
+                                   int height,
+                                   std::uint64_t stream,
+                                   Executor& executor) const {
+    Image<float> normals(width, height);
+    const std::uint64_t key = PixelNoise::key(seed_, stream);
+    executor.parallel_for(height, [&](int v) {
+        noise_.fill(key,
+                    static_cast<std::uint32_t>(v * width),
+                    {normals.row(v), static_cast<std::size_t>(width)});
+    });
+    if (config_.imaging.noise_size_px <= 0.0) return normals;
+    const std::vector<float> kernel = smear_kernel(config_.imaging.noise_size_px);
+    smear(kernel, executor, normals);
+    // A weighted sum of independent numbers has the sum of the squared weights as its variance,
+    // once for each direction.
+    float squares = 0.0F;
+    for (const float weight : kernel) squares += weight * weight;
+    executor.parallel_for(height, [&](int v) {
+        for (int u = 0; u < width; ++u) normals.row(v)[u] /= squares;
+    });
+    return normals;
 }
 
 Image<float> disparity_px(const Image<float>& depth_m, const camera::RectifiedRig& rig) {

@@ -137,6 +137,11 @@ class Renderer {
                                     std::span<const int> primitives,
                                     int u,
                                     int v) const;
+    /// Unit normal noise of one image, smoothed as configured.
+    [[nodiscard]] Image<float> noise_image(int width,
+                                           int height,
+                                           std::uint64_t stream,
+                                           Executor& executor) const;
     void expose_eye(const CleanImage& clean,
                     const Shot& shot,
                     std::uint64_t stream,

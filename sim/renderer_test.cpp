@@ -253,6 +253,46 @@ TEST(RendererTest, ImagesCarryTheConfiguredNoise) {
     EXPECT_NEAR(sigma, std::sqrt(4.0 + 1.0 / 12.0), 0.03);
 }
 
+TEST(RendererTest, SmoothedNoiseKeepsItsStrengthAndIsSharedByNeighbours) {
+    // A wall without texture that fills the view: what varies is the noise.
+    Scene scene;
+    Material grey;
+    grey.contrast = 0.0;
+    scene.add(
+        make_box({3.0, 0.0}, {0.2, 40.0}, -20.0, 20.0), scene.add_material(grey), Label::wall);
+    CameraConfig config = test::noiseless();
+    config.imaging.read_noise_dn = 6.0;
+    config.imaging.noise_size_px = 1.5;
+    const Renderer renderer = Renderer::make(scene, zed(), config, 3).value();
+    CameraConfig clean_config = config;
+    clean_config.imaging.read_noise_dn = 0.0;
+    const Renderer clean = Renderer::make(scene, zed(), clean_config, 3).value();
+    Serial serial;
+    RenderedPair noisy;
+    RenderedPair quiet;
+    renderer.render(body_at(0.0), 0, serial, noisy);
+    clean.render(body_at(0.0), 0, serial, quiet);
+    double square = 0.0;
+    double with_next = 0.0;
+    double with_far = 0.0;
+    int count = 0;
+    const auto noise = [&](int u, int v) {
+        return static_cast<double>(noisy.left.at(u, v)) - static_cast<double>(quiet.left.at(u, v));
+    };
+    for (int v = 20; v < 350; ++v) {
+        for (int u = 20; u < 600; ++u) {
+            square += noise(u, v) * noise(u, v);
+            with_next += noise(u, v) * noise(u + 1, v);
+            with_far += noise(u, v) * noise(u + 12, v);
+            ++count;
+        }
+    }
+    EXPECT_NEAR(std::sqrt(square / count), 6.0, 0.2);
+    // A Gaussian of sigma s convolved with itself: correlation exp(-1 / (4 s^2)) at distance 1.
+    EXPECT_NEAR(with_next / square, std::exp(-1.0 / (4.0 * 1.5 * 1.5)), 0.02);
+    EXPECT_NEAR(with_far / square, 0.0, 0.02);
+}
+
 TEST(RendererTest, VignettingDarkensCorners) {
     const Scene scene = make_scene("floor", 1).value().scene;
     CameraConfig config = test::noiseless();

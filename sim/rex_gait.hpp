@@ -22,16 +22,16 @@ struct Spread {
 /// Everything but the step time and what the gait trace gives is an ASSUMPTION after the proposed
 /// model of the project's safety notes, to be replaced when somebody has recorded a REX.
 struct RexGaitConfig {
-    double step_s = 10.0;                 ///< 0.35 m at the data sheet's 0.0347 m/s
-    double settle_s = 1.5;                ///< of it: standing until the frame has stopped ringing
-    double foot_clearance_m = 0.01;       ///< of the toes of a swinging foot; ankles rise by 22 mm
+    double step_s = 10.0;                ///< 0.35 m at the data sheet's 0.0347 m/s
+    double settle_s = 1.5;               ///< of it: standing until the frame has stopped ringing
+    double foot_clearance_m = 0.01;      ///< of the toes of a swinging foot; ankles rise by 22 mm
     Spread lateral_shift_m{0.10, 0.11};  ///< of base_link over the standing foot, to each side
-    Spread roll_deg{3.0, 4.0};            ///< toward the standing foot
-    Spread yaw_deg{1.5, 3.0};             ///< toward the foot behind
-    Spread ring_hz{2.0, 6.0};             ///< structural ringing after a foot strike
-    Spread ring_mm{1.0, 3.0};             ///< its largest deflection, vertical
-    Spread ring_deg{0.1, 0.3};            ///< its largest roll and pitch
-    Spread strike_m_s2{0.5, 2.0};         ///< vertical acceleration pulse of a foot strike
+    Spread roll_deg{3.0, 4.0};           ///< toward the standing foot
+    Spread yaw_deg{1.5, 3.0};            ///< toward the foot behind
+    Spread ring_hz{2.0, 6.0};            ///< structural ringing after a foot strike
+    Spread ring_mm{1.0, 3.0};            ///< its largest deflection, vertical
+    Spread ring_deg{0.1, 0.3};           ///< its largest roll and pitch
+    Spread strike_m_s2{0.5, 2.0};        ///< vertical acceleration pulse of a foot strike
     bool ground_under_body = false;  ///< ask for the ground below base_link instead of each sole
 };
 

@@ -82,6 +82,9 @@ class Scene {
     void add_floor(const Floor& floor, int material, int pit_material, Label label = Label::floor);
 
     void light(const Lighting& lighting) { lighting_ = lighting; }
+    void scale_contrast(double factor) {
+        for (Material& material : materials_) material.contrast *= factor;
+    }
     [[nodiscard]] const Lighting& lighting() const noexcept { return lighting_; }
 
     /// First surface along a ray (unit direction), the side that faces the origin only.

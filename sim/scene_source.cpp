@@ -60,10 +60,12 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
     visitor.boolean("imu", imu, "emit IMU samples, where the rig has an IMU");
+    visitor.number("contrast", contrast, 0.0, 2.0, "factor on the contrast of every material");
     visitor.group("imaging", camera.imaging);
     visitor.group("optics", camera.optics);
     visitor.group("shutter", camera.shutter);
     visitor.group("exposure", camera.exposure);
+    visitor.group("calibration_error", calibration_error);
     visitor.group("faults", faults);
     visitor.group("imu_noise", imu_noise);
 }
@@ -91,8 +93,11 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
                              mix_seed(options.seed, kImuStream));
     }
     source->truth_.scene = std::move(script->scene);
+    source->truth_.scene.scale_contrast(options.contrast);
+    source->truth_.steps = std::move(script->steps);
+    source->truth_.start_ns = kStart_ns;
     auto renderer = Renderer::make(source->truth_.scene,
-                                   source->truth_.rig,
+                                   with_error(source->truth_.rig, options.calibration_error),
                                    options.camera,
                                    mix_seed(options.seed, kNoiseStream));
     if (!renderer) return renderer.error();

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/calibration_error.hpp"
 #include "sim/image_faults.hpp"
 #include "sim/imu.hpp"
 #include "sim/renderer.hpp"
@@ -24,8 +25,10 @@ struct SceneOptions {
     std::uint64_t seed = 1;                ///< textures, noise, centimetres of the path
     int frames = 0;                        ///< 0 = to the end of the path
     double rate_hz = 10.0;
-    bool imu = true;      ///< samples, where the rig has an IMU
-    CameraConfig camera;  ///< groups imaging, optics, shutter, exposure
+    bool imu = true;                     ///< samples, where the rig has an IMU
+    CameraConfig camera;                 ///< groups imaging, optics, shutter, exposure
+    double contrast = 1.0;               ///< factor on the contrast of every material
+    CalibrationError calibration_error;  ///< of the images; `rig()` stays what it was
     ImageFaultConfig faults;
     ImuNoiseConfig imu_noise;
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/motion_script.hpp"
 #include "sim/scene.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/executor.hpp"
@@ -19,6 +20,8 @@ struct SceneTruth {
     Scene scene;
     camera::StereoRig rig;
     std::vector<StampedPose> trajectory;  ///< one pose a frame
+    std::int64_t start_ns = 0;            ///< stamp of the motion's time 0
+    std::vector<StepEvent> steps;         ///< of a walking machine
 };
 
 /// Cells of a map: `origin_m` is the outer corner of cell (0, 0) in the world, images are indexed

@@ -34,7 +34,8 @@ BenchResult timed(const std::string& name, int repeats, const std::function<void
 Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Executor& executor) {
     const auto settings = load_settings(common);
     if (!settings) return settings.error();
-    auto source = open_source({"sim:demo_stairs", "", 0.0, 40, common.seed}, executor);
+    auto source =
+        open_source({"sim:demo_stairs", "", 0.0, 40, common.seed, settings->sim}, executor);
     if (!source) return source.error();
     auto pipeline =
         pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor, steady_now_ns);

@@ -131,6 +131,11 @@ void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
     verb->add_option("--rate", o.rate_hz, "frame rate")
         ->type_name("HZ")
         ->check(CLI::Range(0.1, 1000.0));
+    verb->add_option(
+            "--rig", o.rig, "calibration file, or name of a built-in rig; doctor lists them")
+        ->type_name("FILE|NAME");
+    verb->add_option("--machine", o.machine, "whose steps are judged for safety.csv")
+        ->type_name("FILE|NAME");
     verb->add_flag("--depth", o.depth, "write the exact depth of every frame too (PFM, 1 MB each)");
     verb->add_flag(
         "--list", o.list, "print the scenes; with --out also pictures of each, index.html");
@@ -397,8 +402,7 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
                       "surefoot record sim:floor --max-frames 4 --out out/copy"),
              all.record,
              record,
-             exit_code,
-             Reads::no_settings);
+             exit_code);
     record_verb->add_option("source", all.record.source, "as for run")
         ->required()
         ->type_name("SOURCE");

@@ -11,12 +11,15 @@
 namespace surefoot::app {
 
 int record(const RecordOptions& options) {
+    const auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
     const auto executor = make_executor(options.common);
     auto source = open_source({options.source,
                                options.rig_file,
                                options.rate_hz,
                                options.max_frames,
-                               options.common.seed},
+                               options.common.seed,
+                               settings->sim},
                               *executor);
     if (!source) return report(source.error());
     auto recorder = io::Recorder::create(options.out_dir, (*source)->rig());

@@ -86,8 +86,8 @@ int replay(const ReplayOptions& options) {
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
     const auto executor = make_executor(options.common);
-    auto source =
-        open_source({options.source, options.rig_file, 0.0, 0, options.common.seed}, *executor);
+    auto source = open_source(
+        {options.source, options.rig_file, 0.0, 0, options.common.seed, settings->sim}, *executor);
     if (!source) return report(source.error());
     auto pipeline = pipeline::Pipeline::make(
         settings->pipeline, mounted_rig((*source)->rig(), *machine), *executor, steady_now_ns);

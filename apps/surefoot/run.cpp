@@ -37,7 +37,8 @@ int run(const RunOptions& options) {
                                options.rig_file,
                                options.rate_hz,
                                options.max_frames,
-                               options.common.seed},
+                               options.common.seed,
+                               settings->sim},
                               *executor);
     if (!source) return report(source.error());
     const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);

@@ -16,6 +16,7 @@ void Settings::describe(ConfigVisitor& visitor) {
     visitor.begin_group("eval");
     visitor.group("maps", maps);
     visitor.end_group();
+    visitor.group("sim", sim);
 }
 
 Result<Settings> load_settings(const CommonOptions& options) {

@@ -7,6 +7,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "eval/maps.hpp"
 #include "io/config_yaml.hpp"
+#include "sim/scene_source.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
@@ -17,6 +18,7 @@ namespace surefoot::app {
 struct Settings {
     pipeline::PipelineConfig pipeline;
     eval::EvalMapsConfig maps;
+    sim::SceneOptions sim;  ///< how simulated scenes are seen
 
     void describe(ConfigVisitor& visitor);
 };

@@ -9,14 +9,17 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/scene_gallery.hpp"
 #include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "apps/surefoot/writes.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
 #include "io/pfm.hpp"
 #include "io/trajectory_file.hpp"
-#include "sim/scene_source.hpp"
+#include "sim/safety_oracle.hpp"
 #include "sim/scenes.hpp"
 #include "sim/truth.hpp"
+#include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -81,6 +84,29 @@ Status write_truth(const std::string& out,
     return io::write_esri_grid(out + "/labels.asc", geometry, labels);
 }
 
+/// joystick.csv: what the user asks a walking machine for, and when (no line for other carriers);
+/// safety.csv: which of all movements would truly be safe at each of these moments.
+Status write_steps(const std::string& out, const sim::SceneTruth& truth, const Machine& machine) {
+    std::string joystick = "time_s,end_s,command\n";
+    std::vector<sim::SafetyLabel> labels;
+    for (const sim::StepEvent& step : truth.steps) {
+        const std::int64_t time_ns = truth.start_ns + ns_from_seconds(step.start_s);
+        joystick += fmt::format("{:.3f},{:.3f},{}\n",
+                                seconds_from_ns(time_ns),
+                                seconds_from_ns(truth.start_ns + ns_from_seconds(step.end_s)),
+                                step.command);
+        for (int command = 1; command < Machine::kMovementCodes; ++command) {
+            if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
+            labels.push_back(
+                {time_ns, command, sim::judge(truth.scene, machine, step.T_world_before, command)});
+        }
+    }
+    Writes writes;
+    writes += io::write_file(out + "/joystick.csv", joystick);
+    writes += io::write_file(out + "/safety.csv", sim::safety_csv(labels));
+    return writes.first();
+}
+
 }  // namespace
 
 int simulate(const SimOptions& options) {
@@ -91,13 +117,17 @@ int simulate(const SimOptions& options) {
     }
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
+    const auto machine = load_machine(options.machine);
+    if (!machine) return report(machine.error());
+    if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));
     const auto executor = make_executor(options.common);
-    sim::SceneOptions scene_options;
-    scene_options.scene = options.scene;
-    scene_options.seed = options.common.seed;
-    scene_options.frames = options.frames;
-    if (options.rate_hz > 0.0) scene_options.rate_hz = options.rate_hz;
-    auto source = sim::open_scene(scene_options, executor.get());
+    auto source = open_simulation({options.scene,
+                                   options.rig,
+                                   options.rate_hz,
+                                   options.frames,
+                                   options.common.seed,
+                                   settings->sim},
+                                  *executor);
     if (!source) return report(source.error());
     auto recorder = io::Recorder::create(options.out_dir, (*source)->rig());
     if (!recorder) return report(recorder.error());
@@ -113,11 +143,13 @@ int simulate(const SimOptions& options) {
     Copied copied = copy_frames("sim", **source, *recorder, write_depth);
     // The truth of the frames that are there, also when the recording ended early.
     if (copied.frames > 0) {
-        const auto status = write_truth(options.out_dir,
-                                        (*source)->truth(),
-                                        static_cast<std::size_t>(copied.frames),
-                                        settings->pipeline.elevation.resolution_m);
-        if (!status && !copied.error) copied.error = status.error();
+        Writes writes;
+        writes += write_truth(options.out_dir,
+                              (*source)->truth(),
+                              static_cast<std::size_t>(copied.frames),
+                              settings->pipeline.elevation.resolution_m);
+        writes += write_steps(options.out_dir, (*source)->truth(), machine->value().machine);
+        if (!writes.first() && !copied.error) copied.error = writes.first().error();
     }
     if (options.common.json) {
         fmt::print("{}\n", copied_json(copied, options.out_dir));

@@ -7,7 +7,7 @@
 
 #include "apps/surefoot/resources.hpp"
 #include "io/recording.hpp"
-#include "sim/scene_source.hpp"
+#include "io/rig_file.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -34,27 +34,34 @@ class LimitedSource final : public camera::FrameSource {
     int left_;
 };
 
-Result<std::unique_ptr<camera::FrameSource>> open_simulation(const SourceRequest& request,
-                                                             Executor& executor) {
-    if (!request.rig_file.empty()) {
-        return usage_error(
-            fmt::format("--rig {}: simulated scenes bring their own rig", request.rig_file));
-    }
-    sim::SceneOptions options;
-    options.scene = request.source.substr(kSimPrefix.size());
-    options.seed = request.seed;
-    options.frames = request.max_frames;
-    if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
-    auto scene = sim::open_scene(options, &executor);
-    if (!scene) return scene.error();
-    return std::unique_ptr<camera::FrameSource>(std::move(scene).value());
-}
-
 }  // namespace
+
+Result<std::unique_ptr<sim::SceneSource>> open_simulation(const SourceRequest& request,
+                                                          Executor& executor) {
+    sim::SceneOptions options = request.sim;
+    options.scene = request.source.starts_with(kSimPrefix)
+                        ? request.source.substr(kSimPrefix.size())
+                        : request.source;
+    options.seed = request.seed;
+    if (request.max_frames > 0) options.frames = request.max_frames;
+    if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
+    if (std::filesystem::exists(request.rig_file)) {
+        auto rig = io::read_rig(request.rig_file);
+        if (!rig) return rig.error();
+        options.rig = *rig;
+    } else if (!request.rig_file.empty()) {
+        options.rig_preset = request.rig_file;
+    }
+    return sim::open_scene(options, &executor);
+}
 
 Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& request,
                                                          Executor& executor) {
-    if (request.source.starts_with(kSimPrefix)) return open_simulation(request, executor);
+    if (request.source.starts_with(kSimPrefix)) {
+        auto scene = open_simulation(request, executor);
+        if (!scene) return scene.error();
+        return std::unique_ptr<camera::FrameSource>(std::move(scene).value());
+    }
     io::OpenOptions options;
     if (!request.rig_file.empty()) options.rig_file = request.rig_file;
     if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;

@@ -7,6 +7,7 @@
 
 #include "apps/surefoot/verbs.hpp"
 #include "io/machine_file.hpp"
+#include "sim/scene_source.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
@@ -19,11 +20,17 @@ struct SourceRequest {
     double rate_hz = 0.0;  ///< 0 = the source's own
     int max_frames = 0;    ///< 0 = all
     std::uint64_t seed = 1;
+    sim::SceneOptions sim = {};  ///< the rest of what a simulated scene wants to know
 };
 
 /// Opens a recording, video or simulated scene.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& request,
                                                                        Executor& executor);
+
+/// Opens a simulated scene, with or without "sim:" before its name; `rig_file` may also be the name
+/// of a built-in rig.
+[[nodiscard]] Result<std::unique_ptr<sim::SceneSource>> open_simulation(
+    const SourceRequest& request, Executor& executor);
 
 /// A machine file by path or by built-in name; nothing for an empty choice.
 [[nodiscard]] Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_name);

@@ -9,8 +9,8 @@
 
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/run_session.hpp"
+#include "apps/surefoot/source.hpp"
 #include "apps/surefoot/suite_verdicts.hpp"
-#include "sim/scene_source.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -89,13 +89,11 @@ Result<SuiteResult> run_suite_case(const SuiteCase& which,
                                    const io::MachineFile& machine,
                                    Executor& executor,
                                    const std::string& progress_label) {
-    sim::SceneOptions options;
-    options.scene = which.scene;
-    options.seed = which.seed;
-    options.frames = which.max_frames;
-    options.camera.imaging.read_noise_dn *= which.noise;
-    options.camera.imaging.shot_noise_dn *= which.noise * which.noise;  // a variance
-    auto source = sim::open_scene(options, &executor);
+    SourceRequest request{which.scene, "", 0.0, which.max_frames, which.seed, settings.sim};
+    auto& imaging = request.sim.camera.imaging;
+    imaging.read_noise_dn *= which.noise;
+    imaging.shot_noise_dn *= which.noise * which.noise;  // a variance
+    auto source = open_simulation(request, executor);
     if (!source) return source.error();
     auto pipeline = pipeline::Pipeline::make(
         config_on(machine, settings), (*source)->rig(), executor, steady_now_ns);

@@ -43,6 +43,8 @@ struct SimOptions {
     CommonOptions common;
     std::string scene;
     std::string out_dir;
+    std::string rig;
+    std::string machine = "rex";
     bool list = false;
     bool depth = false;
     int frames = 0;
