@@ -123,21 +123,40 @@ std::optional<std::vector<double>> numbers_of(const Json& object,
     return numbers;
 }
 
+Json maps_object(const eval::MapComparison& result) {
+    Json edges = figures_json(result.edges, "m");
+    edges["by_column"] = bins_json(result.edges_by_column, "px");
+    return {{"elevation", elevation_json(result.elevation)},
+            {"elevation_away_from_edges", elevation_json(result.elevation_away_from_edges)},
+            {"traversability", traversability_json(result.traversability)},
+            {"coverage", number(result.coverage)},
+            {"sigma", sigma_json(result.sigma)},
+            {"by_distance", bins_json(result.by_distance, "m")},
+            {"by_range", bins_json(result.by_range, "m")},
+            {"by_column", bins_json(result.by_column, "px")},
+            {"edges", edges},
+            {"floor",
+             {{"spread_m", number(result.floor.spread_m)},
+              {"rms_m", number(result.floor.rms_m)},
+              {"p99_abs_m", number(result.floor.p99_abs_m)},
+              {"tilt_deg", number(result.floor.tilt_deg)},
+              {"count", result.floor.count}}}};
+}
+
 Json truth_json(const TruthFigures& t) {
     const DepthFigures& d = t.depth;
-    return {{"elevation", elevation_json(t.elevation)},
-            {"elevation_away_from_edges", elevation_json(t.elevation_away_from_edges)},
-            {"coverage_within_2_5_m", number(t.coverage_within_2_5_m)},
-            {"traversability", traversability_json(t.traversability)},
-            {"trajectory", errors_json(t.trajectory)},
-            {"depth",
-             {{"pixels", d.pixels},
-              {"within_1_sigma", number(d.within_1_sigma)},
-              {"within_3_sigma", number(d.within_3_sigma)},
-              {"median_abs_error_px", number(d.median_abs_error_px)},
-              {"sigma_at_1_m_m", number(d.sigma_at_1_m_m)},
-              {"sigma_at_2_m_m", number(d.sigma_at_2_m_m)},
-              {"doubtful_share", number(d.doubtful_share)}}}};
+    Json object = maps_object(t.maps);
+    object["coverage_within_2_5_m"] = number(t.coverage_within_2_5_m);
+    object["traversability"] = traversability_json(t.traversability);
+    object["trajectory"] = errors_json(t.trajectory);
+    object["depth"] = {{"pixels", d.pixels},
+                       {"within_1_sigma", number(d.within_1_sigma)},
+                       {"within_3_sigma", number(d.within_3_sigma)},
+                       {"median_abs_error_px", number(d.median_abs_error_px)},
+                       {"sigma_at_1_m_m", number(d.sigma_at_1_m_m)},
+                       {"sigma_at_2_m_m", number(d.sigma_at_2_m_m)},
+                       {"doubtful_share", number(d.doubtful_share)}};
+    return object;
 }
 
 Json timing_json(const RunRecord& record) {
@@ -301,25 +320,7 @@ std::string trajectory_json(const eval::TrajectoryErrors& errors,
 }
 
 std::string maps_json(const eval::MapComparison& result) {
-    Json edges = figures_json(result.edges, "m");
-    edges["by_column"] = bins_json(result.edges_by_column, "px");
-    const Json object = {
-        {"elevation", elevation_json(result.elevation)},
-        {"elevation_away_from_edges", elevation_json(result.elevation_away_from_edges)},
-        {"traversability", traversability_json(result.traversability)},
-        {"coverage", number(result.coverage)},
-        {"sigma", sigma_json(result.sigma)},
-        {"by_distance", bins_json(result.by_distance, "m")},
-        {"by_range", bins_json(result.by_range, "m")},
-        {"by_column", bins_json(result.by_column, "px")},
-        {"edges", edges},
-        {"floor",
-         {{"spread_m", number(result.floor.spread_m)},
-          {"rms_m", number(result.floor.rms_m)},
-          {"p99_abs_m", number(result.floor.p99_abs_m)},
-          {"tilt_deg", number(result.floor.tilt_deg)},
-          {"count", result.floor.count}}}};
-    return object.dump(kIndent);
+    return maps_object(result).dump(kIndent);
 }
 
 std::string depth_json(const eval::DepthErrors& errors) {

@@ -60,10 +60,6 @@ std::string command_line(const RunOptions& options) {
     return line + fmt::format(" --seed {}\n", options.common.seed);
 }
 
-grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry) {
-    return layer.empty() ? grid::Layer(geometry.nx, geometry.ny, std::nanf("")) : layer;
-}
-
 void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline, Writes& writes) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& map = pipeline.map().layers();
@@ -86,6 +82,10 @@ void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline
 }
 
 }  // namespace
+
+grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry) {
+    return layer.empty() ? grid::Layer(geometry.nx, geometry.ny, std::nanf("")) : layer;
+}
 
 Status write_results(const RunOptions& options,
                      const Settings& settings,
@@ -211,9 +211,9 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
             "edges {:.2f} % above 50 mm; {:.1f} % of the cells visible within 2.5 m known; "
             "trajectory {:.1f} mm rmse; "
             "{:.1f} % of depths within 3 sigma\n",
-            1e3 * t.elevation.median_abs_m,
-            1e3 * t.elevation.p90_abs_m,
-            100.0 * t.elevation_away_from_edges.share_over_50mm,
+            1e3 * t.maps.elevation.median_abs_m,
+            1e3 * t.maps.elevation.p90_abs_m,
+            100.0 * t.maps.elevation_away_from_edges.share_over_50mm,
             100.0 * t.coverage_within_2_5_m,
             1e3 * t.trajectory.ate_rmse_m,
             100.0 * t.depth.within_3_sigma);

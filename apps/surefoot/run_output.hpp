@@ -19,6 +19,9 @@ namespace surefoot::app {
                                    const pipeline::Pipeline& pipeline,
                                    const RunRecord& record);
 
+/// The layer, or one of unknown cells where nothing has filled it yet.
+[[nodiscard]] grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry);
+
 /// A few lines for the terminal.
 [[nodiscard]] std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline);
 

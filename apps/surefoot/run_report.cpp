@@ -92,23 +92,25 @@ void add_truth(const RunRecord& record,
     content.pictures.push_back(
         {"Live height minus true height; nothing was aligned before",
          eval::encode_png(eval::render_error_map(
-             geometry, t.error_m, {"Height error", "live - truth"}, drawn))});
+             geometry, t.maps.error_m, {"Height error", "live - truth"}, drawn))});
     content.pictures.push_back(
         {"What the map calls safe against the same rating of the true heights",
          eval::encode_png(eval::render_confusion(
              geometry,
-             t.calls,
+             t.maps.calls,
              {"Safe or not, against the truth", fmt::format("threshold {:.2f}", safe_threshold)},
              drawn))});
     content.figures.push_back({"Elevation, median |error|",
-                               fmt::format("{:.1f}", 1e3 * t.elevation.median_abs_m),
+                               fmt::format("{:.1f}", 1e3 * t.maps.elevation.median_abs_m),
                                "mm",
                                "against the highest true surface of the cell"});
-    content.figures.push_back(
-        {"Elevation, 90 % within", fmt::format("{:.1f}", 1e3 * t.elevation.p90_abs_m), "mm", ""});
+    content.figures.push_back({"Elevation, 90 % within",
+                               fmt::format("{:.1f}", 1e3 * t.maps.elevation.p90_abs_m),
+                               "mm",
+                               ""});
     content.figures.push_back(
         {"Above 50 mm away from edges",
-         fmt::format("{:.2f}", 100.0 * t.elevation_away_from_edges.share_over_50mm),
+         fmt::format("{:.2f}", 100.0 * t.maps.elevation_away_from_edges.share_over_50mm),
          "%",
          ""});
     content.figures.push_back({"Known of what was visible within 2.5 m",

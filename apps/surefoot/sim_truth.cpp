@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/run_session.hpp"
 #include "sim/truth.hpp"
 #include "surefoot/traversability/traversability.hpp"
@@ -29,6 +30,17 @@ double share(std::int64_t part, std::int64_t whole) {
 
 sim::Lattice lattice_of(const grid::GridGeometry& geometry) {
     return {geometry.origin_m, geometry.nx, geometry.ny, geometry.resolution_m};
+}
+
+/// The rectified left camera along the run.
+eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Trajectory& bodies) {
+    const camera::RectifiedRig& rig = pipeline.rig();
+    eval::CameraTrack track;
+    track.view = {rig.width, rig.height, rig.fx_px, rig.fy_px, rig.cx_px, rig.cy_px};
+    track.max_depth_m = pipeline.config().elevation.prefilter.max_range_m;
+    for (const StampedPose& pose : bodies)
+        track.T_world_camera.push_back({pose.time_ns, pose.T_world_body * rig.T_body_camera});
+    return track;
 }
 
 /// How true heights are rated: the same chain with the same settings as the live map.
@@ -98,26 +110,25 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     sim::SceneTruth truth = scene_->truth();
     truth.trajectory.resize(std::min(truth.trajectory.size(), frames.size()));
 
-    figures.truth_height_m = sim::dem(truth.scene, lattice);
-    figures.error_m = eval::height_error(live_m, figures.truth_height_m);
-    figures.elevation = eval::elevation_errors(live_m, figures.truth_height_m, {}, config);
-    figures.elevation_away_from_edges =
-        eval::elevation_errors(live_m,
-                               figures.truth_height_m,
-                               eval::away_from_edges(figures.truth_height_m, config),
-                               config);
+    eval::MapPair maps;
+    maps.geometry = geometry;
+    maps.live_m = live_m;
+    maps.live_var_m2 = pipeline.map().layers().height_var_m2;
+    maps.live_traversability = or_unknown(pipeline.rating().traversability, geometry);
+    maps.truth_m = sim::dem(truth.scene, lattice);
+    maps.truth_traversability = rated(pipeline, maps.truth_m);
+    maps.trajectory = trajectory_of(frames);
+    maps.camera = camera_track(pipeline, maps.trajectory);
+    figures.maps = eval::compare_maps(maps, config);
     Serial serial;
     const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kVisibleRange_m}, serial);
-    figures.coverage_within_2_5_m = eval::coverage(live_m, figures.truth_height_m, visible);
-    figures.calls = eval::classify(pipeline.rating().traversability,
-                                   rated(pipeline, figures.truth_height_m),
-                                   config.safe_threshold);
-    figures.traversability = eval::traversability_errors(figures.calls, visible);
+    figures.coverage_within_2_5_m = eval::coverage(live_m, maps.truth_m, visible);
+    figures.traversability = eval::traversability_errors(figures.maps.calls, visible);
 
     for (const auto& pose : truth.trajectory)
         figures.truth_trajectory.push_back({pose.time_ns, pose.T_world_body});
     if (const auto errors = eval::evaluate_trajectory(
-            trajectory_of(frames), figures.truth_trajectory, {.align = eval::Alignment::none})) {
+            maps.trajectory, figures.truth_trajectory, {.align = eval::Alignment::none})) {
         figures.trajectory = *errors;
     }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "eval/maps.hpp"
+#include "eval/map_comparison.hpp"
 #include "eval/trajectory.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/camera/frame_source.hpp"
@@ -27,16 +27,12 @@ struct DepthFigures {
 
 /// A simulated run against the truth; nothing was aligned before the comparison.
 struct TruthFigures {
-    eval::ElevationErrors elevation;
-    eval::ElevationErrors elevation_away_from_edges;
+    eval::MapComparison maps;
     double coverage_within_2_5_m =
         0.0;  ///< share known of the cells that both eyes saw within 2.5 m
-    eval::TraversabilityErrors traversability;
-    eval::TrajectoryErrors trajectory;  ///< alignment none
+    eval::TraversabilityErrors traversability;  ///< of these cells
+    eval::TrajectoryErrors trajectory;          ///< alignment none
     DepthFigures depth;
-    grid::Layer truth_height_m;  ///< on the live map's cells
-    grid::Layer error_m;
-    Image<eval::Call> calls;
     Trajectory truth_trajectory;
 };
 
