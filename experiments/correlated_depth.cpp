@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far do the errors of semi-global matching hang together, and what does it invent behind drop
-// edges? Usage: correlated_depth OUT_DIR [FIRST_SEED [SEEDS]]. Writes CSV files into OUT_DIR.
+// edges? Usage: correlated_depth OUT_DIR [FIRST_SEED [SEEDS [NOISE]]]. Writes CSV files into
+// OUT_DIR.
 //
 // A camera 0.95 m over the upper level, 32 deg down, looks over an edge at a given distance. The
 // strip behind the edge that neither eye can see (drop * distance / 0.95 long) must stay unknown.
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "apps/surefoot/settings.hpp"
+#include "sim/camera_profile.hpp"
 #include "sim/renderer.hpp"
 #include "sim/rigs.hpp"
 #include "sim/truth.hpp"
@@ -50,6 +52,7 @@ sim::Material look(sim::Pattern pattern, std::uint64_t seed) {
     sim::Material material;
     material.pattern = pattern;
     material.seed = seed;
+    material.contrast *= sim::figures_of(sim::CameraProfile::zed).contrast;
     return material;
 }
 
@@ -87,14 +90,20 @@ sim::Scene drop_scene(const Drop& drop, double edge_x_m, double yaw_rad, Rng& rn
 /// Renders, matches and knows the truth, for one rig.
 class Bench {
   public:
-    explicit Bench(Executor& executor)
+    Bench(double noise, Executor& executor)
         : executor_(executor),
           rig_(*sim::rig_preset("zed_vga")),
           rectifier_(camera::Rectifier::make(rig_).value()),
-          matcher_(stereo::make_sgbm_matcher({})) {}
+          matcher_(stereo::make_sgbm_matcher({})) {
+        sim::apply_profile(sim::CameraProfile::zed, noise, camera_);
+    }
 
     void see(const sim::Scene& scene, const Pose& T_world_body, int frame, std::uint64_t seed) {
-        const auto renderer = sim::Renderer::make(scene, rig_, {}, seed);
+        const auto renderer = sim::Renderer::make(
+            scene,
+            sim::with_error(rig_, sim::figures_of(sim::CameraProfile::zed).calibration),
+            camera_,
+            seed);
         renderer->render(T_world_body, frame, executor_, pair_);
         matcher_->match(pair_.left.view(), pair_.right.view(), executor_, depth_);
     }
@@ -113,6 +122,7 @@ class Bench {
   private:
     Executor& executor_;
     camera::StereoRig rig_;
+    sim::CameraConfig camera_;
     camera::Rectifier rectifier_;
     std::unique_ptr<stereo::Matcher> matcher_;
     sim::RenderedPair pair_;
@@ -508,14 +518,15 @@ void measure_correlation(Bench& bench, const std::string& out, int first_seed, i
 
 int main(int argc, char** argv) {
     if (argc < 2) {
-        fmt::print(stderr, "usage: correlated_depth OUT_DIR [FIRST_SEED [SEEDS]]\n");
+        fmt::print(stderr, "usage: correlated_depth OUT_DIR [FIRST_SEED [SEEDS [NOISE]]]\n");
         return 2;
     }
     const std::string out = argv[1];
     const int first_seed = argc > 2 ? std::atoi(argv[2]) : 1;
     const int seeds = argc > 3 ? std::atoi(argv[3]) : 4;
     const auto executor = surefoot::app::make_executor({});
-    surefoot::Bench bench(*executor);
+    const double noise = argc > 4 ? std::atof(argv[4]) : 1.0;
+    surefoot::Bench bench(noise, *executor);
     surefoot::measure_correlation(bench, out, first_seed, seeds);
     surefoot::measure_drops(bench, out, first_seed, seeds);
     return 0;

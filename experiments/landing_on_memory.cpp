@@ -23,7 +23,7 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
-#include "sim/motion_scripts.hpp"
+#include "sim/camera_profile.hpp"
 #include "sim/renderer.hpp"
 #include "sim/rigs.hpp"
 #include "sim/scenes.hpp"
@@ -143,7 +143,8 @@ void look_up(const Setup& setup,
 Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt::ostream& out) {
     const auto place = sim::make_scene("floor", setup.seed);
     if (!place) return place.error();
-    const sim::Scene& scene = place->scene;
+    sim::Scene scene = place->scene;
+    scene.scale_contrast(sim::figures_of(sim::CameraProfile::zed).contrast);
     const auto script = sim::make_motion(setup.motion, setup.seed);
     if (!script) return script.error();
     const double base_z_m = script->motion->at(0.0).T_world_body.translation_m.z();
@@ -151,12 +152,11 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
     const auto rectifier = camera::Rectifier::make(rig);
     const auto second =
         camera::Rectifier::make(mounted(kSecondPitch_deg, setup.height_m - base_z_m));
-    app::Settings settings;
-    sim::CameraConfig camera = settings.sim.camera;
-    camera.imaging.read_noise_dn *= setup.noise;
-    camera.imaging.shot_noise_dn *= setup.noise * setup.noise;
-    const auto renderer = sim::Renderer::make(
-        scene, sim::with_error(rig, settings.sim.calibration_error), camera, setup.seed);
+    sim::CameraConfig camera;
+    sim::apply_profile(sim::CameraProfile::zed, setup.noise, camera);
+    const sim::ProfileFigures zed = sim::figures_of(sim::CameraProfile::zed);
+    const auto renderer =
+        sim::Renderer::make(scene, sim::with_error(rig, zed.calibration), camera, setup.seed);
     if (!renderer) return renderer.error();
 
     odometry::Odometry odometry({}, *rectifier);

@@ -60,6 +60,8 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
     visitor.boolean("imu", imu, "emit IMU samples, where the rig has an IMU");
+    visitor.enumeration("profile", profile, kCameraProfileNames, "added to the camera below");
+    visitor.number("noise", noise, 0.0, 20.0, "factor on every noise amplitude of the images");
     visitor.number("contrast", contrast, 0.0, 2.0, "factor on the contrast of every material");
     visitor.group("imaging", camera.imaging);
     visitor.group("optics", camera.optics);
@@ -93,13 +95,17 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
                              mix_seed(options.seed, kImuStream));
     }
     source->truth_.scene = std::move(script->scene);
-    source->truth_.scene.scale_contrast(options.contrast);
+    const ProfileFigures profile = figures_of(options.profile);
+    source->truth_.scene.scale_contrast(options.contrast * profile.contrast);
+    CameraConfig camera = options.camera;
+    apply_profile(options.profile, options.noise, camera);
     source->truth_.steps = std::move(script->steps);
     source->truth_.start_ns = kStart_ns;
-    auto renderer = Renderer::make(source->truth_.scene,
-                                   with_error(source->truth_.rig, options.calibration_error),
-                                   options.camera,
-                                   mix_seed(options.seed, kNoiseStream));
+    auto renderer = Renderer::make(
+        source->truth_.scene,
+        with_error(with_error(source->truth_.rig, profile.calibration), options.calibration_error),
+        camera,
+        mix_seed(options.seed, kNoiseStream));
     if (!renderer) return renderer.error();
     source->renderer_.emplace(std::move(renderer).value());
     const int frames = static_cast<int>(source->truth_.trajectory.size());

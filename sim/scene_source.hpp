@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sim/calibration_error.hpp"
+#include "sim/camera_profile.hpp"
 #include "sim/image_faults.hpp"
 #include "sim/imu.hpp"
 #include "sim/renderer.hpp"
@@ -25,7 +26,9 @@ struct SceneOptions {
     std::uint64_t seed = 1;                ///< textures, noise, centimetres of the path
     int frames = 0;                        ///< 0 = to the end of the path
     double rate_hz = 10.0;
-    bool imu = true;                     ///< samples, where the rig has an IMU
+    bool imu = true;                               ///< samples, where the rig has an IMU
+    CameraProfile profile = CameraProfile::ideal;  ///< added to the camera below
+    double noise = 1.0;                  ///< factor on every noise amplitude of the images
     CameraConfig camera;                 ///< groups imaging, optics, shutter, exposure
     double contrast = 1.0;               ///< factor on the contrast of every material
     CalibrationError calibration_error;  ///< of the images; `rig()` stays what it was

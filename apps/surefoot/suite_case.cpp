@@ -98,9 +98,7 @@ Result<SuiteResult> run_suite_case(const SuiteCase& which,
                                    Executor& executor,
                                    const std::string& progress_label) {
     SourceRequest request{which.scene, "", 0.0, which.max_frames, which.seed, settings.sim};
-    auto& imaging = request.sim.camera.imaging;
-    imaging.read_noise_dn *= which.noise;
-    imaging.shot_noise_dn *= which.noise * which.noise;  // a variance
+    request.sim.noise *= which.noise;
     auto source = open_simulation(request, executor);
     if (!source) return source.error();
     auto pipeline = pipeline::Pipeline::make(
