@@ -62,8 +62,12 @@ sim::Scene drop_scene(const Drop& drop, double edge_x_m, double yaw_rad, Rng& rn
     constexpr double kGoing_m = 0.31;
     constexpr double kReach_m = 4.0;
     sim::Scene scene;
+    // A white wall has nothing to match: whether floor is kept cannot be asked there.
     const auto pattern = [&] {
-        return static_cast<sim::Pattern>(static_cast<int>(rng.uniform(0.0, sim::kPatterns - 0.01)));
+        sim::Pattern drawn = sim::Pattern::white_wall;
+        while (drawn == sim::Pattern::white_wall)
+            drawn = static_cast<sim::Pattern>(rng.below(sim::kPatterns));
+        return drawn;
     };
     const sim::Pattern upper_pattern = pattern();
     const sim::Pattern lower_pattern = pattern();
@@ -195,6 +199,7 @@ std::vector<Rule> rules() {
     std::vector<Rule> all;
     const auto add = [&](const std::string& name, const auto& change) {
         ElevationConfig config;
+        config.reduction.min_points = 2;  // unless the rule says otherwise
         change(config);
         all.push_back({name, config});
     };
@@ -206,20 +211,34 @@ std::vector<Rule> rules() {
     add("no jumps", [](ElevationConfig& c) {
         c.pixels.max_incidence_deg = c.pixels.max_incidence_level_deg = 90.0;
     });
-    for (const double limit_deg : {85.0, 80.0, 75.0, 70.0}) {
+    for (const double limit_deg : {85.0, 80.0, 75.0, 70.0, 65.0}) {
         add(fmt::format("no jumps, incidence < {:.0f} deg", limit_deg), [&](ElevationConfig& c) {
             c.pixels.max_incidence_deg = c.pixels.max_incidence_level_deg = limit_deg;
         });
     }
-    add("default (80 deg, level surfaces 85 deg)", [](ElevationConfig&) {});
-    for (const int reach_px : {2, 5}) {
-        add(fmt::format("default, reach {} px", reach_px),
-            [&](ElevationConfig& c) { c.pixels.reach_px = reach_px; });
+    add("80 deg, level 85 deg, 2 points",
+        [](ElevationConfig& c) { c.pixels.max_incidence_deg = 80.0; });
+    all.push_back({"default (75 deg, level 85 deg, 3 points)", ElevationConfig{}});
+    for (const double level_deg : {80.0, 85.0}) {
+        for (const int points : {2, 4}) {
+            add(fmt::format("75 deg, level {:.0f} deg, {} points", level_deg, points),
+                [&](ElevationConfig& c) {
+                    c.pixels.max_incidence_deg = 75.0;
+                    c.pixels.max_incidence_level_deg = level_deg;
+                    c.reduction.min_points = points;
+                });
+        }
     }
-    for (const int points : {1, 4, 8}) {
-        add(fmt::format("default, {} points a cell", points),
-            [&](ElevationConfig& c) { c.reduction.min_points = points; });
+    for (const int reach_px : {5, 8}) {
+        add(fmt::format("75 deg, reach {} px", reach_px), [&](ElevationConfig& c) {
+            c.pixels.max_incidence_deg = c.pixels.max_incidence_level_deg = 75.0;
+            c.pixels.reach_px = reach_px;
+        });
     }
+    add("75 deg, outliers < 0.3", [](ElevationConfig& c) {
+        c.pixels.max_incidence_deg = c.pixels.max_incidence_level_deg = 75.0;
+        c.pixels.max_outlier_probability = 0.3;
+    });
     return all;
 }
 
@@ -357,8 +376,10 @@ struct Lag {
     std::int64_t count = 0;
 };
 
+constexpr float kWrongMatch_px = 1.5F;
+
 /// Errors of the disparity on flat floor, pixel by pixel; NaN where there is none that is likely
-/// right.
+/// right, and where it is wrong nevertheless.
 Image<float> disparity_errors(const Bench& bench) {
     const auto& depth = bench.depth();
     Image<float> errors(depth.disparity_px.width(), depth.disparity_px.height());
@@ -366,7 +387,9 @@ Image<float> disparity_errors(const Bench& bench) {
     for (std::size_t i = 0; i < errors.size(); ++i) {
         const double truth_px = fb / static_cast<double>(bench.true_depth_m().data()[i]);
         const bool good = depth.outlier_probability.data()[i] <= 0.5F;
-        errors.data()[i] = good ? depth.disparity_px.data()[i] - static_cast<float>(truth_px) : NAN;
+        const float error_px = depth.disparity_px.data()[i] - static_cast<float>(truth_px);
+        // Wrong matches are another matter than scatter: a few would decide every sum of squares.
+        errors.data()[i] = good && std::abs(error_px) < kWrongMatch_px ? error_px : NAN;
     }
     return errors;
 }

@@ -13,7 +13,7 @@ namespace surefoot::elevation {
 
 /// How the points of one frame that fall into one cell become one measurement.
 struct ReductionConfig {
-    int min_points = 2;              ///< fewer points on one surface are no measurement
+    int min_points = 3;              ///< fewer points on one surface are no measurement
     double upper_share = 0.1;        ///< share of the cell's points that the upper surface needs
     double window_sigma = 2.5;       ///< points this close to a surface belong to it ...
     double surface_relief_m = 0.01;  ///< ... plus this: relief of the ground within a cell

@@ -21,18 +21,22 @@ void add_surface(std::vector<HeightSample>& samples, Rng& rng, int count, double
     }
 }
 
-TEST(CellReduction, NothingFromNoneOneOrTwoPointsThatDisagree) {
+TEST(CellReduction, NothingFromFewerPointsThanAsked) {
     std::vector<HeightSample> samples;
     EXPECT_FALSE(reduce_cell({}, samples));
-    samples = {{0.1F, kVar}};
-    EXPECT_FALSE(reduce_cell({}, samples));
-    samples = {{0.1F, kVar}, {0.5F, kVar}};
-    EXPECT_FALSE(reduce_cell({}, samples));
-    samples = {{0.1F, kVar}, {0.1F, kVar}};
-    const auto measured = reduce_cell({}, samples);
-    ASSERT_TRUE(measured);
-    EXPECT_EQ(measured->z_m, 0.1F);
-    EXPECT_EQ(measured->points, 2);
+    for (int min_points = 2; min_points <= 4; ++min_points) {
+        ReductionConfig config;
+        config.min_points = min_points;
+        samples.assign(static_cast<std::size_t>(min_points) - 1, {0.1F, kVar});
+        EXPECT_FALSE(reduce_cell(config, samples)) << min_points;
+        samples.push_back({0.5F, kVar});
+        EXPECT_FALSE(reduce_cell(config, samples)) << "points that disagree, " << min_points;
+        samples.assign(static_cast<std::size_t>(min_points), {0.1F, kVar});
+        const auto measured = reduce_cell(config, samples);
+        ASSERT_TRUE(measured);
+        EXPECT_EQ(measured->z_m, 0.1F);
+        EXPECT_EQ(measured->points, min_points);
+    }
 }
 
 TEST(CellReduction, FloorIsUnbiasedAndItsVarianceIsNotLowered) {
@@ -90,8 +94,10 @@ TEST(CellReduction, SingleOutliersDoNotWin) {
     ASSERT_TRUE(measured);
     EXPECT_NEAR(measured->z_m, 0.0F, 0.005F);
     samples = {{0.0F, kVar}, {0.9F, kVar}, {0.002F, kVar}};
-    ASSERT_TRUE(reduce_cell({}, samples));
-    EXPECT_NEAR(reduce_cell({}, samples)->z_m, 0.001F, 1e-6F);
+    ReductionConfig pairs;
+    pairs.min_points = 2;
+    ASSERT_TRUE(reduce_cell(pairs, samples));
+    EXPECT_NEAR(reduce_cell(pairs, samples)->z_m, 0.001F, 1e-6F);
 }
 
 TEST(CellReduction, VarianceFollowsTheIndependentPointsAndTheScatter) {
