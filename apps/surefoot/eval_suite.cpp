@@ -19,7 +19,20 @@ namespace {
 
 /// Few, short, and of every kind: for every change of the code.
 constexpr int kQuickFrames = 40;
-constexpr const char* kQuickScenes[] = {"demo_stairs", "floor", "platform_edge", "table"};
+constexpr const char* kQuickScenes[] = {"demo_stairs",
+                                        "platform_edge",
+                                        "table",
+                                        "kerb_down_100",
+                                        "kerb_up_75",
+                                        "door_810",
+                                        "ramp_1_12_up",
+                                        "hole"};
+
+sim::CameraProfile profile_of(const std::string& name) {
+    const auto at =
+        std::find(std::begin(sim::kCameraProfileNames), std::end(sim::kCameraProfileNames), name);
+    return static_cast<sim::CameraProfile>(at - std::begin(sim::kCameraProfileNames));
+}
 
 Result<std::vector<std::string>> chosen_scenes(const EvalSuiteOptions& options) {
     std::vector<std::string> known;
@@ -103,8 +116,9 @@ void print_summary(const std::vector<SuiteRow>& rows) {
 }  // namespace
 
 int eval_suite(const EvalSuiteOptions& options) {
-    const auto settings = load_settings(options.common);
+    auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
+    settings->sim.profile = profile_of(options.camera);
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
     if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));

@@ -351,6 +351,8 @@ void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
     suite->add_option("--scenes", s.scenes, "names, separated by commas; default all")
         ->delimiter(',')
         ->type_name("NAMES");
+    suite->add_option("--camera", s.camera, "whose noise: nominal is what the real ZED showed")
+        ->check(CLI::IsMember({"ideal", "zed", "euroc"}));
     suite->add_option("--seeds", s.seeds, "variants of each scene, from --seed on")
         ->check(CLI::Range(1, 100000));
     suite->add_option("--noise", s.noise, "factors on the noise amplitude, separated by commas")

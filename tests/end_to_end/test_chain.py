@@ -126,6 +126,21 @@ def solve3(rows):
     return [rows[i][3] / rows[i][i] for i in range(3)]
 
 
+class Suite(CliTest):
+    def test_no_hazard_is_missed_with_the_noise_of_a_real_camera(self):
+        answer = self.json_of("eval", "suite", "--quick", "--out", self.dir / "suite")
+        self.assertEqual(len(answer["cases"]), 16)
+        for case in answer["cases"]:
+            figures = case["figures"]
+            print(f"suite {case['scene']} noise x {case['noise']}: {figures['questions']:.0f} questions, "
+                  f"{figures['missed_hazards']:.0f} missed, {figures['borderline_missed']:.0f} borderline")
+            self.assertGreater(figures["questions"], 500, case)
+            self.assertEqual(figures["missed_hazards"], 0, case)
+        # Nothing is run again that is there.
+        again = self.json_of("eval", "suite", "--quick", "--out", self.dir / "suite", timeout=20)
+        self.assertEqual(again, answer)
+
+
 class Simulation(CliTest):
     @classmethod
     def setUpClass(cls):
