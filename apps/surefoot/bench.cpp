@@ -115,13 +115,35 @@ Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
     return results;
 }
 
+/// Stereo frames of the demonstration as the simulator renders them, sharp and blurred.
+Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common, Executor& executor) {
+    const auto settings = load_settings(common);
+    if (!settings) return settings.error();
+    std::vector<BenchResult> results;
+    for (const auto& [name, samples] : {std::pair{"sim/sharp", 0}, {"sim/4_blur_samples", 4}}) {
+        constexpr int kFrames = 20;
+        SourceRequest request{"demo_stairs", "", 0.0, kFrames + 1, common.seed, settings->sim};
+        request.sim.camera.shutter.blur_samples = samples;
+        auto source = open_simulation(request, executor);
+        if (!source) return source.error();
+        Status rendered;
+        results.push_back(timed(name, kFrames, [&] {
+            if (const auto frame = (*source)->next(); !frame) rendered = frame.error();
+        }));
+        if (!rendered) return rendered.error();
+    }
+    return results;
+}
+
 }  // namespace
 
 int bench(const BenchOptions& options) {
     const auto executor = make_executor(options.common);
     using Group = Result<std::vector<BenchResult>> (*)(const CommonOptions&, Executor&);
-    const std::pair<const char*, Group> groups[] = {
-        {"chain", bench_chain}, {"traversability", bench_traversability}, {"gate", bench_gate}};
+    const std::pair<const char*, Group> groups[] = {{"chain", bench_chain},
+                                                    {"traversability", bench_traversability},
+                                                    {"gate", bench_gate},
+                                                    {"sim", bench_sim}};
     std::vector<BenchResult> all;
     for (const auto& [name, group] : groups) {
         if (!options.group.empty() && options.group != name) continue;

@@ -394,8 +394,9 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
         all.bench,
         bench,
         exit_code);
-    bench_verb->add_option("group", all.bench.group, "chain, traversability, gate; empty = all")
-        ->check(CLI::IsMember({"chain", "traversability", "gate"}));
+    bench_verb
+        ->add_option("group", all.bench.group, "chain, traversability, gate, sim; empty = all")
+        ->check(CLI::IsMember({"chain", "traversability", "gate", "sim"}));
 
     CLI::App* record_verb =
         bind(add_verb(app,
