@@ -43,6 +43,16 @@ eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Traject
     return track;
 }
 
+/// Height of odom's origin in the world. Odom begins on the ground, which is the world's z = 0, if
+/// the ground was found; else at the first body, and then the truth is told from there.
+double odom_height_m(const pipeline::Pipeline& pipeline,
+                     const sim::SceneTruth& truth,
+                     const std::vector<FrameReport>& frames) {
+    if (pipeline.alignment().has_ground) return 0.0;
+    return truth.trajectory.front().T_world_body.translation_m.z() -
+           frames.front().motion.T_odom_body.translation_m.z();
+}
+
 /// How true heights are rated: the same chain with the same settings as the live map.
 grid::Layer rated(const pipeline::Pipeline& pipeline, const grid::Layer& height_m) {
     Serial serial;
@@ -116,6 +126,9 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     maps.live_var_m2 = pipeline.map().layers().height_var_m2;
     maps.live_traversability = or_unknown(pipeline.rating().traversability, geometry);
     maps.truth_m = sim::dem(truth.scene, lattice);
+    const double odom_z_m = odom_height_m(pipeline, truth, frames);
+    for (std::size_t i = 0; i < maps.truth_m.size(); ++i)
+        maps.truth_m.data()[i] -= static_cast<float>(odom_z_m);
     maps.truth_traversability = rated(pipeline, maps.truth_m);
     maps.trajectory = trajectory_of(frames);
     maps.camera = camera_track(pipeline, maps.trajectory);
@@ -125,8 +138,10 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     figures.coverage_within_2_5_m = eval::coverage(live_m, maps.truth_m, visible);
     figures.traversability = eval::traversability_errors(figures.maps.calls, visible);
 
-    for (const auto& pose : truth.trajectory)
-        figures.truth_trajectory.push_back({pose.time_ns, pose.T_world_body});
+    for (StampedPose pose : truth.trajectory) {
+        pose.T_world_body.translation_m.z() -= odom_z_m;
+        figures.truth_trajectory.push_back(pose);
+    }
     if (const auto errors = eval::evaluate_trajectory(
             maps.trajectory, figures.truth_trajectory, {.align = eval::Alignment::none})) {
         figures.trajectory = *errors;

@@ -15,11 +15,14 @@
 namespace surefoot::app {
 namespace {
 
-/// The chain's settings on this machine, as `run --machine` has them.
-pipeline::PipelineConfig config_on(const io::MachineFile& machine, const Settings& settings) {
+/// The chain's settings. How high base_link is over its own ground is known of every carrier: it is
+/// built so (the trolley is 4 cm lower than the walking machine).
+pipeline::PipelineConfig config_on(const sim::SceneTruth& truth, const Settings& settings) {
     pipeline::PipelineConfig config = settings.pipeline;
-    if (config.ground.expected_height_m == 0.0)
-        config.ground.expected_height_m = 1e-4 * machine.machine.sole_depth_tenth_mm;
+    const Eigen::Vector3d& start_m = truth.trajectory.front().T_world_body.translation_m;
+    const auto ground = truth.scene.height_at(start_m.x(), start_m.y());
+    if (config.ground.expected_height_m == 0.0 && ground)
+        config.ground.expected_height_m = start_m.z() - ground->z_m;
     return config;
 }
 
@@ -102,7 +105,7 @@ Result<SuiteResult> run_suite_case(const SuiteCase& which,
     auto source = open_simulation(request, executor);
     if (!source) return source.error();
     auto pipeline = pipeline::Pipeline::make(
-        config_on(machine, settings), (*source)->rig(), executor, steady_now_ns);
+        config_on((*source)->truth(), settings), (*source)->rig(), executor, steady_now_ns);
     if (!pipeline) return pipeline.error();
     RunSession session(*pipeline, **source, (*source)->rig(), 1, settings.maps);
     session.drive(progress_label);
