@@ -168,7 +168,9 @@ Sight sight_of_cell(const sim::Scene& scene,
     int seen = 0;
     int hidden = 0;
     for (int i = 0; i < kSide * kSide; ++i) {
-        const Vector2d offset(((i % kSide) + 0.5) / kSide - 0.5, ((i / kSide) + 0.5) / kSide - 0.5);
+        const int row = i / kSide;
+        const int column = i % kSide;
+        const Vector2d offset((column + 0.5) / kSide - 0.5, (row + 0.5) / kSide - 0.5);
         const Vector2d at = center_m + kCellSize_m * offset;
         const auto top = scene.height_at(at.x(), at.y());
         if (!top) continue;
@@ -315,10 +317,12 @@ void measure_drops(Bench& bench, const std::string& out, int first_seed, int see
                     const double edge_x_m = bench.camera_x_m() + distance_m;
                     const sim::Scene scene = drop_scene(drop, edge_x_m, yaw_rad, rng);
                     std::vector<Pose> poses;
+                    poses.reserve(static_cast<std::size_t>(frames));
                     for (int i = 0; i < frames; ++i)
                         poses.push_back(bench.pose_over(-0.1 * (frames - 1 - i)));
                     const auto cells = cells_around(scene, bench, poses, edge_x_m);
                     std::vector<elevation::ElevationMap> maps;
+                    maps.reserve(all_rules.size());
                     for (const Rule& rule : all_rules) maps.emplace_back(rule.config);
                     for (int i = 0; i < frames; ++i) {
                         bench.see(scene, poses[static_cast<std::size_t>(i)], i, rng.next_u64());
@@ -539,7 +543,8 @@ void measure_correlation(Bench& bench, const std::string& out, int first_seed, i
 }  // namespace
 }  // namespace surefoot
 
-int main(int argc, char** argv) {
+// An exception ends an experiment with its message, as it should.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     if (argc < 2) {
         fmt::print(stderr, "usage: correlated_depth OUT_DIR [FIRST_SEED [SEEDS [NOISE]]]\n");
         return 2;

@@ -113,9 +113,9 @@ void look_up(const Setup& setup,
         const auto cell = memory.map.geometry().cell_at(at.x(), at.y());
         const float height_m = cell ? layers.height_m.at(cell->ix, cell->iy) : NAN;
         const bool known = !std::isnan(height_m);
-        double age_s = NAN;
-        double height_error_m = NAN;
-        double horizontal_m = NAN;
+        double age_s = std::nan("");
+        double height_error_m = std::nan("");
+        double horizontal_m = std::nan("");
         if (known) {
             const Eigen::Vector3d stored(at.x(), at.y(), static_cast<double>(height_m));
             const Eigen::Vector3d met = now.T_world_body * (now.T_odom_body.inverse() * stored);
@@ -228,7 +228,8 @@ std::vector<Setup> setups(std::uint64_t seed, double noise) {
 }  // namespace
 }  // namespace surefoot
 
-int main(int argc, char** argv) {
+// An exception ends an experiment with its message, as it should.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 2) {
         fmt::print(stderr, "usage: landing_on_memory OUT.csv [FIRST_SEED [SEEDS [NOISE]]]\n");

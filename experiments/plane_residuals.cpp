@@ -162,7 +162,8 @@ int run(const std::string& name,
 }  // namespace
 }  // namespace surefoot
 
-int main(int argc, char** argv) {
+// An exception ends an experiment with its message, as it should.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     if (argc < 3) {
         fmt::print(stderr, "usage: plane_residuals SOURCE OUT.csv [MAX_FRAMES [KEY=VALUE...]]\n");
         return 2;

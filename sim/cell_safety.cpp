@@ -66,10 +66,10 @@ class Walk {
         double z_m = 0.0;
         bool reached = false;
     };
-    std::size_t cells() const {
+    [[nodiscard]] std::size_t cells() const {
         return static_cast<std::size_t>(lattice_.nx) * static_cast<std::size_t>(lattice_.ny);
     }
-    std::size_t index(int ix, int iy) const {
+    [[nodiscard]] std::size_t index(int ix, int iy) const {
         return static_cast<std::size_t>(iy) * static_cast<std::size_t>(lattice_.nx) +
                static_cast<std::size_t>(ix);
     }

@@ -18,7 +18,7 @@ namespace surefoot::app {
 namespace {
 
 /// Few, short, and of every kind: for every change of the code.
-constexpr int kQuickFrames = 40;
+constexpr int kQuickFrames = 30;
 constexpr const char* kQuickScenes[] = {"demo_stairs",
                                         "platform_edge",
                                         "table",

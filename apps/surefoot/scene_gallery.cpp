@@ -18,7 +18,9 @@ namespace surefoot::app {
 namespace {
 
 /// What stands around the paths of the scenes.
-const sim::Lattice kSurroundings{{-1.0, -2.5}, 280, 200, 0.025};
+sim::Lattice surroundings() {
+    return {{-1.0, -2.5}, 280, 200, 0.025};
+}
 
 Status write_png(const std::string& path, const eval::Picture& picture) {
     const auto png = eval::encode_png(picture);
@@ -63,12 +65,12 @@ Status write_heights(const std::string& path,
                      const sim::SceneInfo& info,
                      const sim::ScriptedScene& script) {
     constexpr double kStep_s = 0.25;
-    const grid::GridGeometry geometry{
-        kSurroundings.resolution_m, kSurroundings.nx, kSurroundings.ny, kSurroundings.origin_m};
-    const grid::Layer heights_m = sim::dem(script.scene, kSurroundings);
+    const sim::Lattice around = surroundings();
+    const grid::GridGeometry geometry{around.resolution_m, around.nx, around.ny, around.origin_m};
+    const grid::Layer heights_m = sim::dem(script.scene, around);
     eval::LayerStyle style = eval::elevation_style();
     style.text = {info.name, "true heights and the path"};
-    style.range = ground_range(heights_m, sim::labels(script.scene, kSurroundings));
+    style.range = ground_range(heights_m, sim::labels(script.scene, around));
     eval::Overlays overlays;
     overlays.T_odom_body = script.motion->at(0.5 * script.motion->duration_s()).T_world_body;
     for (double t_s = 0.0; t_s < script.motion->duration_s(); t_s += kStep_s) {

@@ -28,7 +28,8 @@ std::string head_of(std::uint64_t settings_hash) {
 std::string line_of(const SuiteResult& result) {
     const SuiteCase& c = result.which;
     std::string line = fmt::format("{},{},{},{}", c.scene, c.seed, c.noise, c.max_frames);
-    for (const double figure : result.figures) line += fmt::format(",{:.9g}", figure);
+    for (const double figure : result.figures)
+        line += fmt::format(",{}", figure);  // reads back to the same bits
     return line + "\n";
 }
 
