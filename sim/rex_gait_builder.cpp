@@ -455,6 +455,7 @@ Status RexMotionBuilder::step(const RexStep& step, std::uint64_t seed) {
     const std::vector<Row> samples = rows(step, lead, sway);
     const auto column = [&](auto value) {
         std::vector<double> values;
+        values.reserve(samples.size());
         for (const Row& row : samples) values.push_back(value(row));
         return values;
     };

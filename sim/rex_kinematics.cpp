@@ -77,8 +77,8 @@ std::optional<LegAngles> leg_angles(Side side, const Pose& T_body_sole) {
 
 double hip_reach_m(double horizontal_m) noexcept {
     constexpr double kLeast_rad = 3.0 * kRad;
-    constexpr double a = rex::kUpperLeg_m;
-    constexpr double b = rex::kLowerLeg_m;
+    const double a = rex::kUpperLeg_m;
+    const double b = rex::kLowerLeg_m;
     const double length_sq = a * a + b * b + 2.0 * a * b * std::cos(kLeast_rad);
     return std::sqrt(std::max(0.0, length_sq - horizontal_m * horizontal_m));
 }

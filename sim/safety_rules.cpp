@@ -117,7 +117,7 @@ class Inspector {
     }
 
   private:
-    double above_plane(const Vector2d& p_field, double z_m) const {
+    [[nodiscard]] double above_plane(const Vector2d& p_field, double z_m) const {
         return z_m - stance_.plane.at(p_field);
     }
 

@@ -180,6 +180,7 @@ Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file) {
     const std::vector<Entry> entries = find_entries(reader, *root);
     if (reader.error()) return *reader.error();
     std::vector<SceneInfo> infos;
+    infos.reserve(entries.size());
     for (const Entry& entry : entries) infos.push_back(entry.info);
     return infos;
 }

@@ -43,6 +43,7 @@ ImageViews::ImageViews(const Motion& motion,
 
 std::vector<double> blur_offsets_s(double exposure_s, int samples) {
     std::vector<double> offsets_s;
+    offsets_s.reserve(static_cast<std::size_t>(std::max(samples, 0)));
     for (int k = 0; k < samples; ++k) {
         offsets_s.push_back(exposure_s * ((k + 0.5) / samples - 0.5));
     }
