@@ -330,7 +330,8 @@ TEST(SgbmMatcher, MiddleburyBesidePlainSgbm) {
         EXPECT_LE(ours.bad_2, plain.bad_2) << pair.name;
         EXPECT_GT(ours.density, plain.density - 0.01) << pair.name;
     }
-    if (skipped > 0) std::printf("skipped 1 check: %d of 4 pairs have no images in %s\n", skipped, root.c_str());
+    if (skipped > 0)
+        std::printf("skipped 1 check: %d of 4 pairs have no images in %s\n", skipped, root.c_str());
 }
 
 }  // namespace
