@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "apps/surefoot/explain.hpp"
@@ -63,12 +62,8 @@ int gate(const GateOptions& options) {
         if (!vouched) return report(vouched.error());
         query.vouched = *vouched;
     }
-    // As if asked right after the last thing that the run did; an old depth frame stays old.
-    const std::int64_t now_ns = std::max(map->snapshot->frame_time_ns, map->snapshot->pose_time_ns);
-    gate::GateHealth health;
-    health.state = gate::GateState::ready;
     const Machine& m = machine->value().machine;
-    const gate::Verdict verdict = gate::decide(m, query, *map->snapshot, health, now_ns);
+    const gate::Verdict verdict = decide_offline(m, query, *map->snapshot);
     const std::string text = gate::text_of(verdict, query, m);
 
     if (options.common.json) {

@@ -134,4 +134,13 @@ Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
     return area;
 }
 
+gate::Verdict decide_offline(const Machine& machine,
+                             const gate::Query& query,
+                             const grid::MapSnapshot& map) {
+    gate::GateHealth health;
+    health.state = gate::GateState::ready;
+    const std::int64_t now_ns = std::max(map.frame_time_ns, map.pose_time_ns);
+    return gate::decide(machine, query, map, health, now_ns);
+}
+
 }  // namespace surefoot::app

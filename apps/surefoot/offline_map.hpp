@@ -30,4 +30,10 @@ struct OfflineMap {
                                                         double radius_m,
                                                         std::vector<std::string>& assumed);
 
+/// The verdict of a gate that is ready, as if asked right after the last thing that the run did; an
+/// old depth frame stays old.
+[[nodiscard]] gate::Verdict decide_offline(const Machine& machine,
+                                           const gate::Query& query,
+                                           const grid::MapSnapshot& map);
+
 }  // namespace surefoot::app

@@ -2,7 +2,6 @@
 #include "apps/surefoot/suite_verdicts.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -65,9 +64,7 @@ gate::Verdict ask(const Machine& machine,
     std::vector<std::string> assumed;
     if (const auto area = vouch_for_start(machine, query, map, -1.0, assumed))
         query.vouched = *area;
-    gate::GateHealth health;
-    health.state = gate::GateState::ready;
-    return gate::decide(machine, query, map, health, std::max(map.frame_time_ns, map.pose_time_ns));
+    return decide_offline(machine, query, map);
 }
 
 }  // namespace
