@@ -204,26 +204,52 @@ void Renderer::render_instant(const RayField& rays,
     });
 }
 
+/// Face after face: many places of one surface are looked up at once.
 void Renderer::shade_block(const RayField& rays,
                            const ImageViews& views,
                            const CastBlock& block,
                            CleanImage& out) const {
-    const auto white_dn = static_cast<float>(255.0 * config_.imaging.exposure);
-    std::size_t i = 0;
-    for (int v = block.v0; v < block.v0 + block.height; ++v) {
-        const Vector3d& origin_m = views.row(v).origin_m;
-        for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
+    const auto pixels = static_cast<std::size_t>(block.width * block.height);
+    std::array<Seen, CastBlock::kPixels> seen;
+    std::array<Sight, CastBlock::kPixels> sights;
+    std::array<std::uint8_t, CastBlock::kPixels> todo;
+    std::array<std::uint8_t, CastBlock::kPixels> chosen;
+    std::array<Seen, CastBlock::kPixels> chosen_seen;
+    for (std::size_t i = 0; i < pixels; ++i) todo[i] = static_cast<std::uint8_t>(i);
+    for (std::size_t left = pixels; left > 0;) {
+        const int face = block.hits[todo[0]].face;
+        std::size_t later = 0;
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < left; ++k) {
+            const std::uint8_t i = todo[k];
             const RayHit& hit = block.hits[i];
+            if (hit.face != face) {
+                todo[later++] = i;
+                continue;
+            }
+            const int u = block.u0 + i % block.width;
+            const int v = block.v0 + i / block.width;
             const Vector3d& direction = block.directions[i];
-            const Seen seen = hit.face < 0 ? Shader::background()
-                                           : shader_.surface(hit.face,
-                                                             {origin_m + hit.distance_m * direction,
-                                                              direction,
-                                                              hit.distance_m,
-                                                              rays.pixel_angle_rad(u, v)});
-            out.signal_dn.row(v)[u] = white_dn * seen.radiance;
-            out.key.row(v)[u] = seen.key;
+            chosen[count] = i;
+            sights[count++] = {views.row(v).origin_m + hit.distance_m * direction,
+                               direction,
+                               hit.distance_m,
+                               rays.pixel_angle_rad(u, v)};
         }
+        left = later;
+        if (face < 0) {
+            std::fill_n(chosen_seen.begin(), count, Shader::background());
+        } else {
+            shader_.surface(face, {sights.data(), count}, chosen_seen);
+        }
+        for (std::size_t k = 0; k < count; ++k) seen[chosen[k]] = chosen_seen[k];
+    }
+    const auto white_dn = static_cast<float>(255.0 * config_.imaging.exposure);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const int u = block.u0 + static_cast<int>(i) % block.width;
+        const int v = block.v0 + static_cast<int>(i) / block.width;
+        out.signal_dn.row(v)[u] = white_dn * seen[i].radiance;
+        out.key.row(v)[u] = seen[i].key;
     }
 }
 

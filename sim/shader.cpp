@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -109,6 +110,35 @@ Seen Shader::surface(int surface, const Sight& sight) const {
     return seen(surface, sight, 0);
 }
 
+void Shader::surface(int surface, std::span<const Sight> sights, std::span<Seen> out) const {
+    const Face& face = faces_[static_cast<std::size_t>(surface)];
+    if (face.curved || face.finish != Finish::matte) {
+        for (std::size_t i = 0; i < sights.size(); ++i) out[i] = seen(surface, sights[i], 0);
+        return;
+    }
+    TextureBatch batch;
+    std::array<float, TextureBatch::kMost> albedo;
+    for (std::size_t done = 0; done < sights.size(); done += batch.count) {
+        const auto part = sights.subspan(done, std::min(sights.size() - done, albedo.size()));
+        batch.count = part.size();
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            const PlaneLook look = look_at(face, part[i]);
+            batch.u[i] = TextureTable::place(look.at_texel.x());
+            batch.v[i] = TextureTable::place(look.at_texel.y());
+            batch.blotch_u[i] = TextureTable::place(look.at_texel.x() * kBlotchScale);
+            batch.blotch_v[i] = TextureTable::place(look.at_texel.y() * kBlotchScale);
+            batch.along_u[i] = look.along_texel.x();
+            batch.along_v[i] = look.along_texel.y();
+            batch.minor_texel[i] = look.minor_texel;
+            batch.cosine[i] = look.cosine;
+        }
+        textures_.reflectances(face.placement, batch, Registers::widest, albedo.data());
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            out[done + i] = lit_surface(surface, part[i], face.facing_lamp, albedo[i]);
+        }
+    }
+}
+
 Seen Shader::along(const Sight& sight, int bounces) const {
     const auto hit = scene_->intersect(sight.point_m, sight.direction);
     if (!hit) return background();
@@ -154,30 +184,38 @@ Seen Shader::matte(int surface, const Sight& sight) const {
         albedo = reflectance(face, sight);
         facing = face.facing_lamp;
     }
-    const bool bright = facing > 0.0 && lit(sight.point_m);
+    return lit_surface(surface, sight, facing, albedo);
+}
+
+Seen Shader::lit_surface(int surface, const Sight& sight, double facing_lamp, float albedo) const {
+    const bool bright = facing_lamp > 0.0 && lit(sight.point_m);
     double light = lighting_.ambient;
     if (bright) {
         const bool striped = lighting_.stripe_width_m > 0.0;
         const double share = striped ? stripes(sight, point_on(surface, sight.point_m)) : 1.0;
-        light += lighting_.lamp * facing * share;
+        light += lighting_.lamp * facing_lamp * share;
     }
     const auto key = 2U * (static_cast<std::uint32_t>(surface) + 1U) + (bright ? 1U : 0U);
     return {static_cast<float>(light) * albedo, key};
 }
 
 /// On a plane, with everything counted in texels.
+Shader::PlaneLook Shader::look_at(const Face& face, const Sight& sight) {
+    PlaneLook look;
+    look.at_texel = {face.texel_u.dot(sight.point_m) + face.placement.u_texel,
+                     face.texel_v.dot(sight.point_m) + face.placement.v_texel};
+    look.along_texel = {static_cast<float>(face.texel_u.dot(sight.direction)),
+                        static_cast<float>(face.texel_v.dot(sight.direction))};
+    look.minor_texel =
+        static_cast<float>(sight.way_m * sight.pixel_angle_rad * face.placement.texels_per_m);
+    look.cosine = static_cast<float>(std::max(-face.normal.dot(sight.direction), kLeastCosine));
+    return look;
+}
+
 float Shader::reflectance(const Face& face, const Sight& sight) const {
-    const Eigen::Vector2d at_texel(face.texel_u.dot(sight.point_m) + face.placement.u_texel,
-                                   face.texel_v.dot(sight.point_m) + face.placement.v_texel);
-    const Eigen::Vector2f along_texel(static_cast<float>(face.texel_u.dot(sight.direction)),
-                                      static_cast<float>(face.texel_v.dot(sight.direction)));
-    const double minor_texel = sight.way_m * sight.pixel_angle_rad * face.placement.texels_per_m;
-    const double cosine = std::max(-face.normal.dot(sight.direction), kLeastCosine);
-    return textures_.reflectance(face.placement,
-                                 at_texel,
-                                 along_texel,
-                                 static_cast<float>(minor_texel),
-                                 static_cast<float>(cosine));
+    const PlaneLook look = look_at(face, sight);
+    return textures_.reflectance(
+        face.placement, look.at_texel, look.along_texel, look.minor_texel, look.cosine);
 }
 
 /// Bright share of the pixel's footprint, exact for a footprint that is a line across the stripes.

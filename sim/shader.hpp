@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim/scene.hpp"
@@ -36,6 +37,8 @@ class Shader {
 
     /// A point of a surface that was hit.
     [[nodiscard]] Seen surface(int surface, const Sight& sight) const;
+    /// The same, bit by bit, for several points of one surface, which is faster.
+    void surface(int surface, std::span<const Sight> sights, std::span<Seen> out) const;
     /// Where no surface is.
     [[nodiscard]] static Seen background() noexcept;
     /// Does the lamp shine on a point of a surface? Always, where the scene has no shadows.
@@ -54,6 +57,13 @@ class Shader {
         float gloss = 0.0F;
         double facing_lamp = 0.0;  ///< of a plane: cosine of the lamp's incidence
     };
+    /// A pixel on a plane, in texels, as Textures::reflectance wants it.
+    struct PlaneLook {
+        Eigen::Vector2d at_texel;
+        Eigen::Vector2f along_texel;
+        float minor_texel = 0.0F;
+        float cosine = 1.0F;
+    };
     struct Blocker {
         int primitive = 0;
         Sphere bounds;
@@ -62,6 +72,11 @@ class Shader {
     void add_face(const Surface& surface, const Material& material);
     [[nodiscard]] Seen seen(int surface, const Sight& sight, int bounces) const;
     [[nodiscard]] Seen matte(int surface, const Sight& sight) const;
+    [[nodiscard]] Seen lit_surface(int surface,
+                                   const Sight& sight,
+                                   double facing_lamp,
+                                   float albedo) const;
+    [[nodiscard]] static PlaneLook look_at(const Face& face, const Sight& sight);
     [[nodiscard]] float reflectance(const Face& face, const Sight& sight) const;
     [[nodiscard]] Seen along(const Sight& sight, int bounces) const;
     [[nodiscard]] SurfacePoint point_on(int surface, const Eigen::Vector3d& point_m) const;

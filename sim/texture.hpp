@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -80,8 +81,11 @@ class TextureTable {
     /// Places are counted in 2^-16 of a texel of the finest level; they wrap with the tile, so any
     /// multiple of the tile may be added or lost.
     using Place = std::uint32_t;
+    /// Added to a double this makes its lowest bits a whole number, whatever its sign: what wraps
+    /// is wanted, and compilers do it for many places at once.
     [[nodiscard]] static Place place(double texels) noexcept {
-        return static_cast<Place>(static_cast<std::int64_t>(texels * 65536.0));
+        constexpr double kWholeNumbers = 0x1.8p52;
+        return static_cast<Place>(std::bit_cast<std::uint64_t>(texels * 65536.0 + kWholeNumbers));
     }
 
     TextureTable(Pattern pattern, std::uint64_t seed);
@@ -94,13 +98,15 @@ class TextureTable {
     /// A texel of a level, for tests.
     [[nodiscard]] float texel(int level, int x, int y) const noexcept;
     [[nodiscard]] static constexpr int levels() noexcept { return kLevels; }
+    /// What one look-up between four texels needs, in one word: the texel (x, y) in the lowest
+    /// byte, then (x, y + 1), (x + 1, y), (x + 1, y + 1), each pattern value * 127 + 127. Rows of
+    /// level 0, then those of the next level, and so on.
+    [[nodiscard]] const std::uint32_t* cells() const noexcept { return cells_.data(); }
 
   private:
     static constexpr int kLevels = 11;
 
-    /// Rows of all levels, pattern value * 127 + 127; each row repeats its first texel at its end.
-    std::vector<std::uint8_t> texels_;
-    std::array<std::size_t, kLevels> first_{};
+    std::vector<std::uint32_t> cells_;
 };
 
 /// How a material lies on one surface; made once a surface.
@@ -113,6 +119,30 @@ struct Placement {
     double across = 0.0;  ///< texels a metre times its sine
     double u_texel = 0.0;
     double v_texel = 0.0;
+};
+
+/// Coarse blotches, many times the finest detail in size, hide that the tile repeats.
+inline constexpr double kBlotchScale = 1.0 / 13.7;
+
+/// Which registers a batch is looked up with: the same bits either way.
+enum class Registers : std::uint8_t { narrow, widest };
+
+/// Places on one surface that are looked up together, each with the footprint of its pixel as for
+/// Textures::reflectance.
+struct TextureBatch {
+    static constexpr std::size_t kMost = 256;
+    template <typename T>
+    using Array = std::array<T, kMost>;
+
+    std::size_t count = 0;
+    Array<TextureTable::Place> u;
+    Array<TextureTable::Place> v;
+    Array<TextureTable::Place> blotch_u;  ///< the same places on the scale of the blotches
+    Array<TextureTable::Place> blotch_v;
+    Array<float> along_u;
+    Array<float> along_v;
+    Array<float> minor_texel;
+    Array<float> cosine;
 };
 
 /// The textures of a scene. Far and grazing surfaces are averaged over the pixel's footprint: up to
@@ -134,6 +164,11 @@ class Textures {
                                     const Eigen::Vector2f& along_texel,
                                     float minor_texel,
                                     float cosine) const noexcept;
+    /// The same, bit by bit, for a batch of places; `out` has room for all of them.
+    void reflectances(const Placement& placement,
+                      const TextureBatch& batch,
+                      Registers registers,
+                      float* out) const noexcept;
 
   private:
     struct Known {

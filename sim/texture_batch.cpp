@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstddef>
+
+#include "sim/texture.hpp"
+#include "sim/texture_lookup.hpp"
+
+/// Loops over arrays that the compiler turns into vector code (this file is compiled with -O3),
+/// once for every processor and once for those with AVX2, which can fetch eight texels at a time.
+namespace surefoot::sim {
+namespace {
+
+using Place = TextureTable::Place;
+template <typename T>
+using Array = TextureBatch::Array<T>;
+
+/// What has to be looked up for each place of a batch.
+struct Plan {
+    Array<int> taps;
+    Array<Place> u;  ///< of the next tap
+    Array<Place> v;
+    Array<Place> du;
+    Array<Place> dv;
+    Array<float> level;
+    Array<float> blotch_level;
+    Array<std::uint32_t> fine_sum;
+    Array<std::uint32_t> coarse_sum;
+};
+
+[[gnu::always_inline]] inline int make_plan(const TextureBatch& in, Plan& plan) {
+    int most_taps = 1;
+    for (std::size_t i = 0; i < in.count; ++i) {
+        const lookup::Cover cover =
+            lookup::cover_of(in.along_u[i], in.along_v[i], in.minor_texel[i], in.cosine[i]);
+        plan.taps[i] = cover.taps;
+        plan.level[i] = cover.level;
+        plan.blotch_level[i] = cover.blotch_level;
+        plan.du[i] = cover.du;
+        plan.dv[i] = cover.dv;
+        plan.u[i] = lookup::first_tap(in.u[i], cover.du, cover.taps);
+        plan.v[i] = lookup::first_tap(in.v[i], cover.dv, cover.taps);
+        plan.fine_sum[i] = 0;
+        plan.coarse_sum[i] = 0;
+        most_taps = std::max(most_taps, cover.taps);
+    }
+    return most_taps;
+}
+
+[[gnu::always_inline]] inline void add_tap(const std::uint32_t* cells,
+                                           int tap,
+                                           std::size_t count,
+                                           Plan& plan) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const lookup::Levels levels = lookup::levels_of(plan.level[i]);
+        // Places that need no further tap look it up and forget it.
+        const std::uint32_t wanted = tap < plan.taps[i] ? ~0U : 0U;
+        plan.fine_sum[i] += wanted & lookup::bilinear(cells, levels.fine, plan.u[i], plan.v[i]);
+        plan.coarse_sum[i] += wanted & lookup::bilinear(cells, levels.coarse, plan.u[i], plan.v[i]);
+        plan.u[i] += plan.du[i];
+        plan.v[i] += plan.dv[i];
+    }
+}
+
+[[gnu::always_inline]] inline void look_up(const std::uint32_t* cells,
+                                           const Placement& placement,
+                                           const TextureBatch& in,
+                                           float* out) {
+    Plan plan;
+    const int most_taps = make_plan(in, plan);
+    for (int tap = 0; tap < most_taps; ++tap) add_tap(cells, tap, in.count, plan);
+    for (std::size_t i = 0; i < in.count; ++i) {
+        const lookup::Levels levels = lookup::levels_of(plan.level[i]);
+        const float detail =
+            lookup::pattern_value(plan.fine_sum[i], plan.coarse_sum[i], levels.share, plan.taps[i]);
+        const lookup::Levels wide = lookup::levels_of(plan.blotch_level[i]);
+        const float blotch = lookup::pattern_value(
+            lookup::bilinear(cells, wide.fine, in.blotch_u[i], in.blotch_v[i]),
+            lookup::bilinear(cells, wide.coarse, in.blotch_u[i], in.blotch_v[i]),
+            wide.share,
+            1);
+        out[i] = lookup::reflectance(placement.albedo, placement.contrast, detail, blotch);
+    }
+}
+
+void look_up_anywhere(const std::uint32_t* cells,
+                      const Placement& placement,
+                      const TextureBatch& in,
+                      float* out) {
+    look_up(cells, placement, in, out);
+}
+
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] void look_up_avx2(const std::uint32_t* cells,
+                                          const Placement& placement,
+                                          const TextureBatch& in,
+                                          float* out) {
+    look_up(cells, placement, in, out);
+}
+
+bool has_avx2() {
+    static const bool has = __builtin_cpu_supports("avx2") != 0;
+    return has;
+}
+#endif
+
+}  // namespace
+
+void Textures::reflectances(const Placement& placement,
+                            const TextureBatch& in,
+                            Registers registers,
+                            float* out) const noexcept {
+    const std::uint32_t* cells = tables_[placement.table].cells();
+#if defined(__x86_64__)
+    if (registers == Registers::widest && has_avx2()) {
+        look_up_avx2(cells, placement, in, out);
+        return;
+    }
+#endif
+    look_up_anywhere(cells, placement, in, out);
+}
+
+}  // namespace surefoot::sim
