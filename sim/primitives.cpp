@@ -60,6 +60,14 @@ FaceFrame side_frame(const Vector3d& normal) {
     return frame;
 }
 
+/// Corners counter-clockwise from above.
+std::vector<Vector3d> corners_of(const Rect& rect, double z_m) {
+    return {{rect.min_m.x(), rect.min_m.y(), z_m},
+            {rect.max_m.x(), rect.min_m.y(), z_m},
+            {rect.max_m.x(), rect.max_m.y(), z_m},
+            {rect.min_m.x(), rect.max_m.y(), z_m}};
+}
+
 Vector2d direction(double yaw_rad) {
     return {std::cos(yaw_rad), std::sin(yaw_rad)};
 }
@@ -144,6 +152,27 @@ Sphere Floor::bounds() const {
     return {{middle_m.x(), middle_m.y(), z_m_}, std::hypot(half_diagonal_m, deepest_m)};
 }
 
+std::vector<Vector3d> Floor::hull() const {
+    double deepest_m = 0.0;
+    for (const Pit& pit : pits_) deepest_m = std::max(deepest_m, pit.depth_m);
+    std::vector<Vector3d> corners_m = corners_of(area_, z_m_);
+    const std::vector<Vector3d> low_m = corners_of(area_, z_m_ - deepest_m);
+    corners_m.insert(corners_m.end(), low_m.begin(), low_m.end());
+    return corners_m;
+}
+
+std::optional<FacePlane> Floor::only_face(const Beam& beam) const {
+    const double above_m = beam.tip_m().z() - z_m_;
+    if (!(above_m > beam.tip_radius_m()) || !beam.inside(corners_of(area_, z_m_), above_m)) {
+        return std::nullopt;
+    }
+    const bool beside_pits = std::all_of(pits_.begin(), pits_.end(), [&](const Pit& pit) {
+        return beam.outside(corners_of(pit.area, z_m_), above_m);
+    });
+    if (!beside_pits) return std::nullopt;
+    return FacePlane{0, Vector3d::UnitZ(), z_m_};
+}
+
 std::vector<FaceFrame> Floor::faces() const {
     std::vector<FaceFrame> frames(1);
     for (std::size_t k = 0; k < pits_.size(); ++k) {
@@ -169,46 +198,63 @@ Prism::Prism(std::vector<Vector2d> footprint_m, double bottom_m, const Top& top)
         const Vector3d outward = Vector3d(edge.y(), -edge.x(), 0.0).normalized();
         half_spaces_.push_back({outward, outward.head<2>().dot(footprint_m_[k])});
     }
+    std::vector<Vector3d> low_m;
+    std::vector<Vector3d> high_m;
+    for (const Vector2d& corner : footprint_m_) {
+        low_m.emplace_back(corner.x(), corner.y(), bottom_m_);
+        high_m.emplace_back(corner.x(), corner.y(), top_at(corner));
+    }
+    polygons_m_.push_back(high_m);
+    polygons_m_.emplace_back(low_m.rbegin(), low_m.rend());
+    for (std::size_t k = 0; k < footprint_m_.size(); ++k) {
+        const std::size_t next = (k + 1) % footprint_m_.size();
+        polygons_m_.push_back({low_m[k], low_m[next], high_m[next], high_m[k]});
+    }
 }
 
 /// Clips each ray by the half spaces (Cyrus and Beck 1978). A ray can enter only through a face
-/// that the origin is outside of; from inside the solid nothing is met.
+/// that the origin is outside of, and it must pass all of those before it leaves through one of the
+/// others; from inside the solid nothing is met.
 void Prism::intersect(const Vector3d& origin,
                       std::span<const Vector3d> directions,
                       int first_face,
                       std::span<RayHit> hits) const {
+    struct Facing {
+        Vector3d normal;
+        double outside_m;
+        int face;
+    };
     constexpr std::size_t kMaxFaces = 16;
-    std::array<double, kMaxFaces> outside_m{};
-    const std::size_t faces = half_spaces_.size();
-    SUREFOOT_ASSERT(faces <= kMaxFaces);
-    for (std::size_t k = 0; k < faces; ++k) {
-        outside_m[k] = half_spaces_[k].normal.dot(origin) - half_spaces_[k].offset_m;
+    std::array<Facing, kMaxFaces> facing;
+    SUREFOOT_ASSERT(half_spaces_.size() <= kMaxFaces);
+    // Faces that look at the origin first.
+    std::size_t towards = 0;
+    std::size_t away = half_spaces_.size();
+    for (std::size_t k = 0; k < half_spaces_.size(); ++k) {
+        const HalfSpace& half = half_spaces_[k];
+        const double outside_m = half.normal.dot(origin) - half.offset_m;
+        facing[outside_m > 0.0 ? towards++ : --away] = {
+            half.normal, outside_m, static_cast<int>(k)};
     }
     for (std::size_t i = 0; i < directions.size(); ++i) {
         double enter_m = 0.0;
-        double exit_m = hits[i].distance_m;
         int face = -1;
-        for (std::size_t k = 0; k < faces; ++k) {
-            const double speed = half_spaces_[k].normal.dot(directions[i]);
-            if (outside_m[k] > 0.0) {
-                if (!(speed < 0.0)) {
-                    face = -1;
-                    break;
-                }
-                const double t = -outside_m[k] / speed;
-                if (t > enter_m) {
-                    enter_m = t;
-                    face = static_cast<int>(k);
-                }
-            } else if (speed > 0.0) {
-                exit_m = std::min(exit_m, -outside_m[k] / speed);
-            }
-            if (enter_m >= exit_m) {
-                face = -1;
-                break;
+        bool met = towards > 0;
+        for (std::size_t k = 0; met && k < towards; ++k) {
+            const double speed = facing[k].normal.dot(directions[i]);
+            const double t = -facing[k].outside_m / speed;
+            met = speed < 0.0 && t < hits[i].distance_m;
+            if (t > enter_m) {
+                enter_m = t;
+                face = facing[k].face;
             }
         }
-        if (face >= 0) hits[i] = {enter_m, first_face + face};
+        for (std::size_t k = towards; met && k < half_spaces_.size(); ++k) {
+            const double speed = facing[k].normal.dot(directions[i]);
+            // Would leave at -outside_m / speed.
+            met = !(speed > 0.0 && enter_m * speed >= -facing[k].outside_m);
+        }
+        if (met) hits[i] = {enter_m, first_face + face};
     }
 }
 
@@ -253,6 +299,23 @@ Sphere Prism::bounds() const {
         }
     }
     return {0.5 * (low + high), 0.5 * (high - low).norm()};
+}
+
+std::vector<Vector3d> Prism::hull() const {
+    std::vector<Vector3d> corners_m = polygons_m_[0];
+    corners_m.insert(corners_m.end(), polygons_m_[1].begin(), polygons_m_[1].end());
+    return corners_m;
+}
+
+std::optional<FacePlane> Prism::only_face(const Beam& beam) const {
+    for (std::size_t k = 0; k < half_spaces_.size(); ++k) {
+        const HalfSpace& half = half_spaces_[k];
+        const double above_m = half.normal.dot(beam.tip_m()) - half.offset_m;
+        if (above_m > beam.tip_radius_m() && beam.inside(polygons_m_[k], above_m)) {
+            return FacePlane{static_cast<int>(k), half.normal, half.offset_m};
+        }
+    }
+    return std::nullopt;
 }
 
 std::vector<FaceFrame> Prism::faces() const {
@@ -329,6 +392,19 @@ std::optional<double> Cylinder::highest_over(const Rect& cell) const {
 Sphere Cylinder::bounds() const {
     const double half_m = 0.5 * (top_m_ - bottom_m_);
     return {{center_m_.x(), center_m_.y(), bottom_m_ + half_m}, std::hypot(radius_m_, half_m)};
+}
+
+std::vector<Vector3d> Cylinder::hull() const {
+    const Vector2d corner_m = Vector2d::Constant(radius_m_);
+    const Rect square{center_m_ - corner_m, center_m_ + corner_m};
+    std::vector<Vector3d> corners_m = corners_of(square, top_m_);
+    const std::vector<Vector3d> low_m = corners_of(square, bottom_m_);
+    corners_m.insert(corners_m.end(), low_m.begin(), low_m.end());
+    return corners_m;
+}
+
+std::optional<FacePlane> Cylinder::only_face(const Beam& /*beam*/) const {
+    return std::nullopt;
 }
 
 std::vector<FaceFrame> Cylinder::faces() const {

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "sim/beam.hpp"
+
 namespace surefoot::sim {
 
 /// Nearest hit so far along one ray. Faces are numbered through a whole scene.
@@ -35,9 +37,11 @@ struct FaceFrame {
     double radius_m = 0.0;                             ///< of that cylinder
 };
 
-struct Sphere {
-    Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
-    double radius_m = 0.0;
+/// The plane of a face: normal . p = offset_m. `face` is counted within the primitive.
+struct FacePlane {
+    int face = 0;
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+    double offset_m = 0.0;
 };
 
 /// Axis-parallel rectangle on the ground plane.
@@ -65,6 +69,8 @@ class Floor {
     [[nodiscard]] std::optional<Column> column(double x_m, double y_m) const;
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
     [[nodiscard]] Sphere bounds() const;
+    [[nodiscard]] std::vector<Eigen::Vector3d> hull() const;
+    [[nodiscard]] std::optional<FacePlane> only_face(const Beam& beam) const;
     [[nodiscard]] std::vector<FaceFrame> faces() const;
     [[nodiscard]] int pits() const noexcept { return static_cast<int>(pits_.size()); }
 
@@ -100,6 +106,8 @@ class Prism {
     [[nodiscard]] std::optional<Column> column(double x_m, double y_m) const;
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
     [[nodiscard]] Sphere bounds() const;
+    [[nodiscard]] std::vector<Eigen::Vector3d> hull() const;
+    [[nodiscard]] std::optional<FacePlane> only_face(const Beam& beam) const;
     [[nodiscard]] std::vector<FaceFrame> faces() const;
 
   private:
@@ -112,7 +120,8 @@ class Prism {
     std::vector<Eigen::Vector2d> footprint_m_;
     double bottom_m_ = 0.0;
     Top top_;
-    std::vector<HalfSpace> half_spaces_;  ///< numbered like the faces
+    std::vector<HalfSpace> half_spaces_;                    ///< numbered like the faces
+    std::vector<std::vector<Eigen::Vector3d>> polygons_m_;  ///< of them, counter-clockwise
 };
 
 /// Upright cylinder. Face 0 is the top, 1 the bottom, 2 the side.
@@ -127,6 +136,8 @@ class Cylinder {
     [[nodiscard]] std::optional<Column> column(double x_m, double y_m) const;
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
     [[nodiscard]] Sphere bounds() const;
+    [[nodiscard]] std::vector<Eigen::Vector3d> hull() const;
+    [[nodiscard]] std::optional<FacePlane> only_face(const Beam& beam) const;
     [[nodiscard]] std::vector<FaceFrame> faces() const;
 
   private:
@@ -138,8 +149,12 @@ class Cylinder {
 
 /// Every primitive offers
 ///   intersect       shortens `hits` where it is met at a distance > 0 (unit directions; NaN
-///   misses) column          what stands on a point of the ground, rims included highest_over exact
-///   highest point over the inside of a cell
+///                   misses)
+///   column          what stands on a point of the ground, rims included
+///   highest_over    exact highest point over the inside of a cell
+///   hull            corners of a convex solid that holds it
+///   only_face       the plane face that every ray of a beam meets first, where that is easily
+///                   proved; `intersect` then gives the distance to its plane, to the last bit
 using Primitive = std::variant<Floor, Prism, Cylinder>;
 
 /// Box that stands at `center_m`, turned by `yaw_rad` about its upright axis.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 namespace surefoot::sim {
@@ -32,6 +33,66 @@ bool on_edge(const Image<std::uint32_t>& key, int u, int v) {
            (u + 1 < key.width() && key.row(v)[u + 1] != here) ||
            (v > 0 && key.row(v - 1)[u] != here) ||
            (v + 1 < key.height() && key.row(v + 1)[u] != here);
+}
+
+struct Pixel {
+    int u = 0;
+    int v = 0;
+};
+
+/// Pixels of a block on an edge, row by row; returns how many there are.
+std::size_t find_edge(const Image<std::uint32_t>& key,
+                      int block_x,
+                      int block_y,
+                      std::array<Pixel, CastBlock::kPixels>& out) {
+    std::size_t count = 0;
+    const int u_end = std::min((block_x + 1) * RayField::kBlock, key.width());
+    const int v_end = std::min((block_y + 1) * RayField::kBlock, key.height());
+    for (int v = block_y * RayField::kBlock; v < v_end; ++v) {
+        for (int u = block_x * RayField::kBlock; u < u_end; ++u) {
+            if (on_edge(key, u, v)) out[count++] = {u, v};
+        }
+    }
+    return count;
+}
+
+/// Casts the rays of one place in each of some pixels of a block, ordered by row.
+void cast_within(const Scene& scene,
+                 const RayField& rays,
+                 const ImageViews& views,
+                 const std::array<double, 2>& place,
+                 std::span<const Pixel> pixels,
+                 CastBlock& block) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const auto [u, v] = pixels[i];
+        block.directions[i] =
+            views.row(v).R_world_camera * rays.ray_within(u, v, place[0], place[1]);
+        block.hits[i] = {};
+    }
+    for (std::size_t first = 0; first < pixels.size();) {
+        // Rows that share their view are cast at once.
+        std::size_t end = first + 1;
+        while (end < pixels.size() && (views.single() || pixels[end].v == pixels[first].v)) ++end;
+        for (const int k : block.primitives) {
+            scene.intersect_primitive(k,
+                                      views.row(pixels[first].v).origin_m,
+                                      {block.directions.data() + first, end - first},
+                                      {block.hits.data() + first, end - first});
+        }
+        first = end;
+    }
+}
+
+Sight sight(const RayField& rays,
+            const Vector3d& origin_m,
+            const Vector3d& direction,
+            const RayHit& hit,
+            int u,
+            int v) {
+    return {origin_m + hit.distance_m * direction,
+            direction,
+            hit.distance_m,
+            rays.pixel_angle_rad(u, v)};
 }
 
 void resize(const RayField& rays, CleanImage& image) {
@@ -142,7 +203,7 @@ void Renderer::collect_eye(const RayField& rays,
     const bool at_rest = std::all_of(
         moving.begin(), moving.end(), [&](const ImageViews& views) { return views == middle; });
     if (moving.size() < 2 || at_rest) {
-        render_instant(rays, middle, kPlaces_px, {}, executor, out);
+        render_instant(rays, middle, kPlaces_px, Wanted::picture_and_depth, executor, out);
     } else {
         blur(rays, middle, moving, executor, instant, out);
     }
@@ -160,12 +221,11 @@ void Renderer::blur(const RayField& rays,
         cast_block(*scene_, rays, middle, block_x, block_y, block);
         store_geometry(rays, block, out);
     });
-    const auto planes = find_planes(*scene_, rays, middle, out.surface, out.depth_m);
     const auto share = 1.0F / static_cast<float>(moving.size());
     out.signal_dn.fill(0.0F);
     for (std::size_t k = 0; k < moving.size(); ++k) {
         const auto place = Places(kPlaces_px).subspan(k % kPlaces_px.size(), 1);
-        render_instant(rays, moving[k], place, {&middle, planes}, executor, instant);
+        render_instant(rays, moving[k], place, Wanted::picture, executor, instant);
         executor.parallel_for(rays.height(), [&](int v) {
             for (int u = 0; u < rays.width(); ++u) {
                 out.signal_dn.row(v)[u] += share * instant.signal_dn.row(v)[u];
@@ -179,24 +239,20 @@ void Renderer::render_clean(const RayField& rays,
                             const Pose& T_world_camera,
                             Executor& executor,
                             CleanImage& out) const {
-    render_instant(rays, ImageViews(T_world_camera), kPlaces_px, {}, executor, out);
+    render_instant(
+        rays, ImageViews(T_world_camera), kPlaces_px, Wanted::picture_and_depth, executor, out);
 }
 
 void Renderer::render_instant(const RayField& rays,
                               const ImageViews& views,
                               Places places,
-                              const Known& known,
+                              Wanted wanted,
                               Executor& executor,
                               CleanImage& out) const {
     resize(rays, out);
     for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
-        const auto index = static_cast<std::size_t>(block_y * rays.blocks_x() + block_x);
-        const bool plain =
-            !known.planes.empty() && known.planes[index].face >= 0 &&
-            cast_on_plane(
-                *scene_, rays, *known.views, views, known.planes[index], block_x, block_y, block);
-        if (!plain) cast_block(*scene_, rays, views, block_x, block_y, block);
-        store_geometry(rays, block, out);
+        cast_block(*scene_, rays, views, block_x, block_y, block);
+        if (wanted == Wanted::picture_and_depth) store_geometry(rays, block, out);
         shade_block(rays, views, block, out);
     });
     for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
@@ -204,52 +260,60 @@ void Renderer::render_instant(const RayField& rays,
     });
 }
 
-/// Face after face: many places of one surface are looked up at once.
+/// Face after face, because many places of one surface are looked up at once.
+void Renderer::shade_by_face(std::span<const RayHit> hits,
+                             std::span<const Sight> sights,
+                             std::span<Seen> out) const {
+    std::array<std::size_t, CastBlock::kPixels> todo;
+    std::array<std::size_t, CastBlock::kPixels> chosen;
+    std::array<Sight, CastBlock::kPixels> chosen_sights;
+    std::array<Seen, CastBlock::kPixels> chosen_seen;
+    std::iota(todo.begin(), todo.begin() + static_cast<std::ptrdiff_t>(hits.size()), 0U);
+    for (std::size_t left = hits.size(); left > 0;) {
+        const int face = hits[todo[0]].face;
+        std::size_t later = 0;
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < left; ++k) {
+            const std::size_t i = todo[k];
+            (hits[i].face == face ? chosen[count++] : todo[later++]) = i;
+        }
+        left = later;
+        if (face < 0) {
+            for (std::size_t k = 0; k < count; ++k) out[chosen[k]] = Shader::background();
+            continue;
+        }
+        for (std::size_t k = 0; k < count; ++k) chosen_sights[k] = sights[chosen[k]];
+        shader_.surface(face, {chosen_sights.data(), count}, chosen_seen);
+        for (std::size_t k = 0; k < count; ++k) out[chosen[k]] = chosen_seen[k];
+    }
+}
+
 void Renderer::shade_block(const RayField& rays,
                            const ImageViews& views,
                            const CastBlock& block,
                            CleanImage& out) const {
     const auto pixels = static_cast<std::size_t>(block.width * block.height);
-    std::array<Seen, CastBlock::kPixels> seen;
     std::array<Sight, CastBlock::kPixels> sights;
-    std::array<std::uint8_t, CastBlock::kPixels> todo;
-    std::array<std::uint8_t, CastBlock::kPixels> chosen;
-    std::array<Seen, CastBlock::kPixels> chosen_seen;
-    for (std::size_t i = 0; i < pixels; ++i) todo[i] = static_cast<std::uint8_t>(i);
-    for (std::size_t left = pixels; left > 0;) {
-        const int face = block.hits[todo[0]].face;
-        std::size_t later = 0;
-        std::size_t count = 0;
-        for (std::size_t k = 0; k < left; ++k) {
-            const std::uint8_t i = todo[k];
-            const RayHit& hit = block.hits[i];
-            if (hit.face != face) {
-                todo[later++] = i;
-                continue;
-            }
-            const int u = block.u0 + i % block.width;
-            const int v = block.v0 + i / block.width;
-            const Vector3d& direction = block.directions[i];
-            chosen[count] = i;
-            sights[count++] = {views.row(v).origin_m + hit.distance_m * direction,
-                               direction,
-                               hit.distance_m,
-                               rays.pixel_angle_rad(u, v)};
+    std::array<Seen, CastBlock::kPixels> seen;
+    std::size_t i = 0;
+    for (int v = block.v0; v < block.v0 + block.height; ++v) {
+        const Vector3d& origin_m = views.row(v).origin_m;
+        for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
+            sights[i] = sight(rays, origin_m, block.directions[i], block.hits[i], u, v);
         }
-        left = later;
-        if (face < 0) {
-            std::fill_n(chosen_seen.begin(), count, Shader::background());
-        } else {
-            shader_.surface(face, {sights.data(), count}, chosen_seen);
-        }
-        for (std::size_t k = 0; k < count; ++k) seen[chosen[k]] = chosen_seen[k];
+    }
+    if (block.plane) {
+        shader_.surface(block.plane->face, {sights.data(), pixels}, seen);
+    } else {
+        shade_by_face({block.hits.data(), pixels}, sights, seen);
     }
     const auto white_dn = static_cast<float>(255.0 * config_.imaging.exposure);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const int u = block.u0 + static_cast<int>(i) % block.width;
-        const int v = block.v0 + static_cast<int>(i) / block.width;
-        out.signal_dn.row(v)[u] = white_dn * seen[i].radiance;
-        out.key.row(v)[u] = seen[i].key;
+    i = 0;
+    for (int v = block.v0; v < block.v0 + block.height; ++v) {
+        for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
+            out.signal_dn.row(v)[u] = white_dn * seen[i].radiance;
+            out.key.row(v)[u] = seen[i].key;
+        }
     }
 }
 
@@ -261,42 +325,28 @@ void Renderer::soften_block(const RayField& rays,
                             int block_y,
                             CastBlock& block,
                             CleanImage& out) const {
-    bool found = false;
-    const int u_end = std::min((block_x + 1) * RayField::kBlock, rays.width());
-    const int v_end = std::min((block_y + 1) * RayField::kBlock, rays.height());
-    for (int v = block_y * RayField::kBlock; v < v_end; ++v) {
-        for (int u = block_x * RayField::kBlock; u < u_end; ++u) {
-            if (!on_edge(out.key, u, v)) continue;
-            if (!found) find_primitives(*scene_, rays, views, block_x, block_y, block);
-            found = true;
-            out.signal_dn.row(v)[u] =
-                softened_dn(rays, views.row(v), places, block.primitives, u, v);
-        }
-    }
-}
-
-float Renderer::softened_dn(const RayField& rays,
-                            const CameraView& view,
-                            Places places,
-                            std::span<const int> primitives,
-                            int u,
-                            int v) const {
-    float sum = 0.0F;
+    std::array<Pixel, CastBlock::kPixels> pixels;
+    const std::span<const Pixel> edge(pixels.data(), find_edge(out.key, block_x, block_y, pixels));
+    if (edge.empty()) return;
+    find_primitives(*scene_, rays, views, block_x, block_y, block);
+    std::array<Sight, CastBlock::kPixels> sights;
+    std::array<Seen, CastBlock::kPixels> seen;
+    std::array<float, CastBlock::kPixels> sum{};
     for (const auto& place : places) {
-        const Vector3d direction = view.R_world_camera * rays.ray_within(u, v, place[0], place[1]);
-        RayHit hit;
-        for (const int k : primitives) {
-            scene_->intersect_primitive(k, view.origin_m, {&direction, 1}, {&hit, 1});
+        cast_within(*scene_, rays, views, place, edge, block);
+        for (std::size_t i = 0; i < edge.size(); ++i) {
+            const auto [u, v] = edge[i];
+            sights[i] =
+                sight(rays, views.row(v).origin_m, block.directions[i], block.hits[i], u, v);
         }
-        const Sight sight{view.origin_m + hit.distance_m * direction,
-                          direction,
-                          hit.distance_m,
-                          rays.pixel_angle_rad(u, v)};
-        sum += hit.face < 0 ? Shader::background().radiance
-                            : shader_.surface(hit.face, sight).radiance;
+        shade_by_face({block.hits.data(), edge.size()}, sights, seen);
+        for (std::size_t i = 0; i < edge.size(); ++i) sum[i] += seen[i].radiance;
     }
-    return static_cast<float>(255.0 * config_.imaging.exposure) * sum /
-           static_cast<float>(places.size());
+    const auto white_dn = static_cast<float>(255.0 * config_.imaging.exposure);
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+        out.signal_dn.row(edge[i].v)[edge[i].u] =
+            white_dn * sum[i] / static_cast<float>(places.size());
+    }
 }
 
 void Renderer::expose(const CleanPair& clean,

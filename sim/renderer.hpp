@@ -90,12 +90,8 @@ class Renderer {
   private:
     /// Places in a pixel, offsets from its centre in pixels.
     using Places = std::span<const std::array<double, 2>>;
-    /// What another instant of the same exposure showed; empty = nothing is known.
-    struct Known {
-        const ImageViews* views = nullptr;
-        std::span<const BlockPlane> planes;
-    };
-
+    /// What to keep of an instant.
+    enum class Wanted : std::uint8_t { picture, picture_and_depth };
     Renderer(const Scene& scene,
              const camera::StereoRig& rig,
              const CameraConfig& config,
@@ -117,13 +113,16 @@ class Renderer {
     void render_instant(const RayField& rays,
                         const ImageViews& views,
                         Places places,
-                        const Known& known,
+                        Wanted wanted,
                         Executor& executor,
                         CleanImage& out) const;
     void shade_block(const RayField& rays,
                      const ImageViews& views,
                      const CastBlock& block,
                      CleanImage& out) const;
+    void shade_by_face(std::span<const RayHit> hits,
+                       std::span<const Sight> sights,
+                       std::span<Seen> out) const;
     void soften_block(const RayField& rays,
                       const ImageViews& views,
                       Places places,
@@ -131,12 +130,6 @@ class Renderer {
                       int block_y,
                       CastBlock& block,
                       CleanImage& out) const;
-    [[nodiscard]] float softened_dn(const RayField& rays,
-                                    const CameraView& view,
-                                    Places places,
-                                    std::span<const int> primitives,
-                                    int u,
-                                    int v) const;
     /// Unit normal noise of one image, smoothed as configured.
     [[nodiscard]] Image<float> noise_image(int width,
                                            int height,

@@ -31,6 +31,7 @@ void Scene::add(Primitive primitive, int material, Label label) {
     const int index = primitives();
     first_surface_.push_back(static_cast<int>(surfaces_.size()));
     bounds_.push_back(std::visit([](const auto& shape) { return shape.bounds(); }, primitive));
+    hulls_.push_back(std::visit([](const auto& shape) { return shape.hull(); }, primitive));
     const auto faces = std::visit([](const auto& shape) { return shape.faces(); }, primitive);
     for (const FaceFrame& face : faces) surfaces_.push_back({face, index, material, label});
     primitives_.push_back(std::move(primitive));
@@ -151,6 +152,18 @@ const Primitive& Scene::primitive(int index) const {
 
 const Sphere& Scene::bounds(int primitive) const {
     return bounds_[static_cast<std::size_t>(primitive)];
+}
+
+const std::vector<Vector3d>& Scene::hull(int primitive) const {
+    return hulls_[static_cast<std::size_t>(primitive)];
+}
+
+std::optional<FacePlane> Scene::only_face(int primitive, const Beam& beam) const {
+    const auto index = static_cast<std::size_t>(primitive);
+    auto plane =
+        std::visit([&](const auto& shape) { return shape.only_face(beam); }, primitives_[index]);
+    if (plane) plane->face += first_surface_[index];
+    return plane;
 }
 
 }  // namespace surefoot::sim

@@ -114,6 +114,9 @@ class Scene {
     [[nodiscard]] int primitives() const noexcept { return static_cast<int>(primitives_.size()); }
     [[nodiscard]] const Primitive& primitive(int index) const;
     [[nodiscard]] const Sphere& bounds(int primitive) const;
+    [[nodiscard]] const std::vector<Eigen::Vector3d>& hull(int primitive) const;
+    /// See Primitive; the face is numbered through the scene.
+    [[nodiscard]] std::optional<FacePlane> only_face(int primitive, const Beam& beam) const;
     [[nodiscard]] const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
     [[nodiscard]] const std::vector<Material>& materials() const noexcept { return materials_; }
 
@@ -121,6 +124,7 @@ class Scene {
     std::vector<Primitive> primitives_;
     std::vector<int> first_surface_;
     std::vector<Sphere> bounds_;
+    std::vector<std::vector<Eigen::Vector3d>> hulls_;
     std::vector<Surface> surfaces_;
     std::vector<Material> materials_;
     Lighting lighting_;

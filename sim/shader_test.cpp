@@ -130,6 +130,39 @@ TEST(ShaderTest, MirrorsThatFaceEachOtherEnd) {
     EXPECT_NEAR(seen.radiance, 0.5F * (0.1F + 0.9F * (0.1F + 0.9F)), 1e-6F);
 }
 
+/// More points than one batch holds, on planes and round a post, in the light and in shadow.
+TEST(ShaderTest, ManyPointsTogetherLookLikeEachAlone) {
+    for (const bool shadows : {false, true}) {
+        Scene scene = floor_and_wall(nullptr);
+        scene.add(Cylinder({2.0, 0.0}, 0.3, 0.0, 2.0), 0, Label::object);
+        Lighting lighting;
+        lighting.shadows = shadows;
+        lighting.stripe_width_m = shadows ? 0.05 : 0.0;
+        scene.light(lighting);
+        const Shader shader(scene, 1);
+        const Vector3d camera_m(0.0, 0.0, 1.0);
+        std::vector<std::vector<Sight>> sights(scene.surfaces().size());
+        for (int i = 0; i < 3000; ++i) {
+            const Vector3d direction =
+                Vector3d(1.0, -0.6 + 0.0004 * i, -0.05 - 0.01 * (i % 40)).normalized();
+            const auto hit = scene.intersect(camera_m, direction);
+            if (!hit) continue;
+            sights[static_cast<std::size_t>(hit->surface)].push_back(sight_of(*hit, direction));
+        }
+        EXPECT_GT(sights[0].size(), 600U);
+        EXPECT_GT(sights[3].size(), 300U);
+        for (std::size_t surface = 0; surface < sights.size(); ++surface) {
+            std::vector<Seen> seen(sights[surface].size());
+            shader.surface(static_cast<int>(surface), sights[surface], seen);
+            for (std::size_t i = 0; i < seen.size(); ++i) {
+                const Seen alone = shader.surface(static_cast<int>(surface), sights[surface][i]);
+                ASSERT_EQ(seen[i].radiance, alone.radiance) << surface << " " << i;
+                ASSERT_EQ(seen[i].key, alone.key);
+            }
+        }
+    }
+}
+
 /// The lamp stands in -x, 45 deg high.
 Lighting low_lamp() {
     Lighting lighting;
