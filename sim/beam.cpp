@@ -37,6 +37,7 @@ Beam::Beam(const Vector3d& tip_m, const Vector3d& axis, double half_angle_rad, d
 /// The distance of the centre from the nearest line of the cone; behind the tip it is even further
 /// away than that.
 bool Beam::misses(const Sphere& sphere) const {
+    if (!(cosine_ > 0.0)) return false;
     const Vector3d to_center = sphere.center_m - tip_m_;
     const double along_m = axis_.dot(to_center);
     const double across_m = std::sqrt(std::max(to_center.squaredNorm() - along_m * along_m, 0.0));
@@ -45,6 +46,7 @@ bool Beam::misses(const Sphere& sphere) const {
 
 /// Looks for a plane between them among those that touch the cone on eight sides.
 bool Beam::misses(std::span<const Vector3d> corners_m) const {
+    if (!(cosine_ > 0.0)) return false;
     const Vector3d side = axis_.unitOrthogonal();
     const Vector3d other = axis_.cross(side);
     const double half = std::numbers::sqrt2 / 2.0;

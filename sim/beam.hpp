@@ -11,12 +11,11 @@ struct Sphere {
     double radius_m = 0.0;
 };
 
-/// All rays of a block of pixels: a narrow cone (half angle below 90 deg) in the world frame whose
-/// tip may be anywhere in a small ball, because rows are exposed one after the other. The tests
-/// below are proofs: they may fail to see that a thing is missed, never the other way round.
+/// All rays of a block of pixels: a cone in the world frame whose tip may be anywhere in a small
+/// ball, because rows are exposed one after the other. The tests below are proofs: what they say
+/// holds for every ray; they may fail to see it (always from 90 deg of half angle on).
 class Beam {
   public:
-    /// Unit axis; `half_angle_rad` rounds its cosine up itself.
     Beam(const Eigen::Vector3d& tip_m,
          const Eigen::Vector3d& axis,
          double half_angle_rad,
@@ -29,9 +28,10 @@ class Beam {
     [[nodiscard]] bool misses(const Sphere& sphere) const;
     /// No ray meets the convex hull of the corners.
     [[nodiscard]] bool misses(std::span<const Eigen::Vector3d> corners_m) const;
-    /// Every ray meets the convex polygon, or none does: its corners counter-clockwise as the tip
-    /// sees them, which lies `above_m` over its plane.
+    /// Every ray meets the convex polygon: its corners counter-clockwise as seen from the tip,
+    /// which lies `above_m` over its plane.
     [[nodiscard]] bool inside(std::span<const Eigen::Vector3d> polygon_m, double above_m) const;
+    /// No ray meets it.
     [[nodiscard]] bool outside(std::span<const Eigen::Vector3d> polygon_m, double above_m) const;
 
   private:

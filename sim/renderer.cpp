@@ -8,6 +8,8 @@
 #include <numeric>
 #include <string>
 
+#include "sim/edge_pixels.hpp"
+
 namespace surefoot::sim {
 namespace {
 
@@ -25,62 +27,6 @@ void for_each_block(const RayField& rays, Executor& executor, const Work& work) 
         CastBlock block;
         for (int block_x = 0; block_x < rays.blocks_x(); ++block_x) work(block_x, block_y, block);
     });
-}
-
-bool on_edge(const Image<std::uint32_t>& key, int u, int v) {
-    const std::uint32_t here = key.row(v)[u];
-    return (u > 0 && key.row(v)[u - 1] != here) ||
-           (u + 1 < key.width() && key.row(v)[u + 1] != here) ||
-           (v > 0 && key.row(v - 1)[u] != here) ||
-           (v + 1 < key.height() && key.row(v + 1)[u] != here);
-}
-
-struct Pixel {
-    int u = 0;
-    int v = 0;
-};
-
-/// Pixels of a block on an edge, row by row; returns how many there are.
-std::size_t find_edge(const Image<std::uint32_t>& key,
-                      int block_x,
-                      int block_y,
-                      std::array<Pixel, CastBlock::kPixels>& out) {
-    std::size_t count = 0;
-    const int u_end = std::min((block_x + 1) * RayField::kBlock, key.width());
-    const int v_end = std::min((block_y + 1) * RayField::kBlock, key.height());
-    for (int v = block_y * RayField::kBlock; v < v_end; ++v) {
-        for (int u = block_x * RayField::kBlock; u < u_end; ++u) {
-            if (on_edge(key, u, v)) out[count++] = {u, v};
-        }
-    }
-    return count;
-}
-
-/// Casts the rays of one place in each of some pixels of a block, ordered by row.
-void cast_within(const Scene& scene,
-                 const RayField& rays,
-                 const ImageViews& views,
-                 const std::array<double, 2>& place,
-                 std::span<const Pixel> pixels,
-                 CastBlock& block) {
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const auto [u, v] = pixels[i];
-        block.directions[i] =
-            views.row(v).R_world_camera * rays.ray_within(u, v, place[0], place[1]);
-        block.hits[i] = {};
-    }
-    for (std::size_t first = 0; first < pixels.size();) {
-        // Rows that share their view are cast at once.
-        std::size_t end = first + 1;
-        while (end < pixels.size() && (views.single() || pixels[end].v == pixels[first].v)) ++end;
-        for (const int k : block.primitives) {
-            scene.intersect_primitive(k,
-                                      views.row(pixels[first].v).origin_m,
-                                      {block.directions.data() + first, end - first},
-                                      {block.hits.data() + first, end - first});
-        }
-        first = end;
-    }
 }
 
 Sight sight(const RayField& rays,

@@ -133,8 +133,14 @@ void Shader::surface(int surface, std::span<const Sight> sights, std::span<Seen>
             batch.cosine[i] = look.cosine;
         }
         textures_.reflectances(face.placement, batch, Registers::widest, albedo.data());
+        const std::vector<Blocker> blockers = blockers_of(face, part);
+        // Without shadows and stripes the light is the same all over a plane.
+        const bool even = blockers.empty() && !(lighting_.stripe_width_m > 0.0);
+        const Seen white = lit_surface(surface, part[0], face.facing_lamp, 1.0F, blockers);
         for (std::size_t i = 0; i < part.size(); ++i) {
-            out[done + i] = lit_surface(surface, part[i], face.facing_lamp, albedo[i]);
+            out[done + i] =
+                even ? Seen{white.radiance * albedo[i], white.key}
+                     : lit_surface(surface, part[i], face.facing_lamp, albedo[i], blockers);
         }
     }
 }
@@ -184,11 +190,15 @@ Seen Shader::matte(int surface, const Sight& sight) const {
         albedo = reflectance(face, sight);
         facing = face.facing_lamp;
     }
-    return lit_surface(surface, sight, facing, albedo);
+    return lit_surface(surface, sight, facing, albedo, blockers_);
 }
 
-Seen Shader::lit_surface(int surface, const Sight& sight, double facing_lamp, float albedo) const {
-    const bool bright = facing_lamp > 0.0 && lit(sight.point_m);
+Seen Shader::lit_surface(int surface,
+                         const Sight& sight,
+                         double facing_lamp,
+                         float albedo,
+                         std::span<const Blocker> blockers) const {
+    const bool bright = facing_lamp > 0.0 && lit(sight.point_m, blockers);
     double light = lighting_.ambient;
     if (bright) {
         const bool striped = lighting_.stripe_width_m > 0.0;
@@ -233,25 +243,56 @@ double Shader::stripes(const Sight& sight, const SurfacePoint& at) const {
     return bright_m / (2.0 * half_m);
 }
 
-/// Looks from the lamp: surfaces are seen from outside only, so a pit is shaded by its own rim.
 bool Shader::lit(const Vector3d& point_m) const {
+    return lit(point_m, blockers_);
+}
+
+/// Looks from the lamp: surfaces are seen from outside only, so a pit is shaded by its own rim.
+bool Shader::lit(const Vector3d& point_m, std::span<const Blocker> blockers) const {
     if (!lighting_.shadows) return true;
     const double far_m = lamp_plane_m_ - towards_lamp_.dot(point_m) + 1.0;
     const Vector3d from_m = point_m + far_m * towards_lamp_;
     const Vector3d direction = -towards_lamp_;
     RayHit nearest{far_m - kClear_m, -1};
-    for (const Blocker& blocker : blockers_) {
-        const Vector3d to_center = blocker.bounds.center_m - point_m;
-        const double along_m = towards_lamp_.dot(to_center);
-        const double radius_m = blocker.bounds.radius_m;
-        if (along_m < -radius_m ||
-            to_center.squaredNorm() - along_m * along_m > radius_m * radius_m) {
-            continue;
-        }
+    for (const Blocker& blocker : blockers) {
+        if (!may_shade(blocker.bounds, {point_m, 0.0})) continue;
         scene_->intersect_primitive(blocker.primitive, from_m, {&direction, 1}, {&nearest, 1});
         if (nearest.face >= 0) return false;
     }
     return true;
+}
+
+/// Does the sphere meet the way of the lamp's light to a point of the other one?
+bool Shader::may_shade(const Sphere& blocker, const Sphere& points) const {
+    const Vector3d to_center = blocker.center_m - points.center_m;
+    const double along_m = towards_lamp_.dot(to_center);
+    const double radius_m = blocker.radius_m + points.radius_m;
+    return along_m >= -radius_m &&
+           to_center.squaredNorm() - along_m * along_m <= radius_m * radius_m;
+}
+
+/// What may shade some points of a plane: never what lies behind it.
+std::vector<Shader::Blocker> Shader::blockers_of(const Face& face,
+                                                 std::span<const Sight> sights) const {
+    std::vector<Blocker> blockers;
+    if (!lighting_.shadows || !(face.facing_lamp > 0.0)) return blockers;
+    Sphere points{sights[sights.size() / 2].point_m, 0.0};
+    for (const Sight& sight : sights) {
+        points.radius_m =
+            std::max(points.radius_m, (sight.point_m - points.center_m).squaredNorm());
+    }
+    points.radius_m = std::sqrt(points.radius_m) + kClear_m;
+    const double offset_m = face.normal.dot(points.center_m) + kClear_m;
+    for (const Blocker& blocker : blockers_) {
+        const auto& hull_m = scene_->hull(blocker.primitive);
+        if (may_shade(blocker.bounds, points) &&
+            std::any_of(hull_m.begin(), hull_m.end(), [&](const Vector3d& corner_m) {
+                return face.normal.dot(corner_m) > offset_m;
+            })) {
+            blockers.push_back(blocker);
+        }
+    }
+    return blockers;
 }
 
 }  // namespace surefoot::sim

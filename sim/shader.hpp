@@ -37,7 +37,7 @@ class Shader {
 
     /// A point of a surface that was hit.
     [[nodiscard]] Seen surface(int surface, const Sight& sight) const;
-    /// The same, bit by bit, for several points of one surface, which is faster.
+    /// The same, bit by bit, for several points of one surface, at least one, which is faster.
     void surface(int surface, std::span<const Sight> sights, std::span<Seen> out) const;
     /// Where no surface is.
     [[nodiscard]] static Seen background() noexcept;
@@ -75,7 +75,12 @@ class Shader {
     [[nodiscard]] Seen lit_surface(int surface,
                                    const Sight& sight,
                                    double facing_lamp,
-                                   float albedo) const;
+                                   float albedo,
+                                   std::span<const Blocker> blockers) const;
+    [[nodiscard]] bool lit(const Eigen::Vector3d& point_m, std::span<const Blocker> blockers) const;
+    [[nodiscard]] bool may_shade(const Sphere& blocker, const Sphere& points) const;
+    [[nodiscard]] std::vector<Blocker> blockers_of(const Face& face,
+                                                   std::span<const Sight> sights) const;
     [[nodiscard]] static PlaneLook look_at(const Face& face, const Sight& sight);
     [[nodiscard]] float reflectance(const Face& face, const Sight& sight) const;
     [[nodiscard]] Seen along(const Sight& sight, int bounces) const;

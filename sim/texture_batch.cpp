@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "sim/texture.hpp"
 #include "sim/texture_lookup.hpp"
@@ -107,7 +108,7 @@ bool has_avx2() {
 
 void Textures::reflectances(const Placement& placement,
                             const TextureBatch& in,
-                            Registers registers,
+                            [[maybe_unused]] Registers registers,
                             float* out) const noexcept {
     const std::uint32_t* cells = tables_[placement.table].cells();
 #if defined(__x86_64__)
