@@ -151,10 +151,10 @@ AnalyticStereo::AnalyticStereo(const Scene& scene,
 void AnalyticStereo::cast(const Pose& T_world_body, Executor& executor, View& out) const {
     const Pose T_world_camera = T_world_body * rig_.T_body_camera;
     const ImageViews views(T_world_camera);
-    out.disparity_px = Image<float>(rig_.width, rig_.height, kNan);
-    out.surface = Image<std::int32_t>(rig_.width, rig_.height, -1);
+    out.disparity_px.resize(rig_.width, rig_.height);
+    out.surface.resize(rig_.width, rig_.height);
     out.fixed.resize(rig_.width, rig_.height);
-    out.missing_chance = Image<float>(rig_.width, rig_.height, 1.0F);
+    out.missing_chance.resize(rig_.width, rig_.height);
     executor.parallel_for(rays_.blocks_y(), [&](int block_y) {
         CastBlock block;
         for (int block_x = 0; block_x < rays_.blocks_x(); ++block_x) {
@@ -163,12 +163,14 @@ void AnalyticStereo::cast(const Pose& T_world_body, Executor& executor, View& ou
             for (int v = block.v0; v < block.v0 + block.height; ++v) {
                 for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
                     const RayHit& hit = block.hits[i];
+                    out.disparity_px.row(v)[u] = kNan;
+                    out.surface.row(v)[u] = hit.face;
+                    out.missing_chance.row(v)[u] = 1.0F;
                     if (hit.face < 0) continue;
                     // Through a float as the depth images of the renderer are.
                     const auto depth_m = static_cast<float>(hit.distance_m * rays_.ray(u, v).z());
                     out.disparity_px.row(v)[u] = static_cast<float>(rig_.depth_to_disparity_px_m() /
                                                                     static_cast<double>(depth_m));
-                    out.surface.row(v)[u] = hit.face;
                     look(T_world_camera.translation_m + hit.distance_m * block.directions[i],
                          block.directions[i],
                          hit.face,
@@ -213,12 +215,11 @@ double AnalyticStereo::missing_chance(const Material& material, double cosine) c
 void AnalyticStereo::measure(const Pose& T_world_body,
                              int frame,
                              Executor& executor,
+                             View& view,
                              camera::DepthImage& out) const {
-    View view;
     cast(T_world_body, executor, view);
-    ShadowMap shadows;
     find_shadows(
-        view.disparity_px, view.surface, config_.shadow, config_.stride, executor, shadows);
+        view.disparity_px, view.surface, config_.shadow, config_.stride, executor, view.shadows);
 
     const std::uint64_t stream = kStreams * static_cast<std::uint64_t>(frame);
     const auto smooth = [&](std::uint64_t of, double length_px) {
@@ -238,21 +239,20 @@ void AnalyticStereo::measure(const Pose& T_world_body,
         std::vector<float> luck_row(static_cast<std::size_t>(rig_.width));
         errors.row(v, scratch, error_row);
         fortune.row(v, scratch, luck_row);
-        measure_row(view, shadows, stream, v, error_row, luck_row, out);
+        measure_row(view, stream, v, error_row, luck_row, out);
     });
 }
 
 /// What the matcher takes for the disparity of a pixel, before noise.
-AnalyticStereo::Match AnalyticStereo::match(
-    const View& view, const ShadowMap& shadows, int u, int v, float luck) const {
-    const Shadow shadow = shadows.shadow.row(v)[u];
+AnalyticStereo::Match AnalyticStereo::match(const View& view, int u, int v, float luck) const {
+    const Shadow shadow = view.shadows.shadow.row(v)[u];
     const bool hidden = shadow == Shadow::occluded;
     const bool bridged =
         (hidden || shadow == Shadow::ramp) && luck < static_cast<float>(config_.invented_share);
     Match match;
     match.invented = bridged || shadow == Shadow::fattened;
     const float found_px =
-        match.invented ? shadows.bridge_px.row(v)[u] : view.disparity_px.row(v)[u];
+        match.invented ? view.shadows.bridge_px.row(v)[u] : view.disparity_px.row(v)[u];
     const auto search_px = static_cast<float>(config_.max_disparity_px / config_.stride);
     // The other end of luck decides here, apart from what is bridged.
     const bool missing = 1.0F - luck < view.missing_chance.row(v)[u];
@@ -262,7 +262,6 @@ AnalyticStereo::Match AnalyticStereo::match(
 }
 
 void AnalyticStereo::measure_row(const View& view,
-                                 const ShadowMap& shadows,
                                  std::uint64_t stream,
                                  int v,
                                  std::span<const float> errors,
@@ -273,7 +272,7 @@ void AnalyticStereo::measure_row(const View& view,
     const std::uint64_t white_key = PixelNoise::key(seed_, stream + white);
     for (int u = 0; u < rig_.width; ++u) {
         const auto column = static_cast<std::size_t>(u);
-        const Match found = match(view, shadows, u, v, uniform_from(cdf_, luck[column]));
+        const Match found = match(view, u, v, uniform_from(cdf_, luck[column]));
         const auto pixel = static_cast<std::uint32_t>(v * rig_.width + u);
         float measured_px = found.disparity_px + scale.white_px * noise_.normal(white_key, pixel) +
                             scale.correlated_px * errors[column] +

@@ -73,20 +73,22 @@ class AnalyticStereo {
     /// The camera of the depth images: that of `make` for stride 1, else a smaller one with
     /// proportionally shorter focal lengths, and disparities in its own pixels.
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rig_; }
+    /// What the left eye truly sees. Keep it from frame to frame: its memory is used again.
+    struct View {
+        Image<float> disparity_px;  ///< exact, of the output's pixels; NaN where no surface is
+        Image<std::int32_t> surface;
+        Image<float> fixed;           ///< noise of unit variance that sticks to the surface
+        Image<float> missing_chance;  ///< 1 for what can never be matched
+        ShadowMap shadows;
+    };
     /// `frame` selects the noise.
     void measure(const Pose& T_world_body,
                  int frame,
                  Executor& executor,
+                 View& view,
                  camera::DepthImage& out) const;
 
   private:
-    /// What the left eye sees.
-    struct View {
-        Image<float> disparity_px;  ///< of the output's pixels
-        Image<std::int32_t> surface;
-        Image<float> fixed;           ///< noise of unit variance that sticks to the surface
-        Image<float> missing_chance;  ///< 1 for what can never be matched
-    };
     AnalyticStereo(const Scene& scene,
                    const camera::RectifiedRig& rig,
                    const AnalyticStereoConfig& config,
@@ -101,10 +103,8 @@ class AnalyticStereo {
         float disparity_px = 0.0F;  ///< NaN = none
         bool invented = false;
     };
-    [[nodiscard]] Match match(
-        const View& view, const ShadowMap& shadows, int u, int v, float luck) const;
+    [[nodiscard]] Match match(const View& view, int u, int v, float luck) const;
     void measure_row(const View& view,
-                     const ShadowMap& shadows,
                      std::uint64_t stream,
                      int v,
                      std::span<const float> errors,

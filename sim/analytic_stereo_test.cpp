@@ -60,10 +60,11 @@ camera::DepthImage measured(const Scene& scene,
                             double height_m = 1.0,
                             int frame = 0) {
     Serial serial;
+    AnalyticStereo::View view;
     camera::DepthImage out;
     AnalyticStereo::make(scene, rig, config, 11)
         .value()
-        .measure(body_at_height(height_m), frame, serial, out);
+        .measure(body_at_height(height_m), frame, serial, view, out);
     return out;
 }
 
@@ -130,7 +131,8 @@ TEST(AnalyticStereoTest, StrideGivesTheSamePixelsInUnitsOfItsOwn) {
     const Image<float> truth_px = exact(scene, full, kBodyHeight_m);
     Serial serial;
     camera::DepthImage depth;
-    stereo.measure(body_at_height(kBodyHeight_m), 0, serial, depth);
+    AnalyticStereo::View view;
+    stereo.measure(body_at_height(kBodyHeight_m), 0, serial, view, depth);
     int known = 0;
     for (int v = 0; v < 94; ++v) {
         for (int u = 0; u < 168; ++u) {
@@ -395,10 +397,12 @@ TEST(AnalyticStereoTest, SameBytesForAnyExecutorAndOtherNoiseInAnotherFrame) {
     camera::DepthImage b;
     camera::DepthImage c;
     camera::DepthImage d;
-    stereo.measure(body_at_height(kBodyHeight_m), 5, serial, a);
-    stereo.measure(body_at_height(kBodyHeight_m), 5, backwards, b);
-    stereo.measure(body_at_height(kBodyHeight_m), 5, threads, c);
-    stereo.measure(body_at_height(kBodyHeight_m), 6, serial, d);
+    AnalyticStereo::View view;  // used again and again: old contents must not show
+    stereo.measure(body_at_height(2.0), 1, serial, view, a);
+    stereo.measure(body_at_height(kBodyHeight_m), 5, serial, view, a);
+    stereo.measure(body_at_height(kBodyHeight_m), 5, backwards, view, b);
+    stereo.measure(body_at_height(kBodyHeight_m), 5, threads, view, c);
+    stereo.measure(body_at_height(kBodyHeight_m), 6, serial, view, d);
     EXPECT_TRUE(test::same_bytes(a.disparity_px, b.disparity_px));
     EXPECT_TRUE(test::same_bytes(a.disparity_px, c.disparity_px));
     EXPECT_TRUE(test::same_bytes(a.outlier_probability, c.outlier_probability));

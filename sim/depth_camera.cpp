@@ -2,7 +2,6 @@
 #include "sim/depth_camera.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -72,26 +71,28 @@ void DepthCameraConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean("mixes_edges", mixes_edges, "time of flight: pixels between two surfaces");
 }
 
-std::vector<std::string> depth_camera_presets() {
-    return {"kinect_v1", "kinect_v2"};
+DepthCameraConfig DepthCameraConfig::with_noise(double factor) const {
+    DepthCameraConfig scaled = *this;
+    scaled.axial_offset_m *= factor;
+    scaled.axial_slope_1_m *= factor;
+    scaled.axial_angle *= factor;
+    return scaled;
 }
 
-Result<DepthCameraPreset> depth_camera_preset(const std::string& name) {
+DepthCameraPreset depth_camera_preset(DepthCameraKind kind) {
     DepthCameraPreset preset;
-    if (name == "kinect_v1") {
-        preset.camera = pinhole(640, 480, 585.0);  // 57 deg from side to side
-        return preset;
+    switch (kind) {
+        case DepthCameraKind::kinect_v1:
+            preset.camera = pinhole(640, 480, 585.0);  // 57 deg from side to side
+            break;
+        case DepthCameraKind::kinect_v2:
+            preset.camera = pinhole(512, 424, 365.0);  // 70 deg
+            preset.config.projector_x_m = 0.0;
+            preset.config.disparity_step_px = 0.0;
+            preset.config.mixes_edges = true;
+            break;
     }
-    if (name == "kinect_v2") {
-        preset.camera = pinhole(512, 424, 365.0);  // 70 deg
-        preset.config.projector_x_m = 0.0;
-        preset.config.disparity_step_px = 0.0;
-        preset.config.mixes_edges = true;
-        return preset;
-    }
-    return usage_error(fmt::format("simulator: no depth camera is named '{}'; there are: {}",
-                                   name,
-                                   fmt::join(depth_camera_presets(), ", ")));
+    return preset;
 }
 
 Result<DepthCamera> DepthCamera::make(const Scene& scene,

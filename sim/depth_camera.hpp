@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "sim/imaging.hpp"
 #include "sim/ray_field.hpp"
@@ -41,6 +39,9 @@ struct DepthCameraConfig {
     double least_return = 0.06;
     bool mixes_edges = false;  ///< time of flight: pixels on an edge lie between the surfaces
 
+    /// The same with every axial error this much larger.
+    [[nodiscard]] DepthCameraConfig with_noise(double factor) const;
+
     void describe(ConfigVisitor& visitor);
 };
 
@@ -48,10 +49,13 @@ struct DepthCameraPreset {
     camera::Camera camera;
     DepthCameraConfig config;
 };
-/// kinect_v1 (structured light, 640x480), kinect_v2 (time of flight, 512x424; ASSUMPTION: the same
-/// axial noise, as the mapping literature uses it). An unknown name is a usage error.
-[[nodiscard]] std::vector<std::string> depth_camera_presets();
-[[nodiscard]] Result<DepthCameraPreset> depth_camera_preset(const std::string& name);
+enum class DepthCameraKind : std::uint8_t {
+    kinect_v1,  ///< structured light, 640x480
+    kinect_v2,  ///< time of flight, 512x424; ASSUMPTION: the same axial noise, as the mapping
+                ///< literature uses it
+};
+inline constexpr const char* kDepthCameraNames[] = {"kinect_v1", "kinect_v2"};
+[[nodiscard]] DepthCameraPreset depth_camera_preset(DepthCameraKind kind);
 
 struct DepthFrame {
     Image<float> depth_m;  ///< along the optical axis; NaN = unknown

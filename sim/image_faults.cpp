@@ -93,10 +93,4 @@ std::vector<InjectedFault> plan_faults(const ImageFaultConfig& config,
     return faults;
 }
 
-void tear(const GreyImage& older, int tear_row, GreyImage& image) {
-    for (int v = tear_row; v < image.height(); ++v) {
-        std::copy_n(older.row(v), image.width(), image.row(v));
-    }
-}
-
 }  // namespace surefoot::sim

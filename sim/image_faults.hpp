@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -51,6 +52,11 @@ struct ImageFaultConfig {
                                                      std::uint64_t seed);
 
 /// Replaces the rows from `tear_row` down by those of the older image.
-void tear(const GreyImage& older, int tear_row, GreyImage& image);
+template <typename Pixel>
+void tear(const Image<Pixel>& older, int tear_row, Image<Pixel>& image) {
+    for (int v = tear_row; v < image.height(); ++v) {
+        std::copy_n(older.row(v), image.width(), image.row(v));
+    }
+}
 
 }  // namespace surefoot::sim

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/imu.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <Eigen/Geometry>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -85,29 +81,17 @@ ImuNoiseConfig bmi055() {
             .accel_step_m_s2 = kGravity_m_s2 / 1024.0};
 }
 
-struct NamedImu {
-    const char* name;
-    ImuNoiseConfig (*noise)();
-};
-constexpr std::array<NamedImu, 3> kImus{
-    {{"adis16448", adis16448}, {"mpu6050", mpu6050}, {"bmi055", bmi055}}};
-
 }  // namespace
 
-std::vector<std::string> imu_presets() {
-    std::vector<std::string> names;
-    names.reserve(kImus.size());
-    for (const NamedImu& imu : kImus) names.emplace_back(imu.name);
-    return names;
-}
-
-Result<ImuNoiseConfig> imu_preset(const std::string& name) {
-    for (const NamedImu& imu : kImus) {
-        if (name == imu.name) return imu.noise();
+ImuNoiseConfig imu_noise_of(ImuKind kind) {
+    switch (kind) {
+        case ImuKind::none:
+        case ImuKind::consumer: return {};
+        case ImuKind::adis16448: return adis16448();
+        case ImuKind::mpu6050: return mpu6050();
+        case ImuKind::bmi055: return bmi055();
     }
-    return usage_error(fmt::format("simulator: no inertial sensor is named '{}'; there are: {}",
-                                   name,
-                                   fmt::join(imu_presets(), ", ")));
+    return {};
 }
 
 double random_walk(std::uint64_t seed, std::int64_t index) {

@@ -10,7 +10,6 @@
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/config.hpp"
 #include "surefoot/core/frame.hpp"
-#include "surefoot/core/result.hpp"
 
 namespace surefoot::sim {
 
@@ -34,15 +33,18 @@ struct ImuNoiseConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// Names of the sensors whose data sheets are built in.
-[[nodiscard]] std::vector<std::string> imu_presets();
+/// Which inertial sensor.
+enum class ImuKind : std::uint8_t {
+    none,
+    consumer,   ///< the defaults above
+    adis16448,  ///< the IMU of the EuRoC recordings (their calibration)
+    mpu6050,    ///< also the inertial part of the MPU-9150; class of the IMU in the DUO
+    bmi055,     ///< phone class, 12-bit accelerometer
+};
+inline constexpr const char* kImuNames[] = {"none", "consumer", "adis16448", "mpu6050", "bmi055"};
 
-/// Errors of a sensor by its name:
-///   adis16448   the IMU of the EuRoC recordings (their calibration)
-///   mpu6050     also the inertial part of the MPU-9150; class of the IMU in the DUO
-///   bmi055      phone class, 12-bit accelerometer
-/// An unknown name is a usage error that lists the names.
-[[nodiscard]] Result<ImuNoiseConfig> imu_preset(const std::string& name);
+/// Errors of a sensor by its data sheet.
+[[nodiscard]] ImuNoiseConfig imu_noise_of(ImuKind kind);
 
 /// A random walk with steps of unit variance, known at any index without the steps before it
 /// (Levy's construction of Brownian motion: independent increments between powers of two, bridges

@@ -184,7 +184,7 @@ TEST(ImuTest, BiasWalksWithTheRootOfTime) {
 TEST(ImuTest, WalkDoesNotDependOnHowSamplesAreAskedFor) {
     const ImuModel imu(std::make_shared<TrolleyMotion>(tour()),
                        turned_mount(),
-                       imu_preset("mpu6050").value(),
+                       imu_noise_of(ImuKind::mpu6050),
                        kStart_ns,
                        9);
     const std::int64_t from_ns = kStart_ns - 100'000'000;
@@ -224,21 +224,19 @@ TEST(ImuTest, ReadingsStayInRangeAndOnTheSteps) {
 }
 
 TEST(ImuTest, PresetsFollowTheirDataSheets) {
-    for (const std::string& name : imu_presets()) {
-        const ImuNoiseConfig noise = imu_preset(name).value();
+    for (const ImuKind kind : {ImuKind::adis16448, ImuKind::mpu6050, ImuKind::bmi055}) {
+        const ImuNoiseConfig noise = imu_noise_of(kind);
+        const char* name = kImuNames[static_cast<int>(kind)];
         EXPECT_GT(noise.gyro_walk_rad_s2_sqrt_hz, 0.0) << name;
         EXPECT_GT(noise.accel_range_m_s2, kGravity_m_s2) << name << " must be able to stand still";
         EXPECT_LT(noise.accel_step_m_s2, 0.01) << name;
     }
-    EXPECT_EQ(imu_preset("adis16448").value().gyro_density_rad_s_sqrt_hz, 1.6968e-4);
+    EXPECT_EQ(imu_noise_of(ImuKind::adis16448).gyro_density_rad_s_sqrt_hz, 1.6968e-4);
     // 0.005 deg/s/sqrt(Hz) and 400 ug/sqrt(Hz).
-    EXPECT_NEAR(imu_preset("mpu6050").value().gyro_density_rad_s_sqrt_hz, 8.73e-5, 1e-7);
-    EXPECT_NEAR(imu_preset("mpu6050").value().accel_density_m_s2_sqrt_hz, 3.924e-3, 1e-6);
-    EXPECT_NEAR(imu_preset("bmi055").value().gyro_density_rad_s_sqrt_hz, 2.443e-4, 1e-7);
-    const auto none = imu_preset("xsens");
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().code, ErrorCode::usage);
-    EXPECT_NE(none.error().message.find("adis16448"), std::string::npos);
+    EXPECT_NEAR(imu_noise_of(ImuKind::mpu6050).gyro_density_rad_s_sqrt_hz, 8.73e-5, 1e-7);
+    EXPECT_NEAR(imu_noise_of(ImuKind::mpu6050).accel_density_m_s2_sqrt_hz, 3.924e-3, 1e-6);
+    EXPECT_NEAR(imu_noise_of(ImuKind::bmi055).gyro_density_rad_s_sqrt_hz, 2.443e-4, 1e-7);
+    EXPECT_STREQ(kImuNames[static_cast<int>(ImuKind::bmi055)], "bmi055");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "sim/rigs.hpp"
 #include "sim/scenes.hpp"
+#include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -24,6 +25,9 @@ constexpr std::uint64_t kNoiseStream = 1;
 constexpr std::uint64_t kImuStream = 2;
 constexpr std::uint64_t kFaultStream = 3;
 constexpr std::uint64_t kExposureStream = 4;
+constexpr std::uint64_t kDepthStream = 5;
+constexpr std::uint64_t kAnalyticStream = 6;
+constexpr std::uint64_t kDriftStream = 7;
 
 std::optional<Error> problem(const SceneOptions& options) {
     if (!(options.rate_hz >= kMinRate_hz && options.rate_hz <= kMaxRate_hz)) {
@@ -54,15 +58,71 @@ std::vector<StampedPose> sampled(const Motion& motion, int frames, double rate_h
     return poses;
 }
 
+/// The camera that measures depth, where the left eye of `rig` sits.
+camera::StereoRig depth_rig(const camera::StereoRig& rig, DepthCameraKind kind) {
+    if (!rig.right) return rig;
+    camera::StereoRig single = rig;
+    single.name = kDepthCameraNames[static_cast<int>(kind)];
+    single.left = depth_camera_preset(kind).camera;
+    single.right.reset();
+    single.T_left_right = Pose{};
+    single.readout_s = 0.0;
+    single.rectified = true;
+    return single;
+}
+
+/// The renderer knows pairs only: the right one of these eyes is not looked at.
+camera::StereoRig as_pair(const camera::StereoRig& single) {
+    camera::StereoRig pair = single;
+    pair.right = single.left;
+    pair.T_left_right.translation_m = {0.1, 0.0, 0.0};
+    return pair;
+}
+
+/// The stereo camera whose raw images are those of `view`.
+camera::StereoRig rectified_rig(const camera::StereoRig& rig, const camera::RectifiedRig& view) {
+    camera::PinholeRadTan lens;
+    lens.fx_px = view.fx_px;
+    lens.fy_px = view.fy_px;
+    lens.cx_px = view.cx_px;
+    lens.cy_px = view.cy_px;
+    camera::StereoRig ideal = rig;
+    ideal.left = {lens, view.width, view.height};
+    ideal.right = ideal.left;
+    ideal.T_left_right = Pose{};
+    ideal.T_left_right.translation_m.x() = view.baseline_m;
+    ideal.T_body_left = view.T_body_camera;
+    ideal.readout_s = 0.0;
+    ideal.rectified = true;
+    return ideal;
+}
+
+/// Without images nothing can be torn or shown again.
+bool needs_images(const ImageFaultConfig& faults) {
+    return faults.repeat_probability > 0.0 || faults.tear_probability > 0.0 ||
+           faults.freeze_probability > 0.0 ||
+           std::any_of(faults.planned.begin(), faults.planned.end(), [](const auto& fault) {
+               return fault.kind != ImageFault::dropped;
+           });
+}
+
 }  // namespace
 
 void SceneOptions::describe(ConfigVisitor& visitor) {
+    visitor.enumeration("sensor", sensor, kSensorNames, "what looks; analytic makes no images");
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
-    visitor.boolean("imu", imu, "emit IMU samples, where the rig has an IMU");
+    const ImuKind imu_before = imu;
+    visitor.enumeration("imu", imu, kImuNames, "its errors, below; where the rig has an IMU");
+    if (imu != imu_before) imu_noise = imu_noise_of(imu);
     visitor.enumeration("profile", profile, kCameraProfileNames, "added to the camera below");
-    visitor.number("noise", noise, 0.0, 20.0, "factor on every noise amplitude of the images");
+    visitor.number("noise", noise, 0.0, 20.0, "factor on the noise of images and depths");
     visitor.number("contrast", contrast, 0.0, 2.0, "factor on the contrast of every material");
+    const DepthCameraKind depth_camera_before = depth_camera;
+    visitor.enumeration(
+        "depth_camera", depth_camera, kDepthCameraNames, "its lens, and its errors, below");
+    if (depth_camera != depth_camera_before)
+        depth_errors = depth_camera_preset(depth_camera).config;
     visitor.group("imaging", camera.imaging);
     visitor.group("optics", camera.optics);
     visitor.group("shutter", camera.shutter);
@@ -70,6 +130,11 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.group("calibration_error", calibration_error);
     visitor.group("faults", faults);
     visitor.group("imu_noise", imu_noise);
+    visitor.group("depth_errors", depth_errors);
+    visitor.begin_group("analytic");
+    analytic.describe(visitor);
+    visitor.group("drift", drift);
+    visitor.end_group();
 }
 
 Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Executor* executor) {
@@ -79,35 +144,26 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
     auto rig =
         options.rig ? Result<camera::StereoRig>(*options.rig) : rig_preset(options.rig_preset);
     if (!rig) return rig.error();
+    rig->rate_hz = options.rate_hz;
+    if (options.imu == ImuKind::none) rig->imu.reset();
+    if (const auto wrong = rig->problem()) return usage_error("simulator: rig: " + *wrong);
 
     std::unique_ptr<SceneSource> source(new SceneSource);
     source->executor_ = executor != nullptr ? executor : &source->serial_;
-    source->truth_.rig = *rig;
-    source->truth_.rig.rate_hz = options.rate_hz;
-    if (!options.imu) source->truth_.rig.imu.reset();
     source->truth_.trajectory = sampled(*script->motion, options.frames, options.rate_hz);
     source->motion_ = script->motion;
-    if (source->truth_.rig.imu) {
-        source->imu_.emplace(script->motion,
-                             *source->truth_.rig.imu,
+    source->truth_.scene = std::move(script->scene);
+    source->truth_.scene.scale_contrast(options.contrast * figures_of(options.profile).contrast);
+    source->truth_.steps = std::move(script->steps);
+    source->truth_.start_ns = kStart_ns;
+    if (auto made = source->make_sensor(options, *rig); !made) return made.error();
+    if (rig->imu) {
+        source->imu_.emplace(source->motion_,
+                             *rig->imu,
                              options.imu_noise,
                              kStart_ns,
                              mix_seed(options.seed, kImuStream));
     }
-    source->truth_.scene = std::move(script->scene);
-    const ProfileFigures profile = figures_of(options.profile);
-    source->truth_.scene.scale_contrast(options.contrast * profile.contrast);
-    CameraConfig camera = options.camera;
-    apply_profile(options.profile, options.noise, camera);
-    source->truth_.steps = std::move(script->steps);
-    source->truth_.start_ns = kStart_ns;
-    auto renderer = Renderer::make(
-        source->truth_.scene,
-        with_error(with_error(source->truth_.rig, profile.calibration), options.calibration_error),
-        camera,
-        mix_seed(options.seed, kNoiseStream));
-    if (!renderer) return renderer.error();
-    source->renderer_.emplace(std::move(renderer).value());
     const int frames = static_cast<int>(source->truth_.trajectory.size());
     const int height = source->truth_.rig.left.height;
     if (auto wrong = options.faults.problem(frames, height)) {
@@ -119,11 +175,79 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
         std::count_if(source->faults_.begin(), source->faults_.end(), [](const auto& fault) {
             return fault.kind == ImageFault::dropped;
         });
-    source->control_.emplace(options.camera.exposure, mix_seed(options.seed, kExposureStream));
     source->imu_until_ns_ = kStart_ns - kImuLead_ns;
-    source->info_ = {
-        "sim", options.scene, frames - static_cast<int>(dropped), source->imu_.has_value()};
+    source->info_ = {"sim",
+                     options.scene,
+                     frames - static_cast<int>(dropped),
+                     source->imu_.has_value(),
+                     source->analytic_.has_value()};
     return source;
+}
+
+/// Sets the rig of the truth, that which the frames are told to come from.
+Status SceneSource::make_sensor(const SceneOptions& options, const camera::StereoRig& rig) {
+    switch (options.sensor) {
+        case Sensor::stereo: truth_.rig = rig; return make_renderer(options);
+        case Sensor::depth_camera:
+            truth_.rig = depth_rig(rig, options.depth_camera);
+            if (auto made = make_renderer(options); !made) return made;
+            return make_depth_camera(options);
+        case Sensor::analytic: return make_analytic(options, rig);
+    }
+    return {};
+}
+
+Status SceneSource::make_renderer(const SceneOptions& options) {
+    const bool is_pair = options.sensor == Sensor::stereo;
+    const CalibrationError profile_error = figures_of(options.profile).calibration;
+    CameraConfig camera = options.camera;
+    apply_profile(options.profile, options.noise, camera);
+    auto renderer = Renderer::make(
+        truth_.scene,
+        is_pair ? with_error(with_error(truth_.rig, profile_error), options.calibration_error)
+                : as_pair(truth_.rig),
+        camera,
+        mix_seed(options.seed, kNoiseStream));
+    if (!renderer) return renderer.error();
+    renderer_.emplace(std::move(renderer).value());
+    control_.emplace(options.camera.exposure, mix_seed(options.seed, kExposureStream));
+    return {};
+}
+
+Status SceneSource::make_depth_camera(const SceneOptions& options) {
+    auto camera = DepthCamera::make(truth_.scene,
+                                    truth_.rig.left,
+                                    options.depth_errors.with_noise(options.noise),
+                                    mix_seed(options.seed, kDepthStream));
+    if (!camera) return camera.error();
+    depth_camera_.emplace(std::move(camera).value());
+    return {};
+}
+
+Status SceneSource::make_analytic(const SceneOptions& options, const camera::StereoRig& rig) {
+    if (!rig.right) {
+        return usage_error(fmt::format(
+            "simulator: rig '{}' has no right camera; sim.sensor = analytic models stereo matching",
+            rig.name));
+    }
+    if (needs_images(options.faults)) {
+        return usage_error(
+            "simulator: sim.sensor = analytic makes no images that could be torn, repeated or "
+            "frozen; of sim.faults only drop_probability can be used with it");
+    }
+    const auto rectifier = camera::Rectifier::make(rig);
+    if (!rectifier) return rectifier.error();
+    AnalyticStereoConfig config = options.analytic;
+    config.sigma_px *= options.noise;
+    auto stereo = AnalyticStereo::make(
+        truth_.scene, rectifier->rig(), config, mix_seed(options.seed, kAnalyticStream));
+    if (!stereo) return stereo.error();
+    analytic_.emplace(std::move(stereo).value());
+    truth_.rig = rectified_rig(rig, analytic_->rig());
+    odometry_.emplace(options.drift,
+                      analytic_->rig().T_body_camera,
+                      mix_seed(options.seed, kDriftStream));
+    return {};
 }
 
 /// Exposes both eyes at a stamp; the exposure control lives on, whatever becomes of the images.
@@ -139,6 +263,12 @@ void SceneSource::take_pictures(const StampedPose& now) {
     }
     renderer_->expose(clean_, shot_, static_cast<int>(next_pose_), *executor_, pair_);
     control_->update(clean_.left.signal_dn, 1.0 / truth_.rig.rate_hz);
+    if (!depth_camera_) return;
+    std::swap(older_depth_m_, measured_.depth_m);
+    depth_camera_->render(now.T_world_body * truth_.rig.body_from_left(),
+                          static_cast<int>(next_pose_),
+                          *executor_,
+                          measured_);
 }
 
 /// What arrives of the last exposure.
@@ -147,10 +277,25 @@ void SceneSource::damage(const InjectedFault* fault) {
                        (fault->kind == ImageFault::repeated || fault->kind == ImageFault::frozen);
     if (stale) return;
     shown_left_ = pair_.left;
-    shown_right_ = pair_.right;
+    if (!depth_camera_) shown_right_ = pair_.right;
+    shown_depth_m_ = measured_.depth_m;
     if (fault == nullptr || fault->kind != ImageFault::torn) return;
     tear(older_left_, fault->tear_row, shown_left_);
     tear(older_right_, fault->tear_row, shown_right_);
+    tear(older_depth_m_, fault->tear_row, shown_depth_m_);
+}
+
+/// What the chain would have made of images that nobody renders.
+DepthAndMotion SceneSource::model(const StampedPose& now) {
+    const int frame = static_cast<int>(next_pose_);
+    DepthAndMotion ready;
+    analytic_->measure(now.T_world_body, frame, *executor_, view_, ready.depth);
+    ready.motion = odometry_->follow(now.time_ns, frame, now.T_world_body);
+    const auto factor_px_m = static_cast<float>(analytic_->rig().depth_to_disparity_px_m());
+    exact_depth_m_.resize(truth_.rig.left.width, truth_.rig.left.height);
+    for (std::size_t i = 0; i < exact_depth_m_.size(); ++i)
+        exact_depth_m_.data()[i] = factor_px_m / view_.disparity_px.data()[i];
+    return ready;
 }
 
 Result<std::optional<StereoFrame>> SceneSource::next() {
@@ -161,15 +306,21 @@ Result<std::optional<StereoFrame>> SceneSource::next() {
             faults_[next_fault_].frame == static_cast<int>(next_pose_)) {
             fault = &faults_[next_fault_++];
         }
-        take_pictures(now);
-        ++next_pose_;
-        if (fault != nullptr && fault->kind == ImageFault::dropped) continue;
-        damage(fault);
+        const bool arrives = fault == nullptr || fault->kind != ImageFault::dropped;
         StereoFrame frame;
+        if (renderer_) {
+            take_pictures(now);
+            if (arrives) damage(fault);
+            frame.left = shown_left_;
+            frame.right = shown_right_;
+            frame.depth_m = shown_depth_m_;
+        } else if (arrives) {
+            frame.ready = model(now);
+        }
+        ++next_pose_;
+        if (!arrives) continue;
         frame.time_ns = now.time_ns;
         frame.index = next_index_++;
-        frame.left = shown_left_;
-        frame.right = shown_right_;
         if (imu_) frame.imu = imu_->samples(imu_until_ns_, now.time_ns);
         imu_until_ns_ = now.time_ns;
         return std::optional<StereoFrame>{std::move(frame)};

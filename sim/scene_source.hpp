@@ -6,10 +6,13 @@
 #include <optional>
 #include <string>
 
+#include "sim/analytic_stereo.hpp"
 #include "sim/calibration_error.hpp"
 #include "sim/camera_profile.hpp"
+#include "sim/depth_camera.hpp"
 #include "sim/image_faults.hpp"
 #include "sim/imu.hpp"
+#include "sim/modelled_odometry.hpp"
 #include "sim/renderer.hpp"
 #include "sim/truth.hpp"
 #include "surefoot/camera/frame_source.hpp"
@@ -19,6 +22,14 @@
 
 namespace surefoot::sim {
 
+/// What looks at the scene.
+enum class Sensor : std::uint8_t {
+    stereo,        ///< two images
+    depth_camera,  ///< one image and its depth (RGB-D); both through one lens
+    analytic,      ///< no image: depth as a matcher would say it, motion as odometry would
+};
+inline constexpr const char* kSensorNames[] = {"stereo", "depth_camera", "analytic"};
+
 struct SceneOptions {
     std::string scene = "demo_stairs";
     std::string rig_preset = "zed_vga";    ///< ignored if `rig` is set
@@ -26,25 +37,32 @@ struct SceneOptions {
     std::uint64_t seed = 1;                ///< textures, noise, centimetres of the path
     int frames = 0;                        ///< 0 = to the end of the path
     double rate_hz = 10.0;
-    bool imu = true;                               ///< samples, where the rig has an IMU
+    Sensor sensor = Sensor::stereo;
+    ImuKind imu = ImuKind::consumer;               ///< samples, where the rig has an IMU
     CameraProfile profile = CameraProfile::ideal;  ///< added to the camera below
-    double noise = 1.0;                  ///< factor on every noise amplitude of the images
+    double noise = 1.0;                  ///< factor on every noise amplitude of images and depths
     CameraConfig camera;                 ///< groups imaging, optics, shutter, exposure
     double contrast = 1.0;               ///< factor on the contrast of every material
     CalibrationError calibration_error;  ///< of the images; `rig()` stays what it was
     ImageFaultConfig faults;
-    ImuNoiseConfig imu_noise;
+    ImuNoiseConfig imu_noise = imu_noise_of(imu);
+    /// Also the lens, unless `rig` is one of RGB-D; where it sits is the place of the left eye.
+    DepthCameraKind depth_camera = DepthCameraKind::kinect_v1;
+    DepthCameraConfig depth_errors = depth_camera_preset(depth_camera).config;
+    AnalyticStereoConfig analytic;
+    DriftConfig drift;  ///< of the analytic sensor
 
-    /// The numbers that a configuration file may set.
+    /// The numbers that a configuration file may set. Choosing another IMU or depth camera replaces
+    /// its figures; what is set later, or with it, stays on top.
     void describe(ConfigVisitor& visitor);
 };
 
-/// A simulated recording: stereo frames with IMU samples, and the truth about them. Stamps start at
-/// 1 s; IMU samples begin 0.1 s before the first frame, while the trolley still stands. Inertial
+/// A simulated recording: frames of the sensor with IMU samples, and the truth about them. Stamps
+/// start at 1 s; IMU samples begin 0.1 s before the first frame, while the trolley still stands. Inertial
 /// samples of a dropped frame come with the next one that arrives.
 class SceneSource final : public camera::FrameSource {
   public:
-    SceneSource(const SceneSource&) = delete;  // the renderer points into the truth
+    SceneSource(const SceneSource&) = delete;  // the sensors point into the truth
     SceneSource& operator=(const SceneSource&) = delete;
 
     [[nodiscard]] const camera::StereoRig& rig() const override { return truth_.rig; }
@@ -56,23 +74,33 @@ class SceneSource final : public camera::FrameSource {
     /// What was injected into the whole recording. `InjectedFault::frame` counts the poses of
     /// `truth().trajectory`; a dropped one has no StereoFrame, so indices of frames stay behind.
     [[nodiscard]] const std::vector<InjectedFault>& faults() const noexcept { return faults_; }
-    /// How the last frame was exposed.
+    /// How the last frame was exposed (sensors with images).
     [[nodiscard]] const Shot& last_shot() const noexcept { return shot_; }
     /// Depth of the raw left camera at the last frame, exact, NaN where no surface is. Also when
     /// the images are older: what they should have shown.
-    [[nodiscard]] const Image<float>& last_depth_m() const noexcept { return pair_.depth_m; }
+    [[nodiscard]] const Image<float>& last_depth_m() const noexcept {
+        return analytic_ ? exact_depth_m_ : pair_.depth_m;
+    }
 
   private:
     friend Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions&, Executor*);
     SceneSource() = default;
 
+    [[nodiscard]] Status make_sensor(const SceneOptions& options, const camera::StereoRig& rig);
+    [[nodiscard]] Status make_renderer(const SceneOptions& options);
+    [[nodiscard]] Status make_depth_camera(const SceneOptions& options);
+    [[nodiscard]] Status make_analytic(const SceneOptions& options, const camera::StereoRig& rig);
     void take_pictures(const StampedPose& now);
     void damage(const InjectedFault* fault);
+    [[nodiscard]] DepthAndMotion model(const StampedPose& now);
 
     camera::SourceInfo info_;
     SceneTruth truth_;
     std::shared_ptr<const Motion> motion_;
-    std::optional<Renderer> renderer_;
+    std::optional<Renderer> renderer_;         ///< both sensors with images
+    std::optional<DepthCamera> depth_camera_;  ///< that sensor only
+    std::optional<AnalyticStereo> analytic_;   ///< that sensor only
+    std::optional<ModelledOdometry> odometry_;
     std::optional<ExposureControl> control_;
     std::optional<ImuModel> imu_;
     std::vector<InjectedFault> faults_;
@@ -85,6 +113,11 @@ class SceneSource final : public camera::FrameSource {
     GreyImage older_right_;
     GreyImage shown_left_;  ///< as delivered
     GreyImage shown_right_;
+    DepthFrame measured_;  ///< of the last exposure
+    Image<float> older_depth_m_;
+    Image<float> shown_depth_m_;
+    AnalyticStereo::View view_;
+    Image<float> exact_depth_m_;
     std::size_t next_pose_ = 0;
     std::size_t next_fault_ = 0;
     int next_index_ = 0;
@@ -92,7 +125,7 @@ class SceneSource final : public camera::FrameSource {
 };
 
 /// Usage errors: unknown scene or rig preset (the names are listed), a rig that cannot be used, a
-/// number out of range. `executor` renders rows in parallel and must outlive the source; without
+/// number out of range, image faults where no images are. `executor` renders rows in parallel and must outlive the source; without
 /// one the calling thread does.
 [[nodiscard]] Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options,
                                                               Executor* executor = nullptr);

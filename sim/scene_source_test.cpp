@@ -82,7 +82,7 @@ TEST(SceneSourceTest, ImuCoversTheTimeBetweenFramesAndShowsGravity) {
     for (const ImuSample& sample : frames[0].imu) mean += sample.specific_force_m_s2 / 20.0;
     EXPECT_NEAR(mean.z(), kGravity_m_s2, 0.1);
     EXPECT_LT(mean.head<2>().norm(), 0.1);
-    options.imu = false;
+    options.imu = ImuKind::none;
     const auto source = open_scene(options).value();
     EXPECT_FALSE(source->info().has_imu);
     EXPECT_FALSE(source->rig().imu);

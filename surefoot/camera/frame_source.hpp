@@ -15,6 +15,7 @@ struct SourceInfo {
     std::string path;
     std::optional<int> frames;  ///< how many there are, where that is known beforehand
     bool has_imu = false;
+    bool modelled = false;  ///< frames come with depth and motion that nobody measured
 };
 
 /// Where frames come from: a recording, a video, a camera, a simulated scene. Frames come in time

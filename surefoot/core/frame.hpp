@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/views.hpp"
 
@@ -17,16 +18,6 @@ struct ImuSample {
     std::int64_t time_ns = 0;
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d specific_force_m_s2 = Eigen::Vector3d::Zero();  ///< +g upward at rest
-};
-
-/// What a camera delivers at one instant: a raw stereo pair, or (RGB-D) one image with its depth.
-struct StereoFrame {
-    std::int64_t time_ns = 0;
-    int index = 0;               ///< position in the source, from 0
-    GreyImage left;              ///< raw (not rectified) 8-bit grey
-    GreyImage right;             ///< empty for RGB-D
-    Image<float> depth_m;        ///< RGB-D only: depth along z of the left camera, NaN = unknown
-    std::vector<ImuSample> imu;  ///< samples since the previous frame, in time order
 };
 
 enum class Health : std::uint8_t { ok, degraded, lost };
@@ -55,6 +46,24 @@ struct MotionEstimate {
     int tracks = 0;            ///< points that were followed into this frame
     int inliers = 0;           ///< of these, points that agree with the motion
     double residual_px = 0.0;  ///< rms reprojection error of the inliers
+};
+
+/// Depth and motion of one instant, where nobody has to compute them from images.
+struct DepthAndMotion {
+    DepthImage depth;       ///< of the rig, whose images are rectified
+    MotionEstimate motion;  ///< its odom begins at the source's first base_link
+};
+
+/// What a source delivers at one instant: a raw stereo pair, or (RGB-D) one image with its depth,
+/// or no image at all, but what the chain would have made of it.
+struct StereoFrame {
+    std::int64_t time_ns = 0;
+    int index = 0;               ///< position in the source, from 0
+    GreyImage left;              ///< raw (not rectified) 8-bit grey; empty with `ready`
+    GreyImage right;             ///< empty for RGB-D
+    Image<float> depth_m;        ///< RGB-D only: depth along z of the left camera, NaN = unknown
+    std::vector<ImuSample> imu;  ///< samples since the previous frame, in time order
+    std::optional<DepthAndMotion> ready;
 };
 
 }  // namespace surefoot

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "surefoot/core/assert.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
 #include "surefoot/ground/ground_observation.hpp"
 #include "surefoot/ground/sample_points.hpp"
@@ -98,8 +99,8 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
     scout.start_at(Pose{});
     ground::GroundCalibration calibration(config_.ground);
     for (const StereoFrame& frame : first_frames) {
-        const MotionEstimate motion = scout.update(frame, *executor_);
-        rectifier_->rectify(frame, pair_);
+        const MotionEstimate motion = track(frame, scout, Pose{});
+        rectify(frame);
         measure_depth(frame);
         calibration.add(
             in_first_body(observe_ground(motion.T_odom_body, up_hint_body), motion.T_odom_body));
@@ -116,11 +117,11 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     report.work = work;
     StageTimer timer(clock_, report);
 
-    report.motion = odometry_.update(frame, *executor_);
+    report.motion = track(frame, odometry_, alignment_.T_odom_body);
     follow(report.motion);
     timer.finished(Stage::odometry);  // with the move of the map, which follows every frame
     if (work == Work::full) {
-        rectifier_->rectify(frame, pair_);
+        rectify(frame);
         timer.finished(Stage::rectify);
         measure_depth(frame);
         timer.finished(Stage::stereo);
@@ -137,8 +138,29 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     return report;
 }
 
+MotionEstimate Pipeline::track(const StereoFrame& frame,
+                               odometry::Odometry& odometry,
+                               const Pose& T_odom_first) {
+    if (!frame.ready) return odometry.update(frame, *executor_);
+    MotionEstimate motion = frame.ready->motion;
+    motion.T_odom_body = T_odom_first * motion.T_odom_body;
+    return motion;
+}
+
+void Pipeline::rectify(const StereoFrame& frame) {
+    if (frame.ready) {
+        pair_ = {};
+    } else {
+        rectifier_->rectify(frame, pair_);
+    }
+}
+
 void Pipeline::measure_depth(const StereoFrame& frame) {
-    if (pair_.right.empty()) {
+    if (frame.ready) {
+        SUREFOOT_ASSERT(frame.ready->depth.disparity_px.width() == rig().width &&
+                        frame.ready->depth.disparity_px.height() == rig().height);
+        depth_ = frame.ready->depth;
+    } else if (pair_.right.empty()) {
         depth_from_rgbd(*rectifier_, config_.elevation.sensor, frame.depth_m, depth_);
     } else {
         matcher_->match(pair_.left.view(), pair_.right.view(), *executor_, depth_);

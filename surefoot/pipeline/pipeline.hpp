@@ -25,7 +25,8 @@ namespace surefoot::pipeline {
 /// The clock that stage times are read from [ns]; the library owns none. Null leaves them at zero.
 using Clock = std::int64_t (*)();
 
-/// Stereo frames in, rated map of the ground out: one frame is one call of `process`.
+/// Stereo frames in, rated map of the ground out: one frame is one call of `process`. Frames that
+/// bring depth and motion with them (`StereoFrame::ready`, on a rectified rig) are only mapped.
 ///
 /// Order of calls: `make`, `align` once with the first frames, then `process` for every frame in
 /// time order (those used for the alignment included). One thread at a time.
@@ -53,7 +54,7 @@ class Pipeline {
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return rating_;
     }
-    /// Rectified pair and depth of the last full frame.
+    /// Rectified pair (empty without images) and depth of the last full frame.
     [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
     [[nodiscard]] const camera::DepthImage& depth() const noexcept { return depth_; }
 
@@ -67,6 +68,11 @@ class Pipeline {
              Executor& executor,
              Clock clock);
 
+    /// The frame's own motion, or what the odometry says; `T_odom_first`: the first base_link.
+    [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
+                                       odometry::Odometry& odometry,
+                                       const Pose& T_odom_first);
+    void rectify(const StereoFrame& frame);
     void measure_depth(const StereoFrame& frame);
     [[nodiscard]] GroundObservation observe_ground(const Pose& T_level_body,
                                                    const Eigen::Vector3d& up_level);

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/core/views.hpp"
+
+namespace surefoot {
+
+/// What a matcher says about every pixel of the rectified left image.
+struct DepthImage {
+    Image<float> disparity_px;  ///< > 0; NaN = no match
+    Image<float> sigma_px;      ///< one sigma of the disparity where it is right; NaN = no match
+    Image<float> outlier_probability;  ///< probability that the match is wrong, [0, 1]
+
+    void resize(int width, int height) {
+        disparity_px.resize(width, height);
+        sigma_px.resize(width, height);
+        outlier_probability.resize(width, height);
+    }
+};
+
+}  // namespace surefoot
