@@ -21,6 +21,9 @@ struct OpenOptions {
     std::optional<double> rate_hz;        ///< where the recording has no stamps of its own
 };
 
+/// TUM RGB-D: a depth code of 5000 is one metre, 0 is no measurement.
+inline constexpr float kDepthCodesPerMetre = 5000.0F;
+
 /// One frame: where its images are.
 struct FrameEntry {
     std::int64_t time_ns = 0;

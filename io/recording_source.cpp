@@ -13,8 +13,6 @@ namespace {
 
 /// The first frame has no predecessor: it gets at most this much of the IMU's past.
 constexpr std::int64_t kFirstImuSpan_ns = 1'000'000'000;
-/// TUM RGB-D: a depth code of 5000 is one metre, 0 is no measurement.
-constexpr float kDepthCodesPerMetre = 5000.0F;
 
 template <typename Pixel>
 std::string size_text(const Image<Pixel>& image) {

@@ -145,6 +145,39 @@ TEST(Recorder, WhatIsRecordedIsPlayedBackBitExactly) {
     EXPECT_EQ(play(folder / "r/mav0").frames.size(), 5U) << "from inside";
 }
 
+TEST(Recorder, RgbdIsPlayedBackToTheStepOfItsDepths) {
+    const TemporaryFolder folder;
+    camera::StereoRig rig = small_rig();
+    rig.right.reset();
+    StereoFrame frame = small_frame(0);
+    frame.right = GreyImage();
+    frame.depth_m = Image<float>(kWidth, kHeight, std::numeric_limits<float>::quiet_NaN());
+    frame.depth_m.at(3, 4) = 1.23456F;
+    frame.depth_m.at(4, 4) = 13.107F;  // the last code
+    frame.depth_m.at(5, 4) = 13.2F;
+    auto recorder = Recorder::create(folder / "r", rig);
+    ASSERT_TRUE(recorder.ok()) << recorder.error().message;
+    ASSERT_TRUE(recorder->add(frame).ok());
+    // Not finished, and the next frame got no further than its depth.
+    const std::string depths = *read_file(folder / "r/depth.txt");
+    ASSERT_TRUE(write_file(folder / "r/depth.txt", depths + "1403715273.5 depth/b.png\n").ok());
+    const Played played = play(folder / "r");
+    EXPECT_EQ(played.errors, "");
+    ASSERT_EQ(played.frames.size(), 1U);
+    EXPECT_EQ(played.frames[0].time_ns, frame.time_ns);
+    EXPECT_EQ(played.frames[0].left, frame.left);
+    const Image<float>& depth_m = played.frames[0].depth_m;
+    constexpr float kHalfStep_m = 0.5F / kDepthCodesPerMetre + 1e-6F;
+    EXPECT_NEAR(depth_m.at(3, 4), 1.23456F, kHalfStep_m);
+    EXPECT_NEAR(depth_m.at(4, 4), 13.107F, kHalfStep_m);
+    EXPECT_TRUE(std::isnan(depth_m.at(5, 4))) << "has no code";
+    EXPECT_TRUE(std::isnan(depth_m.at(0, 0)));
+    const auto source = open_source(folder / "r");
+    EXPECT_FALSE((*source)->rig().right);
+    EXPECT_EQ(std::get<camera::PinholeRadTan>((*source)->rig().left.model).k3, 0.01);
+    EXPECT_LT(difference(*(*source)->rig().T_body_left, *rig.T_body_left).norm(), 1e-14);
+}
+
 TEST(Recorder, AnInterruptedRecordingIsValid) {
     const TemporaryFolder folder;
     auto recorder = Recorder::create(folder / "r", small_rig());
@@ -171,7 +204,12 @@ TEST(Recorder, RefusesInWords) {
                          "holds a recording already"));
     camera::StereoRig rgbd = small_rig();
     rgbd.right.reset();
-    EXPECT_TRUE(contains(message(Recorder::create(folder / "d", rgbd)), "RGB-D"));
+    EXPECT_TRUE(contains(Recorder::create(folder / "d", rgbd)->add(small_frame(0)).error().message,
+                         "32 x 20 and 0 x 0 px"))
+        << "no depth";
+    EXPECT_TRUE(contains(message(Recorder::create(folder / "d", small_rig())),
+                         "holds a recording already"))
+        << "of the other layout";
     EXPECT_TRUE(contains(message(Recorder::create("/proc/nowhere", small_rig())), "/proc/nowhere"));
     auto recorder = Recorder::create(folder / "s", small_rig());
     ASSERT_TRUE(recorder.ok());

@@ -115,15 +115,33 @@ Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
     return results;
 }
 
-/// Stereo frames of the demonstration as the simulator renders them, sharp and blurred.
+/// Frames of the demonstration as the simulator makes them: stereo images, sharp and blurred, and
+/// depth without images, of every pixel and of some.
 Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common, Executor& executor) {
     const auto settings = load_settings(common);
     if (!settings) return settings.error();
     std::vector<BenchResult> results;
-    for (const auto& [name, samples] : {std::pair{"sim/sharp", 0}, {"sim/4_blur_samples", 4}}) {
+    const auto images = [](int blur_samples) {
+        return [=](sim::SceneOptions& options) {
+            options.camera.shutter.blur_samples = blur_samples;
+        };
+    };
+    const auto analytic = [](int stride) {
+        return [=](sim::SceneOptions& options) {
+            options.sensor = sim::Sensor::analytic;
+            options.analytic.stride = stride;
+        };
+    };
+    const std::pair<const char*, std::function<void(sim::SceneOptions&)>> ways[] = {
+        {"sim/sharp", images(0)},
+        {"sim/4_blur_samples", images(4)},
+        {"sim/analytic", analytic(1)},
+        {"sim/analytic_stride_4", analytic(4)},
+        {"sim/analytic_stride_8", analytic(8)}};
+    for (const auto& [name, choose] : ways) {
         constexpr int kFrames = 20;
         SourceRequest request{"demo_stairs", "", 0.0, kFrames + 1, common.seed, settings->sim};
-        request.sim.camera.shutter.blur_samples = samples;
+        choose(request.sim);
         auto source = open_simulation(request, executor);
         if (!source) return source.error();
         Status rendered;

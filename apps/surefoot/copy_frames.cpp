@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/copy_frames.hpp"
 
+#include <fmt/format.h>
+
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/progress.hpp"
 
@@ -26,6 +28,18 @@ Result<bool> copy_one(camera::FrameSource& source,
 }
 
 }  // namespace
+
+Result<io::Recorder> start_recording(const std::string& folder, const camera::FrameSource& source) {
+    if (source.info().modelled) {
+        return usage_error(fmt::format(
+            "{}: sim.sensor = analytic makes no images that could be recorded in {}; "
+            "'surefoot run sim:{}' uses it directly",
+            source.info().path,
+            folder,
+            source.info().path));
+    }
+    return io::Recorder::create(folder, source.rig());
+}
 
 Copied copy_frames(const std::string& label,
                    camera::FrameSource& source,

@@ -184,7 +184,12 @@ Json health_json(const RunRecord& record) {
 Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const pipeline::Alignment& alignment = pipeline.alignment();
     const auto& geometry = pipeline.map().geometry();
-    Json object = {{"source", {{"kind", record.source.kind}, {"path", record.source.path}}},
+    Json modelled = Json::array();
+    if (record.source.modelled) modelled = {"odometry", "depth"};
+    Json object = {{"source",
+                    {{"kind", record.source.kind},
+                     {"path", record.source.path},
+                     {"modelled", modelled}}},
                    {"frames", record.frames.size()},
                    {"complete", record.complete()},
                    {"error", record.error ? Json(record.error->message) : Json(nullptr)},
@@ -414,6 +419,15 @@ std::string copied_json(const Copied& copied, const std::string& folder) {
                          {"complete", !copied.error.has_value()},
                          {"error", copied.error ? Json(copied.error->message) : Json(nullptr)},
                          {"folder", folder}};
+    return object.dump(kIndent);
+}
+
+std::string scan_json(const Scanned& scanned) {
+    const Json object = {{"points", scanned.points},
+                         {"stations", scanned.stations},
+                         {"complete", !scanned.error.has_value()},
+                         {"error", scanned.error ? Json(scanned.error->message) : Json(nullptr)},
+                         {"file", scanned.file}};
     return object.dump(kIndent);
 }
 

@@ -10,6 +10,7 @@
 #include "apps/surefoot/copy_frames.hpp"
 #include "apps/surefoot/rig_view.hpp"
 #include "apps/surefoot/run_session.hpp"
+#include "apps/surefoot/scan.hpp"
 #include "apps/surefoot/suite_case.hpp"
 #include "eval/dem.hpp"
 #include "eval/depth_errors.hpp"
@@ -56,6 +57,7 @@ struct ReportCamera {
 [[nodiscard]] std::string scenes_json(const std::vector<sim::SceneInfo>& scenes);
 [[nodiscard]] std::string recording_json(const io::RecordingInfo& info);
 [[nodiscard]] std::string copied_json(const Copied& copied, const std::string& folder);
+[[nodiscard]] std::string scan_json(const Scanned& scanned);
 [[nodiscard]] std::string replay_json(const std::vector<FrameReport>& frames,
                                       double speed,
                                       std::int64_t late);

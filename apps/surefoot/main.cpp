@@ -88,7 +88,9 @@ void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
     CLI::App* verb = bind(add_verb(app,
                                    "run",
                                    "the whole chain over a recording, video or simulated scene",
-                                   "surefoot run sim:floor --max-frames 8 --out out/floor"),
+                                   "surefoot run sim:floor --max-frames 8 --out out/floor\n"
+                                   "  surefoot run sim:floor --max-frames 8 --set "
+                                   "sim.sensor=analytic --out out/modelled"),
                           o,
                           run,
                           exit_code);
@@ -117,15 +119,21 @@ void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
 void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
     CLI::App* verb = bind(add_verb(app,
                                    "sim",
-                                   "writes a simulated recording with its ground truth",
-                                   "surefoot sim floor --frames 4 --out out/floor_recording"),
+                                   "writes a simulated recording with its ground truth, or laser "
+                                   "scans of a scene",
+                                   "surefoot sim floor --frames 4 --out out/floor_recording\n"
+                                   "  surefoot sim floor --frames 2 --set "
+                                   "sim.sensor=depth_camera --out out/floor_rgbd\n"
+                                   "  surefoot sim demo_stairs --scan out/stairs.ply --set "
+                                   "sim.laser.step_deg=1"),
                           o,
                           simulate,
                           exit_code);
     verb->add_option(
             "scene", o.scene, "which scene; see --list; or a scene file: my/scene.yaml[#NAME]")
         ->type_name("SCENE");
-    verb->add_option("--out", o.out_dir, "folder for the recording")->type_name("DIR");
+    CLI::Option* out =
+        verb->add_option("--out", o.out_dir, "folder for the recording")->type_name("DIR");
     verb->add_option("--frames", o.frames, "stop after this many frames")
         ->check(CLI::PositiveNumber);
     verb->add_option("--rate", o.rate_hz, "frame rate")
@@ -139,6 +147,20 @@ void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
     verb->add_flag("--depth", o.depth, "write the exact depth of every frame too (PFM, 1 MB each)");
     verb->add_flag(
         "--list", o.list, "print the scenes; with --out also pictures of each, index.html");
+    CLI::Option* scan =
+        verb->add_option("--scan",
+                         o.scan_file,
+                         "no recording but terrestrial laser scans, all points in the world frame; "
+                         "500 MB a station unless sim.laser.step_deg is larger")
+            ->type_name("F.ply")
+            ->excludes(out);
+    verb->add_option("--station",
+                     o.stations,
+                     "where the scanner stands; may be repeated (default: 1.6 m above the start of "
+                     "the path)")
+        ->type_name("X,Y,Z")
+        ->allow_extra_args(false)
+        ->needs(scan);
 }
 
 void add_rate(CLI::App& app, RateOptions& o, int& exit_code) {

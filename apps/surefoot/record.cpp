@@ -22,7 +22,7 @@ int record(const RecordOptions& options) {
                                settings->sim},
                               *executor);
     if (!source) return report(source.error());
-    auto recorder = io::Recorder::create(options.out_dir, (*source)->rig());
+    auto recorder = start_recording(options.out_dir, **source);
     if (!recorder) return report(recorder.error());
     const Copied copied = copy_frames("record", **source, *recorder);
     if (options.common.json) {

@@ -200,6 +200,7 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
                     frame.median,
                     pipeline.map().known_cells(),
                     pipeline.alignment().reason);
+    if (record.source.modelled) text += kModelled + std::string("\n");
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         text += fmt::format("the map is empty: {}\n", reason);
     }

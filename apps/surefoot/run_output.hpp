@@ -25,6 +25,10 @@ namespace surefoot::app {
 /// A few lines for the terminal.
 [[nodiscard]] std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline);
 
+/// What must be said of results without images.
+inline constexpr const char* kModelled =
+    "Odometry and depth were modelled from the truth; no image was rendered, matched or tracked.";
+
 /// Why the map holds no cell, in one sentence; empty when it holds some.
 [[nodiscard]] std::string empty_map_reason(const RunRecord& record,
                                            const pipeline::Pipeline& pipeline);

@@ -44,11 +44,14 @@ grid::Layer sigma_of(const grid::Layer& variance_m2, const grid::Layer& height_m
 }
 
 void add_camera_pictures(const pipeline::Pipeline& pipeline, eval::ReportContent& content) {
-    if (pipeline.pair().left.empty() || pipeline.depth().disparity_px.empty()) return;
+    if (pipeline.depth().disparity_px.empty()) return;
     const double fb = pipeline.rig().depth_to_disparity_px_m();
-    content.pictures.push_back({"What the left eye saw last, rectified",
-                                eval::encode_png(eval::render_camera_image(
-                                    pipeline.pair().left, {"Left camera", "last full frame"}))});
+    if (!pipeline.pair().left.empty()) {
+        content.pictures.push_back(
+            {"What the left eye saw last, rectified",
+             eval::encode_png(eval::render_camera_image(pipeline.pair().left,
+                                                        {"Left camera", "last full frame"}))});
+    }
     content.pictures.push_back(
         {"Disparity and the depth it stands for; grey has no match",
          eval::encode_png(eval::render_disparity(
@@ -134,14 +137,18 @@ eval::ReportTable configuration_table(const Settings& settings) {
 
 std::vector<std::string> summary_lines(const RunRecord& record,
                                        const pipeline::Pipeline& pipeline) {
-    return {fmt::format("{} frames of {} ({}), {} map cells known.",
-                        record.frames.size(),
-                        record.source.path,
-                        record.source.kind,
-                        pipeline.map().known_cells()),
-            fmt::format("Gravity and ground: {}.", pipeline.alignment().reason),
-            record.complete() ? "The run is complete."
-                              : fmt::format("The run ended early: {}", record.error->message)};
+    std::vector<std::string> lines = {
+        fmt::format("{} frames of {} ({}), {} map cells known.",
+                    record.frames.size(),
+                    record.source.path,
+                    record.source.kind,
+                    pipeline.map().known_cells()),
+        fmt::format("Gravity and ground: {}.", pipeline.alignment().reason)};
+    if (record.source.modelled) lines.emplace_back(kModelled);
+    lines.push_back(record.complete()
+                        ? "The run is complete."
+                        : fmt::format("The run ended early: {}", record.error->message));
+    return lines;
 }
 
 }  // namespace

@@ -16,7 +16,10 @@ void Settings::describe(ConfigVisitor& visitor) {
     visitor.begin_group("eval");
     visitor.group("maps", maps);
     visitor.end_group();
-    visitor.group("sim", sim);
+    visitor.begin_group("sim");
+    sim.describe(visitor);
+    visitor.group("laser", laser);
+    visitor.end_group();
 }
 
 Result<Settings> load_settings(const CommonOptions& options) {

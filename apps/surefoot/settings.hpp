@@ -7,6 +7,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "eval/maps.hpp"
 #include "io/config_yaml.hpp"
+#include "sim/laser_scanner.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
@@ -19,6 +20,7 @@ struct Settings {
     pipeline::PipelineConfig pipeline;
     eval::EvalMapsConfig maps;
     sim::SceneOptions sim;  ///< how simulated scenes are seen
+    sim::LaserScannerConfig laser;  ///< and scanned
 
     void describe(ConfigVisitor& visitor);
 };

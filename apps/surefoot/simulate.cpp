@@ -58,7 +58,8 @@ sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
     return lattice;
 }
 
-/// groundtruth.tum, elevation.asc (highest surface), labels.asc.
+/// groundtruth.tum, elevation.asc (highest surface), labels.asc; beside RGB-D also groundtruth.txt,
+/// where users of that layout look for the poses of the camera.
 Status write_truth(const std::string& out,
                    const sim::SceneTruth& truth,
                    std::size_t frames,
@@ -76,6 +77,12 @@ Status write_truth(const std::string& out,
         labels.data()[i] = static_cast<float>(label_codes.data()[i]);
     if (auto status = io::write_tum_trajectory(out + "/groundtruth.tum", trajectory); !status)
         return status;
+    if (!truth.rig.right) {
+        for (StampedPose& pose : trajectory)
+            pose.T_world_body = pose.T_world_body * truth.rig.body_from_left();
+        if (auto status = io::write_tum_trajectory(out + "/groundtruth.txt", trajectory); !status)
+            return status;
+    }
     if (auto status =
             io::write_esri_grid(out + "/elevation.asc", geometry, sim::dem(truth.scene, lattice));
         !status) {
@@ -111,10 +118,12 @@ Status write_steps(const std::string& out, const sim::SceneTruth& truth, const M
 
 int simulate(const SimOptions& options) {
     if (options.list) return list(options);
-    if (options.scene.empty() || options.out_dir.empty()) {
-        return report(usage_error(
-            "sim: a scene and --out are needed; 'surefoot sim --list' shows the scenes"));
+    if (options.scene.empty() || (options.out_dir.empty() && options.scan_file.empty())) {
+        return report(
+            usage_error("sim: a scene and --out (or --scan) are needed; 'surefoot sim --list' "
+                        "shows the scenes"));
     }
+    if (!options.scan_file.empty()) return scan(options);
     const auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
     const auto machine = load_machine(options.machine);
@@ -129,7 +138,7 @@ int simulate(const SimOptions& options) {
                                    settings->sim},
                                   *executor);
     if (!source) return report(source.error());
-    auto recorder = io::Recorder::create(options.out_dir, (*source)->rig());
+    auto recorder = start_recording(options.out_dir, **source);
     if (!recorder) return report(recorder.error());
     if (options.depth) {
         if (auto status = io::make_folder(options.out_dir + "/depth"); !status)

@@ -49,8 +49,12 @@ struct SimOptions {
     bool depth = false;
     int frames = 0;
     double rate_hz = 0.0;
+    std::string scan_file;
+    std::vector<std::string> stations;  ///< of the laser scanner: x,y,z
 };
 int simulate(const SimOptions& options);
+/// `sim --scan`: laser scans of a scene.
+int scan(const SimOptions& options);
 
 struct RateOptions {
     CommonOptions common;

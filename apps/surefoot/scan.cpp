@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/scan.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/numbers.hpp"
+#include "apps/surefoot/progress.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "io/ply_stream.hpp"
+#include "sim/laser_scanner.hpp"
+#include "sim/scenes.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Of the scanner over the ground, on its tripod.
+constexpr double kTripod_m = 1.6;
+
+/// Where the path of the scene begins.
+Vector3d default_station(const sim::ScriptedScene& script) {
+    const Vector3d start_m = script.motion->at(0.0).T_world_body.translation_m;
+    const auto ground = script.scene.height_at(start_m.x(), start_m.y());
+    return {start_m.x(), start_m.y(), (ground ? ground->z_m : 0.0) + kTripod_m};
+}
+
+Result<std::vector<Vector3d>> stations_of(const SimOptions& options,
+                                          const sim::ScriptedScene& script) {
+    if (options.stations.empty()) return std::vector<Vector3d>{default_station(script)};
+    std::vector<Vector3d> stations_m;
+    for (const std::string& text : options.stations) {
+        const auto xyz = parse_three_numbers("--station", text, "x,y,z in metres");
+        if (!xyz) return xyz.error();
+        const Vector3d station_m((*xyz)[0], (*xyz)[1], (*xyz)[2]);
+        if (script.scene.solid_at(station_m)) {
+            return usage_error(fmt::format(
+                "--station {}: lies inside something solid of {}; choose a place in the open",
+                text,
+                options.scene));
+        }
+        stations_m.push_back(station_m);
+    }
+    return stations_m;
+}
+
+/// Points of one turn of the mirror, as the file holds them: x y z station mixed.
+void flatten(const sim::ScanColumn& column,
+             const Pose& T_world_scanner,
+             int station,
+             std::vector<float>& out) {
+    out.clear();
+    for (const sim::ScanPoint& point : column.points) {
+        if (std::isnan(point.point_scanner_m.x())) continue;
+        const Vector3d p_world_m = T_world_scanner * point.point_scanner_m;
+        for (const double value : p_world_m) out.push_back(static_cast<float>(value));
+        out.push_back(static_cast<float>(station));
+        out.push_back(point.mixed ? 1.0F : 0.0F);
+    }
+}
+
+void scan_all(const sim::LaserScanner& scanner,
+              const std::vector<Vector3d>& stations_m,
+              Executor& executor,
+              io::PlyStream& file,
+              Scanned& scanned) {
+    Progress progress("scan", static_cast<int>(stations_m.size()) * scanner.columns());
+    std::vector<float> values;
+    while (!scanned.error && scanned.stations < static_cast<int>(stations_m.size())) {
+        const int station = scanned.stations++;
+        Pose T_world_scanner;
+        T_world_scanner.translation_m = stations_m[static_cast<std::size_t>(station)];
+        scanner.scan(T_world_scanner, station, executor, [&](const sim::ScanColumn& column) {
+            if (interrupted()) {
+                scanned.error = Error{ErrorCode::interrupted,
+                                      "interrupted by the user; the points up to here are kept"};
+                return false;
+            }
+            flatten(column, T_world_scanner, station, values);
+            if (auto status = file.add(values); !status) scanned.error = status.error();
+            progress.advance(station * scanner.columns() + column.index + 1);
+            return !scanned.error;
+        });
+    }
+}
+
+}  // namespace
+
+int scan(const SimOptions& options) {
+    const auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
+    const auto script = sim::make_scene(options.scene, options.common.seed);
+    if (!script) return report(script.error());
+    const auto stations_m = stations_of(options, *script);
+    if (!stations_m) return report(stations_m.error());
+    const auto scanner =
+        sim::LaserScanner::make(script->scene, settings->laser, options.common.seed);
+    if (!scanner) return report(scanner.error());
+    auto file = io::PlyStream::create(options.scan_file, {"station", "mixed"});
+    if (!file) return report(file.error());
+
+    watch_for_interrupts();
+    const auto executor = make_executor(options.common);
+    Scanned scanned{.file = options.scan_file, .error = std::nullopt};
+    scan_all(*scanner, *stations_m, *executor, *file, scanned);
+    if (auto status = file->close(); !status && !scanned.error) scanned.error = status.error();
+    scanned.points = file->points();
+    if (options.common.json) {
+        fmt::print("{}\n", scan_json(scanned));
+    } else {
+        fmt::print("{} points of {} from {} station{} in {}\n",
+                   scanned.points,
+                   options.scene,
+                   scanned.stations,
+                   scanned.stations == 1 ? "" : "s",
+                   options.scan_file);
+    }
+    return scanned.error ? report(*scanned.error) : kExitOk;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/frame.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::io {
+
+/// One layout of recordings on disk; the Recorder checks frames before they come here. Images are
+/// written before the lines that name them, and the line that a reader looks for first comes last.
+class RecordingWriter {
+  public:
+    virtual ~RecordingWriter() = default;
+    /// Makes the folders, calibration files and empty lists.
+    [[nodiscard]] virtual Status start() = 0;
+    [[nodiscard]] virtual Status add(const StereoFrame& frame) = 0;
+    [[nodiscard]] virtual Status close() = 0;
+};
+
+[[nodiscard]] std::unique_ptr<RecordingWriter> make_euroc_writer(const std::string& folder,
+                                                                 const camera::StereoRig& rig);
+[[nodiscard]] std::unique_ptr<RecordingWriter> make_tum_writer(const std::string& folder,
+                                                               const camera::StereoRig& rig);
+
+}  // namespace surefoot::io

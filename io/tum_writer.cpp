@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// TUM RGB-D benchmark after Sturm et al. 2012, with our rig.yaml for the lens and its place.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "io/file.hpp"
+#include "io/image_file.hpp"
+#include "io/recording.hpp"
+#include "io/recording_writer.hpp"
+#include "io/rig_file.hpp"
+#include "io/text.hpp"
+
+namespace surefoot::io {
+namespace {
+
+/// Nearest code of each depth; 0 for what is unknown or has no code.
+DepthCodes codes_of(const Image<float>& depth_m) {
+    constexpr auto kLast = static_cast<float>(std::numeric_limits<std::uint16_t>::max());
+    DepthCodes codes(depth_m.width(), depth_m.height());
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        const float code = std::round(depth_m.data()[i] * kDepthCodesPerMetre);
+        codes.data()[i] = code > 0.0F && code <= kLast ? static_cast<std::uint16_t>(code)
+                                                       : std::uint16_t{0};
+    }
+    return codes;
+}
+
+class TumWriter final : public RecordingWriter {
+  public:
+    TumWriter(std::string folder, camera::StereoRig rig)
+        : folder_(std::move(folder)), rig_(std::move(rig)) {
+        rig_.imu.reset();  // its samples have no place here
+    }
+
+    [[nodiscard]] Status start() override {
+        for (const auto& [name, list] :
+             {std::pair{"rgb", &colour_list_}, std::pair{"depth", &depth_list_}}) {
+            const std::string path = join_path(folder_, name);
+            if (Status s = make_folder(path); !s) return s;
+            Result<AppendFile> file = AppendFile::create(path + ".txt");
+            if (!file) return file.error();
+            if (Status s = file->append("# timestamp [s] filename\n"); !s) return s;
+            *list = std::move(file).value();
+        }
+        return write_rig_yaml(join_path(folder_, "rig.yaml"), rig_);
+    }
+
+    [[nodiscard]] Status add(const StereoFrame& frame) override {
+        const std::string stamp = format_seconds(frame.time_ns);
+        const std::string colour = fmt::format("rgb/{}.png", stamp);
+        const std::string depth = fmt::format("depth/{}.png", stamp);
+        if (Status s = write_png(join_path(folder_, colour), frame.left); !s) return s;
+        if (Status s = write_png(join_path(folder_, depth), codes_of(frame.depth_m)); !s) return s;
+        if (Status s = depth_list_->append(fmt::format("{} {}\n", stamp, depth)); !s) return s;
+        return colour_list_->append(fmt::format("{} {}\n", stamp, colour));
+    }
+
+    [[nodiscard]] Status close() override {
+        Status first;
+        for (auto* file : {&colour_list_, &depth_list_}) {
+            if (!file->has_value()) continue;
+            Status status = (*file)->close();
+            if (first.ok() && !status.ok()) first = status;
+        }
+        return first;
+    }
+
+  private:
+    std::string folder_;
+    camera::StereoRig rig_;
+    std::optional<AppendFile> colour_list_, depth_list_;
+};
+
+}  // namespace
+
+std::unique_ptr<RecordingWriter> make_tum_writer(const std::string& folder,
+                                                 const camera::StereoRig& rig) {
+    return std::make_unique<TumWriter>(folder, rig);
+}
+
+}  // namespace surefoot::io
