@@ -93,7 +93,8 @@ class EurocWriter final : public RecordingWriter {
         if (!imu_list_) return {};
         std::string lines;
         for (const ImuSample& sample : samples) {
-            if (last_imu_ns_ && sample.time_ns <= *last_imu_ns_) continue;  // seen with another frame
+            if (last_imu_ns_ && sample.time_ns <= *last_imu_ns_)
+                continue;  // seen with another frame
             lines += imu_line(sample);
             last_imu_ns_ = sample.time_ns;
         }

@@ -53,11 +53,11 @@ PlyStream& PlyStream::operator=(PlyStream&& other) noexcept {
 std::string PlyStream::header() const {
     constexpr int kDigits = 19;
     const std::string count = std::to_string(points_);
-    std::string text = fmt::format(
-        "ply\nformat binary_little_endian 1.0\ncomment {:->{}}\nelement vertex {}\n",
-        "",
-        kDigits + 1 - static_cast<int>(count.size()),
-        count);
+    std::string text =
+        fmt::format("ply\nformat binary_little_endian 1.0\ncomment {:->{}}\nelement vertex {}\n",
+                    "",
+                    kDigits + 1 - static_cast<int>(count.size()),
+                    count);
     for (const char* axis : {"x", "y", "z"}) text += fmt::format("property float {}\n", axis);
     for (const std::string& name : scalars_) text += fmt::format("property float {}\n", name);
     return text + "end_header\n";

@@ -23,8 +23,8 @@ namespace surefoot::io {
 /// interrupted at any time can be read. Raw images are stored as they came, without loss.
 class Recorder {
   public:
-    /// Makes the folders and calibration files. Refuses a rig with a problem and a folder that holds
-    /// a recording already.
+    /// Makes the folders and calibration files. Refuses a rig with a problem and a folder that
+    /// holds a recording already.
     [[nodiscard]] static Result<Recorder> create(const std::string& folder,
                                                  const camera::StereoRig& rig);
 

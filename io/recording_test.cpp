@@ -207,8 +207,8 @@ TEST(Recorder, RefusesInWords) {
     EXPECT_TRUE(contains(Recorder::create(folder / "d", rgbd)->add(small_frame(0)).error().message,
                          "32 x 20 and 0 x 0 px"))
         << "no depth";
-    EXPECT_TRUE(contains(message(Recorder::create(folder / "d", small_rig())),
-                         "holds a recording already"))
+    EXPECT_TRUE(
+        contains(message(Recorder::create(folder / "d", small_rig())), "holds a recording already"))
         << "of the other layout";
     EXPECT_TRUE(contains(message(Recorder::create("/proc/nowhere", small_rig())), "/proc/nowhere"));
     auto recorder = Recorder::create(folder / "s", small_rig());

@@ -22,8 +22,8 @@ DepthCodes codes_of(const Image<float>& depth_m) {
     DepthCodes codes(depth_m.width(), depth_m.height());
     for (std::size_t i = 0; i < codes.size(); ++i) {
         const float code = std::round(depth_m.data()[i] * kDepthCodesPerMetre);
-        codes.data()[i] = code > 0.0F && code <= kLast ? static_cast<std::uint16_t>(code)
-                                                       : std::uint16_t{0};
+        codes.data()[i] =
+            code > 0.0F && code <= kLast ? static_cast<std::uint16_t>(code) : std::uint16_t{0};
     }
     return codes;
 }

@@ -146,6 +146,7 @@ AnalyticStereo::AnalyticStereo(const Scene& scene,
       rig_(thinned(rig, config.stride)),
       rays_(ideal(rig_)),
       surface_noise_(mix_seed(seed, kSurfaceStream), config.fixed_size_m),
+      fade_cosine_(std::cos(config.fade_incidence_deg / kDegPerRad)),
       cdf_(normal_cdf()) {}
 
 void AnalyticStereo::cast(const Pose& T_world_body, Executor& executor, View& out) const {
@@ -202,8 +203,7 @@ double AnalyticStereo::missing_chance(const Material& material, double cosine) c
     if (material.contrast < config_.least_contrast) {
         known *= material.contrast / config_.least_contrast;
     }
-    const double fade_cosine = std::cos(config_.fade_incidence_deg / kDegPerRad);
-    if (cosine < fade_cosine) {
+    if (cosine < fade_cosine_) {
         const double incidence_deg = std::acos(std::clamp(cosine, 0.0, 1.0)) * kDegPerRad;
         const double width_deg = config_.max_incidence_deg - config_.fade_incidence_deg;
         if (incidence_deg >= config_.max_incidence_deg) return 1.0;

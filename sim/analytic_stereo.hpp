@@ -119,6 +119,7 @@ class AnalyticStereo {
     RayField rays_;
     PixelNoise noise_;
     SurfaceNoise surface_noise_;
+    double fade_cosine_ = 0.0;  ///< of `fade_incidence_deg`
     std::vector<float> cdf_;
 };
 

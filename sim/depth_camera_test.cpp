@@ -265,7 +265,8 @@ TEST(DepthCameraTest, DarkGrazingFarAndShinySurfacesAreLost) {
 TEST(DepthCameraTest, SameBytesForAnyExecutorAndOtherNoiseForAnotherFrame) {
     const Scene scene = test::scene_with_box();
     const DepthCamera camera =
-        DepthCamera::make(scene, small_camera(), depth_camera_preset(DepthCameraKind::kinect_v1).config, 7)
+        DepthCamera::make(
+            scene, small_camera(), depth_camera_preset(DepthCameraKind::kinect_v1).config, 7)
             .value();
     const Pose T = test::level_camera(1.0);
     Serial serial;

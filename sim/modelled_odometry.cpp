@@ -23,9 +23,7 @@ ModelledOdometry::ModelledOdometry(const DriftConfig& config,
                                    std::uint64_t seed)
     : config_(config), T_body_camera_(T_body_camera), seed_(seed) {}
 
-MotionEstimate ModelledOdometry::follow(std::int64_t time_ns,
-                                        int frame,
-                                        const Pose& T_world_body) {
+MotionEstimate ModelledOdometry::follow(std::int64_t time_ns, int frame, const Pose& T_world_body) {
     MotionEstimate motion;
     motion.time_ns = time_ns;
     motion.health = Health::ok;

@@ -10,9 +10,9 @@
 
 namespace surefoot::sim {
 
-/// How fast a pose loses its way: one sigma of each axis after one metre of the camera's way. Errors
-/// are a random walk, so that they grow with the root of the way; turning moves the camera too.
-/// The defaults are this project's odometry with the images of the fitted ZED: `surefoot run
+/// How fast a pose loses its way: one sigma of each axis after one metre of the camera's way.
+/// Errors are a random walk, so that they grow with the root of the way; turning moves the camera
+/// too. The defaults are this project's odometry with the images of the fitted ZED: `surefoot run
 /// sim:SCENE --seed N --set sim.profile=zed` with floor and demo_stairs, seeds 1 and 2, then
 /// `eval trajectory --align none`: over 0.1 to 2 m the relative errors of all three axes together
 /// are 1.2-2.8 mm and 0.05-0.09 deg times the root of the way (means 1.8 mm and 0.065 deg).

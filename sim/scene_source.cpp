@@ -244,9 +244,8 @@ Status SceneSource::make_analytic(const SceneOptions& options, const camera::Ste
     if (!stereo) return stereo.error();
     analytic_.emplace(std::move(stereo).value());
     truth_.rig = rectified_rig(rig, analytic_->rig());
-    odometry_.emplace(options.drift,
-                      analytic_->rig().T_body_camera,
-                      mix_seed(options.seed, kDriftStream));
+    odometry_.emplace(
+        options.drift, analytic_->rig().T_body_camera, mix_seed(options.seed, kDriftStream));
     return {};
 }
 

@@ -58,8 +58,8 @@ struct SceneOptions {
 };
 
 /// A simulated recording: frames of the sensor with IMU samples, and the truth about them. Stamps
-/// start at 1 s; IMU samples begin 0.1 s before the first frame, while the trolley still stands. Inertial
-/// samples of a dropped frame come with the next one that arrives.
+/// start at 1 s; IMU samples begin 0.1 s before the first frame, while the trolley still stands.
+/// Inertial samples of a dropped frame come with the next one that arrives.
 class SceneSource final : public camera::FrameSource {
   public:
     SceneSource(const SceneSource&) = delete;  // the sensors point into the truth
@@ -125,8 +125,8 @@ class SceneSource final : public camera::FrameSource {
 };
 
 /// Usage errors: unknown scene or rig preset (the names are listed), a rig that cannot be used, a
-/// number out of range, image faults where no images are. `executor` renders rows in parallel and must outlive the source; without
-/// one the calling thread does.
+/// number out of range, image faults where no images are. `executor` renders rows in parallel and
+/// must outlive the source; without one the calling thread does.
 [[nodiscard]] Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options,
                                                               Executor* executor = nullptr);
 

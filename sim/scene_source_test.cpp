@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/sensor_scenes_for_test.hpp"
 #include "sim/test_cameras.hpp"
 
 namespace surefoot::sim {
@@ -188,6 +189,96 @@ TEST(SceneSourceTest, TheExposureControlHoldsTheMeanAndTheRightEyeItsGain) {
     EXPECT_NEAR(mean_dn(frames.back().left), 90.0, 2.0);
 }
 
+TEST(SceneSourceTest, ADepthCameraBringsItsImageAndItsDepth) {
+    SceneOptions options = small("floor");
+    options.rig->right.reset();  // an RGB-D rig brings its own lens
+    options.sensor = Sensor::depth_camera;
+    // Without the steps of structured light, which swallow all noise at this short focal length.
+    options.depth_errors = depth_camera_preset(DepthCameraKind::kinect_v2).config;
+    options.frames = 4;
+    options.rate_hz = 0.5;  // the floor moves from frame to frame
+    options.faults.planned = {{1, ImageFault::torn, 40}, {3, ImageFault::repeated, 0}};
+    const auto damaged = all_frames(options);
+    options.faults.planned.clear();
+    auto source = open_scene(options).value();
+    std::vector<StereoFrame> whole;
+    while (auto frame = source->next().value()) {
+        whole.push_back(std::move(*frame));
+        const StereoFrame& now = whole.back();
+        EXPECT_TRUE(now.right.empty());
+        EXPECT_FALSE(now.ready);
+        ASSERT_EQ(now.depth_m.width(), now.left.width());
+        // Up to 1.5 m the model has a sigma of 4 mm; six of them.
+        int known = 0;
+        for (std::size_t i = 0; i < now.depth_m.size(); ++i) {
+            if (!(now.depth_m.data()[i] < 1.5F)) continue;
+            ++known;
+            EXPECT_NEAR(now.depth_m.data()[i], source->last_depth_m().data()[i], 0.024);
+        }
+        EXPECT_GT(known, 3000);
+    }
+    ASSERT_EQ(damaged.size(), 4U);
+    EXPECT_EQ(damaged[1].depth_m.at(80, 39), whole[1].depth_m.at(80, 39));
+    EXPECT_EQ(damaged[1].depth_m.at(80, 80), whole[0].depth_m.at(80, 80));
+    EXPECT_TRUE(test::same_bytes(damaged[3].depth_m, whole[2].depth_m));
+    EXPECT_FALSE(test::same_bytes(whole[3].depth_m, whole[2].depth_m));
+    SceneOptions kinect = options;
+    kinect.rig.reset();
+    kinect.depth_camera = DepthCameraKind::kinect_v2;
+    EXPECT_EQ(open_scene(kinect).value()->rig().left.width, 512);
+    EXPECT_FALSE(open_scene(kinect).value()->rig().right);
+}
+
+TEST(SceneSourceTest, TheAnalyticSensorBringsDepthAndMotionAndNoImage) {
+    SceneOptions options = small("kerb_down_150");
+    options.sensor = Sensor::analytic;
+    options.analytic.stride = 2;
+    options.frames = 30;
+    options.faults.planned = {{20, ImageFault::dropped, 0}};
+    test::Backwards backwards;
+    auto source = open_scene(options).value();
+    auto other = open_scene(options, &backwards).value();
+    EXPECT_TRUE(source->info().modelled);
+    const camera::StereoRig& rig = source->rig();
+    ASSERT_FALSE(rig.problem());
+    EXPECT_EQ(rig.left.width, 84);
+    int frames = 0;
+    Pose T_odom_last;
+    while (auto frame = source->next().value()) {
+        const auto same = other->next().value();
+        EXPECT_TRUE(frame->left.empty());
+        ASSERT_TRUE(frame->ready);
+        const DepthImage& depth = frame->ready->depth;
+        ASSERT_EQ(depth.disparity_px.width(), rig.left.width);
+        EXPECT_TRUE(test::same_bytes(depth.disparity_px, same->ready->depth.disparity_px));
+        EXPECT_EQ(source->last_depth_m().height(), rig.left.height);
+        EXPECT_FALSE(frame->imu.empty());
+        T_odom_last = frame->ready->motion.T_odom_body;
+        ++frames;
+    }
+    EXPECT_EQ(frames, 29);
+    const auto& poses = source->truth().trajectory;
+    const Pose truth = poses.front().T_world_body.inverse() * poses.back().T_world_body;
+    const double error = difference(truth, T_odom_last).norm();
+    EXPECT_GT(error, 0.0);
+    // Under a metre of way: ten sigma of 1 mm and 0.7 mrad, three axes each.
+    EXPECT_LT(error, 0.021);
+}
+
+TEST(SceneSourceTest, NoiseIsAFactorOnModelledDepthsToo) {
+    SceneOptions options = small("floor");
+    options.sensor = Sensor::analytic;
+    options.frames = 1;
+    options.analytic.locking_px = 0.0;
+    const auto sigma_px = [&] {
+        const auto frame = open_scene(options).value()->next().value();
+        return frame->ready->depth.sigma_px.at(84, 80);
+    };
+    const float nominal_px = sigma_px();
+    options.noise = 2.0;
+    EXPECT_FLOAT_EQ(sigma_px(), 2.0F * nominal_px);
+}
+
 TEST(SceneSourceTest, WrongOptionsGetASentence) {
     const auto message = [](const SceneOptions& options) {
         const auto source = open_scene(options);
@@ -210,6 +301,14 @@ TEST(SceneSourceTest, WrongOptionsGetASentence) {
     fault.frames = 5;
     fault.faults.planned = {{5, ImageFault::dropped, 0}};
     EXPECT_NE(message(fault).find("allowed are 1 to 4"), std::string::npos);
+    SceneOptions no_image = small("floor");
+    no_image.sensor = Sensor::analytic;
+    no_image.faults.tear_probability = 0.1;
+    EXPECT_NE(message(no_image).find("no images that could be torn"), std::string::npos);
+    SceneOptions one_eye = small("floor");
+    one_eye.sensor = Sensor::analytic;
+    one_eye.rig->right.reset();
+    EXPECT_NE(message(one_eye).find("sim.sensor = analytic models stereo"), std::string::npos);
     SceneOptions preset;
     preset.rig_preset = "zed_42k";
     EXPECT_NE(message(preset).find("zed_42k"), std::string::npos);

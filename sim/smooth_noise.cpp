@@ -92,12 +92,12 @@ float SurfaceNoise::at(const PixelNoise& noise, int surface, double u_m, double 
     const double v0 = std::floor(v);
     const auto fu = static_cast<float>(u - u0);
     const auto fv = static_cast<float>(v - v0);
+    const std::uint64_t key = PixelNoise::key(seed_, static_cast<std::uint64_t>(surface));
     // Lattices of more than 2^16 steps repeat; with 0.1 m between nodes that is 6.5 km.
     const auto node = [&](int du, int dv) {
         const auto x = static_cast<std::uint32_t>(static_cast<std::int64_t>(u0) + du) & 0xFFFFU;
         const auto y = static_cast<std::uint32_t>(static_cast<std::int64_t>(v0) + dv) & 0xFFFFU;
-        return noise.normal(PixelNoise::key(seed_, static_cast<std::uint64_t>(surface)),
-                            (y << 16U) | x);
+        return noise.normal(key, (y << 16U) | x);
     };
     const float sum = (1.0F - fv) * ((1.0F - fu) * node(0, 0) + fu * node(1, 0)) +
                       fv * ((1.0F - fu) * node(0, 1) + fu * node(1, 1));

@@ -122,9 +122,8 @@ Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common, Executor
     if (!settings) return settings.error();
     std::vector<BenchResult> results;
     const auto images = [](int blur_samples) {
-        return [=](sim::SceneOptions& options) {
-            options.camera.shutter.blur_samples = blur_samples;
-        };
+        return
+            [=](sim::SceneOptions& options) { options.camera.shutter.blur_samples = blur_samples; };
     };
     const auto analytic = [](int stride) {
         return [=](sim::SceneOptions& options) {

@@ -31,12 +31,12 @@ Result<bool> copy_one(camera::FrameSource& source,
 
 Result<io::Recorder> start_recording(const std::string& folder, const camera::FrameSource& source) {
     if (source.info().modelled) {
-        return usage_error(fmt::format(
-            "{}: sim.sensor = analytic makes no images that could be recorded in {}; "
-            "'surefoot run sim:{}' uses it directly",
-            source.info().path,
-            folder,
-            source.info().path));
+        return usage_error(
+            fmt::format("{}: sim.sensor = analytic makes no images that could be recorded in {}; "
+                        "'surefoot run sim:{}' uses it directly",
+                        source.info().path,
+                        folder,
+                        source.info().path));
     }
     return io::Recorder::create(folder, source.rig());
 }

@@ -186,25 +186,24 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const auto& geometry = pipeline.map().geometry();
     Json modelled = Json::array();
     if (record.source.modelled) modelled = {"odometry", "depth"};
-    Json object = {{"source",
-                    {{"kind", record.source.kind},
-                     {"path", record.source.path},
-                     {"modelled", modelled}}},
-                   {"frames", record.frames.size()},
-                   {"complete", record.complete()},
-                   {"error", record.error ? Json(record.error->message) : Json(nullptr)},
-                   {"gravity_source", name_of(alignment.gravity_source)},
-                   {"gravity_reason", alignment.reason},
-                   {"ground_height_m",
-                    alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
-                   {"health", health_json(record)},
-                   {"counts", counts_json(record.fusion)},
-                   {"camera", camera_json(pipeline.rig())},
-                   {"map",
-                    {{"known_cells", pipeline.map().known_cells()},
-                     {"cells", geometry.nx * geometry.ny},
-                     {"resolution_m", geometry.resolution_m},
-                     {"reason", empty_map_reason(record, pipeline)}}}};
+    Json object = {
+        {"source",
+         {{"kind", record.source.kind}, {"path", record.source.path}, {"modelled", modelled}}},
+        {"frames", record.frames.size()},
+        {"complete", record.complete()},
+        {"error", record.error ? Json(record.error->message) : Json(nullptr)},
+        {"gravity_source", name_of(alignment.gravity_source)},
+        {"gravity_reason", alignment.reason},
+        {"ground_height_m",
+         alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
+        {"health", health_json(record)},
+        {"counts", counts_json(record.fusion)},
+        {"camera", camera_json(pipeline.rig())},
+        {"map",
+         {{"known_cells", pipeline.map().known_cells()},
+          {"cells", geometry.nx * geometry.ny},
+          {"resolution_m", geometry.resolution_m},
+          {"reason", empty_map_reason(record, pipeline)}}}};
     if (record.truth) object["truth"] = truth_json(*record.truth);
     object["timing"] = timing_json(record);
     return object;

@@ -31,6 +31,13 @@ Vector3d default_station(const sim::ScriptedScene& script) {
     return {start_m.x(), start_m.y(), (ground ? ground->z_m : 0.0) + kTripod_m};
 }
 
+/// Inside a solid, or under everything that could carry a tripod.
+bool buried(const sim::Scene& scene, const Vector3d& station_m) {
+    if (scene.solid_at(station_m)) return true;
+    const auto surfaces = scene.surfaces_at(station_m.x(), station_m.y());
+    return !surfaces.empty() && station_m.z() < surfaces.back().z_m;
+}
+
 Result<std::vector<Vector3d>> stations_of(const SimOptions& options,
                                           const sim::ScriptedScene& script) {
     if (options.stations.empty()) return std::vector<Vector3d>{default_station(script)};
@@ -39,9 +46,10 @@ Result<std::vector<Vector3d>> stations_of(const SimOptions& options,
         const auto xyz = parse_three_numbers("--station", text, "x,y,z in metres");
         if (!xyz) return xyz.error();
         const Vector3d station_m((*xyz)[0], (*xyz)[1], (*xyz)[2]);
-        if (script.scene.solid_at(station_m)) {
+        if (buried(script.scene, station_m)) {
             return usage_error(fmt::format(
-                "--station {}: lies inside something solid of {}; choose a place in the open",
+                "--station {}: lies under the ground or inside something solid of {}; choose a "
+                "place in the open",
                 text,
                 options.scene));
         }

@@ -19,7 +19,7 @@ namespace surefoot::app {
 struct Settings {
     pipeline::PipelineConfig pipeline;
     eval::EvalMapsConfig maps;
-    sim::SceneOptions sim;  ///< how simulated scenes are seen
+    sim::SceneOptions sim;          ///< how simulated scenes are seen
     sim::LaserScannerConfig laser;  ///< and scanned
 
     void describe(ConfigVisitor& visitor);

@@ -27,14 +27,14 @@ class Verbs(CliTest):
             process = surefoot(*verb, "--help")
             self.assertEqual(process.returncode, 0, verb)
             self.assertIn("Example:", process.stdout, verb)
-            example = process.stdout.split("Example:")[1].strip().splitlines()[0].strip()
-            words = shlex.split(example)
-            self.assertEqual(words[0], "surefoot")
-            process = surefoot(*words[1:], cwd=self.dir)
-            allowed = GATE_EXIT_CODES if verb == ["gate"] else (0,)
-            self.assertIn(process.returncode, allowed, f"{example}\n{process.stderr}")
-            if "--json" in words or verb == ["gate"]:
-                self.assertTrue(process.stdout.strip(), example)
+            for example in process.stdout.split("Example:")[1].strip().splitlines():
+                words = shlex.split(example)
+                self.assertEqual(words[0], "surefoot")
+                process = surefoot(*words[1:], cwd=self.dir)
+                allowed = GATE_EXIT_CODES if verb == ["gate"] else (0,)
+                self.assertIn(process.returncode, allowed, f"{example}\n{process.stderr}")
+                if "--json" in words or verb == ["gate"]:
+                    self.assertTrue(process.stdout.strip(), example)
 
     def test_wrong_calls_exit_with_2_and_say_why(self):
         for words in (["walk"], ["run"], ["run", "sim:floor"], ["sim", "nowhere", "--out", "x"],
