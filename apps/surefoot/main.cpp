@@ -151,7 +151,7 @@ void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
         verb->add_option("--scan",
                          o.scan_file,
                          "no recording but terrestrial laser scans, all points in the world frame; "
-                         "500 MB a station unless sim.laser.step_deg is larger")
+                         "up to 850 MB a station unless sim.laser.step_deg is larger")
             ->type_name("F.ply")
             ->excludes(out);
     verb->add_option("--station",
