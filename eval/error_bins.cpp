@@ -66,7 +66,9 @@ std::vector<ErrorBin> by_bins(std::span<const float> errors,
     }
     std::vector<ErrorBin> bins;
     for (std::size_t k = 0; k < sorted_in.size(); ++k) {
-        bins.push_back({edges[k], edges[k + 1], figures_of(sorted_in[k])});
+        ErrorHistogram histogram;
+        for (const double error : sorted_in[k]) histogram.add(error);
+        bins.push_back({edges[k], edges[k + 1], figures_of(sorted_in[k]), histogram});
     }
     return bins;
 }

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "eval/error_histogram.hpp"
+
 namespace surefoot::eval {
 
 /// Figures of signed errors, in the unit of the errors; every figure but count is NaN without
@@ -27,6 +29,7 @@ struct ErrorBin {
     double from = 0.0;
     double to = 0.0;
     ErrorFigures errors;
+    ErrorHistogram histogram;  ///< of the same errors, to be added up over many maps
 };
 
 /// Errors sorted into bins by a second quantity: by distance, by image column. `keys` has one key

@@ -28,6 +28,20 @@ TEST(ErrorBins, FiguresByHand) {
     EXPECT_NEAR(figures.rmse, std::sqrt(6.0), kRounding);  // (16 + 1 + 4 + 9) / 5
 }
 
+TEST(ErrorBins, EachBinHasTheHistogramOfItsErrors) {
+    const std::vector<float> errors = {-0.004F, kNan, 0.001F, 0.02F};
+    const std::vector<float> keys = {0.5F, 0.5F, 1.5F, 1.6F};
+    const std::vector<double> edges = {0.0, 1.0, 2.0};
+    const auto bins = by_bins(errors, keys, edges);
+    ErrorHistogram first;
+    first.add(0.004);
+    ErrorHistogram second;
+    second.add(0.001);
+    second.add(0.02);
+    EXPECT_EQ(bins[0].histogram, first);
+    EXPECT_EQ(bins[1].histogram, second);
+}
+
 TEST(ErrorBins, NothingGivesNanAndZero) {
     for (const auto& errors : {std::vector<float>{}, std::vector<float>{kNan, kNan}}) {
         const ErrorFigures figures = error_figures(errors);

@@ -32,6 +32,11 @@ figure img{display:block;width:100%;height:auto;margin:0 0 auto}
 figcaption{padding:10px 16px 12px;font-size:.94rem;color:var(--soft);border-top:1px solid var(--line);
 background:var(--card)}
 .card{padding:18px 20px}
+.card.wide{grid-column:1/-1}
+.thumbnails{display:grid;gap:16px;grid-template-columns:repeat(auto-fill,minmax(min(230px,100%),1fr))}
+.thumbnails figcaption{font-size:.84rem;padding:8px 12px 10px}
+summary{cursor:pointer;font-weight:600}
+details[open] summary{margin-bottom:12px}
 .tiles{display:grid;gap:14px;grid-template-columns:repeat(auto-fill,minmax(min(190px,100%),1fr))}
 .tile .label{font-size:.88rem;color:var(--soft)}
 .tile .value{font-size:1.75rem;font-weight:650;line-height:1.25;font-variant-numeric:tabular-nums}
@@ -61,6 +66,8 @@ svg .tail{fill:var(--tail)}
 svg .degraded{fill:var(--degraded)}
 svg .lost{fill:var(--lost)}
 svg .line{fill:none;stroke:var(--median);stroke-width:1.6;stroke-linejoin:round}
+svg .second{fill:none;stroke:var(--degraded);stroke-width:1.6;stroke-linejoin:round}
+svg .mark{fill:var(--card)}
 svg .limit{stroke:var(--lost);stroke-width:1.5;stroke-dasharray:6 5}
 .hint{color:var(--soft);font-size:.88rem;margin:10px 0 0}
 footer{margin-top:44px;padding-top:14px;border-top:1px solid var(--line);color:var(--soft);
@@ -80,17 +87,21 @@ std::string section(const std::string& title, const std::string& body) {
     return fmt::format("<section>\n<h2>{}</h2>\n{}</section>\n", escaped(title), body);
 }
 
-std::string card(const std::string& title, const std::string& body, const std::string& hint = {}) {
+std::string card(const std::string& title,
+                 const std::string& body,
+                 const std::string& hint = {},
+                 const char* css_class = "card") {
     if (body.empty()) return {};
     const std::string heading = title.empty() ? "" : element("h3", title);
     const std::string note =
         hint.empty() ? "" : fmt::format("<p class=\"hint\">{}</p>\n", escaped(hint));
-    return fmt::format("<div class=\"card\">\n{}{}{}</div>\n", heading, body, note);
+    return fmt::format("<div class=\"{}\">\n{}{}{}</div>\n", css_class, heading, body, note);
 }
 
-std::string pictures_html(const std::vector<ReportPicture>& pictures) {
+std::string pictures_html(const std::vector<ReportPicture>& pictures,
+                          const char* css_class = "grid pictures") {
     if (pictures.empty()) return {};
-    std::string html = "<div class=\"grid pictures\">\n";
+    std::string html = fmt::format("<div class=\"{}\">\n", css_class);
     for (const ReportPicture& picture : pictures) {
         html += fmt::format(
             "<figure{}>\n<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n"
@@ -177,11 +188,26 @@ std::string timing_html(const ReportContent& content) {
     return cards.empty() ? "" : "<div class=\"grid\">\n" + cards + "</div>\n";
 }
 
+std::string plots_html(const std::vector<ReportPlot>& plots) {
+    std::string cards;
+    for (const ReportPlot& plot : plots) cards += card(plot.title, plot.svg, plot.hint);
+    return cards.empty() ? "" : "<div class=\"grid\">\n" + cards + "</div>\n";
+}
+
+std::string table_card(const ReportTable& table) {
+    const char* css_class = table.wide ? "card wide" : "card";
+    const std::string body = table_html(table, "plain");
+    if (!table.folded || body.empty()) return card(table.title, body, table.hint, css_class);
+    return card("",
+                fmt::format("<details>\n{}{}</details>\n", element("summary", table.title), body),
+                table.hint,
+                css_class);
+}
+
 std::string details_html(const ReportContent& content) {
     std::string cards;
     for (const ReportBars& bars : content.bars) cards += card(bars.title, bars_html(bars));
-    for (const ReportTable& table : content.tables)
-        cards += card(table.title, table_html(table, "plain"));
+    for (const ReportTable& table : content.tables) cards += table_card(table);
     return cards.empty() ? "" : "<div class=\"grid\">\n" + cards + "</div>\n";
 }
 
@@ -219,9 +245,11 @@ std::string render_html(const ReportContent& content) {
     html += pictures_html(content.pictures);
     html += section("Key figures", figures_html(content.figures));
     html += section("Reasons", reasons_html(content.reasons));
+    html += section(content.plots_title, plots_html(content.plots));
+    html += section(content.thumbnails_title, pictures_html(content.thumbnails, "thumbnails"));
     html += section("Time", timing_html(content));
     html += section("Health of the motion estimate", card("", health_svg(content.health)));
-    html += section("Counts", details_html(content));
+    html += section(content.details_title, details_html(content));
     html += section("Configuration", card("", table_html(content.configuration, "config")));
     if (!content.footer.empty()) html += element("footer", content.footer);
     return html + "</main>\n</body>\n</html>\n";

@@ -29,6 +29,16 @@ struct ReportTable {
     std::string title;
     std::vector<std::string> header;
     std::vector<std::vector<std::string>> rows;
+    std::string hint = {};  ///< small, below
+    bool wide = false;      ///< takes the whole width of the page
+    bool folded = false;    ///< only its title is shown until the reader opens it
+};
+
+/// A drawing of svg_plot.hpp.
+struct ReportPlot {
+    std::string title;
+    std::string svg;
+    std::string hint = {};  ///< small, below
 };
 
 /// Amounts of one kind beside each other.
@@ -53,6 +63,11 @@ struct ReportContent {
     std::vector<double> frame_ms;  ///< all stages of one frame
     double frame_limit_ms = 0.0;   ///< time between frames; 0 = none
     std::vector<HealthSample> health;
+    std::string plots_title = "Errors";
+    std::vector<ReportPlot> plots;
+    std::string thumbnails_title = "Pictures";
+    std::vector<ReportPicture> thumbnails;  ///< small, many in a row
+    std::string details_title = "Counts";   ///< over bars and tables
     std::vector<ReportBars> bars;
     std::vector<ReportTable> tables;
     ReportTable configuration;  ///< what the run really used

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -155,6 +156,46 @@ TEST(HtmlReport, EmptyPartsLeaveNoHeading) {
     add_frames(content, frames(1));
     EXPECT_EQ(structure_problem(render_html(content)), "");
     EXPECT_EQ(count_of(render_html(content), "nan"), 0u);
+}
+
+TEST(HtmlReport, PlotsThumbnailsAndFoldedTables) {
+    ReportContent content;
+    content.title = "t";
+    content.plots_title = "How far off";
+    content.plots.push_back({"plot", "<svg></svg>", "a & b"});
+    content.thumbnails_title = "Worst cases";
+    content.thumbnails.push_back({"<floor>", {1, 2, 3}});
+    content.tables.push_back({"Every case", {"a"}, {{"1"}}, "hint", true, true});
+    content.tables.push_back({"Empty", {"a"}, {}, "hint", true, true});
+    const std::string html = render_html(content);
+    EXPECT_EQ(structure_problem(html), "");
+    EXPECT_LT(html.find("How far off"), html.find("Worst cases"));
+    EXPECT_NE(html.find("<summary>Every case</summary>"), std::string::npos);
+    EXPECT_NE(html.find("&lt;floor&gt;"), std::string::npos);
+    EXPECT_NE(html.find("a &amp; b"), std::string::npos);
+    EXPECT_EQ(html.find("Empty"), std::string::npos);
+    EXPECT_EQ(count_of(html, "<details>"), 1u);
+    EXPECT_EQ(count_of(html, "class=\"card wide\""), 1u);
+}
+
+TEST(SvgPlot, BinPlotIsToScaleAndBreaksWhereNothingIs) {
+    BinPlot plot;
+    plot.x_label = "range [m]";
+    plot.unit = "mm";
+    plot.edges = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0};
+    const double none = std::nan("");
+    EXPECT_EQ(bin_plot_svg(plot), "");
+    plot.lines.push_back({"median", {none, 2.0, none, 4.0, none}});
+    plot.high = 8.0;
+    const std::string svg = bin_plot_svg(plot);
+    EXPECT_EQ(structure_problem(svg), "");
+    EXPECT_EQ(count_of(svg, "<circle"), 2u);
+    EXPECT_EQ(count_of(svg, "<polyline"), 2u);
+    EXPECT_EQ(count_of(svg, "nan"), 0u);
+    // The axis begins with the first bin that holds something (x 62) and ends with the last (584):
+    // the middle of [1, 2] is at a sixth of it; 2 of 8 mm is a quarter of the way up (214 to 34).
+    EXPECT_NE(svg.find("cx=\"149.0\" cy=\"169.0\""), std::string::npos) << svg;
+    EXPECT_NE(svg.find("cx=\"497.0\" cy=\"124.0\""), std::string::npos) << svg;
 }
 
 TEST(HtmlReport, FramesBecomeTimesAndHealth) {

@@ -145,6 +145,35 @@ CallColors colors_of(Call call) {
     return {palette::kFaint, palette::kFaint, 0.0};
 }
 
+/// Colour of pixel (u, v) of the plot, in a cell of this call.
+Rgb8 call_color(Call call, double side_px, int u, int v) {
+    if (call == Call::no_truth) return hatched_grey(u, v);
+    const CallColors colors = colors_of(call);
+    if (side_px < kConfusionCell_px) return mixed(colors.ground, colors.dot, colors.dot_share);
+    const auto cell_px = static_cast<int>(side_px);
+    const auto dot_px = static_cast<int>(std::lround(colors.dot_share * cell_px));
+    const int first = (cell_px - dot_px) / 2;
+    const auto in_middle = [&](int px) {
+        return px % cell_px >= first && px % cell_px < first + dot_px;
+    };
+    return in_middle(u) && in_middle(v) ? colors.dot : colors.ground;
+}
+
+/// Cells [first, end) of one axis, widened to `least` cells within the grid.
+struct CellSpan {
+    int first = 0;
+    int end = 0;
+    void include(int index) {
+        first = end == 0 ? index : std::min(first, index);
+        end = std::max(end, index + 1);
+    }
+    void widen(int least, int count) {
+        const int missing = std::max(0, std::min(least, count) - (end - first));
+        first = std::clamp(first - missing / 2, 0, std::max(0, count - least));
+        end = std::min(count, std::max(end, first + std::min(least, count)));
+    }
+};
+
 std::vector<KeyEntry> confusion_key() {
     const auto entry = [](Call call, const char* label) {
         const CallColors colors = colors_of(call);
@@ -240,24 +269,47 @@ Picture render_confusion(const grid::GridGeometry& geometry,
     MapFigure map =
         make_map_figure(geometry, kConfusionCell_px, text, column_size(key, BarKind::none));
     paint_cells(map, geometry, [&](grid::Cell cell, int u, int v) {
-        const Call call = calls.at(cell.ix, cell.iy);
-        if (call == Call::no_truth) return hatched_grey(u, v);
-        const CallColors colors = colors_of(call);
-        if (map.cell_px < kConfusionCell_px)
-            return mixed(colors.ground, colors.dot, colors.dot_share);
-        const auto cell_px = static_cast<int>(map.cell_px);
-        const auto dot_px = static_cast<int>(std::lround(colors.dot_share * cell_px));
-        const int first = (cell_px - dot_px) / 2;
-        const auto in_middle = [&](int px) {
-            return px % cell_px >= first && px % cell_px < first + dot_px;
-        };
-        const bool in_dot = in_middle(u) && in_middle(v);
-        return in_dot ? colors.dot : colors.ground;
+        return call_color(calls.at(cell.ix, cell.iy), map.cell_px, u, v);
     });
     draw_overlays(map.figure.picture, map.view, overlays);
     draw_axes(map.figure.picture, map.view);
     draw_key(map.figure, map.figure.column.top, key);
     return std::move(map.figure.picture);
+}
+
+Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
+                                   const Image<Call>& calls,
+                                   const Overlays& overlays) {
+    SUREFOOT_ASSERT(calls.width() == geometry.nx && calls.height() == geometry.ny);
+    CellSpan across;
+    CellSpan along;
+    for (int iy = 0; iy < geometry.ny; ++iy) {
+        for (int ix = 0; ix < geometry.nx; ++ix) {
+            if (calls.at(ix, iy) == Call::no_truth || calls.at(ix, iy) == Call::unknown) continue;
+            along.include(ix);
+            across.include(iy);
+        }
+    }
+    if (along.end == 0) return {};
+    along.widen(kThumbnailCells, geometry.nx);
+    across.widen(kThumbnailCells, geometry.ny);
+    constexpr int kCell_px = 4;
+    const RectPx plot{
+        0, 0, (across.end - across.first) * kCell_px, (along.end - along.first) * kCell_px};
+    Picture picture(plot.width, plot.height);
+    for (int v = 0; v < plot.height; ++v) {
+        for (int u = 0; u < plot.width; ++u) {
+            const Call call = calls.at(along.end - 1 - v / kCell_px, across.end - 1 - u / kCell_px);
+            picture.at(u, v) = call_color(call, kCell_px, u, v);
+        }
+    }
+    MapView view;
+    view.plot = plot;
+    view.x_max_m = geometry.origin_m.x() + along.end * geometry.resolution_m;
+    view.y_max_m = geometry.origin_m.y() + across.end * geometry.resolution_m;
+    view.px_per_m = kCell_px / geometry.resolution_m;
+    draw_overlays(picture, view, overlays);
+    return picture;
 }
 
 }  // namespace surefoot::eval

@@ -64,6 +64,19 @@ struct LayerStyle {
                                        const FigureText& text,
                                        const Overlays& overlays);
 
+/// The same colours without title, axes and key, cut to the cells that the live map knows (at least
+/// `kThumbnailCells` wide and high), with the body and its way; empty where nothing is known.
+inline constexpr int kThumbnailCells = 80;
+[[nodiscard]] Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
+                                                 const Image<Call>& calls,
+                                                 const Overlays& overlays);
+
+/// What the colours of a confusion map mean, as words.
+inline constexpr const char* kConfusionLegend =
+    "White: the map calls it safe, black: unsafe. The dot says whether that is right: green = yes, "
+    "blue on white = called safe and is NOT, orange on black = called unsafe and is safe. Grey: "
+    "never seen.";
+
 [[nodiscard]] Picture render_camera_image(const GreyImage& image, const FigureText& text);
 
 /// Disparity [px] of the rectified left image. With `depth_times_disparity_m_px` (focal length

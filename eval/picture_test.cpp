@@ -163,6 +163,26 @@ TEST(Picture, ConfusionColours) {
     EXPECT_EQ(dot(3), palette::kUnsafe);
 }
 
+TEST(Picture, ConfusionThumbnailIsCutToWhatIsKnown) {
+    constexpr int kSide = 200;
+    constexpr int kCell_px = 4;
+    const grid::GridGeometry geometry{0.05, kSide, kSide, {0.0, 0.0}};
+    Image<Call> calls(kSide, kSide, Call::unknown);
+    EXPECT_TRUE(render_confusion_thumbnail(geometry, calls, without_scale_bar()).empty());
+    calls.at(199, 30) = Call::false_safe;  // farthest ahead
+    Picture one = render_confusion_thumbnail(geometry, calls, without_scale_bar());
+    EXPECT_EQ(one.width(), kThumbnailCells * kCell_px);
+    EXPECT_EQ(one.height(), kThumbnailCells * kCell_px);
+    calls.at(40, 150) = Call::false_unsafe;  // leftmost and last
+    const Picture two = render_confusion_thumbnail(geometry, calls, without_scale_bar());
+    ASSERT_EQ(two.height(), (199 - 40 + 1) * kCell_px);
+    ASSERT_EQ(two.width(), (150 - 30 + 1) * kCell_px);
+    EXPECT_EQ(two.at(two.width() - 1, kCell_px - 1), palette::kPaper);
+    EXPECT_EQ(two.at(two.width() - kCell_px + 2, 2), palette::kSafe);
+    EXPECT_EQ(two.at(2, two.height() - 2), palette::kUnsafe);
+    EXPECT_EQ(two.at(2, 2), palette::kFaint);
+}
+
 TEST(Picture, OverlaysStayInsideTheMap) {
     const grid::GridGeometry geometry{0.025, 240, 240, {-3.0, -3.0}};
     const grid::Layer layer(240, 240, 0.0F);

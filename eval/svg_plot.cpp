@@ -8,6 +8,7 @@
 
 #include "eval/percentile.hpp"
 #include "eval/ticks.hpp"
+#include "surefoot/core/assert.hpp"
 
 namespace surefoot::eval {
 namespace {
@@ -110,6 +111,81 @@ std::string health_legend(const std::vector<HealthSample>& samples, double y) {
                         fmt::format("{} {:.1f} % ({} frames)", to_string(health), percent, count));
         x += 0.22 * kHealthWidth;
     }
+    return body;
+}
+
+struct BinPlotFrame {
+    double left = 62.0;
+    double right = kWidth - 16.0;
+    double top = 34.0;
+    double bottom = 214.0;
+    double low = 0.0;   ///< of the x axis
+    double high = 1.0;  ///< of the x axis
+    double tall = 1.0;  ///< upper end of the y axis
+
+    [[nodiscard]] double x_of(double value) const {
+        return left + (value - low) / (high - low) * (right - left);
+    }
+    [[nodiscard]] double y_of(double value) const {
+        return bottom - std::min(value / tall, 1.0) * (bottom - top);
+    }
+};
+
+std::string bin_plot_axes(const BinPlot& plot, const BinPlotFrame& frame) {
+    std::string body;
+    const Ticks y_ticks = nice_ticks(0.0, frame.tall, 4);
+    for (const double value : y_ticks.values) {
+        const double y = frame.y_of(value);
+        body += line_at(frame.left, y, frame.right, y, "axis");
+        body += text_at(frame.left - 8.0,
+                        y + 5.0,
+                        "label",
+                        "end",
+                        fmt::format("{} {}", y_ticks.label(value), plot.unit));
+    }
+    const Ticks x_ticks = nice_ticks(frame.low, frame.high, 8);
+    for (const double value : x_ticks.values) {
+        body += text_at(
+            frame.x_of(value), frame.bottom + 20.0, "label", "middle", x_ticks.label(value));
+    }
+    return body + text_at(0.5 * (frame.left + frame.right),
+                          frame.bottom + 40.0,
+                          "label",
+                          "middle",
+                          plot.x_label);
+}
+
+/// The line, broken where bins are empty, with a mark at every value.
+std::string bin_plot_line(const BinPlot& plot,
+                          const BinPlot::Line& line,
+                          const BinPlotFrame& frame,
+                          const char* css_class) {
+    std::string body;
+    std::string points;
+    const auto flush = [&] {
+        if (!points.empty())
+            body += fmt::format("<polyline points=\"{}\" class=\"{}\"/>", points, css_class);
+        points.clear();
+    };
+    for (std::size_t k = 0; k < line.values.size(); ++k) {
+        if (!std::isfinite(line.values[k])) {
+            flush();
+            continue;
+        }
+        const double x = frame.x_of(0.5 * (plot.edges[k] + plot.edges[k + 1]));
+        const double y = frame.y_of(line.values[k]);
+        points += fmt::format("{:.1f},{:.1f} ", x, y);
+        body += fmt::format(
+            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" class=\"{} mark\">"
+            "<title>{}: {:.4g} {}</title></circle>",
+            x,
+            y,
+            css_class,
+            escaped(line.label),
+            line.values[k],
+            escaped(plot.unit));
+    }
+    flush();
     return body;
 }
 
@@ -235,6 +311,36 @@ std::string health_svg(const std::vector<HealthSample>& samples) {
     body += text_at(0.5 * kHealthWidth, 74.0, "label", "middle", "time [s]");
     body += health_legend(samples, 104.0);
     return svg(kHealthWidth, 116.0, "Health of the motion estimate over time", body);
+}
+
+std::string bin_plot_svg(const BinPlot& plot) {
+    double largest = 0.0;
+    std::size_t first = plot.edges.size();  // bins in which anything is
+    std::size_t end = 0;
+    for (const BinPlot::Line& line : plot.lines) {
+        SUREFOOT_ASSERT(line.values.size() + 1 == plot.edges.size());
+        for (std::size_t k = 0; k < line.values.size(); ++k) {
+            if (!std::isfinite(line.values[k])) continue;
+            largest = std::max(largest, line.values[k]);
+            first = std::min(first, k);
+            end = std::max(end, k + 1);
+        }
+    }
+    if (first >= end) return {};
+    BinPlotFrame frame;
+    frame.low = plot.edges[first];
+    frame.high = plot.edges[end];
+    frame.tall = plot.high > 0.0 ? plot.high : std::max(1.1 * largest, 1e-9);
+    std::string body = bin_plot_axes(plot, frame);
+    double key_x = frame.left;
+    for (std::size_t i = 0; i < plot.lines.size(); ++i) {
+        const char* css_class = i == 0 ? "line" : "second";
+        body += line_at(key_x, 12.0, key_x + 22.0, 12.0, css_class);
+        body += text_at(key_x + 30.0, 17.0, "label", "start", plot.lines[i].label);
+        key_x += 190.0;
+        body += bin_plot_line(plot, plot.lines[i], frame, css_class);
+    }
+    return svg(kWidth, frame.bottom + 46.0, "Figures over " + plot.x_label, body);
 }
 
 }  // namespace surefoot::eval

@@ -25,7 +25,7 @@ struct HealthSample {
 [[nodiscard]] std::string escaped(const std::string& text);
 
 /// Inline SVG drawings without script or outside resource; colours come from the page's style sheet
-/// (classes axis, label, value, median, tail, line, limit, ok, degraded, lost).
+/// (classes axis, label, value, median, tail, line, second, limit, ok, degraded, lost).
 
 /// One bar per stage: solid to the median, thin to the 99th percentile. Stages without samples are
 /// left out; an empty string when none is left.
@@ -38,5 +38,20 @@ struct HealthSample {
 /// Health over time as a coloured band with its legend; samples in time order. Empty string without
 /// samples.
 [[nodiscard]] std::string health_svg(const std::vector<HealthSample>& samples);
+
+/// Figures over bins of a quantity, as lines with a mark in the middle of each bin.
+struct BinPlot {
+    struct Line {
+        std::string label;
+        std::vector<double> values;  ///< one per bin; NaN = nothing there, the line has a gap
+    };
+    std::string x_label;        ///< with its unit
+    std::string unit;           ///< of the values
+    std::vector<double> edges;  ///< of the bins, ascending; one more than there are values
+    std::vector<Line> lines;    ///< two at most
+    double high = 0.0;          ///< upper end of the y axis; 0 = just above the largest value
+};
+/// Empty string when no line has a value.
+[[nodiscard]] std::string bin_plot_svg(const BinPlot& plot);
 
 }  // namespace surefoot::eval

@@ -174,10 +174,20 @@ std::string extension_of(const std::string& path) {
 }
 
 Result<AppendFile> AppendFile::create(const std::string& path) {
+    return open(path, O_TRUNC);
+}
+
+Result<AppendFile> AppendFile::resume(const std::string& path) {
+    return open(path, 0);
+}
+
+Result<AppendFile> AppendFile::open(const std::string& path, int flags) {
     const int descriptor =
-        ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
+        ::open(path.c_str(), flags | O_CREAT | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor < 0) return cannot_write(path, errno);
-    return AppendFile(path, descriptor);
+    AppendFile file(path, descriptor);
+    file.size_ = std::max<std::int64_t>(0, ::lseek(descriptor, 0, SEEK_END));  // 0: a device
+    return file;
 }
 
 AppendFile::~AppendFile() {

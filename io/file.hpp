@@ -49,6 +49,8 @@ class AppendFile {
   public:
     /// Starts an empty file; what is there is replaced.
     [[nodiscard]] static Result<AppendFile> create(const std::string& path);
+    /// Goes on at the end of what is there; an empty file where nothing is.
+    [[nodiscard]] static Result<AppendFile> resume(const std::string& path);
     ~AppendFile();
     AppendFile(AppendFile&& other) noexcept;
     AppendFile& operator=(AppendFile&& other) noexcept;
@@ -59,6 +61,7 @@ class AppendFile {
   private:
     AppendFile(std::string path, int descriptor)
         : path_(std::move(path)), descriptor_(descriptor) {}
+    [[nodiscard]] static Result<AppendFile> open(const std::string& path, int flags);
     std::string path_;
     int descriptor_ = -1;
     std::int64_t size_ = 0;

@@ -2,31 +2,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
 
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/source.hpp"
+#include "apps/surefoot/suite_plan.hpp"
+#include "apps/surefoot/suite_progress.hpp"
 #include "apps/surefoot/suite_report.hpp"
+#include "apps/surefoot/suite_rows.hpp"
 #include "apps/surefoot/suite_table.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "io/file.hpp"
-#include "sim/scenes.hpp"
 
 namespace surefoot::app {
 namespace {
-
-/// Few, short, and of every kind: for every change of the code.
-constexpr int kQuickFrames = 30;
-constexpr const char* kQuickScenes[] = {"demo_stairs",
-                                        "platform_edge",
-                                        "table",
-                                        "kerb_down_100",
-                                        "kerb_up_75",
-                                        "door_810",
-                                        "ramp_1_12_up",
-                                        "hole"};
 
 sim::CameraProfile profile_of(const std::string& name) {
     const auto at =
@@ -34,81 +28,120 @@ sim::CameraProfile profile_of(const std::string& name) {
     return static_cast<sim::CameraProfile>(at - std::begin(sim::kCameraProfileNames));
 }
 
-Result<std::vector<std::string>> chosen_scenes(const EvalSuiteOptions& options) {
-    std::vector<std::string> known;
-    for (const auto& scene : sim::list_scenes()) known.push_back(scene.name);
-    if (options.scenes.empty() && options.quick)
-        return std::vector<std::string>(std::begin(kQuickScenes), std::end(kQuickScenes));
-    if (options.scenes.empty()) return known;
-    for (const std::string& scene : options.scenes) {
-        if (std::find(known.begin(), known.end(), scene) == known.end()) {
-            return usage_error(fmt::format(
-                "--scenes {}: there is no such scene; 'surefoot sim --list' shows them", scene));
-        }
-    }
-    return options.scenes;
+Result<SuiteConditions> conditions_of(const EvalSuiteOptions& options) {
+    auto settings = load_settings(options.common);
+    if (!settings) return settings.error();
+    settings->sim.profile = profile_of(options.camera);
+    const auto machine = load_machine(options.machine);
+    if (!machine) return machine.error();
+    if (!*machine) return usage_error("--machine: a machine file or name is needed");
+    return SuiteConditions{std::move(*settings), machine->value().machine, options.reach_m};
 }
 
-std::vector<SuiteCase> cases_of(const EvalSuiteOptions& options,
-                                const std::vector<std::string>& scenes) {
-    std::vector<SuiteCase> cases;
-    for (const std::string& scene : scenes) {
-        for (int i = 0; i < options.seeds; ++i) {
-            for (const double noise : options.noise) {
-                cases.push_back({scene,
-                                 options.common.seed + static_cast<std::uint64_t>(i),
-                                 noise,
-                                 options.quick ? kQuickFrames : 0});
-            }
-        }
-    }
-    return cases;
+/// Everything that the figures of a case depend on beside the case itself.
+std::uint64_t conditions_hash(const EvalSuiteOptions& options, const SuiteConditions& conditions) {
+    std::uint64_t hash = hash_of(conditions.settings);
+    for (const char c : fmt::format("{} {}", options.machine, options.reach_m))
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;  // FNV-1a
+    return hash;
 }
 
-/// Runs what is not there yet; an error or an interrupt ends it, with everything before kept.
-Status run_missing(const std::vector<SuiteCase>& cases,
-                   const Settings& settings,
-                   const io::MachineFile& machine,
-                   Executor& executor,
-                   SuiteTable& table) {
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-        if (table.holds(cases[i])) continue;
-        const std::string label =
-            fmt::format("case {}/{} {}", i + 1, cases.size(), cases[i].name());
-        const auto result = run_suite_case(cases[i], settings, machine, executor, label);
+/// Runs the cases that are not there yet, as many at a time as the executor has threads; each runs
+/// on one thread. A case that fails is named and left out, the others go on; when a result cannot
+/// be written or the user interrupts, no further case is begun.
+class SuiteRun {
+  public:
+    SuiteRun(const SuiteConditions& conditions, SuiteTable& table)
+        : conditions_(conditions), table_(table) {}
+
+    [[nodiscard]] Status run(const std::vector<PlannedCase>& all, Executor& executor) {
+        std::vector<PlannedCase> missing;
+        std::int64_t frames = 0;
+        for (const PlannedCase& planned : all) {
+            if (table_.holds(planned.which)) continue;
+            missing.push_back(planned);
+            frames += planned.frames;
+        }
+        progress_.emplace(missing.size(), frames);
+        executor.parallel_for(static_cast<int>(missing.size()), [&](int index) {
+            run_one(missing[static_cast<std::size_t>(index)]);
+        });
+        progress_.reset();
+        return first_error_ ? Status(*first_error_) : Status();
+    }
+
+  private:
+    void run_one(const PlannedCase& planned) {
+        if (stopped_ || interrupted()) return;
+        const std::string name = planned.which.name();
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            progress_->started(name);
+        }
+        auto result = run_suite_case(planned.which, conditions_);
+        const std::lock_guard<std::mutex> lock(mutex_);
         if (!result) {
-            const Error& error = result.error();
-            return Error{error.code, fmt::format("{}: {}", cases[i].name(), error.message)};
+            fail(name, result.error());
+            return;
         }
-        if (auto status = table.add(*result); !status) return status;
+        if (auto status = table_.add(std::move(*result)); !status) {
+            stopped_ = true;
+            fail(name, status.error());
+            return;
+        }
+        progress_->finished(name, planned.frames);
     }
-    return {};
-}
 
-void print_summary(const std::vector<SuiteRow>& rows) {
-    fmt::print("{:<24}{:>6}{:>6}{:>12}{:>12}{:>12}{:>12}\n",
+    void fail(const std::string& name, const Error& error) {
+        if (error.code == ErrorCode::interrupted) {
+            stopped_ = true;
+            first_error_ = Error{error.code,
+                                 "interrupted by the user; the same call goes on where it stopped"};
+            return;
+        }
+        const Error named{error.code, fmt::format("{}: {}", name, error.message)};
+        if (first_error_) log_error(first_error_->message);  // the last one is told at the end
+        first_error_ = named;
+    }
+
+    const SuiteConditions& conditions_;
+    SuiteTable& table_;
+    std::mutex mutex_;
+    std::optional<SuiteProgress> progress_;
+    std::optional<Error> first_error_;
+    std::atomic<bool> stopped_{false};
+};
+
+void print_summary(std::span<const SuiteRow> rows) {
+    fmt::print("{:<24}{:>8}{:>6}{:>6}{:>10}{:>11}{:>9}{:>12}{:>8}{:>9}\n",
                "scene",
+               "carrier",
                "noise",
                "cases",
                "ATE mm",
                "median mm",
                "90 % mm",
-               "false safe");
-    const auto figure = [](const SuiteRow& row, std::string_view name) {
-        const auto& all = suite_figures();
-        const auto at = std::find_if(
-            all.begin(), all.end(), [&](const SuiteFigure& f) { return name == f.name; });
-        return row.worst[static_cast<std::size_t>(at - all.begin())];
-    };
+               "false safe",
+               "missed",
+               "allowed");
+    const auto& all = suite_figures();
     for (const SuiteRow& row : rows) {
-        fmt::print("{:<24}{:>6g}{:>6}{:>12.2f}{:>12.2f}{:>12.2f}{:>12.4f}\n",
+        const auto worst = [&](std::string_view name) {
+            const auto at = std::find_if(
+                all.begin(), all.end(), [&](const SuiteFigure& f) { return name == f.name; });
+            return row.worst[static_cast<std::size_t>(at - all.begin())];
+        };
+        fmt::print("{:<24}{:>8}{:>6g}{:>6}{:>10.2f}{:>11.2f}{:>9.2f}{:>12.4f}{:>8g}{:>8.0f}%\n",
                    row.scene,
+                   row.carrier,
                    row.noise,
                    row.cases,
-                   1e3 * figure(row, "ate_rmse_m"),
-                   1e3 * figure(row, "height_median_m"),
-                   1e3 * figure(row, "height_p90_m"),
-                   figure(row, "false_safe"));
+                   1e3 * worst("ate_rmse_m"),
+                   1e3 * worst("height_median_m"),
+                   1e3 * worst("height_p90_m"),
+                   worst("false_safe"),
+                   worst("missed_hazards"),
+                   100.0 * worst("allowed"));
     }
     fmt::print("(worst case of each row)\n");
 }
@@ -116,30 +149,26 @@ void print_summary(const std::vector<SuiteRow>& rows) {
 }  // namespace
 
 int eval_suite(const EvalSuiteOptions& options) {
-    auto settings = load_settings(options.common);
-    if (!settings) return report(settings.error());
-    settings->sim.profile = profile_of(options.camera);
-    const auto machine = load_machine(options.machine);
-    if (!machine) return report(machine.error());
-    if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));
-    const auto scenes = chosen_scenes(options);
-    if (!scenes) return report(scenes.error());
+    const auto conditions = conditions_of(options);
+    if (!conditions) return report(conditions.error());
+    const auto cases = plan_suite(options, conditions->settings);
+    if (!cases) return report(cases.error());
     if (auto status = io::make_folder(options.out_dir); !status) return report(status.error());
-    auto table = SuiteTable::open(options.out_dir + "/cases.csv", hash_of(*settings));
+    auto table = SuiteTable::open(options.out_dir, conditions_hash(options, *conditions));
     if (!table) return report(table.error());
 
+    watch_for_interrupts();
     const auto executor = make_executor(options.common);
-    const Status done =
-        run_missing(cases_of(options, *scenes), *settings, machine->value(), *executor, *table);
-    const std::vector<SuiteRow> rows = summarise(table->results());
+    const Status done = SuiteRun(*conditions, *table).run(*cases, *executor);
+    const std::vector<SuiteResult> results = sorted(table->results());
     Writes writes;
-    writes += io::write_file(options.out_dir + "/suite.json", suite_json(table->results()) + "\n");
-    writes += io::write_file(options.out_dir + "/suite.html", suite_html(table->results()));
+    writes += io::write_file(options.out_dir + "/suite.json", suite_json(results) + "\n");
+    writes += io::write_file(options.out_dir + "/suite.html", suite_html(results, options.out_dir));
     if (options.common.json) {
-        fmt::print("{}\n", suite_json(table->results()));
+        fmt::print("{}\n", suite_json(results));
     } else {
-        print_summary(rows);
-        fmt::print("{} cases in {}/suite.html\n", table->results().size(), options.out_dir);
+        print_summary(summarise(results));
+        fmt::print("{} cases in {}/suite.html\n", results.size(), options.out_dir);
     }
     if (!writes.first()) log_error(writes.first().error().message);
     if (!done) return report(done.error());

@@ -69,6 +69,7 @@ struct ReportCamera {
                                       const RigView& view);
 /// `problem` is empty when the settings are valid.
 [[nodiscard]] std::string check_json(const std::string& problem);
+/// `results` as `sorted` leaves them.
 [[nodiscard]] std::string suite_json(std::span<const SuiteResult> results);
 [[nodiscard]] std::string bench_json(const std::vector<BenchResult>& results);
 

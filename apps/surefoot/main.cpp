@@ -361,16 +361,25 @@ void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
     CLI::App* suite =
         bind(add_verb(eval_verb,
                       "suite",
-                      "scenes x seeds x noise through the whole chain against the truth; resumable",
+                      "scenes x seeds x noise through the whole chain against the truth; "
+                      "--threads cases at a time",
                       "surefoot eval suite --quick --scenes floor --noise 1 --out out/suite"),
              s,
              eval_suite,
              exit_code);
-    suite->add_option("--out", s.out_dir, "folder for cases.csv, suite.json, suite.html")
+    suite
+        ->add_option("--out",
+                     s.out_dir,
+                     "folder for suite.html, suite.json, cases.csv; a suite that was stopped goes "
+                     "on where it was")
         ->required()
         ->type_name("DIR");
     suite->add_flag("--quick", s.quick, "a few short scenes, for every change of the code");
-    suite->add_option("--scenes", s.scenes, "names, separated by commas; default all")
+    suite
+        ->add_option("--scenes",
+                     s.scenes,
+                     "names or scene files, separated by commas; default all; who carries the "
+                     "camera is the scene's")
         ->delimiter(',')
         ->type_name("NAMES");
     suite->add_option("--camera", s.camera, "whose noise: nominal is what the real ZED showed")
@@ -381,6 +390,13 @@ void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
         ->delimiter(',')
         ->check(CLI::Range(0.0, 10.0))
         ->type_name("FACTORS");
+    suite->add_option("--frames", s.frames, "stop each case after this many frames")
+        ->check(CLI::PositiveNumber);
+    suite
+        ->add_option(
+            "--reach", s.reach_m, "how far around the last pose the gate is asked; 0 = only there")
+        ->type_name("M")
+        ->check(CLI::Range(0.0, 2.0));
     suite->add_option("--machine", s.machine, "machine file or built-in name")
         ->type_name("FILE|NAME");
 }

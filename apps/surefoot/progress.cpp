@@ -8,7 +8,9 @@
 
 namespace surefoot::app {
 Progress::Progress(std::string label, std::optional<int> total)
-    : label_(std::move(label)), total_(total), visible_(isatty(STDERR_FILENO) != 0) {}
+    : label_(std::move(label)),
+      total_(total),
+      visible_(!label_.empty() && isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
     if (visible_) fmt::print(stderr, "\r\033[K");

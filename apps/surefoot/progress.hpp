@@ -6,7 +6,7 @@
 
 namespace surefoot::app {
 
-/// One line on stderr that counts frames; silent when stderr is no terminal.
+/// One line on stderr that counts frames; silent when stderr is no terminal, or without a label.
 class Progress {
   public:
     Progress(std::string label, std::optional<int> total);

@@ -29,11 +29,11 @@ RunSession::RunSession(pipeline::Pipeline& pipeline,
     record_.rig = rig;
 }
 
-void RunSession::drive(const std::string& label) {
+void RunSession::drive(const std::string& label, const AfterFrame& after_frame) {
     const std::int64_t start_ns = steady_now_ns();
     watch_for_interrupts();
     try {
-        process_all(label);
+        process_all(label, after_frame);
     } catch (const std::exception& error) {
         // Not expected, but a library below may run out of memory: what was computed is kept.
         record_.error = input_error(fmt::format("{}: after {} frames: {}; the results are kept",
@@ -49,18 +49,18 @@ void RunSession::drive(const std::string& label) {
     record_.wall_s = seconds_from_ns(steady_now_ns() - start_ns);
 }
 
-void RunSession::process_all(const std::string& label) {
+void RunSession::process_all(const std::string& label, const AfterFrame& after_frame) {
     Progress progress(label, record_.source.frames);
     const std::vector<StereoFrame> buffered = first_frames();
     if (!buffered.empty()) pipeline_.align(buffered);
     for (const StereoFrame& frame : buffered) {
-        process(frame);
+        process(frame, after_frame);
         progress.advance(static_cast<int>(record_.frames.size()));
     }
     while (!record_.error) {
         const auto frame = next_frame();
         if (!frame) break;
-        process(*frame);
+        process(*frame, after_frame);
         progress.advance(static_cast<int>(record_.frames.size()));
     }
 }
@@ -90,12 +90,13 @@ std::optional<StereoFrame> RunSession::next_frame() {
     return std::move(frame).value();
 }
 
-void RunSession::process(const StereoFrame& frame) {
+void RunSession::process(const StereoFrame& frame, const AfterFrame& after_frame) {
     const bool full = frame.index % depth_every_ == 0;
     const FrameReport report = pipeline_.process(frame, full ? Work::full : Work::odometry);
     if (full) truth_.compare_depth(frame, pipeline_);
     record_.fusion += report.fusion;
     record_.frames.push_back(report);
+    if (after_frame) after_frame(report);
 }
 
 }  // namespace surefoot::app

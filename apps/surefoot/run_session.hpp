@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,15 +45,18 @@ class RunSession {
                const camera::StereoRig& rig,
                int depth_every,
                const eval::EvalMapsConfig& maps);
-    /// Returns when the source ends, fails or is interrupted. Progress is shown under `label`.
-    void drive(const std::string& label = "run");
+    /// Called after every processed frame, while the pipeline is as that frame left it.
+    using AfterFrame = std::function<void(const FrameReport&)>;
+    /// Returns when the source ends, fails or is interrupted. Progress is shown under `label`; an
+    /// empty one shows none.
+    void drive(const std::string& label = "run", const AfterFrame& after_frame = {});
     [[nodiscard]] RunRecord& record() noexcept { return record_; }
 
   private:
     [[nodiscard]] std::optional<StereoFrame> next_frame();
     [[nodiscard]] std::vector<StereoFrame> first_frames();
-    void process_all(const std::string& label);
-    void process(const StereoFrame& frame);
+    void process_all(const std::string& label, const AfterFrame& after_frame);
+    void process(const StereoFrame& frame, const AfterFrame& after_frame);
 
     pipeline::Pipeline& pipeline_;
     camera::FrameSource& source_;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/suite_bins.hpp"
+#include "apps/surefoot/suite_steps.hpp"
 #include "io/machine_file.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
@@ -17,18 +18,25 @@ namespace surefoot::app {
 struct SuiteCase {
     std::string scene;
     std::uint64_t seed = 1;
-    double noise = 1.0;  ///< factor on the camera's noise amplitudes
-    int max_frames = 0;  ///< 0 = the whole path
+    double noise = 1.0;               ///< factor on the camera's noise amplitudes
+    int max_frames = 0;               ///< 0 = the whole path
+    double rate_hz = 10.0;            ///< of the camera
+    std::string carrier = "trolley";  ///< one of sim::kCarrierNames
 
     /// "demo_stairs/seed 3/noise 2": what a finished case is known by.
     [[nodiscard]] std::string name() const;
+    friend bool operator==(const SuiteCase&, const SuiteCase&) = default;
 };
+
+/// How a figure is shown to people; files hold SI units and shares of 1.
+enum class FigureKind : std::uint8_t { count, share, length_m, percent, pixels, number };
 
 /// What is measured in every case, in the order of `SuiteResult::figures`. `lower_is_better` says
 /// which end of a figure is its worst case.
 struct SuiteFigure {
     const char* name;
-    const char* unit;
+    const char* group;  ///< figures of one group share a table
+    FigureKind kind;
     bool lower_is_better;
     const char* meaning;
 };
@@ -36,15 +44,30 @@ struct SuiteFigure {
 
 struct SuiteResult {
     SuiteCase which;
-    std::vector<double> figures;  ///< one per suite_figures(); NaN = there was nothing to measure
+    std::vector<double> figures;   ///< one per suite_figures(); NaN = there was nothing to measure
+    std::vector<SuiteBin> bins;    ///< map errors by range and image column
+    std::vector<SuiteStep> steps;  ///< of a walking machine
+    std::vector<std::uint8_t> thumbnail;  ///< confusion map as PNG; empty where nothing is known,
+                                          ///< and of a case that was read from a file
+
+    /// The figure of that name.
+    [[nodiscard]] double figure(std::string_view name) const;
+};
+
+/// Total order of the cases, the worse first: missed hazards, then unsafe cells called safe, then
+/// height errors, then by name.
+[[nodiscard]] bool is_worse(const SuiteResult& a, const SuiteResult& b);
+
+/// What all cases of a suite share.
+struct SuiteConditions {
+    Settings settings;
+    Machine machine;
+    double reach_m = 0.8;  ///< how far around the last pose the gate is asked
 };
 
 /// Simulates the case, runs the whole chain over it and compares with the truth; nothing is
-/// aligned.
+/// aligned. Thread-safe; the result does not depend on what else is running.
 [[nodiscard]] Result<SuiteResult> run_suite_case(const SuiteCase& which,
-                                                 const Settings& settings,
-                                                 const io::MachineFile& machine,
-                                                 Executor& executor,
-                                                 const std::string& progress_label);
+                                                 const SuiteConditions& conditions);
 
 }  // namespace surefoot::app

@@ -69,6 +69,20 @@ gate::Verdict ask(const Machine& machine,
 
 }  // namespace
 
+void VerdictCounts::add(bool truly_safe, bool clear_cut, bool allowed) {
+    if (!clear_cut) {
+        ++borderline;
+        borderline_ok += allowed ? 1 : 0;
+        borderline_missed += allowed && !truly_safe ? 1 : 0;
+    } else if (truly_safe) {
+        ++safe;
+        safe_ok += allowed ? 1 : 0;
+    } else {
+        ++unsafe;
+        unsafe_ok += allowed ? 1 : 0;
+    }
+}
+
 VerdictCounts compare_verdicts(const sim::SceneTruth& truth,
                                const Pose& T_world_body_true,
                                const Machine& machine,
@@ -84,17 +98,7 @@ VerdictCounts compare_verdicts(const sim::SceneTruth& truth,
             if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
                 continue;
             const bool ok = ask(machine, map, stance, command).decision == gate::Decision::ok;
-            if (!answer.clear_cut) {
-                ++counts.borderline;
-                counts.borderline_ok += ok ? 1 : 0;
-                counts.borderline_missed += ok && !answer.safe ? 1 : 0;
-            } else if (answer.safe) {
-                ++counts.safe;
-                counts.safe_ok += ok ? 1 : 0;
-            } else {
-                ++counts.unsafe;
-                counts.unsafe_ok += ok ? 1 : 0;
-            }
+            counts.add(answer.safe, answer.clear_cut, ok);
         }
     }
     return counts;

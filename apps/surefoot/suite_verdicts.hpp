@@ -19,6 +19,9 @@ struct VerdictCounts {
     int borderline = 0;         ///< not clear-cut
     int borderline_ok = 0;      ///< of these OK
     int borderline_missed = 0;  ///< OK although the exact truth says dangerous
+
+    /// Counts one question.
+    void add(bool truly_safe, bool clear_cut, bool allowed);
 };
 
 /// Asks the gate for every movement of the machine at where it stands, and at places around it

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/suite_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/scenes.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Few, short, and of every kind: for every change of the code.
+constexpr double kQuickTime_s = 2.0;
+constexpr double kQuickWalk_s = 22.0;  ///< two steps and the moment before the third
+constexpr const char* kQuickScenes[] = {"demo_stairs",
+                                        "platform_edge",
+                                        "table",
+                                        "kerb_down_100",
+                                        "kerb_up_75",
+                                        "door_810",
+                                        "ramp_1_12_up",
+                                        "hole"};
+constexpr double kWalkRate_hz = 4.0;
+
+/// A scene as the suite runs it.
+struct SuiteScene {
+    std::string name;
+    sim::Carrier carrier = sim::Carrier::trolley;
+    double duration_s = 0.0;  ///< of its first seed; others differ by centimetres of the way
+};
+
+bool is_scene_file(const std::string& name) {
+    const std::string file = name.substr(0, name.find('#'));
+    return file.ends_with(".yaml");
+}
+
+std::vector<std::string> chosen_names(const EvalSuiteOptions& options) {
+    if (!options.scenes.empty()) return options.scenes;
+    if (options.quick) return {std::begin(kQuickScenes), std::end(kQuickScenes)};
+    std::vector<std::string> names;
+    for (const auto& scene : sim::list_scenes()) names.push_back(scene.name);
+    return names;
+}
+
+Status check_name(const std::string& name) {
+    const auto known = sim::list_scenes();
+    const bool listed = std::any_of(known.begin(), known.end(), [&](const sim::SceneInfo& scene) {
+        return scene.name == name;
+    });
+    if (listed || is_scene_file(name)) return {};
+    return usage_error(
+        fmt::format("--scenes {}: there is no such scene; 'surefoot sim --list' shows them", name));
+}
+
+Result<std::vector<SuiteScene>> open_scenes(const EvalSuiteOptions& options) {
+    std::vector<SuiteScene> scenes;
+    for (const std::string& name : chosen_names(options)) {
+        if (auto status = check_name(name); !status) return status.error();
+        const bool twice = std::any_of(
+            scenes.begin(), scenes.end(), [&](const SuiteScene& s) { return s.name == name; });
+        if (twice) return usage_error(fmt::format("--scenes: {} is named twice", name));
+        const auto scene = sim::make_scene(name, options.common.seed);
+        if (!scene) return usage_error(scene.error().message);
+        scenes.push_back({name, scene->script.carrier, scene->motion->duration_s()});
+    }
+    return scenes;
+}
+
+Status check_noise(const std::vector<double>& factors) {
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        if (std::find(factors.begin(),
+                      factors.begin() + static_cast<std::ptrdiff_t>(i),
+                      factors[i]) != factors.begin() + static_cast<std::ptrdiff_t>(i))
+            return usage_error(fmt::format("--noise: {:g} is given twice", factors[i]));
+    }
+    return {};
+}
+
+PlannedCase planned(const SuiteScene& scene,
+                    const EvalSuiteOptions& options,
+                    const Settings& settings) {
+    const bool walks = scene.carrier == sim::Carrier::rex;
+    PlannedCase plan;
+    plan.which.scene = scene.name;
+    plan.which.carrier = sim::kCarrierNames[static_cast<std::size_t>(scene.carrier)];
+    plan.which.rate_hz =
+        walks ? std::min(kWalkRate_hz, settings.sim.rate_hz) : settings.sim.rate_hz;
+    const auto frames_in = [&](double time_s) {
+        return static_cast<int>(std::floor(time_s * plan.which.rate_hz)) + 1;
+    };
+    plan.frames = frames_in(scene.duration_s);
+    const int limit = options.frames > 0 ? options.frames
+                      : options.quick    ? frames_in(walks ? kQuickWalk_s : kQuickTime_s)
+                                         : settings.sim.frames;
+    if (limit > 0) {
+        plan.which.max_frames = limit;
+        plan.frames = limit;  // a camera that stays when the path has ended is allowed
+    }
+    return plan;
+}
+
+}  // namespace
+
+Result<std::vector<PlannedCase>> plan_suite(const EvalSuiteOptions& options,
+                                            const Settings& settings) {
+    if (auto status = check_noise(options.noise); !status) return status.error();
+    const auto scenes = open_scenes(options);
+    if (!scenes) return scenes.error();
+    std::vector<PlannedCase> cases;
+    for (int i = 0; i < options.seeds; ++i) {
+        std::vector<PlannedCase> of_seed;
+        for (const SuiteScene& scene : *scenes) {
+            for (const double noise : options.noise) {
+                PlannedCase plan = planned(scene, options, settings);
+                plan.which.seed = options.common.seed + static_cast<std::uint64_t>(i);
+                plan.which.noise = noise;
+                of_seed.push_back(std::move(plan));
+            }
+        }
+        std::stable_sort(of_seed.begin(), of_seed.end(), [](const auto& a, const auto& b) {
+            return a.frames > b.frames;
+        });
+        cases.insert(cases.end(), of_seed.begin(), of_seed.end());
+    }
+    return cases;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace surefoot::eval {
+
+/// How many |errors| are how large, so that percentiles over many maps together can be told without
+/// keeping every error. Bins grow by a tenth, which is the resolution of `percentile`; adding up
+/// histograms is exact and does not depend on the order. Errors in m.
+class ErrorHistogram {
+  public:
+    /// Up to 0.1 mm, then 97 bins up to 1.04 m, then everything above.
+    static constexpr int kBins = 99;
+    static constexpr double kFirstEdge_m = 1e-4;
+    static constexpr double kGrowth = 1.1;
+
+    /// NaN is left out.
+    void add(double error_m);
+    /// `bin` in [0, kBins).
+    void add_count(int bin, std::int64_t count);
+    ErrorHistogram& operator+=(const ErrorHistogram& other);
+
+    [[nodiscard]] std::int64_t count() const noexcept { return count_; }
+    [[nodiscard]] std::int64_t count_in(int bin) const {
+        return counts_[static_cast<std::size_t>(bin)];
+    }
+    /// |error| below which `fraction` (0..1) of all lie, linear within its bin; NaN without errors.
+    /// What is in the last bin counts as its lower end.
+    [[nodiscard]] double percentile(double fraction) const;
+
+    friend bool operator==(const ErrorHistogram&, const ErrorHistogram&) = default;
+
+  private:
+    std::array<std::int64_t, kBins> counts_{};
+    std::int64_t count_ = 0;
+};
+
+}  // namespace surefoot::eval
