@@ -181,7 +181,10 @@ double tallest_mm(std::span<const NoiseBins> levels, const BinView& view) {
 }
 
 eval::ReportPlot bin_plot(const NoiseBins& level, const BinView& view, double high_mm) {
+    const std::vector<SuiteBin> bins = of_key(level, view.key);
+    if (bins.empty()) return {};
     eval::BinPlot plot;
+    plot.edges = {bins.front().from};
     plot.x_label = view.x_label;
     plot.unit = "mm";
     plot.high = high_mm;
@@ -191,8 +194,7 @@ eval::ReportPlot bin_plot(const NoiseBins& level, const BinView& view, double hi
         plot.lines[0].values.push_back(median_mm);
         plot.lines[1].values.push_back(tail_mm);
     };
-    for (const SuiteBin& bin : of_key(level, view.key)) {
-        if (plot.edges.empty()) plot.edges.push_back(bin.from);
+    for (const SuiteBin& bin : bins) {
         const double none = std::nan("");
         if (bin.from > plot.edges.back()) append(bin.from, none, none);  // bins without any error
         append(bin.to,
