@@ -33,7 +33,7 @@ figcaption{padding:10px 16px 12px;font-size:.94rem;color:var(--soft);border-top:
 background:var(--card)}
 .card{padding:18px 20px}
 .card.wide{grid-column:1/-1}
-.thumbnails{display:grid;gap:16px;grid-template-columns:repeat(auto-fill,minmax(min(230px,100%),1fr))}
+.thumbnails{display:grid;gap:16px;grid-template-columns:repeat(auto-fill,minmax(min(290px,100%),1fr))}
 .thumbnails figcaption{font-size:.84rem;padding:8px 12px 10px}
 summary{cursor:pointer;font-weight:600}
 details[open] summary{margin-bottom:12px}

@@ -291,6 +291,12 @@ Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
         }
     }
     if (along.end == 0) return {};
+    for (const Eigen::Vector2d& p_m : overlays.trajectory_m) {
+        const auto cell = geometry.cell_at(p_m.x(), p_m.y());
+        if (!cell) continue;
+        along.include(cell->ix);
+        across.include(cell->iy);
+    }
     along.widen(kThumbnailCells, geometry.nx);
     across.widen(kThumbnailCells, geometry.ny);
     constexpr int kCell_px = 4;

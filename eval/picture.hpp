@@ -64,8 +64,8 @@ struct LayerStyle {
                                        const FigureText& text,
                                        const Overlays& overlays);
 
-/// The same colours without title, axes and key, cut to the cells that the live map knows (at least
-/// `kThumbnailCells` wide and high), with the body and its way; empty where nothing is known.
+/// The same colours without title, axes and key, cut to the cells that the live map knows and to
+/// the way (at least `kThumbnailCells` wide and high); empty where nothing is known.
 inline constexpr int kThumbnailCells = 80;
 [[nodiscard]] Picture render_confusion_thumbnail(const grid::GridGeometry& geometry,
                                                  const Image<Call>& calls,

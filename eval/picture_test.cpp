@@ -181,6 +181,9 @@ TEST(Picture, ConfusionThumbnailIsCutToWhatIsKnown) {
     EXPECT_EQ(two.at(two.width() - kCell_px + 2, 2), palette::kSafe);
     EXPECT_EQ(two.at(2, two.height() - 2), palette::kUnsafe);
     EXPECT_EQ(two.at(2, 2), palette::kFaint);
+    Overlays overlays = without_scale_bar();
+    overlays.trajectory_m = {{0.02, 7.0}, {-3.0, 7.0}};  // cell 0, and outside of the grid
+    EXPECT_EQ(render_confusion_thumbnail(geometry, calls, overlays).height(), 200 * kCell_px);
 }
 
 TEST(Picture, OverlaysStayInsideTheMap) {

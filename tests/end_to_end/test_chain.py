@@ -4,9 +4,11 @@ import json
 import math
 import shutil
 import statistics
+import subprocess
+import time
 import unittest
 
-from surefoot_cli import CliTest, grey_png, read_asc, read_tum, surefoot
+from surefoot_cli import BINARY, CliTest, grey_png, read_asc, read_tum, surefoot
 
 
 def digest(folder):
@@ -127,8 +129,12 @@ def solve3(rows):
 
 
 class Suite(CliTest):
+    # Short and small: three frames, and the gate is asked at the last place only.
+    SMALL = ("--scenes", "floor,table", "--frames", 3, "--reach", 0, "--noise", "1,2")
+    FILES = ("cases.csv", "bins.csv", "steps.csv")
+
     def test_no_hazard_is_missed_with_the_noise_of_a_real_camera(self):
-        answer = self.json_of("eval", "suite", "--quick", "--out", self.dir / "suite")
+        answer = self.json_of("eval", "suite", "--quick", "--threads", 2, "--out", self.dir / "suite")
         self.assertEqual(len(answer["cases"]), 16)
         for case in answer["cases"]:
             figures = case["figures"]
@@ -136,9 +142,62 @@ class Suite(CliTest):
                   f"{figures['missed_hazards']:.0f} missed, {figures['borderline_missed']:.0f} borderline")
             self.assertGreater(figures["questions"], 500, case)
             self.assertEqual(figures["missed_hazards"], 0, case)
+            if case["carrier"] == "rex":
+                self.assertGreater(figures["steps"], 1, case)
+                self.assertEqual(figures["steps_missed"], 0, case)
+        self.assertLessEqual({"range", "column", "jump_column"}, {bin_["by"] for bin_ in answer["bins"]})
         # Nothing is run again that is there.
         again = self.json_of("eval", "suite", "--quick", "--out", self.dir / "suite", timeout=20)
         self.assertEqual(again, answer)
+
+    def small_suite(self, name, *more):
+        return self.json_of("eval", "suite", *self.SMALL, *more, "--out", self.dir / name)
+
+    def lines_of(self, name, file):
+        return sorted((self.dir / name / file).read_text().splitlines())
+
+    def test_threads_change_nothing_and_a_killed_suite_goes_on(self):
+        whole = self.small_suite("one", "--threads", 1)
+        self.assertEqual(self.small_suite("two", "--threads", 2), whole)
+        for file in self.FILES:
+            self.assertEqual(self.lines_of("two", file), self.lines_of("one", file))
+        page = (self.dir / "one" / "suite.html").read_bytes()
+        self.assertEqual((self.dir / "two" / "suite.html").read_bytes(), page)
+
+        killed = self.dir / "killed"
+        words = ["eval", "suite", *self.SMALL, "--threads", 1, "--out", killed]
+        process = subprocess.Popen([str(BINARY), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        head = 2
+        deadline = time.monotonic() + 120
+        while time.monotonic() < deadline:  # until a case is there and another one has begun
+            cases = killed / "cases.csv"
+            if cases.exists() and len(cases.read_text().splitlines()) > head:
+                break
+            time.sleep(0.01)
+        process.kill()
+        process.wait()
+        found = len((killed / "cases.csv").read_text().splitlines()) - head
+        self.assertTrue(0 < found < len(whole["cases"]), found)
+        with open(killed / "bins.csv", "a") as bins:  # as if killed while writing
+            bins.write("floor,1,2,3,range,0.5,1,2,0.0")
+        self.assertEqual(self.small_suite("killed"), whole)
+        for file in self.FILES:
+            self.assertEqual(self.lines_of("killed", file), self.lines_of("one", file))
+        self.assertEqual((killed / "suite.html").read_bytes(), page)
+
+    def test_impossible_choices_are_sentences(self):
+        (self.dir / "file").write_text("")
+        for words, said in ((["--scenes", "nowhere"], "no such scene"), (["--scenes", "floor,floor"], "twice"),
+                            (["--noise", "1,1"], "twice"), (["--noise", "11"], "10"), (["--seeds", "0"], "--seeds"),
+                            (["--frames", "0"], "--frames"), (["--reach", "-1"], "--reach"),
+                            (["--scenes", "no.yaml"], "no.yaml"), (["--machine", "nobody"], "nobody")):
+            process = surefoot("eval", "suite", "--quick", *words, "--out", self.dir / "x")
+            self.assertEqual(process.returncode, 2, words)
+            self.assertIn(said, process.stderr, words)
+            self.assertFalse((self.dir / "x").exists(), words)
+        process = surefoot("eval", "suite", "--quick", "--out", self.dir / "file")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("a folder is needed", process.stderr)
 
 
 class Simulation(CliTest):

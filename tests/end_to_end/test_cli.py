@@ -79,7 +79,7 @@ class Verbs(CliTest):
              "elevation traversability coverage sigma by_distance by_range by_column edges floor"),
             (["eval", "depth", depth / "disparity.pfm", depth / "truth.pfm"],
              "bad_1_percent bad_2_percent density_percent auc bad_0_5_percent error sigma sparsification"),
-            (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases"),
+            (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases scenes carriers bins"),
             (["dem", run / "map.ply", "--resolution", 0.1, "--out", self.dir / "dem.asc"],
              "width height resolution_m origin_m known_cells points skipped file"),
             (["config"], "settings"),
