@@ -71,6 +71,13 @@ double sum_of(std::span<const SuiteResult> results, std::string_view name) {
     return sum;
 }
 
+/// NaN where the figure is nowhere measured.
+double largest_of(std::span<const SuiteResult> results, std::string_view name) {
+    double largest = std::nan("");
+    for (const SuiteResult& result : results) largest = std::fmax(largest, result.figure(name));
+    return largest;
+}
+
 void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& content) {
     const double missed = sum_of(results, "missed_hazards");
     content.figures.push_back({"Hazards missed by the gate",
@@ -80,6 +87,16 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
                                            "margin",
                                            sum_of(results, "questions"),
                                            sum_of(results, "borderline_missed"))});
+    const double most_allowed = largest_of(results, "allowed");
+    content.figures.push_back({"Clearly safe movements allowed",
+                               shown(FigureKind::share, most_allowed),
+                               "",
+                               "in the case where the gate allowed most"});
+    if (most_allowed == 0.0) {
+        content.reasons.push_back(
+            "The gate allowed no movement at all in these runs: that it missed no hazard says "
+            "nothing yet. In short runs the ground around the feet was never seen.");
+    }
     if (const double steps = sum_of(results, "steps"); steps > 0.0) {
         content.figures.push_back(
             {"Dangerous steps allowed",
@@ -162,26 +179,28 @@ constexpr BinView kBinViews[] = {
      "99 % are smaller"},
 };
 
-std::vector<SuiteBin> of_key(const NoiseBins& level, BinKey key) {
+std::vector<SuiteBin> of_key(const NoiseBins& level, BinKey key, std::int64_t fewest = 1) {
     std::vector<SuiteBin> bins;
     for (const SuiteBin& bin : level.bins) {
-        if (bin.key == key) bins.push_back(bin);
+        if (bin.key == key && bin.errors.count() >= fewest) bins.push_back(bin);
     }
     return bins;
 }
+/// A bin with less has no percentiles worth a mark in a plot; the tables have them all.
+constexpr std::int64_t kFewestCells = 100;
 
 /// Largest value of any noise level, so that their plots have one scale.
 double tallest_mm(std::span<const NoiseBins> levels, const BinView& view) {
     double tallest = 0.0;
     for (const NoiseBins& level : levels) {
-        for (const SuiteBin& bin : of_key(level, view.key))
+        for (const SuiteBin& bin : of_key(level, view.key, kFewestCells))
             tallest = std::max(tallest, kMillimetres * bin.errors.percentile(view.tail));
     }
     return 1.1 * tallest;
 }
 
 eval::ReportPlot bin_plot(const NoiseBins& level, const BinView& view, double high_mm) {
-    const std::vector<SuiteBin> bins = of_key(level, view.key);
+    const std::vector<SuiteBin> bins = of_key(level, view.key, kFewestCells);
     if (bins.empty()) return {};
     eval::BinPlot plot;
     plot.edges = {bins.front().from};
@@ -201,9 +220,10 @@ eval::ReportPlot bin_plot(const NoiseBins& level, const BinView& view, double hi
                kMillimetres * bin.errors.percentile(0.5),
                kMillimetres * bin.errors.percentile(view.tail));
     }
-    return {fmt::format("{}, noise {}", view.title, times(level.noise)),
-            eval::bin_plot_svg(plot),
-            fmt::format("All scenes, {} cases.", level.cases)};
+    return {
+        fmt::format("{}, noise {}", view.title, times(level.noise)),
+        eval::bin_plot_svg(plot),
+        fmt::format("All scenes, {} cases; bins of {} cells or more.", level.cases, kFewestCells)};
 }
 
 eval::ReportTable bin_table(std::span<const NoiseBins> levels, const BinView& view) {

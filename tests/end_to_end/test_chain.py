@@ -197,7 +197,7 @@ class Suite(CliTest):
             self.assertFalse((self.dir / "x").exists(), words)
         process = surefoot("eval", "suite", "--quick", "--out", self.dir / "file")
         self.assertEqual(process.returncode, 1)
-        self.assertIn("a folder is needed", process.stderr)
+        self.assertIn("cannot make this folder", process.stderr)
 
 
 class Simulation(CliTest):
