@@ -14,9 +14,9 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kRate_hz = 4.0;
+constexpr double kRate_hz = 3.7;  // steps begin between frames
 
-/// The REX walks ahead on a scene's ground, seen by a camera of 4 Hz.
+/// The REX walks ahead on a scene's ground, seen by a slow camera.
 sim::SceneTruth walk_on(const std::string& scene, double distance_m) {
     sim::SceneTruth truth;
     truth.scene = sim::make_scene(scene, 1).value().scene;
