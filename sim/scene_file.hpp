@@ -44,7 +44,8 @@ inline constexpr int kMaxPrimitives = 2000;
 /// The scenes that a file holds.
 [[nodiscard]] Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file);
 
-/// One scene of a file; `name` may be empty where the file holds only one.
+/// One scene of a file; `name` may be empty where the file holds only one. The seed counts together
+/// with the scene's name: seed 7 of two scenes, or of two variants, has nothing in common.
 [[nodiscard]] Result<ScriptedScene> read_scene(const SceneFile& file,
                                                const std::string& name,
                                                std::uint64_t seed);

@@ -354,6 +354,12 @@ TEST(SceneFileTest, VariantsShareAFileAndFixItsFigures) {
     EXPECT_EQ((*infos)[1].description, "a high one");
     EXPECT_EQ(height(read_scene({"test.yaml", text}, "low", 1)->scene, 3.0, 0.0), 0.1);
     EXPECT_EQ(height(read_scene({"test.yaml", text}, "high", 1)->scene, 3.0, 0.0), 0.3);
+    const auto drawn = [&](const std::string& name, std::uint64_t seed) {
+        return read_scene({"test.yaml", text}, name, seed)->motion->at(1e3).T_world_body;
+    };
+    EXPECT_EQ(drawn("low", 5).translation_m, drawn("low", 5).translation_m);
+    EXPECT_NE(drawn("low", 5).translation_m, drawn("high", 5).translation_m)
+        << "the name counts with the seed";
     EXPECT_EQ(read_scene({"test.yaml", text}, "", 1).error().message,
               "test.yaml:1: holds 2 scenes; add '#NAME' with one of: low, high");
     EXPECT_EQ(read_scene({"test.yaml", text}, "flat", 1).error().message,

@@ -199,6 +199,19 @@ TEST(ScenesTest, EverySeedLeavesTheWayFreeAndDrawsItsOwnParameters) {
     }
 }
 
+TEST(ScenesTest, OneSeedIsAnotherPlaceInEveryScene) {
+    std::map<std::string, std::string> scene_of_azimuth;
+    for (const SceneInfo& info : list_scenes()) {
+        const ScriptedScene script = make_scene(info.name, 7).value();
+        for (const SceneParameter& drawn : script.parameters) {
+            if (drawn.name != "lamp_azimuth_deg") continue;
+            const auto [other, is_new] = scene_of_azimuth.emplace(drawn.value, info.name);
+            EXPECT_TRUE(is_new) << info.name << " has the lamp of " << other->second;
+        }
+    }
+    EXPECT_GE(scene_of_azimuth.size(), 20U);
+}
+
 TEST(ScenesTest, TheSameSeedIsTheSameScene) {
     for (const SceneInfo& info : list_scenes()) {
         const ScriptedScene a = make_scene(info.name, 7).value();
