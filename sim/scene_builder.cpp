@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <string_view>
 
 #include "sim/scene_file.hpp"
@@ -12,38 +11,12 @@ namespace surefoot::sim {
 namespace {
 
 constexpr std::uint64_t kSolidStream = 0x736f6c6964;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr int kMaxPits = 16;
-constexpr int kMaxWaypoints = 1000;
 
 struct RepeatSpec {
     int count = 1;
     void describe(ConfigVisitor& visitor) {
-        visitor.integer("count", count, 1, kMaxPrimitives, "copies");
-    }
-};
-
-struct MotionSpec {
-    Carrier carrier = Carrier::trolley;
-    double speed_m_s = 0.0;
-    void describe(ConfigVisitor& visitor) {
-        visitor.enumeration("carrier", carrier, kCarrierNames, "what carries the camera");
-        visitor.number("speed_m_s", speed_m_s, 0.0, 2.0, "0 = the carrier's own");
-    }
-};
-
-struct WaypointSpec {
-    double x_m = kRequired;
-    double y_m = kRequired;
-    double yaw_deg = 0.0;
-    double pause_s = 0.0;
-    double ground_z_m = 0.0;
-    void describe(ConfigVisitor& visitor) {
-        visitor.number("x_m", x_m, -100.0, 100.0, "ahead");
-        visitor.number("y_m", y_m, -100.0, 100.0, "left");
-        visitor.number("yaw_deg", yaw_deg, -3600.0, 3600.0, "from +x towards +y");
-        visitor.number("pause_s", pause_s, 0.0, 600.0, "wait there");
-        visitor.number("ground_z_m", ground_z_m, -100.0, 100.0, "height of the ground there");
+        visitor.integer("count", count, 0, kMaxPrimitives, "copies; 0 = none");
     }
 };
 
@@ -168,32 +141,6 @@ void SceneBuilder::add_solids(const SceneNode& list, const Place& place) {
         if (reader_.error()) return;
         add_solid(item, place);
     }
-}
-
-MotionScript SceneBuilder::read_motion(const SceneNode& group) {
-    MotionSpec motion;
-    reader_.read(group, motion, {"waypoints"});
-    MotionScript script;
-    script.carrier = motion.carrier;
-    script.speed_m_s = motion.speed_m_s;
-    const SceneNode* stops = reader_.required(group, "waypoints", SceneNode::Kind::list);
-    if (stops == nullptr) return script;
-    if (stops->items.empty() || stops->items.size() > kMaxWaypoints) {
-        reader_.fail(
-            *stops, fmt::format("are {}, allowed are 1 to {}", stops->items.size(), kMaxWaypoints));
-    }
-    for (const SceneNode& item : stops->items) {
-        WaypointSpec stop;
-        reader_.read(item, stop);
-        Waypoint waypoint;
-        waypoint.x_m = stop.x_m;
-        waypoint.y_m = stop.y_m;
-        waypoint.yaw_rad = stop.yaw_deg * kRadPerDeg;
-        waypoint.pause_s = stop.pause_s;
-        waypoint.ground_z_m = stop.ground_z_m;
-        script.waypoints.push_back(waypoint);
-    }
-    return script;
 }
 
 }  // namespace surefoot::sim

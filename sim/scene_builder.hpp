@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/motion_script.hpp"
 #include "sim/scene.hpp"
 #include "sim/scene_node.hpp"
 #include "sim/scene_reader.hpp"
@@ -23,7 +22,6 @@ class SceneBuilder {
     void add_lighting(const SceneNode& group);
     /// The list in the frame of `place`.
     void add_solids(const SceneNode& list, const Place& place);
-    [[nodiscard]] MotionScript read_motion(const SceneNode& group);
 
     [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
     [[nodiscard]] Scene take_scene() { return std::move(scene_); }

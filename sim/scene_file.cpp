@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "sim/rigs.hpp"
 #include "sim/scene_builder.hpp"
+#include "sim/scene_motion.hpp"
 #include "sim/scene_node.hpp"
 #include "sim/scene_reader.hpp"
 
@@ -67,7 +67,8 @@ std::vector<Entry> find_entries(SceneReader& reader, const SceneNode& root) {
     return entries;
 }
 
-/// The figures of a variant are parameters before all others.
+/// The figures of a variant are parameters before all others; each takes the place of the parameter
+/// of its name, which so is the default of the other variants.
 void define_parameters(SceneReader& reader,
                        const SceneNode& root,
                        const Entry& entry,
@@ -81,36 +82,9 @@ void define_parameters(SceneReader& reader,
     if (root.find("parameters") == nullptr) return;
     const auto* parameters = reader.required(root, "parameters", SceneNode::Kind::group);
     if (parameters == nullptr) return;
-    for (const SceneNode& parameter : parameters->items) reader.define(parameter, rng);
-}
-
-/// Neither base_link nor the cameras of the usual mount may be inside a solid, anywhere on the way.
-void check_way(SceneReader& reader,
-               const SceneNode& motion_node,
-               const SceneBuilder& builder,
-               const Motion& motion) {
-    constexpr double kStep_s = 0.25;
-    const camera::StereoRig rig = *rig_preset(rig_presets().front());
-    const Pose T_body_left = rig.body_from_left();
-    const Eigen::Vector3d left_m = T_body_left.translation_m;
-    const Eigen::Vector3d right_m = (T_body_left * rig.T_left_right).translation_m;
-    for (double t_s = 0.0; t_s < motion.duration_s() + kStep_s; t_s += kStep_s) {
-        const Pose T_world_body = motion.at(t_s).T_world_body;
-        for (const Eigen::Vector3d& p_body_m :
-             {Eigen::Vector3d(Eigen::Vector3d::Zero()), left_m, right_m}) {
-            const Eigen::Vector3d p_m = T_world_body * p_body_m;
-            const auto solid = builder.scene().solid_at(p_m);
-            if (!solid) continue;
-            return reader.fail(
-                motion_node,
-                fmt::format("brings the camera or base_link into the solid of line {} after {:.2f} "
-                            "s, at ({:.2f}, {:.2f}, {:.2f}) m",
-                            builder.line_of(*solid),
-                            t_s,
-                            p_m.x(),
-                            p_m.y(),
-                            p_m.z()));
-        }
+    for (const SceneNode& parameter : parameters->items) {
+        const bool given = entry.figures != nullptr && entry.figures->find(parameter.key) != nullptr;
+        if (!given) reader.define(parameter, rng);
     }
 }
 
@@ -148,14 +122,14 @@ ScriptedScene build(SceneReader& reader,
     if (reader.error()) return out;
     builder.add_materials(*materials);
     builder.add_solids(*solids, {});
-    out.script = builder.read_motion(*motion);
+    out.script = read_motion(reader, *motion);
     if (reader.error()) return out;
-    auto made = make_motion(out.script, seed);
+    auto made = make_motion(out.script, seed, ground_of(builder.scene()));
     if (!made) {
         reader.fail(*motion, fmt::format("cannot be followed: {}", made.error().message));
         return out;
     }
-    check_way(reader, *motion, builder, *made->motion);
+    check_way(reader, *motion, builder, *made);
     out.motion = std::move(made->motion);
     out.steps = std::move(made->steps);
     out.scene = builder.take_scene();

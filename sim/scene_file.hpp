@@ -12,7 +12,8 @@
 namespace surefoot::sim {
 
 /// Scenes are data: a YAML file holds one scene, or one geometry with several `variants` (the same
-/// stairs with the figures of each class).
+/// stairs with the figures of each class). A figure of a variant takes the place of the parameter of
+/// its name.
 ///
 ///     name: kerb_ahead                  # or  variants: {name: {description: ..., figure: ...}}
 ///     description: one line
@@ -26,13 +27,22 @@ namespace surefoot::sim {
 ///     solids:                           # keys of the structs of solids.hpp
 ///       - floor: {min_x_m: -3, min_y_m: -5, max_x_m: 9, max_y_m: 5, material: ground}
 ///       - group: {x_m: distance_m, heading_deg: 5, solids: [...]}
-///       - repeat: {count: 4, name: k, solids: [...]}      # k = 0, 1, 2, 3
+///       - repeat: {count: 4, name: k, solids: [...]}      # k = 0, 1, 2, 3; count 0 = none
 ///     motion:
-///       carrier: trolley
+///       carrier: trolley                              # or rex, hand
 ///       waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: end_m, y_m: 0}]
 ///
-/// Strict: unknown keys, wrong types, values out of range, impossible geometry and a camera inside
-/// a solid are input errors that name file, line, value and limit.
+/// Instead of waypoints a motion may name one of motion_scripts.hpp with its figures:
+///
+///     motion: {carrier: rex, script: back_to_table, table_x_m: distance_m, left_m: 0.95}
+///     # approach: distance_m; turn_round: turn_deg; pivot_and_reverse: distance_m;
+///     # sidestep_through_door: door_x_m, door_y_m, beyond_m; descend_backwards: steps_ahead,
+///     riser_m
+///
+/// The rex sets its feet on the ground of the scene.
+///
+/// Strict: unknown keys, wrong types, values out of range, impossible geometry, a camera or a
+/// foot inside a solid and steps too high are input errors that name file, line, value and limit.
 struct SceneFile {
     std::string file;  ///< for messages
     std::string_view text;

@@ -272,7 +272,7 @@ TEST(SceneFileTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {file_with("  - table: {x_m: 2, y_m: 0, length_m: 1, width_m: 0.1, material: stone}\n"),
          "'table' leg_inset_m 0.06 is not below half"},
         {file_with("  - repeat: {count: 3000, name: k, solids: []}\n"),
-         "'count' is 3000, allowed are 1 to 2000"},
+         "'count' is 3000, allowed are 0 to 2000"},
         {file_with(
              "  - repeat: {count: 50, name: k, solids: [{repeat: {count: 50, name: j, solids: "
              "[{box: {" +
