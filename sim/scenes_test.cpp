@@ -55,7 +55,7 @@ TEST(ScenesTest, EveryFileInTheProgramIsWellFormedAndNamesDiffer) {
             EXPECT_TRUE(names.insert(info.name).second) << info.name << " is there twice";
         }
     }
-    EXPECT_GE(names.size(), 40U);
+    EXPECT_GE(names.size(), 100U);
 }
 
 TEST(ScenesTest, EveryListedSceneCanBeMadeAndIsClosed) {
@@ -160,6 +160,16 @@ TEST(ScenesTest, BeforeThePlatformEdgeTheNextStepIsHalfOverIt) {
 constexpr double kHalfLength_m = 0.325;
 constexpr double kHalfWidth_m = 0.33;
 
+/// Height of what is below a head 2.05 m high; a beam above it leaves the way free.
+double ground_m(const Scene& scene, double x_m, double y_m) {
+    constexpr double kHead_m = 2.05;
+    constexpr double kNothing_m = 1e3;
+    for (const SurfaceHeight& surface : scene.surfaces_at(x_m, y_m)) {
+        if (surface.z_m < kHead_m) return surface.z_m;
+    }
+    return kNothing_m;
+}
+
 /// Largest height difference between the ground under the machine and z = 0, along the whole path.
 double worst_ground_m(const ScriptedScene& script) {
     constexpr int kHalfGrid = 2;
@@ -171,8 +181,7 @@ double worst_ground_m(const ScriptedScene& script) {
                 const Vector3d p =
                     T *
                     Vector3d(kHalfLength_m * ix / kHalfGrid, kHalfWidth_m * iy / kHalfGrid, 0.0);
-                const auto ground = script.scene.height_at(p.x(), p.y());
-                worst_m = std::max(worst_m, ground ? std::abs(ground->z_m) : 1e3);
+                worst_m = std::max(worst_m, std::abs(ground_m(script.scene, p.x(), p.y())));
             }
         }
     }
@@ -182,6 +191,13 @@ double worst_ground_m(const ScriptedScene& script) {
 TEST(ScenesTest, EverySeedLeavesTheWayFreeAndDrawsItsOwnParameters) {
     // Where the ground of the way is not flat: 1:50 across half the width, and a rug of 8 mm.
     const std::map<std::string, double> uneven_m{{"cross_fall", 0.0075}, {"room", 0.008}};
+    // Walks into danger or uphill: walking_scenes_test.cpp tells which of their steps are safe.
+    const std::set<std::string> not_free{"walk_back_into_table",
+                                         "walk_descend_backwards",
+                                         "walk_pivot_reverse_edge",
+                                         "walk_ramp_1_12",
+                                         "walk_ramp_1_8",
+                                         "walk_sidestep_door_760"};
     const std::set<std::string> fixed{"demo_stairs", "floor", "platform_edge", "table"};
     for (const SceneInfo& info : list_scenes()) {
         const auto uneven = uneven_m.find(info.name);
@@ -190,7 +206,9 @@ TEST(ScenesTest, EverySeedLeavesTheWayFreeAndDrawsItsOwnParameters) {
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
             const auto script = make_scene(info.name, seed);
             ASSERT_TRUE(script) << info.name << " seed " << seed << ": " << script.error().message;
-            EXPECT_LE(worst_ground_m(*script), limit_m) << info.name << " seed " << seed;
+            if (!not_free.contains(info.name)) {
+                EXPECT_LE(worst_ground_m(*script), limit_m) << info.name << " seed " << seed;
+            }
             std::string all;
             for (const auto& parameter : script->parameters) all += parameter.value + " ";
             drawn.insert(all);
@@ -209,7 +227,7 @@ TEST(ScenesTest, OneSeedIsAnotherPlaceInEveryScene) {
             EXPECT_TRUE(is_new) << info.name << " has the lamp of " << other->second;
         }
     }
-    EXPECT_GE(scene_of_azimuth.size(), 20U);
+    EXPECT_GE(scene_of_azimuth.size(), 60U);
 }
 
 TEST(ScenesTest, TheSameSeedIsTheSameScene) {
@@ -257,13 +275,17 @@ std::set<Label> seen_labels(const ScriptedScene& script) {
 
 TEST(ScenesTest, TheCameraSeesWhatTheSceneIsAbout) {
     const std::vector<std::pair<std::string, Label>> subjects{
-        {"stairs", Label::step},  {"flight", Label::step},       {"spiral", Label::step},
-        {"kerb_up", Label::kerb}, {"kerb_down", Label::drop},    {"kerb_ramp", Label::ramp},
-        {"ramp_1", Label::ramp},  {"sill", Label::sill},         {"door", Label::door},
-        {"table", Label::table},  {"overhang", Label::overhang}, {"hole", Label::drop},
-        {"drop", Label::drop},    {"platform", Label::drop},     {"corridor", Label::door},
-        {"room", Label::table},   {"demo", Label::step},         {"cross_fall", Label::floor},
-        {"floor", Label::floor},
+        {"stairs", Label::step},      {"flight", Label::step},        {"spiral", Label::step},
+        {"kerb_up", Label::kerb},     {"kerb_down", Label::drop},     {"kerb_ramp", Label::ramp},
+        {"ramp_1", Label::ramp},      {"sill", Label::sill},          {"door", Label::door},
+        {"table", Label::table},      {"overhang", Label::overhang},  {"hole", Label::drop},
+        {"drop", Label::drop},        {"platform", Label::drop},      {"corridor", Label::door},
+        {"room", Label::table},       {"demo", Label::step},          {"cross_fall", Label::floor},
+        {"floor", Label::floor},      {"glass", Label::floor},        {"mirror", Label::floor},
+        {"stripes", Label::floor},    {"shadow", Label::floor},       {"look", Label::step},
+        {"hand", Label::step},        {"walk_back", Label::table},    {"walk_descend", Label::step},
+        {"walk_ramp", Label::ramp},   {"walk_sidestep", Label::wall}, {"walk_turn", Label::table},
+        {"walk_pivot", Label::floor}, {"walk_floor", Label::floor},
     };
     for (const SceneInfo& info : list_scenes()) {
         const auto subject = std::find_if(subjects.begin(), subjects.end(), [&](const auto& entry) {
