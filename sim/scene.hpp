@@ -117,6 +117,10 @@ class Scene {
     [[nodiscard]] const std::vector<Eigen::Vector3d>& hull(int primitive) const;
     /// See Primitive; the face is numbered through the scene.
     [[nodiscard]] std::optional<FacePlane> only_face(int primitive, const Beam& beam) const;
+    /// Number of the first surface of a primitive; its other ones follow.
+    [[nodiscard]] int first_surface(int primitive) const {
+        return first_surface_[static_cast<std::size_t>(primitive)];
+    }
     [[nodiscard]] const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
     [[nodiscard]] const std::vector<Material>& materials() const noexcept { return materials_; }
 

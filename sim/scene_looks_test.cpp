@@ -8,6 +8,7 @@
 
 #include "sim/rigs.hpp"
 #include "sim/scenes.hpp"
+#include "sim/shader.hpp"
 
 /// Scenes that are named after a look show it to the camera.
 namespace surefoot::sim {
@@ -135,6 +136,48 @@ TEST(SceneLooksTest, EveryPatternHasItsScene) {
         patterns.insert(pattern);
     }
     EXPECT_EQ(patterns.size(), static_cast<std::size_t>(kPatterns));
+}
+
+/// Faces of the corridor's doors that look at the way on the left side, by x.
+std::vector<int> left_doors(const Scene& scene) {
+    std::vector<int> faces;
+    for (std::size_t k = 0; k < scene.surfaces().size(); ++k) {
+        const Surface& surface = scene.surfaces()[k];
+        const bool left = scene.bounds(surface.primitive).center_m.y() > 0.0;
+        if (surface.label == Label::door && left && surface.frame.normal.y() < -0.999)
+            faces.push_back(static_cast<int>(k));
+    }
+    return faces;
+}
+
+TEST(SceneLooksTest, LookAlikesOfTheCorridorLookAlike) {
+    // Texels are weighed in steps of 1/256; rounding of a place may take the next one.
+    constexpr float kWeight = 1.0F / 256.0F;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+        ScriptedScene script = make_scene("corridor", seed).value();
+        script.scene.light({.ambient = 1.0, .lamp = 0.0});
+        const Shader shader(script.scene, seed);
+        const std::vector<int> doors = left_doors(script.scene);
+        ASSERT_GE(doors.size(), 10U);
+        const auto radiance = [&](std::size_t door, double along_m, double z_m) {
+            const Sphere& bounds = script.scene.bounds(
+                script.scene.surfaces()[static_cast<std::size_t>(doors[door])].primitive);
+            const Vector3d p(bounds.center_m.x() + along_m, bounds.center_m.y() - 0.015, z_m);
+            return shader.surface(doors[door], {p, Vector3d::UnitY(), 1.0, 0.002}).radiance;
+        };
+        std::set<float> values;
+        for (double along_m = -0.4; along_m < 0.4; along_m += 0.07) {
+            for (double z_m = 0.1; z_m < 2.0; z_m += 0.13) {
+                const float first = radiance(0, along_m, z_m);
+                values.insert(first);
+                for (const std::size_t door : {1U, 5U, 9U}) {
+                    EXPECT_NEAR(radiance(door, along_m, z_m), first, kWeight)
+                        << "door " << door << ", seed " << seed;
+                }
+            }
+        }
+        EXPECT_GT(values.size(), 50U) << "a look without structure";
+    }
 }
 
 }  // namespace

@@ -88,13 +88,21 @@ Shader::Shader(const Scene& scene, std::uint64_t seed)
 
 void Shader::add_face(const Surface& surface, const Material& material) {
     const FaceFrame& frame = surface.frame;
+    // The pattern is shifted by the number of the face: in the scene, or in its own solid.
+    int number = static_cast<int>(faces_.size());
+    if (material.same_look) number -= scene_->first_surface(surface.primitive);
     Face face;
-    face.placement = textures_.place(surface.material, static_cast<int>(faces_.size()));
+    face.placement = textures_.place(surface.material, number);
     face.normal = frame.normal;
     face.tangent_u = frame.tangent_u;
     face.tangent_v = frame.tangent_v;
     face.texel_u = face.placement.along * frame.tangent_u + face.placement.across * frame.tangent_v;
     face.texel_v = face.placement.along * frame.tangent_v - face.placement.across * frame.tangent_u;
+    if (material.same_look && !frame.curved) {
+        const Vector3d& middle_m = scene_->bounds(surface.primitive).center_m;
+        face.placement.u_texel -= face.texel_u.dot(middle_m);
+        face.placement.v_texel -= face.texel_v.dot(middle_m);
+    }
     face.facing_lamp = frame.normal.dot(towards_lamp_);
     face.finish = material.finish;
     face.curved = frame.curved;

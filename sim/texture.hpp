@@ -61,6 +61,9 @@ struct Material {
     std::uint64_t seed = 0;  ///< shifts the pattern; mixed with the seed of the scene
     Finish finish = Finish::matte;
     double gloss = 0.9;  ///< mirror: share reflected; glass: share that passes straight on
+    /// Solids of one shape look alike: the pattern counts from the middle of the solid (around a
+    /// cylinder from height 0) and its shift is that of the face within the solid.
+    bool same_look = false;
 
     void describe(ConfigVisitor& visitor);
 };
