@@ -27,7 +27,16 @@ Status write_png(const std::string& path, const eval::Picture& picture) {
     return io::write_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-/// Half-way along the path, where scenes show what they are about.
+/// When a scene shows what it is about: half-way; on a walk before the machine turns, for the first
+/// time, away from what it walks to.
+double telling_time_s(const sim::ScriptedScene& script) {
+    constexpr int kFirstTurn = 25;  // joystick codes 25 and 26
+    for (const sim::StepEvent& step : script.steps) {
+        if (step.command >= kFirstTurn) return step.start_s;
+    }
+    return 0.5 * script.motion->duration_s();
+}
+
 Status write_view(const std::string& path,
                   const sim::SceneInfo& info,
                   const sim::ScriptedScene& script,
@@ -36,16 +45,20 @@ Status write_view(const std::string& path,
     sim::SceneOptions options;
     options.scene = info.name;
     options.seed = seed;
-    options.rate_hz = std::max(2.0 / script.motion->duration_s(), 0.1);
+    constexpr double kLongest_s = 10.0;  // between two frames of a source
+    const double time_s = telling_time_s(script);
+    const int frames = static_cast<int>(std::ceil(time_s / kLongest_s));
+    options.rate_hz = frames / time_s;
+    options.frames = frames + 1;
     auto source = sim::open_scene(options, &executor);
     if (!source) return source.error();
-    GreyImage middle;
-    for (int frame = 0; frame < 2; ++frame) {
+    GreyImage last;
+    for (int frame = 0; frame <= frames; ++frame) {
         auto next = (*source)->next();
         if (!next) return next.error();
-        if (*next) middle = std::move((*next)->left);
+        if (*next) last = std::move((*next)->left);
     }
-    return write_png(path, eval::render_camera_image(middle, {info.name, info.description}));
+    return write_png(path, eval::render_camera_image(last, {info.name, info.description}));
 }
 
 /// The colours span the ground, not the walls around it.
