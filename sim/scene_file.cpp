@@ -83,7 +83,8 @@ void define_parameters(SceneReader& reader,
     const auto* parameters = reader.required(root, "parameters", SceneNode::Kind::group);
     if (parameters == nullptr) return;
     for (const SceneNode& parameter : parameters->items) {
-        const bool given = entry.figures != nullptr && entry.figures->find(parameter.key) != nullptr;
+        const bool given =
+            entry.figures != nullptr && entry.figures->find(parameter.key) != nullptr;
         if (!given) reader.define(parameter, rng);
     }
 }

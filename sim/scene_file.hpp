@@ -12,8 +12,8 @@
 namespace surefoot::sim {
 
 /// Scenes are data: a YAML file holds one scene, or one geometry with several `variants` (the same
-/// stairs with the figures of each class). A figure of a variant takes the place of the parameter of
-/// its name.
+/// stairs with the figures of each class). A figure of a variant takes the place of the parameter
+/// of its name.
 ///
 ///     name: kerb_ahead                  # or  variants: {name: {description: ..., figure: ...}}
 ///     description: one line
