@@ -82,7 +82,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
       clock_(clock),
       rectifier_(std::move(rectifier)),
       odometry_(config.odometry, *rectifier_),
-      matcher_(stereo::make_sgbm_matcher(config.stereo)),
+      matcher_(stereo::make_matcher(config.stereo)),
       map_(config.elevation),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
       imu_mount_(rig.imu) {}

@@ -6,6 +6,7 @@
 namespace surefoot::stereo {
 
 void MatcherConfig::describe(ConfigVisitor& visitor) {
+    visitor.enumeration("algorithm", algorithm, kAlgorithmNames, "who searches");
     visitor.integer("disparities",
                     disparities,
                     16,
@@ -40,7 +41,14 @@ std::optional<std::string> MatcherConfig::problem() const {
         return fmt::format("stereo.left_right_tolerance_px = {} must be from 0 to 16",
                            left_right_tolerance_px);
     }
+    if (algorithm == Algorithm::census && disparities > 256)
+        return fmt::format("stereo.disparities = {}: census searches at most 256", disparities);
     return std::nullopt;
+}
+
+std::unique_ptr<Matcher> make_matcher(const MatcherConfig& config) {
+    return config.algorithm == Algorithm::census ? make_census_matcher(config)
+                                                 : make_sgbm_matcher(config);
 }
 
 }  // namespace surefoot::stereo

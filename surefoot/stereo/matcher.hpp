@@ -12,10 +12,17 @@
 
 namespace surefoot::stereo {
 
+enum class Algorithm : std::uint8_t {
+    census,  ///< ours: semi-global on census words
+    sgbm,    ///< OpenCV's semi-global matcher in 3-way mode
+};
+inline constexpr const char* kAlgorithmNames[] = {"census", "sgbm"};
+
 struct MatcherConfig {
+    Algorithm algorithm = Algorithm::census;
     int disparities = 64;  ///< search range [px], a multiple of 16; KITTI-size images want 96-128
-    int block_size = 3;    ///< odd
-    int uniqueness_percent = 10;
+    int block_size = 3;    ///< odd; sgbm alone
+    int uniqueness_percent = 5;
     double left_right_tolerance_px = 1.0;
     void describe(ConfigVisitor& visitor);
     /// First reason why it cannot be used, with the value; or nothing.
@@ -38,5 +45,11 @@ class Matcher {
 /// OpenCV's semi-global matcher (3-way mode) with our left-right check, sub-pixel refinement, sigma
 /// and outlier probability. `config` must have no problem().
 [[nodiscard]] std::unique_ptr<Matcher> make_sgbm_matcher(const MatcherConfig& config);
+
+/// SemiGlobalSearch, its winners settled, speckles removed, then as above.
+[[nodiscard]] std::unique_ptr<Matcher> make_census_matcher(const MatcherConfig& config);
+
+/// The one that `config.algorithm` names.
+[[nodiscard]] std::unique_ptr<Matcher> make_matcher(const MatcherConfig& config);
 
 }  // namespace surefoot::stereo

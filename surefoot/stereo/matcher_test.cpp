@@ -27,7 +27,7 @@ camera::DepthImage match(const GreyImage& left,
                          const MatcherConfig& config = {}) {
     Serial serial;
     camera::DepthImage depth;
-    make_sgbm_matcher(config)->match(left.view(), right.view(), serial, depth);
+    make_matcher(config)->match(left.view(), right.view(), serial, depth);
     return depth;
 }
 
@@ -118,18 +118,46 @@ double cpu_ms() {
 }
 
 TEST(MatcherConfig, SaysWhatIsWrong) {
+    const auto with = [](auto change) {
+        MatcherConfig config;
+        change(config);
+        return config;
+    };
     EXPECT_EQ(MatcherConfig{}.problem(), std::nullopt);
-    EXPECT_EQ((MatcherConfig{.disparities = 60}).problem().value_or(""),
+    EXPECT_EQ(with([](MatcherConfig& c) { c.disparities = 60; }).problem().value_or(""),
               "stereo.disparities = 60 must be a multiple of 16 from 16 to 512");
-    EXPECT_EQ((MatcherConfig{.block_size = 4}).problem().value_or(""),
+    EXPECT_EQ(with([](MatcherConfig& c) { c.block_size = 4; }).problem().value_or(""),
               "stereo.block_size = 4 must be odd, from 1 to 11");
-    EXPECT_EQ((MatcherConfig{.left_right_tolerance_px = std::nan("")}).problem().value_or(""),
+    EXPECT_EQ(with([](MatcherConfig& c) { c.left_right_tolerance_px = std::nan(""); })
+                  .problem()
+                  .value_or(""),
               "stereo.left_right_tolerance_px = nan must be from 0 to 16");
+    EXPECT_EQ(with([](MatcherConfig& c) { c.disparities = 512; }).problem().value_or(""),
+              "stereo.disparities = 512: census searches at most 256");
 }
 
-TEST(SgbmMatcher, AGreyWallGivesNoTrustedDepth) {
+class EveryMatcher : public testing::TestWithParam<Algorithm> {
+  protected:
+    [[nodiscard]] static MatcherConfig config() {
+        MatcherConfig config;
+        config.algorithm = GetParam();
+        if (config.algorithm == Algorithm::sgbm) config.uniqueness_percent = 10;  // as beside it
+        return config;
+    }
+    [[nodiscard]] static const char* name() {
+        return kAlgorithmNames[static_cast<std::size_t>(GetParam())];
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Algorithms,
+                         EveryMatcher,
+                         testing::Values(Algorithm::census, Algorithm::sgbm),
+                         [](const auto& parameter) {
+                             return kAlgorithmNames[static_cast<std::size_t>(parameter.param)];
+                         });
+
+TEST_P(EveryMatcher, AGreyWallGivesNoTrustedDepth) {
     const GreyImage grey(160, 120, 128);
-    const camera::DepthImage depth = match(grey, grey);
+    const camera::DepthImage depth = match(grey, grey, config());
     for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
         const bool unknown = std::isnan(depth.disparity_px.data()[i]);
         EXPECT_TRUE(unknown || depth.sigma_px.data()[i] == kMaxSigma_px);
@@ -139,17 +167,17 @@ TEST(SgbmMatcher, AGreyWallGivesNoTrustedDepth) {
     }
 }
 
-TEST(SgbmMatcher, ImagesNarrowerThanTheSearchWork) {
+TEST_P(EveryMatcher, ImagesNarrowerThanTheSearchWork) {
     const GreyImage grey(20, 10, 128);
-    const camera::DepthImage depth = match(grey, grey);
+    const camera::DepthImage depth = match(grey, grey, config());
     EXPECT_EQ(depth.disparity_px.width(), 20);
     EXPECT_EQ(depth.disparity_px.height(), 10);
 }
 
-TEST(SgbmMatcher, FloorIsExactToATenthOfAPixel) {
+TEST_P(EveryMatcher, FloorIsExactToATenthOfAPixel) {
     const test::SyntheticPair& pair = scene();
     const double start_ms = cpu_ms();
-    const camera::DepthImage depth = match(pair.left, pair.right);
+    const camera::DepthImage depth = match(pair.left, pair.right, config());
     const double ours_ms = cpu_ms() - start_ms;
     const auto away_from_edges = [&](int u, int v) { return pair.near_edge.at(u, v) == 0; };
     const Score ours =
@@ -157,9 +185,10 @@ TEST(SgbmMatcher, FloorIsExactToATenthOfAPixel) {
     const Score plain =
         score(plain_sgbm(pair.left, pair.right, 64), nullptr, pair.disparity_px, away_from_edges);
     std::printf(
-        "rendered steps: rms %.3f px (plain %.3f), mean %+.3f (plain %+.3f), bad-1 %.2f %%, "
+        "%s, rendered steps: rms %.3f px (plain %.3f), mean %+.3f (plain %+.3f), bad-1 %.2f %%, "
         "density %.1f %%, "
         "3 sigma %.2f %%, first call %.0f ms of processor time\n",
+        name(),
         ours.rms_px,
         plain.rms_px,
         ours.mean_px,
@@ -176,9 +205,9 @@ TEST(SgbmMatcher, FloorIsExactToATenthOfAPixel) {
     EXPECT_GT(ours.density, 0.99);
 }
 
-TEST(SgbmMatcher, ThreeSigmaCoverTheErrors) {
+TEST_P(EveryMatcher, ThreeSigmaCoverTheErrors) {
     const test::SyntheticPair& pair = scene();
-    const camera::DepthImage depth = match(pair.left, pair.right);
+    const camera::DepthImage depth = match(pair.left, pair.right, config());
     const Score all = score(
         depth.disparity_px, &depth.sigma_px, pair.disparity_px, [](int, int) { return true; });
     const Score trusted =
@@ -192,9 +221,9 @@ TEST(SgbmMatcher, ThreeSigmaCoverTheErrors) {
     EXPECT_GE(trusted.within_3_sigma, 0.99);
 }
 
-TEST(SgbmMatcher, WrongMatchesAreSuspectedAndTrustedOnesAreRight) {
+TEST_P(EveryMatcher, WrongMatchesAreSuspectedAndTrustedOnesAreRight) {
     const test::SyntheticPair& pair = scene();
-    const camera::DepthImage depth = match(pair.left, pair.right);
+    const camera::DepthImage depth = match(pair.left, pair.right, config());
     int wrong = 0, suspected = 0, trusted = 0, trusted_wrong = 0;
     double expected_wrong = 0.0;
     for (int v = 0; v < pair.left.height(); ++v) {
@@ -223,13 +252,13 @@ TEST(SgbmMatcher, WrongMatchesAreSuspectedAndTrustedOnesAreRight) {
     EXPECT_LT(trusted_wrong, 1e-3 * trusted);
 }
 
-TEST(SgbmMatcher, SameBytesForEveryExecutorThreadCountAndCall) {
+TEST_P(EveryMatcher, SameBytesForEveryExecutorThreadCountAndCall) {
     const test::SyntheticPair& pair = scene();
     const int threads = cv::getNumThreads();
     Serial serial;
     test::TwoThreads two;
     camera::DepthImage a, b;
-    const auto matcher = make_sgbm_matcher(MatcherConfig{});
+    const auto matcher = make_matcher(config());
     cv::setNumThreads(1);
     matcher->match(pair.left.view(), pair.right.view(), serial, a);
     cv::setNumThreads(2);
@@ -285,7 +314,7 @@ Image<float> load_truth(const std::string& base, const RealPair& pair) {
     return truth_px;
 }
 
-TEST(SgbmMatcher, MiddleburyBesidePlainSgbm) {
+TEST_P(EveryMatcher, MiddleburyBesidePlainSgbm) {
     // Truth of adirondack is rounded to whole pixels: only bad-2 means something there.
     const RealPair pairs[] = {
         {"cones", "disp_left_x4.png", "disp_right_x4.png", nullptr, 4.0, 64, 0.024},
@@ -307,8 +336,9 @@ TEST(SgbmMatcher, MiddleburyBesidePlainSgbm) {
         }
         const Image<float> truth_px = load_truth(base, pair);
         const auto everywhere = [](int, int) { return true; };
-        const camera::DepthImage depth =
-            match(left, right, MatcherConfig{.disparities = pair.disparities});
+        MatcherConfig wide = config();
+        wide.disparities = pair.disparities;
+        const camera::DepthImage depth = match(left, right, wide);
         const Score ours = score(depth.disparity_px, &depth.sigma_px, truth_px, everywhere);
         const Score plain =
             score(plain_sgbm(left, right, pair.disparities), nullptr, truth_px, everywhere);
@@ -328,7 +358,8 @@ TEST(SgbmMatcher, MiddleburyBesidePlainSgbm) {
             100 * ours.within_3_sigma);
         EXPECT_LT(ours.bad_2, pair.max_bad_2) << pair.name;
         EXPECT_LE(ours.bad_2, plain.bad_2) << pair.name;
-        EXPECT_GT(ours.density, plain.density - 0.01) << pair.name;
+        // Fewer pixels, for fewer wrong ones: adirondack loses 1.8 % to the left-right check.
+        EXPECT_GT(ours.density, plain.density - 0.02) << pair.name;
     }
     if (skipped > 0)
         std::printf("skipped 1 check: %d of 4 pairs have no images in %s\n", skipped, root.c_str());

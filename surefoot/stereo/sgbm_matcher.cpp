@@ -3,10 +3,9 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
-#include "surefoot/stereo/confidence.hpp"
 #include "surefoot/stereo/consistency.hpp"
+#include "surefoot/stereo/finisher.hpp"
 #include "surefoot/stereo/matcher.hpp"
-#include "surefoot/stereo/refine.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
 
 namespace surefoot::stereo {
@@ -19,9 +18,6 @@ constexpr int kPreFilterCap = 63;
 /// Islands below this size that differ by more than kSpeckleRange_px from their surroundings go.
 constexpr int kSpeckleSize_px = 100;
 constexpr int kSpeckleRange_px = 2;
-/// Differences between neighbours above this are two surfaces.
-constexpr double kJump_px = 1.0;
-constexpr int kNeighbourhoodRadius_px = 4;
 
 class SgbmMatcher final : public Matcher {
   public:
@@ -37,8 +33,7 @@ class SgbmMatcher final : public Matcher {
                                        config.uniqueness_percent,
                                        kSpeckleSize_px,
                                        kSpeckleRange_px,
-                                       cv::StereoSGBM::MODE_SGBM_3WAY)),
-          refiner_(RefineConfig{}) {}
+                                       cv::StereoSGBM::MODE_SGBM_3WAY)) {}
 
     void match(ImageView<const std::uint8_t> left,
                ImageView<const std::uint8_t> right,
@@ -51,11 +46,7 @@ class SgbmMatcher final : public Matcher {
         sgbm_->compute(padded_left_, padded_right_, steps_);
         read_steps(executor, depth.disparity_px);
         drop_hidden(executor, config_.left_right_tolerance_px, depth.disparity_px);
-        mark_jumps(depth.disparity_px, kJump_px, jumps_);
-        distance_to_marks(jumps_, jump_distance_px_);
-        unknown_share(executor, depth.disparity_px, kNeighbourhoodRadius_px, unknown_share_);
-        refiner_.refine(left, right, jump_distance_px_, executor, depth.disparity_px, refinement_);
-        rate_matches(executor, refinement_, jump_distance_px_, unknown_share_, depth);
+        finisher_.finish(left, right, executor, depth);
     }
 
   private:
@@ -84,15 +75,11 @@ class SgbmMatcher final : public Matcher {
 
     MatcherConfig config_;
     cv::Ptr<cv::StereoSGBM> sgbm_;
-    SubpixelRefiner refiner_;
+    Finisher finisher_;
     // Kept between frames, so that nothing is allocated anew.
     cv::Mat padded_left_;
     cv::Mat padded_right_;
     cv::Mat steps_;
-    Refinement refinement_;
-    Image<std::uint8_t> jumps_;
-    Image<std::uint8_t> jump_distance_px_;
-    Image<float> unknown_share_;
 };
 
 }  // namespace

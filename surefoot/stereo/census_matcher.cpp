@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "surefoot/stereo/finisher.hpp"
+#include "surefoot/stereo/matcher.hpp"
+#include "surefoot/stereo/settle.hpp"
+#include "surefoot/stereo/speckles.hpp"
+
+namespace surefoot::stereo {
+namespace {
+
+/// Islands smaller than this, whose pixels differ by at most kSpeckleRange_px, go.
+constexpr int kSpeckleSize_px = 100;
+constexpr double kSpeckleRange_px = 2.0;
+
+SemiGlobalConfig search_config(const MatcherConfig& config) {
+    SemiGlobalConfig search;
+    search.disparities = config.disparities;
+    return search;
+}
+
+class CensusMatcher final : public Matcher {
+  public:
+    explicit CensusMatcher(const MatcherConfig& config)
+        : settle_{config.uniqueness_percent,
+                  static_cast<int>(std::lround(config.left_right_tolerance_px))},
+          search_(search_config(config)) {}
+
+    void match(ImageView<const std::uint8_t> left,
+               ImageView<const std::uint8_t> right,
+               Executor& executor,
+               camera::DepthImage& depth) override {
+        depth.resize(left.width, left.height);
+        search_.search(left, right, executor, winners_);
+        settle(settle_, winners_, executor, depth.disparity_px);
+        speckles_.remove(kSpeckleSize_px, kSpeckleRange_px, depth.disparity_px);
+        finisher_.finish(left, right, executor, depth);
+    }
+
+  private:
+    SettleConfig settle_;
+    SemiGlobalSearch search_;
+    Winners winners_;
+    SpeckleFilter speckles_;
+    Finisher finisher_;
+};
+
+}  // namespace
+
+std::unique_ptr<Matcher> make_census_matcher(const MatcherConfig& config) {
+    SUREFOOT_ASSERT(!config.problem());
+    return std::make_unique<CensusMatcher>(config);
+}
+
+}  // namespace surefoot::stereo

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/finisher.hpp"
+
+#include "surefoot/stereo/confidence.hpp"
+#include "surefoot/stereo/consistency.hpp"
+
+namespace surefoot::stereo {
+namespace {
+
+/// Differences between neighbours above this are two surfaces.
+constexpr double kJump_px = 1.0;
+constexpr int kNeighbourhoodRadius_px = 4;
+
+}  // namespace
+
+void Finisher::finish(ImageView<const std::uint8_t> left,
+                      ImageView<const std::uint8_t> right,
+                      Executor& executor,
+                      camera::DepthImage& depth) {
+    mark_jumps(depth.disparity_px, kJump_px, jumps_);
+    distance_to_marks(jumps_, jump_distance_px_);
+    unknown_share(executor, depth.disparity_px, kNeighbourhoodRadius_px, unknown_share_);
+    refiner_.refine(left, right, jump_distance_px_, executor, depth.disparity_px, refinement_);
+    rate_matches(executor, refinement_, jump_distance_px_, unknown_share_, depth);
+}
+
+}  // namespace surefoot::stereo

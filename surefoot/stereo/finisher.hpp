@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/stereo/refine.hpp"
+
+namespace surefoot::stereo {
+
+/// What every search is followed by: jumps are found, disparities are refined, and every match gets
+/// its sigma and its outlier probability.
+class Finisher {
+  public:
+    Finisher() : refiner_(RefineConfig{}) {}
+
+    /// `depth.disparity_px` holds what was found (NaN = nothing); all of `depth` is filled.
+    void finish(ImageView<const std::uint8_t> left,
+                ImageView<const std::uint8_t> right,
+                Executor& executor,
+                camera::DepthImage& depth);
+
+  private:
+    SubpixelRefiner refiner_;
+    // Kept between frames, so that nothing is allocated anew.
+    Refinement refinement_;
+    Image<std::uint8_t> jumps_;
+    Image<std::uint8_t> jump_distance_px_;
+    Image<float> unknown_share_;
+};
+
+}  // namespace surefoot::stereo

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/semi_global.hpp"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/stereo/census_window.hpp"
+#include "surefoot/stereo/test_executors.hpp"
+
+namespace surefoot::stereo {
+namespace {
+
+/// Smooth blobs and noise, shifted by a disparity that changes: ties, jumps and borders occur.
+std::pair<GreyImage, GreyImage> pair_of(int width, int height, std::uint64_t seed) {
+    Rng rng(seed);
+    GreyImage left(width, height);
+    GreyImage right(width, height);
+    for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < width; ++u)
+            right.at(u, v) =
+                static_cast<std::uint8_t>(rng.uniform() < 0.2 ? 128 : rng.uniform(0.0, 256.0));
+        for (int u = 0; u < width; ++u) {
+            const int disparity = u > width / 2 ? 9 : 3 + v % 4;
+            left.at(u, v) = right.at(std::max(u - disparity, 0), v);
+        }
+    }
+    return {left, right};
+}
+
+constexpr struct {
+    int width, height, disparities;
+} kCases[] = {{1, 1, 1}, {5, 3, 2}, {64, 64, 16}, {65, 70, 64}, {150, 40, 96}, {40, 130, 256}};
+
+TEST(SemiGlobal, FastIsPlainOnEveryProcessor) {
+    for (const auto& c : kCases) {
+        const auto [left, right] = pair_of(c.width, c.height, 7);
+        SemiGlobalConfig config;
+        config.disparities = c.disparities;
+        Winners plain;
+        search_plainly(config, left.view(), right.view(), plain);
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+            hwy::SetSupportedTargetsForTest(target);
+            Winners fast;
+            Serial serial;
+            SemiGlobalSearch search(config);
+            for (int repeat = 0; repeat < 2; ++repeat) {
+                search.search(left.view(), right.view(), serial, fast);
+                EXPECT_TRUE(plain == fast) << c.width << " x " << c.height << ", " << c.disparities
+                                           << " on " << hwy::TargetName(target);
+            }
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
+}
+
+TEST(SemiGlobal, EveryPenaltyMeansTheSame) {
+    const auto [left, right] = pair_of(70, 20, 3);
+    for (const int contrast_shift : {0, 1, 3, 8}) {
+        SemiGlobalConfig config;
+        config.disparities = 32;
+        config.slope_penalty = 3;
+        config.jump_penalty = 50;
+        config.min_jump_penalty = 20;
+        config.contrast_shift = contrast_shift;
+        Winners plain;
+        Winners fast;
+        Serial serial;
+        search_plainly(config, left.view(), right.view(), plain);
+        SemiGlobalSearch(config).search(left.view(), right.view(), serial, fast);
+        EXPECT_TRUE(plain == fast) << contrast_shift;
+    }
+}
+
+TEST(SemiGlobal, SameBytesForEveryExecutorAndAfterAnotherSize) {
+    const auto [left, right] = pair_of(200, 150, 5);
+    const auto [small_left, small_right] = pair_of(90, 70, 6);
+    const SemiGlobalConfig config;
+    Serial serial;
+    Winners expected;
+    SemiGlobalSearch(config).search(left.view(), right.view(), serial, expected);
+    SemiGlobalSearch search(config);
+    test::Backwards backwards;
+    test::TwoThreads two;
+    for (Executor* executor : {static_cast<Executor*>(&backwards), static_cast<Executor*>(&two)}) {
+        Winners found;
+        search.search(small_left.view(), small_right.view(), *executor, found);
+        search.search(left.view(), right.view(), *executor, found);
+        EXPECT_TRUE(found == expected);
+    }
+}
+
+TEST(SemiGlobal, FindsAConstantShift) {
+    Rng rng(2);
+    GreyImage right(128, 64);
+    for (std::size_t i = 0; i < right.size(); ++i)
+        right.data()[i] = static_cast<std::uint8_t>(rng.uniform(0.0, 256.0));
+    GreyImage left(128, 64);
+    constexpr int kShift = 13;
+    for (int v = 0; v < 64; ++v) {
+        for (int u = 0; u < 128; ++u) left.at(u, v) = right.at(std::max(u - kShift, 0), v);
+    }
+    Serial serial;
+    Winners found;
+    SemiGlobalSearch(SemiGlobalConfig{}).search(left.view(), right.view(), serial, found);
+    for (int v = 0; v < 64; ++v) {
+        for (int u = kShift + kCensusReach_u; u < 128 - kCensusReach_u; ++u)
+            ASSERT_EQ(found.disparity.at(u, v), kShift) << u << ", " << v;
+    }
+}
+
+TEST(SemiGlobalConfig, SaysWhatIsWrong) {
+    EXPECT_FALSE(SemiGlobalConfig{}.problem());
+    EXPECT_TRUE(SemiGlobalConfig{257}.problem());
+    SemiGlobalConfig steep;
+    steep.jump_penalty = 55;
+    EXPECT_TRUE(steep.problem());
+    steep.jump_penalty = 5;
+    EXPECT_TRUE(steep.problem());
+}
+
+}  // namespace
+}  // namespace surefoot::stereo

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/settle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace surefoot::stereo {
+namespace {
+
+/// One row in which every pixel won at disparity 2, clearly.
+Winners clear_row(int width) {
+    Winners winners;
+    winners.resize(width, 1);
+    winners.disparity.fill(2);
+    winners.cost.fill(10);
+    winners.cost_below.fill(30);
+    winners.cost_above.fill(30);
+    winners.second_cost.fill(60);
+    return winners;
+}
+
+Image<float> settled(const Winners& winners, const SettleConfig& config = {}) {
+    Serial serial;
+    Image<float> disparity_px;
+    settle(config, winners, serial, disparity_px);
+    return disparity_px;
+}
+
+TEST(Settle, VertexOfTheParabola) {
+    Winners winners = clear_row(8);
+    winners.cost_below.at(4, 0) = 20;   // vertex at (20 - 30) / (2 (20 + 30 - 20)) = -1/6
+    winners.cost_above.at(5, 0) = 10;   // a tie with the next one: half way
+    winners.cost_below.at(6, 0) = 255;  // end of the range
+    const Image<float> d = settled(winners);
+    EXPECT_TRUE(std::isnan(d.at(0, 0)));  // its right pixel is outside
+    EXPECT_TRUE(std::isnan(d.at(1, 0)));
+    EXPECT_FLOAT_EQ(d.at(3, 0), 2.0F);
+    EXPECT_FLOAT_EQ(d.at(4, 0), 2.0F - 1.0F / 6.0F);
+    EXPECT_FLOAT_EQ(d.at(5, 0), 2.5F);
+    EXPECT_FLOAT_EQ(d.at(6, 0), 2.0F);
+}
+
+TEST(Settle, WhatIsNotUniqueGoes) {
+    Winners winners = clear_row(8);
+    winners.cost.at(4, 0) = 95;
+    winners.second_cost.at(4, 0) = 100;  // just unique with 5 %
+    winners.cost.at(5, 0) = 96;
+    winners.second_cost.at(5, 0) = 100;
+    const Image<float> d = settled(winners);
+    EXPECT_FALSE(std::isnan(d.at(4, 0)));
+    EXPECT_TRUE(std::isnan(d.at(5, 0)));
+}
+
+TEST(Settle, TheCheaperClaimOnARightPixelWins) {
+    Winners winners = clear_row(12);
+    winners.disparity.at(9, 0) = 5;  // claims right pixel 4, as pixel 6 does with disparity 2
+    winners.cost.at(9, 0) = 5;
+    const Image<float> d = settled(winners);
+    EXPECT_FALSE(std::isnan(d.at(9, 0)));
+    EXPECT_TRUE(std::isnan(d.at(6, 0)));
+    EXPECT_FALSE(std::isnan(d.at(7, 0)));
+    winners.cost.at(9, 0) = 15;
+    EXPECT_TRUE(std::isnan(settled(winners).at(9, 0)));
+    EXPECT_FALSE(std::isnan(settled(winners).at(6, 0)));
+}
+
+TEST(Settle, InfinitelyFarIsNoDepth) {
+    Winners winners = clear_row(4);
+    winners.disparity.fill(0);
+    const Image<float> d = settled(winners);
+    for (int u = 0; u < 4; ++u) EXPECT_TRUE(std::isnan(d.at(u, 0)));
+}
+
+}  // namespace
+}  // namespace surefoot::stereo
