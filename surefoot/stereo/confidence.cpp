@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "surefoot/stereo/refine_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
 
 namespace surefoot::stereo {
@@ -12,21 +12,10 @@ namespace {
 
 /// Noise over texture slope, the error that one pixel alone would make [px].
 float noise_per_pixel(const MatchEvidence& evidence) noexcept {
-    constexpr float kLargest_px = 100.0F;
-    if (!(evidence.gradient_grey_px > evidence.residual_grey / kLargest_px)) return kLargest_px;
+    if (!(evidence.gradient_grey_px > evidence.residual_grey / kMaxNoisePerPixel_px))
+        return kMaxNoisePerPixel_px;
     return evidence.residual_grey / evidence.gradient_grey_px;
 }
-
-// Logistic regression on Middlebury cones and cloth3 and four rendered scenes, rounded. Areas under
-// the ROC curve of the unrounded fit: 0.91-0.92 on these two, 0.88-0.99 rendered; left out: teddy
-// 0.87, with 2.6 % wrong expected and 4.4 % found, and adirondack 0.69, whose truth is rounded to
-// whole pixels.
-constexpr float kConstant = -8.5F;
-constexpr float kNearJump = 7.0F;
-constexpr float kJumpReach_px = 12.0F;
-constexpr float kNoise = 0.18F;
-constexpr float kShift = 1.1F;
-constexpr float kUnknown = 1.9F;
 
 }  // namespace
 
@@ -40,10 +29,11 @@ float match_sigma_px(const MatchEvidence& evidence) noexcept {
 
 float outlier_probability(const MatchEvidence& evidence) noexcept {
     const float nearness =
-        std::max(0.0F, 1.0F - static_cast<float>(evidence.jump_distance_px) / kJumpReach_px);
-    const float score = kConstant + kNearJump * nearness +
-                        kNoise * std::log(noise_per_pixel(evidence)) +
-                        kShift * std::abs(evidence.shift_px) + kUnknown * evidence.unknown_share;
+        std::max(0.0F, 1.0F - static_cast<float>(evidence.jump_distance_px) / kScoreJumpReach_px);
+    const float score = kScoreConstant + kScoreNearJump * nearness +
+                        kScoreNoise * std::log(noise_per_pixel(evidence)) +
+                        kScoreShift * std::abs(evidence.shift_px) +
+                        kScoreUnknown * evidence.unknown_share;
     const float probability = 1.0F / (1.0F + std::exp(-score));
     return evidence.jump_distance_px <= kJumpZone_px
                ? std::max(kJumpOutlierProbability, probability)
@@ -59,22 +49,17 @@ void rate_matches(Executor& executor,
     const int height = depth.disparity_px.height();
     for_row_blocks(executor, height, [&](int first, int last) {
         for (int v = first; v < last; ++v) {
-            for (int u = 0; u < width; ++u) {
-                const float d = depth.disparity_px.row(v)[u];
-                if (std::isnan(d)) {
-                    depth.sigma_px.row(v)[u] = std::numeric_limits<float>::quiet_NaN();
-                    depth.outlier_probability.row(v)[u] = 1.0F;
-                    continue;
-                }
-                MatchEvidence evidence;
-                evidence.residual_grey = refinement.residual_grey.row(v)[u];
-                evidence.gradient_grey_px = refinement.gradient_grey_px.row(v)[u];
-                evidence.shift_px = refinement.shift_px.row(v)[u];
-                evidence.jump_distance_px = jump_distance_px.row(v)[u];
-                evidence.unknown_share = unknown_share.row(v)[u];
-                depth.sigma_px.row(v)[u] = match_sigma_px(evidence);
-                depth.outlier_probability.row(v)[u] = outlier_probability(evidence);
-            }
+            rows::RateRow row;
+            row.disparity_px = depth.disparity_px.row(v);
+            row.residual_grey = refinement.residual_grey.row(v);
+            row.gradient_grey_px = refinement.gradient_grey_px.row(v);
+            row.shift_px = refinement.shift_px.row(v);
+            row.jump_distance_px = jump_distance_px.row(v);
+            row.unknown_share = unknown_share.row(v);
+            row.width = width;
+            row.sigma_px = depth.sigma_px.row(v);
+            row.outlier_probability = depth.outlier_probability.row(v);
+            rows::rate(row);
         }
     });
 }

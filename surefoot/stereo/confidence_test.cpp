@@ -2,9 +2,13 @@
 #include "surefoot/stereo/confidence.hpp"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
 
 namespace surefoot::stereo {
 namespace {
@@ -47,6 +51,51 @@ TEST(OutlierProbability, GrowsWithEveryWarning) {
     EXPECT_GT(outlier_probability(changed([](auto& e) { e.gradient_grey_px = 0.0F; })), good);
     EXPECT_GT(outlier_probability(changed([](auto& e) { e.shift_px = 0.9F; })), good);
     EXPECT_GT(outlier_probability(changed([](auto& e) { e.unknown_share = 0.5F; })), good);
+}
+
+/// Whole images give, on every processor, what the definition says of single pixels.
+TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
+    constexpr int kWidth = 500;
+    Rng rng(4);
+    camera::DepthImage depth;
+    depth.resize(kWidth, 1);
+    depth.disparity_px.fill(12.0F);
+    Refinement refinement;
+    Image<std::uint8_t> jump_distance_px(kWidth, 1);
+    Image<float> unknown(kWidth, 1);
+    for (Image<float>* image :
+         {&refinement.residual_grey, &refinement.gradient_grey_px, &refinement.shift_px})
+        image->resize(kWidth, 1);
+    for (int u = 0; u < kWidth; ++u) {
+        refinement.residual_grey.at(u, 0) = static_cast<float>(std::exp(rng.uniform(-3.0, 4.0)));
+        refinement.gradient_grey_px.at(u, 0) =
+            u % 9 == 0 ? 0.0F : static_cast<float>(std::exp(rng.uniform(-6.0, 4.0)));
+        refinement.shift_px.at(u, 0) = static_cast<float>(rng.uniform(-1.0, 1.0));
+        jump_distance_px.at(u, 0) = static_cast<std::uint8_t>(u % 7 == 0 ? 255 : u % 16);
+        unknown.at(u, 0) = static_cast<float>(rng.uniform());
+    }
+    Serial serial;
+    std::vector<float> first;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        rate_matches(serial, refinement, jump_distance_px, unknown, depth);
+        std::vector<float> all(depth.sigma_px.data(), depth.sigma_px.data() + kWidth);
+        all.insert(
+            all.end(), depth.outlier_probability.data(), depth.outlier_probability.data() + kWidth);
+        if (first.empty()) first = all;
+        EXPECT_EQ(all, first) << hwy::TargetName(target);
+        for (int u = 0; u < kWidth; ++u) {
+            const MatchEvidence evidence{refinement.residual_grey.at(u, 0),
+                                         refinement.gradient_grey_px.at(u, 0),
+                                         refinement.shift_px.at(u, 0),
+                                         jump_distance_px.at(u, 0),
+                                         unknown.at(u, 0)};
+            ASSERT_NEAR(depth.sigma_px.at(u, 0), match_sigma_px(evidence), 1e-6F) << u;
+            ASSERT_NEAR(depth.outlier_probability.at(u, 0), outlier_probability(evidence), 2e-6F)
+                << u;
+        }
+    }
+    hwy::SetSupportedTargetsForTest(0);
 }
 
 TEST(RateMatches, UnknownHasNoSigmaAndIsNoInlier) {

@@ -12,6 +12,7 @@ namespace surefoot::stereo {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+static_assert(kFarthest_px == 15, "steps of 1, 2, 4 and 8 reach that far");
 constexpr float kSteepestGround = 0.4F;
 /// Steps of a ramp are spread over this many pixels.
 constexpr int kRampReach_px = 4;
@@ -82,28 +83,33 @@ void distance_to_marks(const Image<std::uint8_t>& marks, Image<std::uint8_t>& di
     const int width = marks.width();
     const int height = marks.height();
     distance_px.resize(width, height);
-    const auto one_more = [](std::uint8_t d) {
-        return static_cast<std::uint8_t>(d == 255 ? 255 : d + 1);
+    const auto nearer = [](std::uint8_t here, std::uint8_t other, int steps) {
+        const auto longer = static_cast<std::uint8_t>(other + steps);
+        const std::uint8_t far = other > kFarthest_px - steps ? std::uint8_t{255} : longer;
+        return here < far ? here : far;
     };
-    // The neighbours already visited: the row before and the pixel before.
-    const auto pass = [&](int u, int v, int back) {
-        std::uint8_t best = distance_px.at(u, v);
-        for (int a = -1; a <= 1; ++a) {
-            if (distance_px.contains(u + a, v + back))
-                best = std::min(best, one_more(distance_px.row(v + back)[u + a]));
-        }
-        if (distance_px.contains(u + back, v))
-            best = std::min(best, one_more(distance_px.row(v)[u + back]));
-        distance_px.row(v)[u] = best;
-    };
-    for (std::size_t i = 0; i < marks.size(); ++i)
-        distance_px.data()[i] = marks.data()[i] != 0 ? 0 : 255;
+    // Along each row, in steps of 1, 2, 4 and 8; then from row to row, straight or aslant. A longer
+    // way along the row than down the column takes its first part along the row of the mark.
+    std::vector<std::uint8_t> before(static_cast<std::size_t>(width));
     for (int v = 0; v < height; ++v) {
-        for (int u = 0; u < width; ++u) pass(u, v, -1);
+        std::uint8_t* const d = distance_px.row(v);
+        for (int u = 0; u < width; ++u) d[u] = marks.row(v)[u] != 0 ? 0 : 255;
+        for (int step = 1; step <= kFarthest_px; step *= 2) {
+            std::copy(d, d + width, before.begin());
+            const std::uint8_t* const b = before.data();
+            for (int u = 0; u < width - step; ++u) d[u] = nearer(d[u], b[u + step], step);
+            for (int u = step; u < width; ++u) d[u] = nearer(d[u], b[u - step], step);
+        }
     }
-    for (int v = height - 1; v >= 0; --v) {
-        for (int u = width - 1; u >= 0; --u) pass(u, v, 1);
-    }
+    const auto pass = [&](int v, int from) {
+        std::uint8_t* const d = distance_px.row(v);
+        const std::uint8_t* const b = distance_px.row(from);
+        for (int u = 0; u < width; ++u) d[u] = nearer(d[u], b[u], 1);
+        for (int u = 0; u < width - 1; ++u) d[u] = nearer(d[u], b[u + 1], 1);
+        for (int u = 1; u < width; ++u) d[u] = nearer(d[u], b[u - 1], 1);
+    };
+    for (int v = 1; v < height; ++v) pass(v, v - 1);
+    for (int v = height - 2; v >= 0; --v) pass(v, v + 1);
 }
 
 void unknown_share(Executor& executor,

@@ -18,8 +18,10 @@ void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparit
 /// behind edges more.
 void mark_jumps(const Image<float>& disparity_px, double jump_px, Image<std::uint8_t>& jumps);
 
+/// Distances are counted up to here.
+inline constexpr int kFarthest_px = 15;
 /// Distance [px] of every pixel from the nearest marked one, along rows, columns and diagonals
-/// alike; 255 stands for 255 or more. Two passes (Rosenfeld and Pfaltz 1966).
+/// alike; 255 stands for more than kFarthest_px. After Rosenfeld and Pfaltz 1966.
 void distance_to_marks(const Image<std::uint8_t>& marks, Image<std::uint8_t>& distance_px);
 
 /// Share of unknown pixels in the window of `radius_px` around each pixel, as far as it lies in the

@@ -109,6 +109,7 @@ TEST(DistanceToMarks, IsTheChessboardDistance) {
                         nearest = std::min(nearest, std::max(std::abs(a - u), std::abs(b - v)));
                 }
             }
+            if (nearest > kFarthest_px) nearest = 255;
             ASSERT_EQ(distance.at(u, v), nearest) << u << " " << v;
         }
     }

@@ -2,108 +2,41 @@
 #include "surefoot/stereo/refine.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <vector>
 
+#include "surefoot/stereo/refine_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
 
 namespace surefoot::stereo {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-/// Grey levels are held in sixteenths.
-constexpr float kScale = 16.0F;
-/// Differences beyond 32 grey levels say "not the same point", not "by how much".
-constexpr float kMaxError = 512.0F;
-/// 64 grey levels per pixel; 33 x 33 squares of it fit an int32: 1089 * 1024^2 = 1.1e9.
-constexpr float kMaxGradient = 1024.0F;
 constexpr int kMaxWindowRadius_px = 16;
+constexpr int kMaxSmoothRadius_px = 16;
 
-/// Binomial 1 4 6 4 1 in both directions, result in 1/16 grey level. It removes what the linear
-/// interpolation of the warp cannot represent.
 void smooth_image_row(ImageView<const std::uint8_t> in, int v, Image<std::int16_t>& out) {
-    const std::uint8_t* rows[5];
-    for (int k = 0; k < 5; ++k) rows[k] = in.row(std::clamp(v + k - 2, 0, in.height - 1));
-    std::vector<int> column(static_cast<std::size_t>(in.width) + 4);
-    int* const sum = column.data() + 2;
-    for (int u = 0; u < in.width; ++u) {
-        sum[u] = rows[0][u] + rows[4][u] + 4 * (rows[1][u] + rows[3][u]) + 6 * rows[2][u];
-    }
-    sum[-2] = sum[-1] = sum[0];
-    sum[in.width] = sum[in.width + 1] = sum[in.width - 1];
-    std::int16_t* const target = out.row(v);
-    for (int u = 0; u < in.width; ++u) {
-        const int total = sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u];
-        target[u] = static_cast<std::int16_t>((total + 8) >> 4);
-    }
+    const std::uint8_t* lines[5];
+    for (int k = 0; k < 5; ++k) lines[k] = in.row(std::clamp(v + k - 2, 0, in.height - 1));
+    std::vector<int> scratch(static_cast<std::size_t>(in.width) + 4);
+    rows::smooth_image(lines, in.width, scratch.data(), out.row(v));
 }
 
-/// Nearest integer of |x| < 4096, without a rounding call.
-std::int16_t rounded(float x) noexcept {
-    return static_cast<std::int16_t>(static_cast<int>(x + 4096.5F) - 4096);
-}
-
-/// Exact sums over a window.
-struct Sums {
-    std::int32_t n = 0, g = 0, e = 0, gg = 0, ge = 0, ee = 0;
-
-    void add(const Sums& o) noexcept {
-        n += o.n, g += o.g, e += o.e, gg += o.gg, ge += o.ge, ee += o.ee;
+/// Sums of the columns of a window that slides down, and scratch for its way along the row.
+struct WindowSums {
+    WindowSums(int width, int radius) {
+        const auto columns = static_cast<std::size_t>(width);
+        const auto padded = columns + 2 * static_cast<std::size_t>(radius) + 1;
+        sums.resize(rows::kSums * columns);
+        prefixes.resize(rows::kSums * padded);
+        for (std::size_t k = 0; k < rows::kSums; ++k) {
+            column[k] = sums.data() + k * columns;
+            prefix[k] = prefixes.data() + k * padded;
+        }
     }
-    void subtract(const Sums& o) noexcept {
-        n -= o.n, g -= o.g, e -= o.e, gg -= o.gg, ge -= o.ge, ee -= o.ee;
-    }
+    std::vector<std::int32_t> sums;
+    std::vector<std::uint32_t> prefixes;
+    std::int32_t* column[rows::kSums] = {};
+    std::uint32_t* prefix[rows::kSums] = {};
 };
-
-/// Adds (sign 1) or removes (sign -1) one image row in the column sums.
-void accumulate(const std::int16_t* g,
-                const std::int16_t* e,
-                const std::int16_t* used,
-                std::int32_t sign,
-                std::vector<Sums>& columns) {
-    for (std::size_t u = 0; u < columns.size(); ++u) {
-        Sums& c = columns[u];
-        const std::int32_t sg = sign * g[u];
-        const std::int32_t se = sign * e[u];
-        c.n += sign * used[u];
-        c.g += sg;
-        c.e += se;
-        c.gg += sg * g[u];
-        c.ge += sg * e[u];
-        c.ee += se * e[u];
-    }
-}
-
-struct Step {
-    float shift_px = 0.0F;
-    float residual_grey = kMaxError / kScale;
-    float gradient_grey_px = 0.0F;
-};
-
-/// Equation of the class comment for one window.
-Step solve(const Sums& w, int enough, const RefineConfig& config) noexcept {
-    Step step;
-    if (w.n < enough) return step;
-    const float n = static_cast<float>(w.n);
-    const auto g = static_cast<float>(w.g);
-    const auto e = static_cast<float>(w.e);
-    constexpr float kUnit = 1.0F / (kScale * kScale);
-    const float gg = std::max(0.0F, (static_cast<float>(w.gg) - g * g / n) * kUnit);
-    const float ge = (static_cast<float>(w.ge) - g * e / n) * kUnit;
-    const float ee = (static_cast<float>(w.ee) - e * e / n) * kUnit;
-    const float explained = gg > 0.0F ? ge * ge / gg : 0.0F;
-    const auto min_noise = static_cast<float>(config.min_noise_grey);
-    const float variance = std::max(min_noise * min_noise, (ee - explained) / n);
-    const float weight = 1.0F / (static_cast<float>(config.correlation) * variance);
-    const auto prior = static_cast<float>(config.prior_sigma_px);
-    const auto limit = static_cast<float>(config.max_step_px);
-    step.shift_px =
-        std::clamp(-ge * weight / (gg * weight + 1.0F / (prior * prior)), -limit, limit);
-    step.residual_grey = std::sqrt(variance);
-    step.gradient_grey_px = std::sqrt(gg / n);
-    return step;
-}
 
 }  // namespace
 
@@ -113,64 +46,59 @@ void smooth_along(const Image<float>& in,
                   int radius_px,
                   double same_surface_px,
                   Image<float>& out) {
+    SUREFOOT_ASSERT(radius_px <= kMaxSmoothRadius_px);
     const int width = in.width();
-    const auto limit = static_cast<float>(same_surface_px);
-    std::vector<float> sum(static_cast<std::size_t>(width), 0.0F);
-    std::vector<float> count(static_cast<std::size_t>(width), 1.0F);
-    const float* const centre = in.row(v);
-    for (int k = 1; k <= radius_px; ++k) {
-        if (down && (v - k < 0 || v + k >= in.height())) break;
-        const float* const before = down ? in.row(v - k) : centre - k;
-        const float* const after = down ? in.row(v + k) : centre + k;
-        const int margin = down ? 0 : k;
-        for (int u = margin; u < width - margin; ++u) {
-            const float low = before[u] - centre[u];
-            const float high = after[u] - centre[u];
-            // NaN compares false.
-            const bool same = std::abs(low) <= limit && std::abs(high) <= limit;
-            sum[static_cast<std::size_t>(u)] += same ? low + high : 0.0F;
-            count[static_cast<std::size_t>(u)] += same ? 2.0F : 0.0F;
-        }
+    const float* const center = in.row(v);
+    const float* before[kMaxSmoothRadius_px];
+    const float* after[kMaxSmoothRadius_px];
+    const int steps =
+        down ? std::min({radius_px, v, in.height() - 1 - v}) : std::min(radius_px, width);
+    for (int k = 1; k <= steps; ++k) {
+        before[k - 1] = down ? in.row(v - k) : center - k;
+        after[k - 1] = down ? in.row(v + k) : center + k;
     }
-    float* const target = out.row(v);
-    for (int u = 0; u < width; ++u) {
-        target[u] =
-            centre[u] + sum[static_cast<std::size_t>(u)] / count[static_cast<std::size_t>(u)];
-    }
+    std::vector<float> scratch(2 * static_cast<std::size_t>(width));
+    rows::smooth_along(center,
+                       before,
+                       after,
+                       steps,
+                       down ? 0 : 1,
+                       width,
+                       static_cast<float>(same_surface_px),
+                       scratch.data(),
+                       scratch.data() + width,
+                       out.row(v));
 }
 
 SubpixelRefiner::SubpixelRefiner(const RefineConfig& config) : config_(config) {
     SUREFOOT_ASSERT(config.window_radius_px >= 1 && config.window_radius_px <= kMaxWindowRadius_px);
 }
 
-/// Grey difference and gradient of every pixel of a row at its disparity.
-void SubpixelRefiner::warp(int v,
-                           const Image<std::uint8_t>& jump_distance_px,
-                           const Image<float>& disparity_px) {
+/// Grey difference and gradient of every pixel of some rows at its disparity.
+void SubpixelRefiner::warp_block(int first,
+                                 int last,
+                                 const Image<std::uint8_t>& jump_distance_px,
+                                 const Image<float>& disparity_px) {
     const int width = left_.width();
-    const std::int16_t* const l = left_.row(v);
-    const std::int16_t* const r = right_.row(v);
-    const float* const d = disparity_px.row(v);
-    const std::uint8_t* const jump = jump_distance_px.row(v);
-    std::int16_t* const g = gradient_.row(v);
-    std::int16_t* const e = error_.row(v);
-    std::int16_t* const used = used_.row(v);
-    for (int u = 0; u < width; ++u) {
-        g[u] = e[u] = used[u] = 0;
-        if (jump[u] <= config_.jump_margin_px) continue;
-        const float x = static_cast<float>(u) - d[u];
-        // NaN compares false. One column is left on each side for the gradients.
-        if (!(x >= 1.0F && x < static_cast<float>(width - 3) && u >= 1 && u < width - 1)) continue;
-        const int i = static_cast<int>(x);
-        const float s = x - static_cast<float>(i);
-        const auto at = [&](int k) { return static_cast<float>(r[i + k]); };
-        const float error = static_cast<float>(l[u]) - (at(0) + s * (at(1) - at(0)));
-        if (std::abs(error) > kMaxError) continue;
-        const float slope_right = (1.0F - s) * (at(1) - at(-1)) + s * (at(2) - at(0));
-        const float slope = 0.25F * (static_cast<float>(l[u + 1] - l[u - 1]) + slope_right);
-        e[u] = rounded(error);
-        g[u] = rounded(std::clamp(slope, -kMaxGradient, kMaxGradient));
-        used[u] = 1;
+    const auto columns = static_cast<std::size_t>(width);
+    std::vector<std::int32_t> places(columns);
+    std::vector<float> fractions(columns);
+    std::vector<std::int16_t> taps(4 * columns);
+    rows::WarpRow row;
+    row.jump_margin_px = config_.jump_margin_px;
+    row.width = width;
+    row.place = places.data();
+    row.fraction = fractions.data();
+    for (std::size_t k = 0; k < 4; ++k) row.taps[k] = taps.data() + k * columns;
+    for (int v = first; v < last; ++v) {
+        row.left = left_.row(v);
+        row.right = right_.row(v);
+        row.disparity_px = disparity_px.row(v);
+        row.jump_distance_px = jump_distance_px.row(v);
+        row.gradient = gradient_.row(v);
+        row.error = error_.row(v);
+        row.used = used_.row(v);
+        rows::warp(row);
     }
 }
 
@@ -182,30 +110,32 @@ void SubpixelRefiner::solve_block(int first,
     const int width = left_.width();
     const int height = left_.height();
     const int r = config_.window_radius_px;
-    const int enough = (2 * r + 1) * (2 * r + 1) / 5;
-    std::vector<Sums> columns(static_cast<std::size_t>(width));
-    const auto row = [&](int v, std::int32_t sign) {
+    WindowSums sums(width, r);
+    const auto slide = [&](int v, std::int32_t sign) {
         if (v < 0 || v >= height) return;
-        accumulate(gradient_.row(v), error_.row(v), used_.row(v), sign, columns);
+        rows::accumulate(gradient_.row(v), error_.row(v), used_.row(v), sign, width, sums.column);
     };
-    for (int v = first - r; v < first + r; ++v) row(v, 1);
+    rows::SolveRow row;
+    for (int k = 0; k < rows::kSums; ++k) {
+        row.columns[k] = sums.column[k];
+        row.prefix[k] = sums.prefix[k];
+    }
+    row.radius_px = r;
+    row.width = width;
+    row.enough = static_cast<float>((2 * r + 1) * (2 * r + 1) / 5);
+    row.correlation = static_cast<float>(config_.correlation);
+    row.min_noise_grey = static_cast<float>(config_.min_noise_grey);
+    row.prior_sigma_px = static_cast<float>(config_.prior_sigma_px);
+    row.max_step_px = static_cast<float>(config_.max_step_px);
+    for (int v = first - r; v < first + r; ++v) slide(v, 1);
     for (int v = first; v < last; ++v) {
-        row(v + r, 1);
-        Sums window;
-        for (int u = 0; u < std::min(r, width); ++u)
-            window.add(columns[static_cast<std::size_t>(u)]);
-        float* const d = disparity_px.row(v);
-        for (int u = 0; u < width; ++u) {
-            if (u + r < width) window.add(columns[static_cast<std::size_t>(u + r)]);
-            if (u > r) window.subtract(columns[static_cast<std::size_t>(u - r - 1)]);
-            const bool known = !std::isnan(d[u]);
-            const Step step = known ? solve(window, enough, config_) : Step{kNan, kNan, kNan};
-            d[u] += step.shift_px;
-            out.shift_px.row(v)[u] = step.shift_px;
-            out.residual_grey.row(v)[u] = step.residual_grey;
-            out.gradient_grey_px.row(v)[u] = step.gradient_grey_px;
-        }
-        row(v - r, -1);
+        slide(v + r, 1);
+        row.disparity_px = disparity_px.row(v);
+        row.shift_px = out.shift_px.row(v);
+        row.residual_grey = out.residual_grey.row(v);
+        row.gradient_grey_px = out.gradient_grey_px.row(v);
+        rows::solve(row);
+        slide(v - r, -1);
     }
 }
 
@@ -233,10 +163,9 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
         }
     });
     for_row_blocks(executor, height, [&](int first, int last) {
-        for (int v = first; v < last; ++v) {
+        for (int v = first; v < last; ++v)
             smooth_along(horizontal_, v, true, radius, same, disparity_px);
-            warp(v, jump_distance_px, disparity_px);
-        }
+        warp_block(first, last, jump_distance_px, disparity_px);
     });
     for_row_blocks(executor, height, [&](int first, int last) {
         solve_block(first, last, disparity_px, out);

@@ -60,7 +60,10 @@ class SubpixelRefiner {
                 Refinement& out);
 
   private:
-    void warp(int v, const Image<std::uint8_t>& jump_distance_px, const Image<float>& disparity_px);
+    void warp_block(int first,
+                    int last,
+                    const Image<std::uint8_t>& jump_distance_px,
+                    const Image<float>& disparity_px);
     void solve_block(int first, int last, Image<float>& disparity_px, Refinement& out) const;
 
     RefineConfig config_;

@@ -2,6 +2,7 @@
 #include "surefoot/stereo/refine.hpp"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <cmath>
 #include <cstdio>
@@ -160,6 +161,23 @@ TEST(SubpixelRefiner, UnknownStaysUnknownEvenInTinyImages) {
         EXPECT_TRUE(std::isnan(refined.disparity_px.at(0, 0)));
         EXPECT_TRUE(std::isnan(refined.refinement.shift_px.at(0, 0)));
     }
+}
+
+TEST(SubpixelRefiner, SameBytesOnEveryProcessor) {
+    Serial serial;
+    const test::SyntheticPair& pair = plane();
+    Image<float> start = pair.disparity_px;
+    for (std::size_t i = 0; i < start.size(); ++i)
+        start.data()[i] = std::isnan(start.data()[i]) ? 0.5F : start.data()[i];
+    const Refined expected = refine(pair.left, pair.right, start, serial);
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        const Refined found = refine(pair.left, pair.right, start, serial);
+        EXPECT_EQ(found.disparity_px, expected.disparity_px) << hwy::TargetName(target);
+        EXPECT_EQ(found.refinement.residual_grey, expected.refinement.residual_grey);
+        EXPECT_EQ(found.refinement.gradient_grey_px, expected.refinement.gradient_grey_px);
+    }
+    hwy::SetSupportedTargetsForTest(0);
 }
 
 TEST(SubpixelRefiner, SameBytesForEveryExecutor) {

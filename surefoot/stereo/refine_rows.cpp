@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/refine_rows.hpp"
+
+#define HWY_WANT_AVX3_DL
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "surefoot/stereo/refine_rows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "surefoot/stereo/confidence.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace surefoot::stereo::rows::HWY_NAMESPACE {
+namespace {
+
+/// Grey levels are held in sixteenths.
+constexpr float kScale = 16.0F;
+/// Differences beyond 32 grey levels say "not the same point", not "by how much".
+constexpr float kMaxError = 512.0F;
+/// 64 grey levels per pixel; 33 x 33 squares of it fit an int32: 1089 * 1024^2 = 1.1e9.
+constexpr float kMaxGradient = 1024.0F;
+
+void smooth_image_row(const std::uint8_t* const in[5],
+                      int width,
+                      int* HWY_RESTRICT scratch,
+                      std::int16_t* HWY_RESTRICT out) {
+    int* const sum = scratch + 2;
+    for (int u = 0; u < width; ++u)
+        sum[u] = in[0][u] + in[4][u] + 4 * (in[1][u] + in[3][u]) + 6 * in[2][u];
+    sum[-2] = sum[-1] = sum[0];
+    sum[width] = sum[width + 1] = sum[width - 1];
+    for (int u = 0; u < width; ++u) {
+        const int total = sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u];
+        out[u] = static_cast<std::int16_t>((total + 8) >> 4);
+    }
+}
+
+void smooth_along_row(const float* HWY_RESTRICT center,
+                      const float* const* before,
+                      const float* const* after,
+                      int steps,
+                      int margin_per_step,
+                      int width,
+                      float limit,
+                      float* HWY_RESTRICT sum,
+                      float* HWY_RESTRICT count,
+                      float* HWY_RESTRICT out) {
+    std::fill(sum, sum + width, 0.0F);
+    std::fill(count, count + width, 1.0F);
+    for (int k = 0; k < steps; ++k) {
+        const float* const low_line = before[k];
+        const float* const high_line = after[k];
+        const int margin = margin_per_step * (k + 1);
+        for (int u = margin; u < width - margin; ++u) {
+            const float low = low_line[u] - center[u];
+            const float high = high_line[u] - center[u];
+            // NaN compares false. Without a branch, so that lanes need not agree.
+            const bool same = static_cast<int>(std::abs(low) <= limit) &
+                              static_cast<int>(std::abs(high) <= limit);
+            sum[u] += same ? low + high : 0.0F;
+            count[u] += same ? 2.0F : 0.0F;
+        }
+    }
+    for (int u = 0; u < width; ++u) out[u] = center[u] + sum[u] / count[u];
+}
+
+/// Nearest integer of |x| < 4096, without a rounding call.
+HWY_INLINE std::int16_t rounded(float x) {
+    return static_cast<std::int16_t>(static_cast<int>(x + 4096.5F) - 4096);
+}
+
+void place_taps(const WarpRow& row) {
+    const float* HWY_RESTRICT d = row.disparity_px;
+    const std::uint8_t* HWY_RESTRICT jump = row.jump_distance_px;
+    std::int32_t* HWY_RESTRICT place = row.place;
+    float* HWY_RESTRICT fraction = row.fraction;
+    std::int16_t* HWY_RESTRICT used = row.used;
+    const auto end = static_cast<float>(row.width - 3);
+    for (int u = 1; u < row.width - 1; ++u) {
+        const float x = static_cast<float>(u) - d[u];
+        // NaN compares false. One column is left on each side for the gradients.
+        const bool inside = static_cast<int>(x >= 1.0F) & static_cast<int>(x < end) &
+                            static_cast<int>(jump[u] > row.jump_margin_px);
+        const float kept = inside ? x : 1.0F;
+        place[u] = static_cast<int>(kept);
+        fraction[u] = kept - static_cast<float>(place[u]);
+        used[u] = inside ? 1 : 0;
+    }
+    for (int u = 1; u < row.width - 1; ++u) {
+        const std::int16_t* const r = row.right + place[u];
+        row.taps[0][u] = r[-1];
+        row.taps[1][u] = r[0];
+        row.taps[2][u] = r[1];
+        row.taps[3][u] = r[2];
+    }
+}
+
+void warp_row(const WarpRow& row) {
+    std::fill(row.used, row.used + row.width, std::int16_t{0});
+    std::fill(row.gradient, row.gradient + row.width, std::int16_t{0});
+    std::fill(row.error, row.error + row.width, std::int16_t{0});
+    if (row.width < 5) return;
+    place_taps(row);
+    const std::int16_t* HWY_RESTRICT l = row.left;
+    const float* HWY_RESTRICT fraction = row.fraction;
+    const std::int16_t* HWY_RESTRICT t0 = row.taps[0];
+    const std::int16_t* HWY_RESTRICT t1 = row.taps[1];
+    const std::int16_t* HWY_RESTRICT t2 = row.taps[2];
+    const std::int16_t* HWY_RESTRICT t3 = row.taps[3];
+    std::int16_t* HWY_RESTRICT g = row.gradient;
+    std::int16_t* HWY_RESTRICT e = row.error;
+    std::int16_t* HWY_RESTRICT used = row.used;
+    for (int u = 1; u < row.width - 1; ++u) {
+        const float s = fraction[u];
+        const auto before = static_cast<float>(t0[u]);
+        const auto low = static_cast<float>(t1[u]);
+        const auto high = static_cast<float>(t2[u]);
+        const auto after = static_cast<float>(t3[u]);
+        const float error = static_cast<float>(l[u]) - (low + s * (high - low));
+        const float slope_right = (1.0F - s) * (high - before) + s * (after - low);
+        const float slope = 0.25F * (static_cast<float>(l[u + 1] - l[u - 1]) + slope_right);
+        const bool valid =
+            static_cast<int>(used[u] != 0) & static_cast<int>(std::abs(error) <= kMaxError);
+        const float kept_slope = std::min(std::max(slope, -kMaxGradient), kMaxGradient);
+        e[u] = rounded(valid ? error : 0.0F);
+        g[u] = rounded(valid ? kept_slope : 0.0F);
+        used[u] = valid ? 1 : 0;
+    }
+}
+
+void add_column_sums(const std::int16_t* HWY_RESTRICT g,
+                     const std::int16_t* HWY_RESTRICT e,
+                     std::int32_t sign,
+                     int width,
+                     std::int32_t* HWY_RESTRICT sum_g,
+                     std::int32_t* HWY_RESTRICT sum_e,
+                     std::int32_t* HWY_RESTRICT sum_gg,
+                     std::int32_t* HWY_RESTRICT sum_ge,
+                     std::int32_t* HWY_RESTRICT sum_ee) {
+    for (int u = 0; u < width; ++u) {
+        const std::int32_t sg = sign * g[u];
+        const std::int32_t se = sign * e[u];
+        sum_g[u] += sg;
+        sum_e[u] += se;
+        sum_gg[u] += sg * g[u];
+        sum_ge[u] += sg * e[u];
+        sum_ee[u] += se * e[u];
+    }
+}
+
+void accumulate_row(const std::int16_t* g,
+                    const std::int16_t* e,
+                    const std::int16_t* HWY_RESTRICT used,
+                    std::int32_t sign,
+                    int width,
+                    std::int32_t* const c[kSums]) {
+    std::int32_t* HWY_RESTRICT sum_n = c[0];
+    for (int u = 0; u < width; ++u) sum_n[u] += sign * used[u];
+    add_column_sums(g, e, sign, width, c[1], c[2], c[3], c[4], c[5]);
+}
+
+/// prefix[u + radius + 1] = sum of column[0 ... u]; below 0 nothing, beyond the end the total. They
+/// wrap around; differences that fit are right all the same.
+void sum_up(const std::int32_t* column, int width, int radius, std::uint32_t* prefix) {
+    std::fill(prefix, prefix + radius + 1, 0U);
+    std::uint32_t sum = 0;
+    for (int u = 0; u < width; ++u) {
+        sum += static_cast<std::uint32_t>(column[u]);
+        prefix[u + radius + 1] = sum;
+    }
+    std::fill(prefix + radius + 1 + width, prefix + 2 * radius + 1 + width, sum);
+}
+
+void solve_row(const SolveRow& row) {
+    for (int k = 0; k < kSums; ++k) sum_up(row.columns[k], row.width, row.radius_px, row.prefix[k]);
+    const int span = 2 * row.radius_px + 1;
+    const std::uint32_t* HWY_RESTRICT pn = row.prefix[0];
+    const std::uint32_t* HWY_RESTRICT pg = row.prefix[1];
+    const std::uint32_t* HWY_RESTRICT pe = row.prefix[2];
+    const std::uint32_t* HWY_RESTRICT pgg = row.prefix[3];
+    const std::uint32_t* HWY_RESTRICT pge = row.prefix[4];
+    const std::uint32_t* HWY_RESTRICT pee = row.prefix[5];
+    float* HWY_RESTRICT disparity_px = row.disparity_px;
+    float* HWY_RESTRICT shift_px = row.shift_px;
+    float* HWY_RESTRICT residual = row.residual_grey;
+    float* HWY_RESTRICT gradient = row.gradient_grey_px;
+    const auto window = [span](const std::uint32_t* prefix, int u) {
+        return static_cast<float>(static_cast<std::int32_t>(prefix[u + span] - prefix[u]));
+    };
+    constexpr float kUnit = 1.0F / (kScale * kScale);
+    const float least_variance = row.min_noise_grey * row.min_noise_grey;
+    const float prior_weight = 1.0F / (row.prior_sigma_px * row.prior_sigma_px);
+    for (int u = 0; u < row.width; ++u) {
+        const float count = window(pn, u);
+        const bool solvable = count >= row.enough;
+        const float n = solvable ? count : 1.0F;
+        const float g = window(pg, u);
+        const float e = window(pe, u);
+        const float gg = std::max(0.0F, (window(pgg, u) - g * g / n) * kUnit);
+        const float ge = (window(pge, u) - g * e / n) * kUnit;
+        const float ee = (window(pee, u) - e * e / n) * kUnit;
+        const float explained = gg > 0.0F ? ge * ge / gg : 0.0F;
+        const float variance = std::max(least_variance, (ee - explained) / n);
+        const float weight = 1.0F / (row.correlation * variance);
+        const float step = -ge * weight / (gg * weight + prior_weight);
+        const float shift = std::min(std::max(step, -row.max_step_px), row.max_step_px);
+        const bool known = disparity_px[u] == disparity_px[u];
+        const float unknown = disparity_px[u];  // NaN where it is used
+        const float kept_shift = solvable ? shift : 0.0F;
+        const float noise = solvable ? std::sqrt(variance) : kMaxError / kScale;
+        const float slope = solvable ? std::sqrt(gg / n) : 0.0F;
+        shift_px[u] = known ? kept_shift : unknown;
+        residual[u] = known ? noise : unknown;
+        gradient[u] = known ? slope : unknown;
+        disparity_px[u] += kept_shift;
+    }
+}
+
+/// ln x of a positive normal number: 2 atanh((m - 1) / (m + 1)) of its mantissa. Error < 1e-6.
+HWY_INLINE float log_of(float x) {
+    const auto bits = std::bit_cast<std::uint32_t>(x);
+    const bool large = (bits & 0x7fffffU) > 0x3504f3U;  // beyond sqrt 2
+    const std::uint32_t mantissa = (bits & 0x7fffffU) | (large ? 0x3f000000U : 0x3f800000U);
+    const auto exponent = static_cast<float>(static_cast<int>(bits >> 23) - (large ? 126 : 127));
+    const float m = std::bit_cast<float>(mantissa);
+    const float t = (m - 1.0F) / (m + 1.0F);
+    const float t2 = t * t;
+    const float series = 1.0F + t2 * (1.0F / 3.0F + t2 * (0.2F + t2 * (1.0F / 7.0F)));
+    return 0.69314718F * exponent + 2.0F * t * series;
+}
+
+/// e^x for |x| <= 80: 2^n times the series of the rest. Relative error < 1e-6.
+HWY_INLINE float exp_of(float x) {
+    const float kept = std::min(std::max(x, -80.0F), 80.0F);
+    const int n = static_cast<int>(kept * 1.44269504F + 256.5F) - 256;
+    const float r = kept - static_cast<float>(n) * 0.69314718F;
+    const float series =
+        1.0F + r * (1.0F + r * (0.5F + r * (1.0F / 6.0F + r * (1.0F / 24.0F +
+                                                               r * (1.0F / 120.0F + r / 720.0F)))));
+    return series * std::bit_cast<float>(static_cast<std::uint32_t>(n + 127) << 23);
+}
+
+/// Noise over texture slope, and sigma.
+void rate_noise(const float* HWY_RESTRICT residual,
+                const float* HWY_RESTRICT gradient,
+                const float* HWY_RESTRICT shift,
+                int width,
+                float* HWY_RESTRICT noise_px,
+                float* HWY_RESTRICT sigma_px) {
+    for (int u = 0; u < width; ++u) {
+        const bool textured = gradient[u] > residual[u] / kMaxNoisePerPixel_px;
+        const float slope = textured ? gradient[u] : 1.0F;
+        const float noise = textured ? residual[u] / slope : kMaxNoisePerPixel_px;
+        const float share_px = kSigmaShiftShare * shift[u];
+        const float scatter_px = kSigmaGain * noise;
+        const float variance =
+            kSigmaFloor_px * kSigmaFloor_px + scatter_px * scatter_px + share_px * share_px;
+        const float sigma = std::sqrt(variance);
+        noise_px[u] = noise;
+        sigma_px[u] = sigma < kMaxSigma_px ? sigma : kMaxSigma_px;
+    }
+}
+
+/// `probability` holds the noise, and then what it is named after.
+void rate_risk(const float* HWY_RESTRICT shift,
+               const std::uint8_t* HWY_RESTRICT jump_px,
+               const float* HWY_RESTRICT holes,
+               int width,
+               float* HWY_RESTRICT probability) {
+    for (int u = 0; u < width; ++u) {
+        const auto distance_px = static_cast<float>(jump_px[u]);
+        const float far = 1.0F - distance_px / kScoreJumpReach_px;
+        const float nearness = far > 0.0F ? far : 0.0F;
+        const float score = kScoreConstant + kScoreNearJump * nearness +
+                            kScoreNoise * log_of(probability[u]) +
+                            kScoreShift * std::abs(shift[u]) + kScoreUnknown * holes[u];
+        const float chance = 1.0F / (1.0F + exp_of(-score));
+        const float least = distance_px <= kJumpZone_px ? kJumpOutlierProbability : 0.0F;
+        probability[u] = chance > least ? chance : least;
+    }
+}
+
+void rate_row(const RateRow& row) {
+    rate_noise(row.residual_grey,
+               row.gradient_grey_px,
+               row.shift_px,
+               row.width,
+               row.outlier_probability,
+               row.sigma_px);
+    rate_risk(
+        row.shift_px, row.jump_distance_px, row.unknown_share, row.width, row.outlier_probability);
+    const float* HWY_RESTRICT d = row.disparity_px;
+    for (int u = 0; u < row.width; ++u) {
+        const bool known = d[u] == d[u];
+        row.sigma_px[u] = known ? row.sigma_px[u] : d[u];
+        row.outlier_probability[u] = known ? row.outlier_probability[u] : 1.0F;
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::stereo::rows::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace surefoot::stereo::rows {
+
+HWY_EXPORT(smooth_image_row);
+HWY_EXPORT(smooth_along_row);
+HWY_EXPORT(warp_row);
+HWY_EXPORT(accumulate_row);
+HWY_EXPORT(solve_row);
+HWY_EXPORT(rate_row);
+
+void smooth_image(const std::uint8_t* const in[5], int width, int* scratch, std::int16_t* out) {
+    HWY_DYNAMIC_DISPATCH(smooth_image_row)(in, width, scratch, out);
+}
+void smooth_along(const float* center,
+                  const float* const* before,
+                  const float* const* after,
+                  int steps,
+                  int margin_per_step,
+                  int width,
+                  float same_surface_px,
+                  float* sum,
+                  float* count,
+                  float* out) {
+    HWY_DYNAMIC_DISPATCH(smooth_along_row)
+    (center, before, after, steps, margin_per_step, width, same_surface_px, sum, count, out);
+}
+void warp(const WarpRow& row) {
+    HWY_DYNAMIC_DISPATCH(warp_row)(row);
+}
+void accumulate(const std::int16_t* g,
+                const std::int16_t* e,
+                const std::int16_t* used,
+                std::int32_t sign,
+                int width,
+                std::int32_t* const columns[kSums]) {
+    HWY_DYNAMIC_DISPATCH(accumulate_row)(g, e, used, sign, width, columns);
+}
+void solve(const SolveRow& row) {
+    HWY_DYNAMIC_DISPATCH(solve_row)(row);
+}
+void rate(const RateRow& row) {
+    HWY_DYNAMIC_DISPATCH(rate_row)(row);
+}
+
+}  // namespace surefoot::stereo::rows
+#endif  // HWY_ONCE
