@@ -17,20 +17,25 @@ float noise_per_pixel(const MatchEvidence& evidence) noexcept {
     return evidence.residual_grey / evidence.gradient_grey_px;
 }
 
+float nearness_to_jump(const MatchEvidence& evidence) noexcept {
+    return std::max(0.0F, 1.0F - static_cast<float>(evidence.jump_distance_px) / kJumpReach_px);
+}
+
 }  // namespace
 
 float match_sigma_px(const MatchEvidence& evidence) noexcept {
-    const float noise_px = kSigmaGain * noise_per_pixel(evidence);
-    const float shift_px = kSigmaShiftShare * evidence.shift_px;
-    const float variance =
-        kSigmaFloor_px * kSigmaFloor_px + noise_px * noise_px + shift_px * shift_px;
+    const float terms_px[] = {kSigmaFloor_px,
+                              kSigmaGain * noise_per_pixel(evidence),
+                              kSigmaShiftShare * evidence.shift_px,
+                              kSigmaJump_px * nearness_to_jump(evidence),
+                              kSigmaHole_px * evidence.unknown_share};
+    float variance = 0.0F;
+    for (const float term_px : terms_px) variance += term_px * term_px;
     return std::min(kMaxSigma_px, std::sqrt(variance));
 }
 
 float outlier_probability(const MatchEvidence& evidence) noexcept {
-    const float nearness =
-        std::max(0.0F, 1.0F - static_cast<float>(evidence.jump_distance_px) / kScoreJumpReach_px);
-    const float score = kScoreConstant + kScoreNearJump * nearness +
+    const float score = kScoreConstant + kScoreNearJump * nearness_to_jump(evidence) +
                         kScoreNoise * std::log(noise_per_pixel(evidence)) +
                         kScoreShift * std::abs(evidence.shift_px) +
                         kScoreUnknown * evidence.unknown_share;

@@ -245,10 +245,17 @@ HWY_INLINE float exp_of(float x) {
     return series * std::bit_cast<float>(static_cast<std::uint32_t>(n + 127) << 23);
 }
 
+HWY_INLINE float nearness_to_jump(std::uint8_t distance_px) {
+    const float far = 1.0F - static_cast<float>(distance_px) / kJumpReach_px;
+    return far > 0.0F ? far : 0.0F;
+}
+
 /// Noise over texture slope, and sigma.
 void rate_noise(const float* HWY_RESTRICT residual,
                 const float* HWY_RESTRICT gradient,
                 const float* HWY_RESTRICT shift,
+                const std::uint8_t* HWY_RESTRICT jump_px,
+                const float* HWY_RESTRICT holes,
                 int width,
                 float* HWY_RESTRICT noise_px,
                 float* HWY_RESTRICT sigma_px) {
@@ -256,11 +263,12 @@ void rate_noise(const float* HWY_RESTRICT residual,
         const bool textured = gradient[u] > residual[u] / kMaxNoisePerPixel_px;
         const float slope = textured ? gradient[u] : 1.0F;
         const float noise = textured ? residual[u] / slope : kMaxNoisePerPixel_px;
-        const float share_px = kSigmaShiftShare * shift[u];
         const float scatter_px = kSigmaGain * noise;
-        const float variance =
-            kSigmaFloor_px * kSigmaFloor_px + scatter_px * scatter_px + share_px * share_px;
-        const float sigma = std::sqrt(variance);
+        const float share_px = kSigmaShiftShare * shift[u];
+        const float jump = kSigmaJump_px * nearness_to_jump(jump_px[u]);
+        const float hole = kSigmaHole_px * holes[u];
+        const float sigma = std::sqrt(kSigmaFloor_px * kSigmaFloor_px + scatter_px * scatter_px +
+                                      share_px * share_px + jump * jump + hole * hole);
         noise_px[u] = noise;
         sigma_px[u] = sigma < kMaxSigma_px ? sigma : kMaxSigma_px;
     }
@@ -273,14 +281,11 @@ void rate_risk(const float* HWY_RESTRICT shift,
                int width,
                float* HWY_RESTRICT probability) {
     for (int u = 0; u < width; ++u) {
-        const auto distance_px = static_cast<float>(jump_px[u]);
-        const float far = 1.0F - distance_px / kScoreJumpReach_px;
-        const float nearness = far > 0.0F ? far : 0.0F;
-        const float score = kScoreConstant + kScoreNearJump * nearness +
+        const float score = kScoreConstant + kScoreNearJump * nearness_to_jump(jump_px[u]) +
                             kScoreNoise * log_of(probability[u]) +
                             kScoreShift * std::abs(shift[u]) + kScoreUnknown * holes[u];
         const float chance = 1.0F / (1.0F + exp_of(-score));
-        const float least = distance_px <= kJumpZone_px ? kJumpOutlierProbability : 0.0F;
+        const float least = jump_px[u] <= kJumpZone_px ? kJumpOutlierProbability : 0.0F;
         probability[u] = chance > least ? chance : least;
     }
 }
@@ -289,6 +294,8 @@ void rate_row(const RateRow& row) {
     rate_noise(row.residual_grey,
                row.gradient_grey_px,
                row.shift_px,
+               row.jump_distance_px,
+               row.unknown_share,
                row.width,
                row.outlier_probability,
                row.sigma_px);
