@@ -32,15 +32,17 @@ class CensusMatcher final : public Matcher {
                camera::DepthImage& depth) override {
         depth.resize(left.width, left.height);
         search_.search(left, right, executor, winners_);
-        settle(settle_, winners_, executor, depth.disparity_px);
-        speckles_.remove(kSpeckleSize_px, kSpeckleRange_px, depth.disparity_px);
-        finisher_.finish(left, right, executor, depth);
+        settle(settle_, winners_, executor, settled_px_);
+        speckles_.remove(kSpeckleSize_px, kSpeckleRange_px, settled_px_);
+        median_filter(settled_px_, executor, depth.disparity_px);
+        finisher_.finish(left, right, settled_px_, executor, depth);
     }
 
   private:
     SettleConfig settle_;
     SemiGlobalSearch search_;
     Winners winners_;
+    Image<float> settled_px_;
     SpeckleFilter speckles_;
     Finisher finisher_;
 };

@@ -13,8 +13,11 @@ class Finisher {
     Finisher() : refiner_(RefineConfig{}) {}
 
     /// `depth.disparity_px` holds what was found (NaN = nothing); all of `depth` is filled.
+    /// `found_px` is what was found before a filter smoothed it: its jumps and holes are the true
+    /// ones.
     void finish(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
+                const Image<float>& found_px,
                 Executor& executor,
                 camera::DepthImage& depth);
 

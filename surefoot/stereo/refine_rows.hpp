@@ -12,6 +12,11 @@ namespace surefoot::stereo::rows {
 /// is made; `scratch`: width + 4.
 void smooth_image(const std::uint8_t* const in[5], int width, int* scratch, std::int16_t* out);
 
+/// Median of 3 x 3 disparities; unknown (NaN) counts as less than all, so that it is the median
+/// only where five are unknown. `lines`: rows above, here and below; columns beyond the ends
+/// repeat.
+void median(const float* const lines[3], int width, float* out);
+
 /// See stereo::smooth_along. `before[k]` and `after[k]` are the lines k + 1 pixels away on either
 /// side, already shifted; where `margin_per_step` is 1 the first and last k + 1 pixels have no
 /// partners. `sum` and `count`: scratch of the row.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/stereo/settle.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <vector>
 
+#include "surefoot/stereo/refine_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
 
 namespace surefoot::stereo {
@@ -63,6 +65,18 @@ void settle(const SettleConfig& config,
                 out = static_cast<float>(d) +
                       vertex(winners.cost_below.row(v)[u], cost, winners.cost_above.row(v)[u]);
             }
+        }
+    });
+}
+
+void median_filter(const Image<float>& in, Executor& executor, Image<float>& out) {
+    const int height = in.height();
+    out.resize(in.width(), height);
+    for_row_blocks(executor, height, [&](int first, int last) {
+        for (int v = first; v < last; ++v) {
+            const float* const lines[3] = {
+                in.row(std::max(v - 1, 0)), in.row(v), in.row(std::min(v + 1, height - 1))};
+            rows::median(lines, in.width(), out.row(v));
         }
     });
 }

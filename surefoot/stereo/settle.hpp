@@ -18,4 +18,7 @@ void settle(const SettleConfig& config,
             Executor& executor,
             Image<float>& disparity_px);
 
+/// Median of 3 x 3 pixels; a pixel stays or becomes unknown where five of the nine are.
+void median_filter(const Image<float>& in, Executor& executor, Image<float>& out);
+
 }  // namespace surefoot::stereo

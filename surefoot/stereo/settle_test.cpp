@@ -2,9 +2,15 @@
 #include "surefoot/stereo/settle.hpp"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
 
 namespace surefoot::stereo {
 namespace {
@@ -71,6 +77,39 @@ TEST(Settle, InfinitelyFarIsNoDepth) {
     winners.disparity.fill(0);
     const Image<float> d = settled(winners);
     for (int u = 0; u < 4; ++u) EXPECT_TRUE(std::isnan(d.at(u, 0)));
+}
+
+TEST(MedianFilter, IsTheMiddleOfNineOnEveryProcessor) {
+    Rng rng(3);
+    for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {7, 3}, {70, 9}}) {
+        Image<float> in(width, height);
+        for (std::size_t i = 0; i < in.size(); ++i) {
+            in.data()[i] = rng.uniform() < 0.35 ? std::numeric_limits<float>::quiet_NaN()
+                                                : static_cast<float>(rng.uniform(1.0, 60.0));
+        }
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+            hwy::SetSupportedTargetsForTest(target);
+            Serial serial;
+            Image<float> out;
+            median_filter(in, serial, out);
+            for (int v = 0; v < height; ++v) {
+                for (int u = 0; u < width; ++u) {
+                    std::vector<float> nine;
+                    for (int k = 0; k < 9; ++k) {
+                        const float value = in.at(std::clamp(u + k % 3 - 1, 0, width - 1),
+                                                  std::clamp(v + k / 3 - 1, 0, height - 1));
+                        nine.push_back(std::isnan(value) ? -1.0F : value);
+                    }
+                    std::sort(nine.begin(), nine.end());
+                    if (nine[4] < 0.0F)
+                        ASSERT_TRUE(std::isnan(out.at(u, v)));
+                    else
+                        ASSERT_EQ(out.at(u, v), nine[4]) << u << ", " << v;
+                }
+            }
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ class SgbmMatcher final : public Matcher {
         sgbm_->compute(padded_left_, padded_right_, steps_);
         read_steps(executor, depth.disparity_px);
         drop_hidden(executor, config_.left_right_tolerance_px, depth.disparity_px);
-        finisher_.finish(left, right, executor, depth);
+        finisher_.finish(left, right, depth.disparity_px, executor, depth);
     }
 
   private:
