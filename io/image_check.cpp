@@ -7,6 +7,7 @@
 
 #include "io/bytes.hpp"
 #include "io/image_file.hpp"
+#include "io/jpeg_scan.hpp"
 #include "io/text.hpp"
 
 namespace surefoot::io {
@@ -100,16 +101,6 @@ Result<ImageHeader> check_png(std::string_view bytes, const std::string& file) {
 
 constexpr bool is_frame_header(int marker) noexcept {  // SOF0..SOF15 without DHT, JPG and DAC
     return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-}
-
-/// First marker of the entropy-coded data that is neither a stuffed zero nor a restart.
-std::size_t end_of_scan(std::string_view bytes, std::size_t at) noexcept {
-    for (; at + 1 < bytes.size(); ++at) {
-        const auto next = static_cast<std::uint8_t>(bytes[at + 1]);
-        const bool inside = next == 0x00 || next == 0xff || (next >= 0xd0 && next <= 0xd7);
-        if (bytes[at] == '\xff' && !inside) return at;
-    }
-    return bytes.size();
 }
 
 /// Walks over the JPEG segments (marker, big-endian length) and scans up to the end marker FFD9.

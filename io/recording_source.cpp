@@ -5,14 +5,12 @@
 
 #include "io/file.hpp"
 #include "io/image_file.hpp"
+#include "io/imu_stream.hpp"
 #include "io/recording.hpp"
 #include "io/text.hpp"
 
 namespace surefoot::io {
 namespace {
-
-/// The first frame has no predecessor: it gets at most this much of the IMU's past.
-constexpr std::int64_t kFirstImuSpan_ns = 1'000'000'000;
 
 template <typename Pixel>
 std::string size_text(const Image<Pixel>& image) {
@@ -127,8 +125,8 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const std::string& path
     if (is_file(path)) {
         if (is_video_name(path)) return open_video(path, options);
         return input_error(
-            fmt::format("{}: a single file must be a video (.avi .mp4 .mkv .mov .webm .mpg .m4v); "
-                        "for images give "
+            fmt::format("{}: a single file must be a video (.avi .mp4 .mkv .mov .webm .mpg .m4v "
+                        ".mjpeg); for images give "
                         "their folder",
                         path));
     }

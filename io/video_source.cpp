@@ -7,6 +7,7 @@
 
 #include "io/file.hpp"
 #include "io/image_file.hpp"
+#include "io/mjpeg_source.hpp"
 #include "io/recording.hpp"
 
 namespace surefoot::io {
@@ -85,7 +86,7 @@ class VideoSource final : public camera::FrameSource {
 
 bool is_video_name(const std::string& path) {
     static const std::vector<std::string> extensions{
-        ".avi", ".mp4", ".mkv", ".mov", ".webm", ".mpg", ".m4v"};
+        ".avi", ".mp4", ".mkv", ".mov", ".webm", ".mpg", ".m4v", ".mjpeg", ".mjpg"};
     return std::find(extensions.begin(), extensions.end(), extension_of(path)) != extensions.end();
 }
 
@@ -97,6 +98,12 @@ Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
         return input_error(fmt::format(
             "{}: a video but no rig; put a rig.yaml beside it or give one with --rig", path));
     }
+    const double rig_hz = (*rig)->rate_hz > 0.0 ? (*rig)->rate_hz : kDefaultRate_hz;
+    if (extension_of(path) == ".mjpeg" || extension_of(path) == ".mjpg") {
+        const Result<double> rate_hz = chosen_rate_hz(options, rig_hz);
+        if (!rate_hz) return rate_hz.error();
+        return open_mjpeg(path, **rig, *rate_hz);
+    }
     cv::VideoCapture capture;
     bool opened = false;
     try {
@@ -107,9 +114,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
     if (!opened)
         return input_error(path + ": cannot be opened as a video (damaged, or unknown codec)");
     double own_hz = capture.get(cv::CAP_PROP_FPS);
-    if (!(own_hz >= 0.1 && own_hz <= 1000.0)) {
-        own_hz = (*rig)->rate_hz > 0.0 ? (*rig)->rate_hz : kDefaultRate_hz;
-    }
+    if (!(own_hz >= 0.1 && own_hz <= 1000.0)) own_hz = rig_hz;
     const Result<double> rate_hz = chosen_rate_hz(options, own_hz);
     if (!rate_hz) return rate_hz.error();
     return std::unique_ptr<camera::FrameSource>(

@@ -5,6 +5,7 @@
 #include <limits>
 #include <thread>
 
+#include "apps/surefoot/cameras.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/rig_view.hpp"
@@ -85,6 +86,17 @@ void print(const RigView& view) {
     }
 }
 
+void print(const std::vector<CameraNode>& cameras) {
+    if (cameras.empty()) fmt::print("cameras: none (no /dev/video*)\n");
+    for (const CameraNode& node : cameras) {
+        if (node.problem.empty()) {
+            fmt::print("camera {}: {}\n", node.device, node.card);
+        } else {
+            fmt::print("no camera at {}\n", node.problem);
+        }
+    }
+}
+
 }  // namespace
 
 int doctor(const DoctorOptions& options) {
@@ -97,14 +109,17 @@ int doctor(const DoctorOptions& options) {
     if (!rectifier) return report(rectifier.error());
     const RigView view = view_of(*rig, rectifier->rig(), machine->value().machine);
     const auto threads = static_cast<int>(std::thread::hardware_concurrency());
+    const std::vector<CameraNode> cameras = camera_nodes();
     if (options.common.json) {
-        fmt::print("{}\n", doctor_json(SUREFOOT_VERSION, threads, machine->value().name, view));
+        fmt::print("{}\n",
+                   doctor_json(SUREFOOT_VERSION, threads, machine->value().name, view, cameras));
         return kExitOk;
     }
     fmt::print("surefoot {}: {} threads, no GPU needed\nsettings: valid\nmachine {}: valid\n",
                SUREFOOT_VERSION,
                threads,
                machine->value().name);
+    print(cameras);
     print(view);
     return kExitOk;
 }

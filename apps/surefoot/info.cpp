@@ -1,14 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "apps/surefoot/cameras.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/recorder.hpp"
 
 namespace surefoot::app {
+namespace {
+
+int info_of_camera(const InfoOptions& options) {
+    const auto address =
+        io::parse_live_address(std::string_view(options.source).substr(kLivePrefix.size()));
+    if (!address) return report(address.error());
+    const auto view = camera_view(address->device);
+    if (!view) return report(view.error());
+    if (options.common.json) {
+        fmt::print("{}\n", camera_view_json(*view));
+        return kExitOk;
+    }
+    fmt::print("{}: {} (driver {})\n", view->device, view->card, view->driver);
+    for (const io::VideoMode& mode : view->modes)
+        fmt::print("  {} {}x{} at {:.4g} Hz\n", mode.fourcc, mode.width, mode.height, mode.rate_hz);
+    for (const io::VideoControl& control : view->controls) {
+        fmt::print("  {}: {} ({} .. {}, step {}{})\n",
+                   control.name,
+                   control.value ? fmt::format("{}", *control.value) : "not readable",
+                   control.min,
+                   control.max,
+                   control.step,
+                   control.writable ? "" : ", not settable now");
+    }
+    return kExitOk;
+}
+
+}  // namespace
 
 int info(const InfoOptions& options) {
+    if (options.source.starts_with(kLivePrefix)) return info_of_camera(options);
     io::OpenOptions open;
     if (!options.rig_file.empty()) open.rig_file = options.rig_file;
     const auto found = io::inspect(options.source, open);

@@ -182,6 +182,16 @@ Json health_json(const RunRecord& record) {
     return {{"OK", counts[0]}, {"DEGRADED", counts[1]}, {"LOST", counts[2]}};
 }
 
+Json arrivals_json(const ArrivalCounts& counts) {
+    return {{"repeated_frames", counts.repeated_frames},
+            {"longest_freeze_frames", counts.longest_freeze_frames},
+            {"torn_frames", counts.torn_frames},
+            {"dropped_frames", counts.dropped_frames},
+            {"skipped_frames", counts.skipped_frames},
+            {"damaged_frames", counts.damaged_frames},
+            {"reconnections", counts.reconnections}};
+}
+
 Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const pipeline::Alignment& alignment = pipeline.alignment();
     const auto& geometry = pipeline.map().geometry();
@@ -199,6 +209,7 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
          alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
         {"health", health_json(record)},
         {"counts", counts_json(record.fusion)},
+        {"arrivals", arrivals_json(record.arrivals)},
         {"camera", camera_json(pipeline.rig())},
         {"map",
          {{"known_cells", pipeline.map().known_cells()},
@@ -221,6 +232,12 @@ Json frame_json(const FrameReport& frame) {
             {"depth_pixels", frame.depth_pixels},
             {"known_cells", frame.known_cells},
             {"ground_accepted", frame.ground.accepted},
+            {"repeated", frame.arrival.repeated},
+            {"torn", frame.arrival.torn},
+            {"dropped", frame.arrival.dropped},
+            {"skipped", frame.arrival.skipped},
+            {"damaged", frame.arrival.damaged},
+            {"reconnected", frame.arrival.reconnected},
             {"counts", counts_json(frame.fusion)}};
 }
 
@@ -454,7 +471,11 @@ std::string fuse_json(std::size_t steps, const std::string& folder) {
 std::string doctor_json(const std::string& version,
                         int threads,
                         const std::string& machine,
-                        const RigView& view) {
+                        const RigView& view,
+                        const std::vector<CameraNode>& cameras) {
+    Json nodes = Json::array();
+    for (const CameraNode& node : cameras)
+        nodes.push_back({{"device", node.device}, {"card", node.card}, {"problem", node.problem}});
     Json depths = Json::array();
     for (const auto& depth : view.depths)
         depths.push_back({{"z_m", depth.z_m}, {"sigma_m", depth.sigma_m}});
@@ -478,7 +499,34 @@ std::string doctor_json(const std::string& version,
         {"disparity_sigma_px", view.disparity_sigma_px},
         {"depth_sigma", depths},
         {"floor", {{"near_m", number(view.floor.near_m)}, {"far_m", number(view.floor.far_m)}}},
-        {"steps", steps}};
+        {"steps", steps},
+        {"cameras", nodes}};
+    return object.dump(kIndent);
+}
+
+std::string camera_view_json(const CameraView& view) {
+    Json modes = Json::array();
+    for (const io::VideoMode& mode : view.modes) {
+        modes.push_back({{"format", mode.fourcc},
+                         {"width", mode.width},
+                         {"height", mode.height},
+                         {"rate_hz", mode.rate_hz}});
+    }
+    Json controls = Json::array();
+    for (const io::VideoControl& control : view.controls) {
+        controls.push_back({{"name", control.name},
+                            {"value", control.value ? Json(*control.value) : Json(nullptr)},
+                            {"min", control.min},
+                            {"max", control.max},
+                            {"step", control.step},
+                            {"writable", control.writable}});
+    }
+    const Json object = {{"kind", "live"},
+                         {"device", view.device},
+                         {"card", view.card},
+                         {"driver", view.driver},
+                         {"modes", modes},
+                         {"controls", controls}};
     return object.dump(kIndent);
 }
 

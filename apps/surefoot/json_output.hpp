@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/surefoot/bench_result.hpp"
+#include "apps/surefoot/cameras.hpp"
 #include "apps/surefoot/copy_frames.hpp"
 #include "apps/surefoot/rig_view.hpp"
 #include "apps/surefoot/run_session.hpp"
@@ -66,7 +67,9 @@ struct ReportCamera {
 [[nodiscard]] std::string doctor_json(const std::string& version,
                                       int threads,
                                       const std::string& machine,
-                                      const RigView& view);
+                                      const RigView& view,
+                                      const std::vector<CameraNode>& cameras);
+[[nodiscard]] std::string camera_view_json(const CameraView& view);
 /// `problem` is empty when the settings are valid.
 [[nodiscard]] std::string check_json(const std::string& problem);
 /// `results` as `sorted` leaves them.

@@ -96,11 +96,17 @@ void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
                           exit_code);
     verb->add_option("source",
                      o.source,
-                     "EuRoC or KITTI folder, side-by-side folder or video, TUM RGB-D, sim:SCENE")
+                     "EuRoC or KITTI folder, side-by-side folder or video, TUM RGB-D, sim:SCENE, "
+                     "v4l2:DEVICE[@WIDTHxHEIGHT[@RATE]]")
         ->required()
         ->type_name("SOURCE");
     verb->add_option("--out", o.out_dir, "folder for the results")->required()->type_name("DIR");
     verb->add_option("--rig", o.rig_file, "calibration that replaces the recording's own")
+        ->type_name("FILE");
+    verb->add_option("--imu",
+                     o.imu_file,
+                     "EuRoC imu csv, or a FIFO of such rows; stamps as those of the frames "
+                     "(CLOCK_MONOTONIC of a live camera)")
         ->type_name("FILE");
     verb->add_option("--machine", o.machine, "machine file or built-in name; sets the camera mount")
         ->type_name("FILE|NAME");
@@ -451,6 +457,7 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
         ->required()
         ->type_name("DIR");
     record_verb->add_option("--rig", all.record.rig_file, "calibration")->type_name("FILE");
+    record_verb->add_option("--imu", all.record.imu_file, "as for run")->type_name("FILE");
     record_verb->add_option("--rate", all.record.rate_hz, "frame rate of a source without stamps")
         ->check(CLI::Range(0.01, 1000.0));
     record_verb->add_option("--max-frames", all.record.max_frames, "stop after this many frames")
@@ -475,14 +482,16 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     replay_verb->add_option("--speed", all.replay.speed, "times real time")
         ->check(CLI::Range(0.01, 1000.0));
 
-    CLI::App* info_verb = bind(add_verb(app,
-                                        "info",
-                                        "what a recording holds: frames, rate, gaps, rig, IMU",
-                                        "surefoot info out/floor_recording --json"),
-                               all.info,
-                               info,
-                               exit_code,
-                               Reads::no_settings);
+    CLI::App* info_verb =
+        bind(add_verb(app,
+                      "info",
+                      "what a recording holds: frames, rate, gaps, rig, IMU; what a live "
+                      "camera (v4l2:DEVICE) can do: modes, controls",
+                      "surefoot info out/floor_recording --json"),
+             all.info,
+             info,
+             exit_code,
+             Reads::no_settings);
     info_verb->add_option("source", all.info.source, "as for run")->required()->type_name("SOURCE");
     info_verb->add_option("--rig", all.info.rig_file, "calibration")->type_name("FILE");
 }

@@ -19,7 +19,9 @@ int record(const RecordOptions& options) {
                                options.rate_hz,
                                options.max_frames,
                                options.common.seed,
-                               settings->sim},
+                               settings->sim,
+                               settings->camera,
+                               options.imu_file},
                               *executor);
     if (!source) return report(source.error());
     auto recorder = start_recording(options.out_dir, **source);

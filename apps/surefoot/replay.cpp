@@ -13,6 +13,7 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "io/frame_watch.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 
@@ -53,7 +54,9 @@ void print_frame(const FrameReport& seen, std::int64_t first_frame_ns) {
         to_string(seen.motion.health),
         seen.motion.inliers,
         seen.known_cells,
-        seen.work == Work::odometry ? "  late" : "");
+        !seen.arrival.is_new_and_whole() ? "  no new image"
+        : seen.work == Work::odometry    ? "  late"
+                                         : "");
 }
 
 /// Plays to the end, the first error or the user's interrupt.
@@ -62,10 +65,12 @@ Status play(const ReplayOptions& options,
             pipeline::Pipeline& pipeline,
             std::vector<FrameReport>& seen) {
     std::optional<Schedule> schedule;
+    io::FrameWatch watch;
     while (!interrupted()) {
-        const auto frame = source.next();
+        auto frame = source.next();
         if (!frame) return frame.error();
         if (!frame->has_value()) return {};
+        watch.look(**frame);
         if (!schedule) {
             pipeline.align({&**frame, 1});
             schedule.emplace((*frame)->time_ns, options.speed);
@@ -86,8 +91,14 @@ int replay(const ReplayOptions& options) {
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
     const auto executor = make_executor(options.common);
-    auto source = open_source(
-        {options.source, options.rig_file, 0.0, 0, options.common.seed, settings->sim}, *executor);
+    auto source = open_source({options.source,
+                               options.rig_file,
+                               0.0,
+                               0,
+                               options.common.seed,
+                               settings->sim,
+                               settings->camera},
+                              *executor);
     if (!source) return report(source.error());
     auto pipeline = pipeline::Pipeline::make(
         settings->pipeline, mounted_rig((*source)->rig(), *machine), *executor, steady_now_ns);
@@ -96,7 +107,7 @@ int replay(const ReplayOptions& options) {
     std::vector<FrameReport> seen;
     const Status played = play(options, **source, *pipeline, seen);
     const auto late = std::count_if(seen.begin(), seen.end(), [](const FrameReport& frame) {
-        return frame.work == Work::odometry;
+        return frame.work == Work::odometry && frame.arrival.is_new_and_whole();
     });
     if (options.common.json) {
         fmt::print("{}\n", replay_json(seen, options.speed, late));

@@ -38,7 +38,9 @@ int run(const RunOptions& options) {
                                options.rate_hz,
                                options.max_frames,
                                options.common.seed,
-                               settings->sim},
+                               settings->sim,
+                               settings->camera,
+                               options.imu_file},
                               *executor);
     if (!source) return report(source.error());
     const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);

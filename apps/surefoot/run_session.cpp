@@ -76,25 +76,30 @@ std::vector<StereoFrame> RunSession::first_frames() {
 }
 
 std::optional<StereoFrame> RunSession::next_frame() {
-    if (interrupted()) {
-        record_.error = Error{ErrorCode::interrupted,
-                              "interrupted by the user; the results up to here are kept"};
-        return std::nullopt;
-    }
-    auto frame = source_.next();
+    Result<std::optional<StereoFrame>> frame = std::optional<StereoFrame>();
+    if (!interrupted()) frame = source_.next();
     if (!frame) {
         record_.error = frame.error();
         return std::nullopt;
     }
-    if (frame->has_value()) truth_.remember_depth(**frame);
+    // A live camera also ends when the user interrupts while it waits.
+    if (!frame->has_value() && interrupted()) {
+        record_.error = Error{ErrorCode::interrupted,
+                              "interrupted by the user; the results up to here are kept"};
+    }
+    if (frame->has_value()) {
+        watch_.look(**frame);
+        truth_.remember_depth(**frame);
+    }
     return std::move(frame).value();
 }
 
 void RunSession::process(const StereoFrame& frame, const AfterFrame& after_frame) {
     const bool full = frame.index % depth_every_ == 0;
     const FrameReport report = pipeline_.process(frame, full ? Work::full : Work::odometry);
-    if (full) truth_.compare_depth(frame, pipeline_);
+    if (report.work == Work::full) truth_.compare_depth(frame, pipeline_);
     record_.fusion += report.fusion;
+    record_.arrivals += report.arrival;
     record_.frames.push_back(report);
     if (after_frame) after_frame(report);
 }

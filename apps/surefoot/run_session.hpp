@@ -9,6 +9,7 @@
 
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/sim_truth.hpp"
+#include "io/frame_watch.hpp"
 #include "io/machine_file.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
@@ -21,6 +22,7 @@ struct RunRecord {
     camera::StereoRig rig;
     std::vector<FrameReport> frames;
     FusionCounts fusion;         ///< summed over all frames
+    ArrivalCounts arrivals;      ///< likewise
     std::optional<Error> error;  ///< why it ended early
     GreyImage last_left;         ///< rectified, for the report
     camera::DepthImage last_depth;
@@ -62,6 +64,7 @@ class RunSession {
     camera::FrameSource& source_;
     int depth_every_;
     eval::EvalMapsConfig maps_;
+    io::FrameWatch watch_;
     SimTruth truth_;
     RunRecord record_;
 };

@@ -79,5 +79,47 @@ TEST(RunSession, MapsDepthAndMotionThatComeReady) {
     EXPECT_NEAR(record.truth->depth.within_3_sigma, 0.98, 0.02);
 }
 
+TEST(RunSession, FindsEveryRepeatedTornAndFrozenImage) {
+    Serial serial;
+    sim::SceneOptions options;
+    options.scene = "floor";
+    options.frames = 26;
+    options.faults.planned = {{4, sim::ImageFault::repeated, 0},
+                              {13, sim::ImageFault::torn, 100},
+                              {16, sim::ImageFault::repeated, 0},
+                              {19, sim::ImageFault::frozen, 0},
+                              {20, sim::ImageFault::frozen, 0},
+                              {21, sim::ImageFault::frozen, 0}};
+    auto floor = sim::open_scene(options, &serial);
+    ASSERT_TRUE(floor.ok()) << floor.error().message;
+    auto pipeline = pipeline::Pipeline::make({}, (*floor)->rig(), serial, steady_now_ns);
+    ASSERT_TRUE(pipeline.ok());
+    RunSession session(*pipeline, **floor, (*floor)->rig(), 1, {});
+    session.drive();
+    const RunRecord& record = session.record();
+    ASSERT_EQ(record.frames.size(), 26U);
+    for (const FrameReport& frame : record.frames) {
+        const bool frozen = frame.index >= 19 && frame.index <= 21;
+        const int repeated = frozen ? frame.index - 18 : frame.index == 4 || frame.index == 16;
+        const bool torn = frame.index == 13;
+        EXPECT_EQ(frame.arrival.repeated, repeated) << "frame " << frame.index;
+        EXPECT_EQ(frame.arrival.torn, torn) << "frame " << frame.index;
+        const bool used = repeated == 0 && !torn;
+        EXPECT_EQ(frame.motion.health == Health::lost, !used) << "frame " << frame.index;
+        EXPECT_EQ(frame.fusion.points > 0, used) << "frame " << frame.index;
+    }
+    EXPECT_EQ(record.arrivals.repeated_frames, 5);
+    EXPECT_EQ(record.arrivals.longest_freeze_frames, 3);
+    EXPECT_EQ(record.arrivals.torn_frames, 1);
+    // The tracking goes on from the last good image: the whole way is as long as it was.
+    const auto& truth = (*floor)->truth().trajectory;
+    const double way_m =
+        (truth.back().T_world_body.translation_m - truth.front().T_world_body.translation_m).norm();
+    const double seen_m = (record.frames.back().motion.T_odom_body.translation_m -
+                           record.frames.front().motion.T_odom_body.translation_m)
+                              .norm();
+    EXPECT_NEAR(seen_m, way_m, 0.02 * way_m + 0.005);
+}
+
 }  // namespace
 }  // namespace surefoot::app

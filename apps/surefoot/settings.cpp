@@ -20,6 +20,7 @@ void Settings::describe(ConfigVisitor& visitor) {
     sim.describe(visitor);
     visitor.group("laser", laser);
     visitor.end_group();
+    visitor.group("camera", camera);
 }
 
 Result<Settings> load_settings(const CommonOptions& options) {
@@ -36,6 +37,7 @@ Result<Settings> load_settings(const CommonOptions& options) {
     }
     if (auto status = apply_overrides(options, describe); !status) return status.error();
     if (const auto problem = settings.pipeline.problem()) return usage_error(*problem);
+    if (const auto problem = settings.camera.problem()) return usage_error(*problem);
     return settings;
 }
 

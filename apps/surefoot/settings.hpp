@@ -7,6 +7,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "eval/maps.hpp"
 #include "io/config_yaml.hpp"
+#include "io/live_camera.hpp"
 #include "sim/laser_scanner.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/core/executor.hpp"
@@ -21,6 +22,7 @@ struct Settings {
     eval::EvalMapsConfig maps;
     sim::SceneOptions sim;          ///< how simulated scenes are seen
     sim::LaserScannerConfig laser;  ///< and scanned
+    io::CameraConfig camera;        ///< how live cameras are used
 
     void describe(ConfigVisitor& visitor);
 };

@@ -5,7 +5,9 @@
 
 #include <filesystem>
 
+#include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/resources.hpp"
+#include "io/imu_stream.hpp"
 #include "io/recording.hpp"
 #include "io/rig_file.hpp"
 
@@ -34,6 +36,36 @@ class LimitedSource final : public camera::FrameSource {
     int left_;
 };
 
+Result<std::unique_ptr<camera::FrameSource>> open_live(const SourceRequest& request) {
+    const auto address =
+        io::parse_live_address(std::string_view(request.source).substr(kLivePrefix.size()));
+    if (!address) return address.error();
+    if (request.rate_hz > 0.0) {
+        return usage_error(
+            fmt::format("--rate: a live camera has its own; write {}{}@WIDTHxHEIGHT@{:g}",
+                        kLivePrefix,
+                        address->device,
+                        request.rate_hz));
+    }
+    if (request.rig_file.empty()) {
+        return usage_error(request.source +
+                           ": a live camera needs its calibration: --rig rig.yaml");
+    }
+    const auto rig = io::read_rig(request.rig_file);
+    if (!rig) return rig.error();
+    auto camera = io::LiveCamera::open(
+        io::kernel_video_device(), *address, *rig, request.camera, [] { return interrupted(); });
+    if (!camera) return camera.error();
+    return std::unique_ptr<camera::FrameSource>(std::move(camera).value());
+}
+
+Result<std::unique_ptr<camera::FrameSource>> open_recording(const SourceRequest& request) {
+    io::OpenOptions options;
+    if (!request.rig_file.empty()) options.rig_file = request.rig_file;
+    if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
+    return io::open_source(request.source, options);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<sim::SceneSource>> open_simulation(const SourceRequest& request,
@@ -58,14 +90,16 @@ Result<std::unique_ptr<sim::SceneSource>> open_simulation(const SourceRequest& r
 Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& request,
                                                          Executor& executor) {
     if (request.source.starts_with(kSimPrefix)) {
+        if (!request.imu_file.empty())
+            return usage_error("--imu: a simulated scene has its own IMU (sim.imu)");
         auto scene = open_simulation(request, executor);
         if (!scene) return scene.error();
         return std::unique_ptr<camera::FrameSource>(std::move(scene).value());
     }
-    io::OpenOptions options;
-    if (!request.rig_file.empty()) options.rig_file = request.rig_file;
-    if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
-    auto source = io::open_source(request.source, options);
+    auto source =
+        request.source.starts_with(kLivePrefix) ? open_live(request) : open_recording(request);
+    if (source && !request.imu_file.empty())
+        source = io::with_imu(std::move(source).value(), request.imu_file);
     if (!source || request.max_frames <= 0) return source;
     return std::unique_ptr<camera::FrameSource>(
         std::make_unique<LimitedSource>(std::move(source).value(), request.max_frames));

@@ -4,8 +4,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "apps/surefoot/verbs.hpp"
+#include "io/live_camera.hpp"
 #include "io/machine_file.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/camera/frame_source.hpp"
@@ -15,15 +17,20 @@
 namespace surefoot::app {
 
 struct SourceRequest {
-    std::string source;  ///< path, or sim:SCENE
+    std::string source;  ///< path, sim:SCENE or v4l2:DEVICE
     std::string rig_file;
     double rate_hz = 0.0;  ///< 0 = the source's own
     int max_frames = 0;    ///< 0 = all
     std::uint64_t seed = 1;
-    sim::SceneOptions sim = {};  ///< the rest of what a simulated scene wants to know
+    sim::SceneOptions sim = {};    ///< the rest of what a simulated scene wants to know
+    io::CameraConfig camera = {};  ///< and a live camera
+    std::string imu_file = {};     ///< samples of another device, see io::with_imu
 };
 
-/// Opens a recording, video or simulated scene.
+/// What begins the name of a live camera.
+inline constexpr std::string_view kLivePrefix = "v4l2:";
+
+/// Opens a recording, video, live camera or simulated scene.
 [[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& request,
                                                                        Executor& executor);
 

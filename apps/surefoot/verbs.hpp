@@ -31,6 +31,7 @@ struct RunOptions {
     std::string source;
     std::string out_dir;
     std::string rig_file;
+    std::string imu_file;
     std::string machine;
     double rate_hz = 0.0;
     int max_frames = 0;
@@ -168,6 +169,7 @@ struct RecordOptions {
     std::string source;
     std::string out_dir;
     std::string rig_file;
+    std::string imu_file;
     double rate_hz = 0.0;
     int max_frames = 0;
 };

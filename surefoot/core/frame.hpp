@@ -32,6 +32,8 @@ enum class HealthReason : std::uint8_t {
     blur,            ///< image too blurred or too dark for corners
     large_residual,  ///< tracks disagree with the motion more than their noise allows
     time_gap,        ///< the source skipped longer than the tracker can bridge
+    repeated_image,  ///< the same image once more: nothing was seen at this instant
+    torn_image,      ///< parts of two images in one
 };
 [[nodiscard]] const char* to_string(HealthReason reason) noexcept;
 
@@ -54,6 +56,21 @@ struct DepthAndMotion {
     MotionEstimate motion;  ///< its odom begins at the source's first base_link
 };
 
+/// How a frame came in, apart from what it shows: the evidence for a stopped, frozen or torn camera
+/// (hazards H1 and H2 of the gate). Counts are since the previous frame of the source.
+struct FrameArrival {
+    int dropped = 0;      ///< lost before they reached us, by the device's own frame counter
+    int skipped = 0;      ///< given up because newer ones were waiting already
+    int damaged = 0;      ///< too short, or impossible to decode
+    int reconnected = 0;  ///< how often the device had to be opened again
+    /// How many frames in a row, up to this one, brought an image that was there before; 0 = new.
+    int repeated = 0;
+    bool torn = false;  ///< one part is new, the rest is that of an earlier image
+
+    /// May it count as something seen at its time stamp?
+    [[nodiscard]] bool is_new_and_whole() const noexcept { return repeated == 0 && !torn; }
+};
+
 /// What a source delivers at one instant: a raw stereo pair, or (RGB-D) one image with its depth,
 /// or no image at all, but what the chain would have made of it.
 struct StereoFrame {
@@ -64,6 +81,7 @@ struct StereoFrame {
     Image<float> depth_m;        ///< RGB-D only: depth along z of the left camera, NaN = unknown
     std::vector<ImuSample> imu;  ///< samples since the previous frame, in time order
     std::optional<DepthAndMotion> ready;
+    FrameArrival arrival;
 };
 
 }  // namespace surefoot

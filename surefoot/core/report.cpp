@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/core/report.hpp"
 
+#include <algorithm>
+
 namespace surefoot {
 
 const char* to_string(Health health) noexcept {
@@ -21,6 +23,8 @@ const char* to_string(HealthReason reason) noexcept {
         case HealthReason::blur: return "blur";
         case HealthReason::large_residual: return "large_residual";
         case HealthReason::time_gap: return "time_gap";
+        case HealthReason::repeated_image: return "repeated_image";
+        case HealthReason::torn_image: return "torn_image";
     }
     return "unknown";
 }
@@ -48,6 +52,17 @@ FusionCounts& FusionCounts::operator+=(const FusionCounts& other) noexcept {
     cells_new += other.cells_new;
     cells_fused += other.cells_fused;
     cells_inflated += other.cells_inflated;
+    return *this;
+}
+
+ArrivalCounts& ArrivalCounts::operator+=(const FrameArrival& frame) noexcept {
+    dropped_frames += frame.dropped;
+    skipped_frames += frame.skipped;
+    damaged_frames += frame.damaged;
+    reconnections += frame.reconnected;
+    repeated_frames += frame.repeated > 0 ? 1 : 0;
+    longest_freeze_frames = std::max(longest_freeze_frames, std::int64_t{frame.repeated});
+    torn_frames += frame.torn ? 1 : 0;
     return *this;
 }
 

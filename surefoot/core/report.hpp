@@ -30,6 +30,18 @@ struct FusionCounts {
     FusionCounts& operator+=(const FusionCounts& other) noexcept;
 };
 
+/// How the frames of a run came in; see FrameArrival.
+struct ArrivalCounts {
+    std::int64_t repeated_frames = 0;        ///< their image had been there before
+    std::int64_t longest_freeze_frames = 0;  ///< most of these in a row
+    std::int64_t torn_frames = 0;
+    std::int64_t dropped_frames = 0;
+    std::int64_t skipped_frames = 0;
+    std::int64_t damaged_frames = 0;
+    std::int64_t reconnections = 0;
+    ArrivalCounts& operator+=(const FrameArrival& frame) noexcept;
+};
+
 /// The ground plane as seen in one frame, in the frame named by its producer.
 struct GroundObservation {
     bool accepted = false;
@@ -44,6 +56,9 @@ struct FrameReport {
     std::int64_t time_ns = 0;
     int index = 0;
     Work work = Work::odometry;
+    FrameArrival arrival;
+    /// Of a repeated or torn frame: the last pose again, lost, with the covariance of unseen
+    /// motion.
     MotionEstimate motion;
     std::int64_t depth_pixels = 0;  ///< pixels with a disparity
     std::int64_t image_pixels = 0;

@@ -4,9 +4,11 @@
 #include <algorithm>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/time.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
 #include "surefoot/ground/ground_observation.hpp"
 #include "surefoot/ground/sample_points.hpp"
+#include "surefoot/odometry/health.hpp"
 #include "surefoot/pipeline/rgbd_depth.hpp"
 
 namespace surefoot::pipeline {
@@ -99,6 +101,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
     scout.start_at(Pose{});
     ground::GroundCalibration calibration(config_.ground);
     for (const StereoFrame& frame : first_frames) {
+        if (!frame.arrival.is_new_and_whole()) continue;
         const MotionEstimate motion = track(frame, scout, Pose{});
         rectify(frame);
         measure_depth(frame);
@@ -107,6 +110,8 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
     }
     alignment_ = place_odom(config_.mount, calibration.alignment(), up_imu_body);
     odometry_.start_at(alignment_.T_odom_body);
+    last_motion_.T_odom_body = alignment_.T_odom_body;
+    if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
     return alignment_;
 }
 
@@ -115,6 +120,13 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     report.time_ns = frame.time_ns;
     report.index = frame.index;
     report.work = work;
+    report.arrival = frame.arrival;
+    if (!frame.arrival.is_new_and_whole()) {
+        report.work = Work::odometry;
+        report.motion = unseen(frame);
+        report.known_cells = map_.known_cells();
+        return report;
+    }
     StageTimer timer(clock_, report);
 
     report.motion = track(frame, odometry_, alignment_.T_odom_body);
@@ -136,6 +148,19 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     }
     report.known_cells = map_.known_cells();
     return report;
+}
+
+MotionEstimate Pipeline::unseen(const StereoFrame& frame) const {
+    MotionEstimate motion = last_motion_;
+    motion.time_ns = frame.time_ns;
+    motion.T_previous_body = Pose{};
+    const double gap_s = seconds_from_ns(frame.time_ns - last_motion_.time_ns);
+    motion.relative_covariance = odometry::lost_covariance(config_.odometry, 0.0, gap_s);
+    motion.health = Health::lost;
+    motion.reason = frame.arrival.torn ? HealthReason::torn_image : HealthReason::repeated_image;
+    motion.tracks = motion.inliers = 0;
+    motion.residual_px = 0.0;
+    return motion;
 }
 
 MotionEstimate Pipeline::track(const StereoFrame& frame,

@@ -27,6 +27,9 @@ using Clock = std::int64_t (*)();
 
 /// Stereo frames in, rated map of the ground out: one frame is one call of `process`. Frames that
 /// bring depth and motion with them (`StereoFrame::ready`, on a rectified rig) are only mapped.
+/// Frames with a repeated or torn image (`StereoFrame::arrival`) are reported, and nothing else:
+/// the odometry would take a frozen picture for a machine that stands still. The snapshot keeps the
+/// stamps of the last good frame, so that the gate sees it grow old.
 ///
 /// Order of calls: `make`, `align` once with the first frames, then `process` for every frame in
 /// time order (those used for the alignment included). One thread at a time.
@@ -68,6 +71,8 @@ class Pipeline {
              Executor& executor,
              Clock clock);
 
+    /// The last pose, with the motion that may have happened unseen since then.
+    [[nodiscard]] MotionEstimate unseen(const StereoFrame& frame) const;
     /// The frame's own motion, or what the odometry says; `T_odom_first`: the first base_link.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,

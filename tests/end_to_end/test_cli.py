@@ -84,7 +84,7 @@ class Verbs(CliTest):
              "width height resolution_m origin_m known_cells points skipped file"),
             (["config"], "settings"),
             (["config", "--check"], "valid problem"),
-            (["doctor"], "version machine rig depth_sigma floor steps"),
+            (["doctor"], "version machine rig depth_sigma floor steps cameras"),
             (["bench", "gate"], "benchmarks"),
             (["record", recording, "--out", self.dir / "copy"], "frames complete error folder"),
             (["replay", recording, "--speed", 1000], "frames late speed per_frame"),
@@ -112,6 +112,18 @@ class Verbs(CliTest):
                 self.assertEqual(process.returncode, 2, f"{verb} {wrong}: {process.stderr}")
         process = surefoot("info", self.dir, "--set", "elevation.length_m=8")
         self.assertIn("change nothing here", process.stderr)
+
+    def test_live_cameras_say_what_is_missing(self):
+        for source, code, words in (("v4l2:video0", 2, "expected v4l2:DEVICE"), ("v4l2:/dev/null", 1, "not a video device"),
+                                    ("v4l2:/nowhere", 1, "cannot be opened"), (f"v4l2:{__file__}", 1, "not a device")):
+            process = surefoot("info", source)
+            self.assertEqual(process.returncode, code, process.stderr)
+            self.assertIn(words, process.stderr)
+        process = surefoot("run", "v4l2:/dev/null", "--out", self.dir / "live")
+        self.assertEqual(process.returncode, 2, process.stderr)
+        self.assertIn("--rig", process.stderr)
+        process = surefoot("run", "sim:floor", "--imu", "x.csv", "--out", self.dir / "live")
+        self.assertEqual(process.returncode, 2, process.stderr)
 
     def test_every_preset_is_known(self):
         by_default = self.run_ok("config").stdout

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/frame_watch.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace surefoot::io {
+namespace {
+
+/// Eight bytes at a time through the multiply and rotate of xxHash's rounds (Collet, XXH64); the
+/// last bytes are filled with zeros, all rows of an image being equally long.
+std::uint64_t hash_of(const char* bytes, std::size_t size) noexcept {
+    std::uint64_t hash = 0x27d4eb2f165667c5U ^ size;
+    for (std::size_t at = 0; at < size; at += sizeof(std::uint64_t)) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes + at, std::min(sizeof(word), size - at));
+        hash = std::rotl(hash ^ (word * 0xc2b2ae3d27d4eb4fU), 31) * 0x9e3779b185ebca87U;
+    }
+    return hash ^ (hash >> 29);
+}
+
+template <typename Pixel>
+int changes_in(const Pixel* row, int width) noexcept {
+    int changes = 0;
+    for (int u = 1; u < width; ++u) changes += row[u] != row[u - 1] ? 1 : 0;
+    return changes;
+}
+
+}  // namespace
+
+template <typename Pixel>
+void FrameWatch::hash_rows(const Image<Pixel>& image, Rows& rows) {
+    rows.resize(static_cast<std::size_t>(image.height()));
+    for (int v = 0; v < image.height(); ++v) {
+        const Pixel* row = image.row(v);
+        const std::size_t size = sizeof(Pixel) * static_cast<std::size_t>(image.width());
+        rows[static_cast<std::size_t>(v)] = {hash_of(reinterpret_cast<const char*>(row), size),
+                                             changes_in(row, image.width()) >= kMinChanges};
+    }
+}
+
+bool FrameWatch::equal(const Seen& a, const Seen& b) {
+    for (std::size_t i = 0; i < a.images.size(); ++i) {
+        const auto same_hash = [](const Row& x, const Row& y) { return x.hash == y.hash; };
+        if (!std::equal(a.images[i].begin(),
+                        a.images[i].end(),
+                        b.images[i].begin(),
+                        b.images[i].end(),
+                        same_hash)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+FrameWatch::Likeness FrameWatch::compare(const Rows& now, const Rows& before) {
+    if (now.size() != before.size()) return Likeness::different;
+    int same = 0;
+    int structured = 0;
+    int switches = 0;  // between equal and new rows, from the top down
+    bool last_same = false;
+    for (std::size_t v = 0; v < now.size(); ++v) {
+        if (!now[v].structured) continue;
+        const bool is_same = now[v].hash == before[v].hash;
+        if (structured > 0 && is_same != last_same) ++switches;
+        last_same = is_same;
+        ++structured;
+        same += is_same ? 1 : 0;
+    }
+    if (structured < kMinTornRows) return Likeness::unknown;
+    if (same == structured) return Likeness::same;
+    const bool enough = same >= kMinTornRows && structured - same >= kMinTornRows;
+    return enough && switches == 1 ? Likeness::torn : Likeness::different;
+}
+
+bool FrameWatch::torn(const Seen& now, const Seen& before) {
+    // The depth image of RGB-D has holes and steps of its own: it only counts as repeated.
+    const Likeness left = compare(now.images[0], before.images[0]);
+    const Likeness right = compare(now.images[1], before.images[1]);
+    if (left == Likeness::torn || right == Likeness::torn) return true;
+    return (left == Likeness::same && right == Likeness::different) ||
+           (left == Likeness::different && right == Likeness::same);
+}
+
+void FrameWatch::look(StereoFrame& frame) {
+    frame.arrival.repeated = 0;
+    frame.arrival.torn = false;
+    if (frame.left.empty() && frame.right.empty()) return;
+    hash_rows(frame.left, now_.images[0]);
+    hash_rows(frame.right, now_.images[1]);
+    hash_rows(frame.depth_m, now_.images[2]);
+    const auto end = memory_.begin() + static_cast<std::ptrdiff_t>(std::min(seen_, kMemory));
+    const bool repeated =
+        std::any_of(memory_.begin(), end, [&](const Seen& before) { return equal(now_, before); });
+    repeated_ = repeated ? repeated_ + 1 : 0;
+    frame.arrival.repeated = repeated_;
+    if (repeated) return;  // nothing to remember that is not there already
+    frame.arrival.torn =
+        std::any_of(memory_.begin(), end, [&](const Seen& before) { return torn(now_, before); });
+    std::swap(memory_[seen_ % kMemory], now_);
+    ++seen_;
+}
+
+}  // namespace surefoot::io

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace surefoot::io {
+
+/// The system calls that a V4L2 camera needs, and nothing else: tests replace them by a scripted
+/// device. Failures are errno values, 0 is success. One thread at a time.
+class VideoDevice {
+  public:
+    virtual ~VideoDevice() = default;
+    [[nodiscard]] virtual int open(const std::string& path) = 0;
+    /// Closing also ends streaming and gives back the driver's buffers.
+    virtual void close() = 0;
+    /// ioctl: `code` is VIDIOC_*, `argument` its structure.
+    [[nodiscard]] virtual int request(unsigned long code, void* argument) = 0;
+    /// mmap of a buffer; null when it fails.
+    [[nodiscard]] virtual const std::uint8_t* map(std::size_t offset, std::size_t length) = 0;
+    virtual void unmap(const std::uint8_t* address, std::size_t length) = 0;
+    /// 0 when a frame may be waiting, ETIMEDOUT, EINTR, or ENODEV when the device is gone.
+    [[nodiscard]] virtual int wait(int timeout_ms) = 0;
+    /// Lets time pass before the next attempt to open; ends early on a signal.
+    virtual void pause(int time_ms) = 0;
+};
+
+/// The kernel's own; not open yet.
+[[nodiscard]] std::unique_ptr<VideoDevice> kernel_video_device();
+
+}  // namespace surefoot::io

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the pipeline does with frames whose image is repeated or torn. (Hazards H1 and H2.)
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::pipeline {
+namespace {
+
+constexpr int kWidth = 160;
+constexpr int kHeight = 120;
+constexpr std::int64_t kPeriod_ns = 66'000'000;
+
+camera::StereoRig small_rig() {
+    camera::StereoRig rig;
+    camera::PinholeRadTan lens;
+    lens.fx_px = lens.fy_px = 120.0;
+    lens.cx_px = 79.5;
+    lens.cy_px = 59.5;
+    rig.left = {lens, kWidth, kHeight};
+    rig.right = rig.left;
+    rig.T_left_right = {exp_so3({0.0, 0.0, 0.0}), {0.12, 0.0, 0.0}};
+    rig.T_body_left = Pose{exp_so3({0.0, 0.0, 0.0}), {0.0, 0.0, 1.0}};
+    return rig;
+}
+
+/// Depth and motion as given: the machine moves `step_m` forward in each frame.
+StereoFrame moving_frame(int index, double step_m) {
+    StereoFrame frame;
+    frame.index = index;
+    frame.time_ns = 1'000'000'000 + index * kPeriod_ns;
+    DepthAndMotion ready;
+    ready.depth.disparity_px = Image<float>(kWidth, kHeight, 12.0F);
+    ready.depth.sigma_px = Image<float>(kWidth, kHeight, 0.2F);
+    ready.depth.outlier_probability = Image<float>(kWidth, kHeight, 0.0F);
+    ready.motion.time_ns = frame.time_ns;
+    ready.motion.T_odom_body.translation_m.x() = index * step_m;
+    ready.motion.health = Health::ok;
+    ready.motion.reason = HealthReason::none;
+    frame.ready = ready;
+    return frame;
+}
+
+class Arrival : public ::testing::TestWithParam<bool> {};
+
+TEST_P(Arrival, ABadImageIsNeitherTrackedNorFused) {
+    const bool torn = GetParam();
+    Serial serial;
+    auto pipeline = Pipeline::make({}, small_rig(), serial);
+    ASSERT_TRUE(pipeline.ok()) << pipeline.error().message;
+    const StereoFrame first = moving_frame(0, 0.02);
+    pipeline->align({&first, 1});
+    const FrameReport good = pipeline->process(first, Work::full);
+    ASSERT_EQ(good.motion.health, Health::ok);
+    grid::MapSnapshot before;
+    const Status built = pipeline->snapshot(1, before);
+    ASSERT_TRUE(built.ok()) << built.error().message;
+
+    double last_sigma_m = 0.0;
+    for (int i = 1; i <= 4; ++i) {
+        StereoFrame bad = moving_frame(i, 0.02);
+        bad.arrival.repeated = torn ? 0 : i;
+        bad.arrival.torn = torn;
+        const FrameReport report = pipeline->process(bad, Work::full);
+        EXPECT_EQ(report.index, i);
+        EXPECT_EQ(report.time_ns, bad.time_ns);
+        EXPECT_EQ(report.arrival.torn, torn);
+        EXPECT_EQ(report.work, Work::odometry) << "no depth was made";
+        EXPECT_EQ(report.motion.health, Health::lost);
+        EXPECT_EQ(report.motion.reason,
+                  torn ? HealthReason::torn_image : HealthReason::repeated_image);
+        EXPECT_TRUE(report.motion.T_odom_body.translation_m ==
+                    good.motion.T_odom_body.translation_m);
+        EXPECT_EQ(report.fusion.points, 0);
+        EXPECT_EQ(report.known_cells, good.known_cells);
+        const double sigma_m = std::sqrt(report.motion.relative_covariance(0, 0));
+        EXPECT_GT(sigma_m, last_sigma_m) << "what was not seen grows with its time";
+        last_sigma_m = sigma_m;
+    }
+    grid::MapSnapshot after;
+    ASSERT_TRUE(pipeline->snapshot(1, after).ok());
+    EXPECT_EQ(after.frame_time_ns, before.frame_time_ns) << "the gate must see it grow old";
+    EXPECT_EQ(after.pose_time_ns, before.pose_time_ns);
+    EXPECT_EQ(after.version, before.version);
+
+    const FrameReport next = pipeline->process(moving_frame(5, 0.02), Work::full);
+    EXPECT_EQ(next.motion.health, Health::ok);
+    EXPECT_NEAR(
+        (next.motion.T_odom_body.translation_m - good.motion.T_odom_body.translation_m).norm(),
+        0.1,
+        1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(RepeatedAndTorn, Arrival, ::testing::Bool());
+
+}  // namespace
+}  // namespace surefoot::pipeline
