@@ -21,10 +21,11 @@ std::uint64_t hash_of(const char* bytes, std::size_t size) noexcept {
 }
 
 template <typename Pixel>
-int changes_in(const Pixel* row, int width) noexcept {
+bool has_structure(const Pixel* row, int width) noexcept {
     int changes = 0;
-    for (int u = 1; u < width; ++u) changes += row[u] != row[u - 1] ? 1 : 0;
-    return changes;
+    for (int u = 1; u < width && changes < FrameWatch::kMinChanges; ++u)
+        changes += row[u] != row[u - 1] ? 1 : 0;
+    return changes >= FrameWatch::kMinChanges;
 }
 
 }  // namespace
@@ -36,7 +37,7 @@ void FrameWatch::hash_rows(const Image<Pixel>& image, Rows& rows) {
         const Pixel* row = image.row(v);
         const std::size_t size = sizeof(Pixel) * static_cast<std::size_t>(image.width());
         rows[static_cast<std::size_t>(v)] = {hash_of(reinterpret_cast<const char*>(row), size),
-                                             changes_in(row, image.width()) >= kMinChanges};
+                                             has_structure(row, image.width())};
     }
 }
 

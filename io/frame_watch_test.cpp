@@ -131,6 +131,20 @@ TEST(FrameWatch, SaturatedRowsAreNoTear) {
     }
 }
 
+TEST(FrameWatch, ATearHasOneSeam) {
+    Rng rng(11);
+    FrameWatch watch;
+    const StereoFrame before = exposed(rng);
+    (void)looked_at(watch, before);
+    StereoFrame frame = before;  // video that copies what stands still, and a band that moves
+    for (GreyImage* image : {&frame.left, &frame.right}) {
+        for (int u = 0; u < kWidth; ++u) {
+            for (int v = 16; v < 32; ++v) image->at(u, v) = static_cast<std::uint8_t>(5 * u + v);
+        }
+    }
+    EXPECT_TRUE(looked_at(watch, frame).is_new_and_whole());
+}
+
 TEST(FrameWatch, ACoveredEyeIsNoTornPair) {
     Rng rng(8);
     FrameWatch watch;
