@@ -141,17 +141,21 @@ Result<std::optional<VideoBuffer>> LiveCamera::newest() {
     Result<std::optional<VideoBuffer>> buffer = device_->dequeue(kSlice_ms);
     if (!buffer || !buffer->has_value()) return buffer;
     count_sequence(**buffer);
-    // No more can be waiting than there are buffers; a device that is faster than we are must not
-    // hold us here.
-    for (std::uint32_t i = 1; i < V4l2Device::kBuffers; ++i) {
+    std::size_t taken = 1;
+    for (; taken < device_->buffers(); ++taken) {
         Result<std::optional<VideoBuffer>> newer = device_->dequeue(0);
         if (!newer) return newer;
-        if (!newer->has_value()) break;
+        if (!newer->has_value()) return buffer;
         count_sequence(**newer);
         if (Status status = device_->give_back(**buffer); !status) return status.error();
         ++arrival_.skipped;
         buffer = std::move(newer);
     }
+    // The driver had no buffer left to write to: even the newest may have waited for long.
+    if (Status status = device_->give_back(**buffer); !status) return status.error();
+    ++arrival_.skipped;
+    buffer = device_->dequeue(kSlice_ms);
+    if (buffer && buffer->has_value()) count_sequence(**buffer);
     return buffer;
 }
 

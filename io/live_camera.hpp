@@ -46,7 +46,8 @@ struct LiveAddress {
 /// Frames of a side-by-side stereo camera on V4L2, YUYV or MJPEG.
 ///
 /// * `next` waits for an image and gives the newest that is there; how many were passed over,
-///   lost by the device or damaged since the previous frame is in `StereoFrame::arrival`.
+///   lost by the device or damaged since the previous frame is in `StereoFrame::arrival`. When
+///   all buffers were full, the driver had stopped to write, and a fresh image is waited for.
 /// * Stamps are `CLOCK_MONOTONIC`, in the middle of the exposure of the middle row:
 ///       start-of-exposure stamps:  t + exposure / 2 + readout / 2
 ///       end-of-frame stamps:       t - exposure / 2 - readout / 2

@@ -181,6 +181,19 @@ TEST(LiveCamera, ASlowConsumerGetsTheNewestFrame) {
     EXPECT_EQ(frame.arrival.skipped, 0);
 }
 
+TEST(LiveCamera, FullBuffersAreOldAndAFreshFrameIsWaitedFor) {
+    FakeCamera camera = small_camera();
+    constexpr int kFull = static_cast<int>(V4l2Device::kBuffers);
+    for (int i = 0; i < kFull; ++i) camera.script.push_back(frame_event(i));
+    play(camera, frame_event(60));  // while the buffers were full the driver lost the others
+    const auto live = opened(camera);
+    ASSERT_NE(live, nullptr);
+    const StereoFrame frame = next_of(*live);
+    EXPECT_EQ(frame.left.at(0, 0), pixel(60, 0, 0));
+    EXPECT_EQ(frame.arrival.skipped, kFull);
+    EXPECT_EQ(frame.arrival.dropped, 60 - kFull);
+}
+
 TEST(LiveCamera, CountsFramesThatTheDriverLost) {
     FakeCamera camera = small_camera();
     FakeEvent last = frame_event(9);

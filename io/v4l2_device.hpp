@@ -72,8 +72,10 @@ class V4l2Device {
     [[nodiscard]] Result<std::optional<VideoBuffer>> dequeue(int timeout_ms);
     [[nodiscard]] Status give_back(const VideoBuffer& buffer);
 
-    /// Enough for a consumer that is late by two frames; every waiting one is looked at for the
-    /// newest.
+    /// How many buffers the driver granted.
+    [[nodiscard]] std::size_t buffers() const noexcept { return mappings_.size(); }
+
+    /// Asked for: enough for a consumer that is late by two frames.
     static constexpr std::uint32_t kBuffers = 4;
 
   private:
