@@ -115,7 +115,7 @@ class Verbs(CliTest):
 
     def test_live_cameras_say_what_is_missing(self):
         for source, code, words in (("v4l2:video0", 2, "expected v4l2:DEVICE"), ("v4l2:/dev/null", 1, "not a video device"),
-                                    ("v4l2:/nowhere", 1, "cannot be opened"), (f"v4l2:{__file__}", 1, "not a device")):
+                                    ("v4l2:/nowhere", 1, "cannot be opened"), (f"v4l2:{ROOT}/README.md", 1, "not a device")):
             process = surefoot("info", source)
             self.assertEqual(process.returncode, code, process.stderr)
             self.assertIn(words, process.stderr)
