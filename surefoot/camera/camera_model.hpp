@@ -8,6 +8,7 @@
 
 #include "surefoot/camera/kannala_brandt.hpp"
 #include "surefoot/camera/pinhole_radtan.hpp"
+#include "surefoot/camera/pinhole_rational.hpp"
 
 namespace surefoot::camera {
 
@@ -20,7 +21,7 @@ using Matrix32 = Eigen::Matrix<double, 3, 2>;
 ///   std::optional<std::string> problem() const
 /// `project` fails where the model has no image of the point; `unproject` returns the unit ray (for
 /// fisheye lenses beyond 90 deg too) and fails where no ray maps to the pixel.
-using CameraModel = std::variant<PinholeRadTan, KannalaBrandt>;
+using CameraModel = std::variant<PinholeRadTan, KannalaBrandt, PinholeRational>;
 
 [[nodiscard]] std::optional<Eigen::Vector2d> project(const CameraModel& model,
                                                      const Eigen::Vector3d& p_camera,

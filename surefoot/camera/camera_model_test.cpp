@@ -52,11 +52,34 @@ std::vector<Case> cases() {
                             480};
     const Camera equidistant{
         KannalaBrandt{.fx_px = 200, .fy_px = 205, .cx_px = 320, .cy_px = 240}, 640, 480};
+    // An 8-coefficient calibration in the manner of wide lenses: numerator and denominator nearly
+    // cancel. The second one folds back inside its image.
+    const Camera rational{PinholeRational{.fx_px = 365,
+                                          .fy_px = 366,
+                                          .cx_px = 316,
+                                          .cy_px = 243,
+                                          .k1 = 0.72,
+                                          .k2 = 0.085,
+                                          .p1 = 0.0006,
+                                          .p2 = -0.0004,
+                                          .k3 = 0.0011,
+                                          .k4 = 1.04,
+                                          .k5 = 0.22,
+                                          .k6 = 0.012},
+                          640,
+                          480};
+    const Camera rational_folding{
+        PinholeRational{
+            .fx_px = 400, .fy_px = 405, .cx_px = 320, .cy_px = 235, .k1 = -0.2, .k4 = 0.1},
+        640,
+        480};
     return {{"zed", test::zed_rig().left, true},
             {"euroc_cam0", test::euroc_rig().left, true},
             {"euroc_cam1", *test::euroc_rig().right, true},
             {"radtan_folding", folding, false},
             {"radtan_tangential", tangential, true},
+            {"rational", rational, true},
+            {"rational_folding", rational_folding, false},
             {"fisheye_170", test::fisheye_rig().left, false},
             {"fisheye_equidistant", equidistant, true}};
 }
@@ -278,6 +301,39 @@ TEST(PinholeRadTan, FarOffAxisPointsDoNotAliasIntoTheImage) {
     // Largest image radius 300 * 0.86 * 2/3 = 172 px: no ray beyond it.
     EXPECT_TRUE(model.unproject({320.0 + 171.0, 240.0}));
     EXPECT_FALSE(model.unproject({320.0 + 173.0, 240.0}));
+}
+
+TEST(PinholeRational, WithoutDenominatorIsTheRadialTangentialModel) {
+    const PinholeRadTan plain = std::get<PinholeRadTan>(test::euroc_rig().left.model);
+    const PinholeRational rational{plain.fx_px,
+                                   plain.fy_px,
+                                   plain.cx_px,
+                                   plain.cy_px,
+                                   plain.k1,
+                                   plain.k2,
+                                   plain.p1,
+                                   plain.p2,
+                                   plain.k3};
+    for (double x = -1.2; x < 1.3; x += 0.1) {
+        const Eigen::Vector3d p(x, 0.3 - 0.5 * x, 1.0);
+        EXPECT_EQ(rational.project(p), plain.project(p)) << p.transpose();
+    }
+}
+
+TEST(PinholeRadTan, TangentialTermsDoNotTurnTheImageFarOffAxis) {
+    // u / f = x + 3 p2 x^2 turns back at x = -1 / (6 p2) = -16.7; far out det J is positive again.
+    const PinholeRadTan model{.fx_px = 300, .fy_px = 300, .cx_px = 320, .cy_px = 240, .p2 = 0.01};
+    EXPECT_TRUE(model.project({-16.0, 0.0, 1.0}));
+    EXPECT_FALSE(model.project({-17.0, 0.0, 1.0}));
+    EXPECT_FALSE(model.project({-100.0, 0.0, 1.0}));
+}
+
+TEST(PinholeRational, NothingAppearsBeyondThePoleOfTheDenominator) {
+    // 1 - 0.5 r^2 = 0 at r = 1.414: beyond it points would jump to the other side of the image.
+    const PinholeRational model{.fx_px = 300, .fy_px = 300, .cx_px = 320, .cy_px = 240, .k4 = -0.5};
+    EXPECT_TRUE(model.project({1.41, 0.0, 1.0}));
+    EXPECT_FALSE(model.project({1.42, 0.0, 1.0}));
+    EXPECT_FALSE(model.project({5.0, 0.0, 1.0}));
 }
 
 TEST(KannalaBrandt, SeesPointsBehindTheImagePlane) {

@@ -68,8 +68,10 @@ Problem baseline_problem(const Pose& T_left_right) {
 Problem ideal_lens_problem(const Camera& camera, const char* name) {
     const auto* pinhole = std::get_if<PinholeRadTan>(&camera.model);
     if (pinhole == nullptr) {
-        return fmt::format("the rig is marked rectified but its {} camera has a fisheye model",
-                           name);
+        return fmt::format(
+            "the rig is marked rectified but its {} camera has a {} model",
+            name,
+            std::holds_alternative<KannalaBrandt>(camera.model) ? "fisheye" : "rational pinhole");
     }
     if (pinhole->has_distortion()) {
         return fmt::format(

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+namespace surefoot::camera {
+
+/// Pinhole with OpenCV's rational distortion (CALIB_RATIONAL_MODEL, ROS "rational_polynomial"),
+/// coefficients in OpenCV's order k1 k2 p1 p2 k3 k4 k5 k6:
+///   x = X/Z, y = Y/Z, r2 = x2 + y2
+///   radial = (1 + k1 r2 + k2 r2^2 + k3 r2^3) / (1 + k4 r2 + k5 r2^2 + k6 r2^3)
+///   u = fx (x radial + 2 p1 x y + p2 (r2 + 2 x2)) + cx
+///   v = fy (y radial + p1 (r2 + 2 y2) + 2 p2 x y) + cy
+struct PinholeRational {
+    double fx_px = 0.0;
+    double fy_px = 0.0;
+    double cx_px = 0.0;
+    double cy_px = 0.0;
+    double k1 = 0.0;
+    double k2 = 0.0;
+    double p1 = 0.0;
+    double p2 = 0.0;
+    double k3 = 0.0;
+    double k4 = 0.0;
+    double k5 = 0.0;
+    double k6 = 0.0;
+
+    [[nodiscard]] bool has_distortion() const noexcept {
+        return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0 || k4 != 0.0 ||
+               k5 != 0.0 || k6 != 0.0;
+    }
+    /// Nothing for points at or behind the camera plane, and beyond the radius where the image
+    /// turns back or the denominator has a zero.
+    [[nodiscard]] std::optional<Eigen::Vector2d> project(
+        const Eigen::Vector3d& p_camera,
+        Eigen::Matrix<double, 2, 3>* d_pixel_d_point = nullptr) const;
+    /// Unit ray, by Newton iterations on the distortion; nothing where they do not converge.
+    [[nodiscard]] std::optional<Eigen::Vector3d> unproject(
+        const Eigen::Vector2d& pixel, Eigen::Matrix<double, 3, 2>* d_ray_d_pixel = nullptr) const;
+    [[nodiscard]] std::optional<std::string> problem() const;
+};
+
+}  // namespace surefoot::camera
