@@ -43,7 +43,7 @@ camera::CameraModel read_model(YamlReader& yaml) {
     if (distortion_node != nullptr) distortion = yaml.text(*distortion_node, "distortion_model");
     std::vector<double> coefficients;
     const YamlNode* list = root.find("distortion_coefficients");
-    if (list != nullptr) coefficients = yaml.any_numbers(*list, "distortion_coefficients", 5);
+    if (list != nullptr) coefficients = yaml.any_numbers(*list, "distortion_coefficients", 8);
     const std::size_t count = coefficients.size();
     if (distortion == "equidistant") {
         if (count != 4 && distortion_node != nullptr) {
@@ -61,10 +61,19 @@ camera::CameraModel read_model(YamlReader& yaml) {
         }
         return make_pinhole(k, coefficients);
     }
+    if (distortion == "rational_polynomial") {  // our extension, with the name that ROS gave it
+        if (count != 8) {
+            yaml.fail(list != nullptr ? *list : *distortion_node,
+                      "distortion_coefficients",
+                      fmt::format("{} numbers; rational_polynomial has 8", count));
+        }
+        return make_rational(k, coefficients);
+    }
     if (distortion != "none" && distortion_node != nullptr) {
         yaml.fail(*distortion_node,
                   "distortion_model",
-                  quoted(distortion) + " is none of radial-tangential | equidistant | none");
+                  quoted(distortion) +
+                      " is none of radial-tangential | rational_polynomial | equidistant | none");
     }
     return make_pinhole(k, {});
 }
@@ -120,9 +129,10 @@ Result<EurocCamera> parse_euroc_camera(std::string_view text, const std::string&
 
 std::string format_euroc_camera(const EurocCamera& camera) {
     const bool fisheye = is_kannala_brandt(camera.camera.model);
+    const bool rational = is_rational(camera.camera.model);
     std::vector<double> coefficients = coefficients_of(camera.camera.model);
     // Other readers know four coefficients; the fifth is written only where it is needed.
-    if (!fisheye && coefficients.back() == 0.0) coefficients.pop_back();
+    if (!fisheye && !rational && coefficients.back() == 0.0) coefficients.pop_back();
     std::string out = "sensor_type: camera\n" + format_sensor_pose(camera.T_body_camera);
     out += fmt::format(
         "rate_hz: {}\nresolution: [{}, {}]\ncamera_model: pinhole\nintrinsics: {}   # fu, fv, cu, "
@@ -132,7 +142,9 @@ std::string format_euroc_camera(const EurocCamera& camera) {
         camera.camera.width,
         camera.camera.height,
         format_list(intrinsics_of(camera.camera.model)),
-        fisheye ? "equidistant" : "radial-tangential",
+        fisheye    ? "equidistant"
+        : rational ? "rational_polynomial"
+                   : "radial-tangential",
         format_list(coefficients));
     if (camera.readout_s > 0.0) out += fmt::format("readout_s: {}\n", camera.readout_s);
     return out;

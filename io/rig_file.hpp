@@ -9,8 +9,9 @@
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/result.hpp"
 
-/// Rigs from our rig.yaml, EuRoC sensor.yaml, KITTI calib.txt and OpenCV's calibration files. Every
-/// rig that comes out has passed StereoRig::problem(); every error names file, line and key.
+/// Rigs from our rig.yaml, EuRoC sensor.yaml, KITTI calib.txt, OpenCV's calibration files and the
+/// formats of rig_formats.hpp. Every rig that comes out has passed StereoRig::problem(); every
+/// error names file, line and key.
 namespace surefoot::io {
 
 struct ImageSize {
@@ -25,7 +26,8 @@ struct ImageSize {
 ///   baseline_m: 0.12, focal_px: 350 or [fx, fy], principal_px: [336, 188], distortion: none
 /// Full form, one block per camera:
 ///   left:  {model: pinhole, focal_px: [fx, fy], principal_px: [cx, cy], coefficients: [k1, k2, p1,
-///   p2, k3]} right: {model: kannala_brandt, ..., coefficients: [k1, k2, k3, k4]} T_left_right:
+///   p2, k3]} (pinhole_rational: [k1, k2, p1, p2, k3, k4, k5, k6])
+///   right: {model: kannala_brandt, ..., coefficients: [k1, k2, k3, k4]} T_left_right:
 ///   4x4, row by row; rectified: true where the images are rectified
 /// In both: name, rate_hz, readout_s, T_body_left, imu: {T_body_imu, rate_hz}.
 [[nodiscard]] Result<camera::StereoRig> parse_rig_yaml(std::string_view text,
@@ -42,7 +44,7 @@ struct EurocCamera {
     double readout_s = 0.0;  ///< our extension, 0 where the file says nothing
 };
 /// sensor.yaml of a camera: T_BS, resolution, pinhole intrinsics; radial-tangential, equidistant or
-/// no distortion.
+/// no distortion, and rational_polynomial, which is our extension.
 [[nodiscard]] Result<EurocCamera> parse_euroc_camera(std::string_view text,
                                                      const std::string& file);
 [[nodiscard]] std::string format_euroc_camera(const EurocCamera& camera);
@@ -75,8 +77,10 @@ struct KittiCalibration {
                                                          const std::string& file,
                                                          std::optional<ImageSize> size = {});
 
-/// Any of the above: an EuRoC folder (with mav0 or inside it), calib.txt of KITTI, or a YAML file
-/// that is told apart by its keys. `size` helps formats that do not know their image size. An
+/// Any of the above and of rig_formats.hpp: an EuRoC folder (with mav0 or inside it), a folder with
+/// ROS's left.yaml and right.yaml, calib.txt of KITTI, a ZED's .conf, or a YAML file that is told
+/// apart by its keys. `size` helps formats that do not know their image size, and picks the section
+/// of a ZED file; the rig of another file may still be for another size. An
 /// OpenCV intrinsics.yml without R and T takes them from extrinsics.yml beside it.
 [[nodiscard]] Result<camera::StereoRig> read_rig(const std::string& path,
                                                  std::optional<ImageSize> size = {});

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "io/rig_file.hpp"
+#include "io/rig_formats.hpp"
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
 
@@ -35,25 +36,6 @@ Named require_any(YamlReader& yaml, std::initializer_list<const char*> keys) {
     return found;
 }
 
-/// Numbers of a matrix {rows, cols, data} or of a plain list.
-std::vector<double> read_matrix(YamlReader& yaml,
-                                const Named& named,
-                                std::size_t min,
-                                std::size_t max) {
-    if (named.node == nullptr) return std::vector<double>(min, 0.0);
-    const YamlNode* data = named.node;
-    if (data->is_mapping()) data = yaml.required(*named.node, "data");
-    std::vector<double> values;
-    if (data != nullptr) values = yaml.any_numbers(*data, named.key, max);
-    if (values.size() < min) {
-        yaml.fail(*named.node,
-                  named.key,
-                  fmt::format("{} numbers; at least {} belong here", values.size(), min));
-        values.resize(min, 0.0);
-    }
-    return values;
-}
-
 bool is_fisheye(const YamlNode& root) {
     const Named flag = find_any(root, {"fisheye", "model", "distortion_model", "camera_model"});
     if (flag.node == nullptr) return false;
@@ -63,25 +45,21 @@ bool is_fisheye(const YamlNode& root) {
 }
 
 camera::CameraModel read_lens(YamlReader& yaml, const Named& matrix, const Named& distortion) {
-    const std::vector<double> K = read_matrix(yaml, matrix, 9, 9);
-    std::vector<double> D = read_matrix(yaml, distortion, 4, 14);
+    const std::vector<double> K = read_matrix(yaml, *matrix.node, matrix.key, 9, 9);
+    std::vector<double> D = read_matrix(yaml, *distortion.node, distortion.key, 4, 14);
     if (yaml.error()) return {};
-    if (!(K[0] > 0.0) || !(K[4] > 0.0)) {
-        yaml.fail(*matrix.node,
-                  matrix.key,
-                  fmt::format("focal lengths {} and {} must be above 0 px", K[0], K[4]));
-    }
+    check_focal(yaml, *matrix.node, matrix.key, K);
     if (is_fisheye(yaml.root())) {
         if (D.size() != 4)
             yaml.fail(*distortion.node, distortion.key, "a fisheye has 4 coefficients");
         return make_kannala_brandt({K[0], K[4], K[2], K[5]}, D);
     }
-    for (std::size_t i = 5; i < D.size(); ++i) {
+    for (std::size_t i = 8; i < D.size(); ++i) {
         if (D[i] == 0.0) continue;
         yaml.fail(*distortion.node,
                   distortion.key,
-                  fmt::format("coefficient {} is {}; only k1 k2 p1 p2 k3 are supported, calibrate "
-                              "without the rational and thin-prism terms",
+                  fmt::format("coefficient {} is {}; only k1 k2 p1 p2 k3 k4 k5 k6 are supported, "
+                              "calibrate without the thin-prism and tilt terms",
                               i + 1,
                               D[i]));
     }
@@ -92,8 +70,9 @@ camera::CameraModel read_lens(YamlReader& yaml, const Named& matrix, const Named
 Pose read_extrinsics(YamlReader& yaml) {
     const Named R_node = require_any(yaml, {"R", "rotation", "R_stereo"});
     const Named T_node = require_any(yaml, {"T", "translation", "T_stereo"});
-    const std::vector<double> R = read_matrix(yaml, R_node, 9, 9);
-    const std::vector<double> T = read_matrix(yaml, T_node, 3, 3);
+    if (yaml.error()) return {};
+    const std::vector<double> R = read_matrix(yaml, *R_node.node, R_node.key, 9, 9);
+    const std::vector<double> T = read_matrix(yaml, *T_node.node, T_node.key, 3, 3);
     if (yaml.error()) return {};
     const double length_m = std::sqrt(T[0] * T[0] + T[1] * T[1] + T[2] * T[2]);
     if (length_m > kMaxBaseline_m) {
@@ -105,25 +84,7 @@ Pose read_extrinsics(YamlReader& yaml) {
                         length_m,
                         kMaxBaseline_m));
     }
-    const Pose T_right_left = pose_from_rows(yaml,
-                                             *R_node.node,
-                                             R_node.key,
-                                             {R[0],
-                                              R[1],
-                                              R[2],
-                                              T[0],
-                                              R[3],
-                                              R[4],
-                                              R[5],
-                                              T[1],
-                                              R[6],
-                                              R[7],
-                                              R[8],
-                                              T[2],
-                                              0.0,
-                                              0.0,
-                                              0.0,
-                                              1.0});
+    const Pose T_right_left = pose_from_parts(yaml, *R_node.node, R_node.key, R, T);
     return T_right_left.inverse();
 }
 
@@ -137,7 +98,7 @@ ImageSize find_size(YamlReader& yaml, std::optional<ImageSize> fallback) {
     }
     const Named size = find_any(root, {"image_size", "imageSize", "size", "resolution"});
     if (size.node != nullptr) {
-        const std::vector<double> sides = read_matrix(yaml, size, 2, 2);
+        const std::vector<double> sides = read_matrix(yaml, *size.node, size.key, 2, 2);
         for (const double side : sides) {
             if (side >= 1.0 && side <= kMaxRigSide_px) continue;
             yaml.fail(*size.node, size.key, fmt::format("{} is no image side", side));
@@ -153,7 +114,53 @@ ImageSize find_size(YamlReader& yaml, std::optional<ImageSize> fallback) {
     return fallback.value_or(ImageSize{});
 }
 
+/// A matrix as cv::FileStorage writes it, doubles row by row.
+std::string format_matrix(std::string_view key,
+                          std::size_t rows,
+                          std::size_t cols,
+                          const std::vector<double>& data) {
+    return fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: {}\n",
+                       key,
+                       rows,
+                       cols,
+                       format_list(data));
+}
+
+std::vector<double> row_major(const Eigen::Matrix3d& M) {
+    return {M(0, 0), M(0, 1), M(0, 2), M(1, 0), M(1, 1), M(1, 2), M(2, 0), M(2, 1), M(2, 2)};
+}
+
+std::string format_lens(char number, const camera::CameraModel& model) {
+    const std::vector<double> k = intrinsics_of(model);
+    const std::vector<double> D = coefficients_of(model);
+    return format_matrix(fmt::format("M{}", number),
+                         3,
+                         3,
+                         {k[0], 0.0, k[2], 0.0, k[1], k[3], 0.0, 0.0, 1.0}) +
+           format_matrix(fmt::format("D{}", number), 1, D.size(), D);
+}
+
 }  // namespace
+
+Result<std::string> format_opencv_rig(const camera::StereoRig& rig) {
+    if (Status status = check_pair(rig, "OpenCV"); !status) return status.error();
+    const bool fisheye = is_kannala_brandt(rig.left.model);
+    if (fisheye != is_kannala_brandt(rig.right->model)) {
+        return output_error("an OpenCV file holds two fisheye lenses or none; this rig mixes them");
+    }
+    const Pose T_right_left = rig.T_left_right.inverse();
+    const Eigen::Vector3d& t = T_right_left.translation_m;
+    const RectifiedMatrices m = rectified_matrices(rig);
+    return fmt::format("%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\nfisheye: {}\n",
+                       rig.left.width,
+                       rig.left.height,
+                       fisheye ? 1 : 0) +
+           format_lens('1', rig.left.model) + format_lens('2', rig.right->model) +
+           format_matrix("R", 3, 3, row_major(T_right_left.R())) +
+           format_matrix("T", 3, 1, {t.x(), t.y(), t.z()}) + format_matrix("R1", 3, 3, m.R_left) +
+           format_matrix("R2", 3, 3, m.R_right) + format_matrix("P1", 3, 4, m.P_left) +
+           format_matrix("P2", 3, 4, m.P_right) + format_matrix("Q", 4, 4, m.Q);
+}
 
 Result<camera::StereoRig> parse_opencv_rig(std::string_view text,
                                            const std::string& file,

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "io/text.hpp"
+#include "surefoot/camera/rectification.hpp"
+#include "surefoot/camera/rectifier.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -84,10 +86,29 @@ std::vector<double> read_focal(YamlReader& yaml, const YamlNode& node, std::stri
 
 camera::CameraModel make_pinhole(const std::vector<double>& intrinsics,
                                  std::vector<double> coefficients) {
-    coefficients.resize(5, 0.0);
+    coefficients.resize(8, 0.0);
     const auto& c = coefficients;
+    if (c[5] != 0.0 || c[6] != 0.0 || c[7] != 0.0) return make_rational(intrinsics, coefficients);
     return camera::PinholeRadTan{
         intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3], c[0], c[1], c[2], c[3], c[4]};
+}
+
+camera::CameraModel make_rational(const std::vector<double>& intrinsics,
+                                  std::vector<double> coefficients) {
+    coefficients.resize(8, 0.0);
+    const auto& c = coefficients;
+    return camera::PinholeRational{intrinsics[0],
+                                   intrinsics[1],
+                                   intrinsics[2],
+                                   intrinsics[3],
+                                   c[0],
+                                   c[1],
+                                   c[2],
+                                   c[3],
+                                   c[4],
+                                   c[5],
+                                   c[6],
+                                   c[7]};
 }
 
 camera::CameraModel make_kannala_brandt(const std::vector<double>& intrinsics,
@@ -110,12 +131,101 @@ std::vector<double> coefficients_of(const camera::CameraModel& model) {
     if (const auto* fisheye = std::get_if<camera::KannalaBrandt>(&model)) {
         return {fisheye->k1, fisheye->k2, fisheye->k3, fisheye->k4};
     }
+    if (const auto* rational = std::get_if<camera::PinholeRational>(&model)) {
+        const auto& m = *rational;
+        return {m.k1, m.k2, m.p1, m.p2, m.k3, m.k4, m.k5, m.k6};
+    }
     const auto& pinhole = std::get<camera::PinholeRadTan>(model);
     return {pinhole.k1, pinhole.k2, pinhole.p1, pinhole.p2, pinhole.k3};
 }
 
 bool is_kannala_brandt(const camera::CameraModel& model) noexcept {
     return std::holds_alternative<camera::KannalaBrandt>(model);
+}
+
+RectifiedMatrices rectified_matrices(const camera::StereoRig& rig) {
+    const camera::Rectification plan = camera::plan_rectification(
+        rig, camera::Rectifier::kMaxFieldOfView_deg, camera::Rectifier::kVirtualBaseline_m);
+    const camera::RectifiedRig& r = plan.rig;
+    const auto rows = [](const Eigen::Matrix3d& M) {
+        std::vector<double> out;
+        for (Eigen::Index i = 0; i < 9; ++i) out.push_back(M(i / 3, i % 3));
+        return out;
+    };
+    const auto projection = [&r](double baseline_m) {
+        const double shift = baseline_m == 0.0 ? 0.0 : -r.fx_px * baseline_m;  // no "-0"
+        return std::vector<double>{
+            r.fx_px, 0.0, r.cx_px, shift, 0.0, r.fy_px, r.cy_px, 0.0, 0.0, 0.0, 1.0, 0.0};
+    };
+    const double y_scale = r.fx_px / r.fy_px;  // 1 but for rectified images with oblong pixels
+    return {rows(plan.left.R_rectified_raw),
+            rows(plan.right->R_rectified_raw),
+            projection(0.0),
+            projection(r.baseline_m),
+            {1.0,
+             0.0,
+             0.0,
+             -r.cx_px,
+             0.0,
+             y_scale,
+             0.0,
+             -r.cy_px * y_scale,
+             0.0,
+             0.0,
+             0.0,
+             r.fx_px,
+             0.0,
+             0.0,
+             1.0 / r.baseline_m,
+             0.0}};
+}
+
+bool is_rational(const camera::CameraModel& model) noexcept {
+    return std::holds_alternative<camera::PinholeRational>(model);
+}
+
+Status check_pair(const camera::StereoRig& rig, std::string_view format) {
+    if (const auto problem = rig.problem()) return output_error(*problem);
+    if (rig.right) return {};
+    return output_error(fmt::format("{} files hold stereo rigs; this rig has one camera", format));
+}
+
+Pose pose_from_parts(YamlReader& yaml,
+                     const YamlNode& node,
+                     std::string_view key,
+                     const std::vector<double>& R,
+                     const std::vector<double>& t_m) {
+    std::vector<double> rows;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) rows.push_back(R[3 * i + j]);
+        rows.push_back(t_m[i]);
+    }
+    rows.insert(rows.end(), {0.0, 0.0, 0.0, 1.0});
+    return pose_from_rows(yaml, node, key, rows);
+}
+
+std::vector<double> read_matrix(YamlReader& yaml,
+                                const YamlNode& node,
+                                std::string_view key,
+                                std::size_t min,
+                                std::size_t max) {
+    const YamlNode* data = node.is_mapping() ? yaml.required(node, "data") : &node;
+    std::vector<double> values;
+    if (data != nullptr) values = yaml.any_numbers(*data, key, max);
+    if (values.size() < min) {
+        yaml.fail(
+            node, key, fmt::format("{} numbers; at least {} belong here", values.size(), min));
+        values.resize(min, 0.0);
+    }
+    return values;
+}
+
+void check_focal(YamlReader& yaml,
+                 const YamlNode& node,
+                 std::string_view key,
+                 const std::vector<double>& K) {
+    if (K[0] > 0.0 && K[4] > 0.0) return;
+    yaml.fail(node, key, fmt::format("focal lengths {} and {} must be above 0 px", K[0], K[4]));
 }
 
 Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const std::string& file) {

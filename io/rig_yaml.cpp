@@ -52,23 +52,26 @@ camera::Camera read_camera(YamlReader& yaml,
     intrinsics.insert(intrinsics.end(), centre.begin(), centre.end());
     const std::string model_name = yaml.text(*model, name + ".model");
     const bool fisheye = model_name == "kannala_brandt";
-    if (!fisheye && model_name != "pinhole") {
-        yaml.fail(
-            *model, name + ".model", quoted(model_name) + " is none of pinhole | kannala_brandt");
+    const bool rational = model_name == "pinhole_rational";
+    if (!fisheye && !rational && model_name != "pinhole") {
+        yaml.fail(*model,
+                  name + ".model",
+                  quoted(model_name) + " is none of pinhole | pinhole_rational | kannala_brandt");
     }
     std::vector<double> coefficients;
     if (const YamlNode* list = node.find("coefficients"); list != nullptr) {
-        const std::size_t count = fisheye ? 4 : 5;
+        const std::size_t count = fisheye ? 4 : rational ? 8 : 5;
         coefficients = yaml.any_numbers(*list, name + ".coefficients", count);
-        const bool four = !fisheye && coefficients.size() == 4;  // without k3
+        const bool four = count == 5 && coefficients.size() == 4;  // without k3
         if (!coefficients.empty() && coefficients.size() != count && !four) {
             yaml.fail(*list,
                       name + ".coefficients",
                       fmt::format("{} numbers; {} has {}", coefficients.size(), model_name, count));
         }
     }
-    camera.model = fisheye ? make_kannala_brandt(intrinsics, coefficients)
-                           : make_pinhole(intrinsics, coefficients);
+    camera.model = fisheye    ? make_kannala_brandt(intrinsics, coefficients)
+                   : rational ? make_rational(intrinsics, coefficients)
+                              : make_pinhole(intrinsics, coefficients);
     return camera;
 }
 
@@ -154,7 +157,9 @@ std::string format_camera(const char* name, const camera::Camera& camera) {
     const std::vector<double> k = intrinsics_of(camera.model);
     return fmt::format("{}:\n  model: {}\n  focal_px: {}\n  principal_px: {}\n  coefficients: {}\n",
                        name,
-                       is_kannala_brandt(camera.model) ? "kannala_brandt" : "pinhole",
+                       is_kannala_brandt(camera.model) ? "kannala_brandt"
+                       : is_rational(camera.model)     ? "pinhole_rational"
+                                                       : "pinhole",
                        format_list({k[0], k[1]}),
                        format_list({k[2], k[3]}),
                        format_list(coefficients_of(camera.model)));

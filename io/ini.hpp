@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::io {
+
+/// An INI file: [section] lines and key = value lines, names in any case (stored in lower case),
+/// comments from ';' or '#' to the end of the line.
+struct IniFile {
+    struct Value {
+        std::string text;
+        int line = 0;
+    };
+    using Section = std::map<std::string, Value>;
+
+    std::string name;  ///< for messages
+    std::map<std::string, Section> sections;
+
+    /// The section, or nullptr.
+    [[nodiscard]] const Section* find(std::string_view section) const;
+    /// The value, or nullptr.
+    [[nodiscard]] const Value* find(std::string_view section, std::string_view key) const;
+    /// A finite number that must be there. A comma in it is an error that says so: "0,5" of a file
+    /// that was written in another locale would else be read as 0.
+    [[nodiscard]] Result<double> number(std::string_view section, std::string_view key) const;
+};
+
+/// A key or section that comes twice, and a line that is neither, are errors; at most 1 MB.
+[[nodiscard]] Result<IniFile> parse_ini(std::string_view text, const std::string& file);
+
+}  // namespace surefoot::io
