@@ -12,6 +12,7 @@
 #include "io/pfm.hpp"
 #include "io/point_cloud.hpp"
 #include "io/rig_file.hpp"
+#include "io/rig_formats.hpp"
 #include "io/snapshot_file.hpp"
 #include "io/trajectory_file.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
@@ -45,6 +46,48 @@ void must_explain(const Result<T>& result) {
 }
 [[maybe_unused]] void fuzz_rig_yaml(std::string_view bytes) {
     must_explain(io::parse_rig_yaml(bytes, "f"));
+}
+/// A rig that is accepted is sound, and what can be written of it reads back.
+void must_be_sound(const Result<io::RigFile>& file) {
+    must_explain(file);
+    if (!file) return;
+    if (file->rig.problem()) std::abort();
+    if (!io::parse_rig_yaml(io::format_rig_yaml(file->rig), "again")) std::abort();
+    if (const auto text = io::format_zed_rig(file->rig); text) {
+        const io::ImageSize size{file->rig.left.width, file->rig.left.height};
+        must_explain(io::parse_zed_rig(*text, "again", size));
+    }
+    if (const auto text = io::format_kalibr_rig(file->rig); text) {
+        must_explain(io::parse_kalibr_rig(*text, "again"));
+    }
+}
+[[maybe_unused]] void fuzz_opencv_rig(std::string_view bytes) {
+    const auto rig = io::parse_opencv_rig(bytes, "f", io::ImageSize{640, 480});
+    must_explain(rig);
+    if (rig) must_be_sound(io::RigFile{*rig, io::RigFormat::opencv, {}});
+}
+[[maybe_unused]] void fuzz_kalibr_rig(std::string_view bytes) {
+    must_be_sound(io::parse_kalibr_rig(bytes, "f"));
+}
+[[maybe_unused]] void fuzz_zed_rig(std::string_view bytes) {
+    must_be_sound(io::parse_zed_rig(bytes, "f", io::ImageSize{1280, 720}));
+    must_explain(io::parse_zed_rig(bytes, "f"));
+}
+/// Both cameras in one input, separated by "---" at the start of a line.
+[[maybe_unused]] void fuzz_ros_rig(std::string_view bytes) {
+    const std::size_t cut = bytes.find("\n---\n");
+    const std::string left(bytes.substr(0, cut));
+    const std::string right(cut == bytes.npos ? bytes : bytes.substr(cut + 5));
+    must_be_sound(io::parse_ros_rig({left, "l"}, {right, "r"}));
+}
+[[maybe_unused]] void fuzz_kitti_rig(std::string_view bytes) {
+    const auto calibration = io::parse_kitti_calibration(bytes, "f");
+    must_explain(calibration);
+    if (calibration) must_explain(io::kitti_rig(*calibration, 0, 1, {1226, 370}, "f"));
+}
+[[maybe_unused]] void fuzz_euroc_camera(std::string_view bytes) {
+    must_explain(io::parse_euroc_camera(bytes, "f"));
+    must_explain(io::parse_euroc_imu(bytes, "f"));
 }
 [[maybe_unused]] void fuzz_machine(std::string_view bytes) {
     const auto machine = io::parse_machine(bytes, "f");

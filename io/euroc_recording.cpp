@@ -16,8 +16,11 @@ Result<std::vector<CsvRow>> read_frames(const std::string& file) {
     return parse_euroc_frames(*text, file);
 }
 
-Result<camera::StereoRig> choose_rig(const std::string& folder, const OpenOptions& options) {
-    return options.rig_file ? read_rig(*options.rig_file) : read_euroc_rig(folder);
+Result<camera::StereoRig> choose_rig(const std::string& folder,
+                                     const OpenOptions& options,
+                                     const std::string& first_image) {
+    return options.rig_file ? read_rig(*options.rig_file, image_size_of(first_image))
+                            : read_euroc_rig(folder);
 }
 
 /// Pairs the rows of both cameras by equal stamps, in the order of the left one.
@@ -51,10 +54,6 @@ Result<Recording> index_euroc(const std::string& folder, const OpenOptions& opti
     Recording recording;
     recording.info.kind = "euroc";
     recording.info.path = folder;
-    Result<camera::StereoRig> rig = choose_rig(folder, options);
-    if (!rig) return rig.error();
-    recording.rig = std::move(rig).value();
-
     const Result<std::vector<CsvRow>> left = read_frames(left_csv);
     if (!left) return left.error();
     const Result<std::vector<CsvRow>> right = read_frames(join_path(folder, "cam1/data.csv"));
@@ -67,6 +66,9 @@ Result<Recording> index_euroc(const std::string& folder, const OpenOptions& opti
                         left->size(),
                         right->size()));
     }
+    Result<camera::StereoRig> rig = choose_rig(folder, options, recording.frames.front().left);
+    if (!rig) return rig.error();
+    recording.rig = std::move(rig).value();
     const std::string imu_csv = join_path(folder, "imu0/data.csv");
     if (recording.rig.imu && is_file(imu_csv)) {
         const Result<std::string> text = read_file(imu_csv);

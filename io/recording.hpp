@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/rig_file.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/core/frame.hpp"
 #include "surefoot/core/result.hpp"
@@ -74,9 +75,20 @@ struct CsvRow {
 [[nodiscard]] Result<std::vector<CsvRow>> parse_tum_list(std::string_view text,
                                                          const std::string& file);
 
-/// The rig of `options.rig_file`, else of rig.yaml in `folder`, else nothing.
-[[nodiscard]] Result<std::optional<camera::StereoRig>> read_rig_beside(const std::string& folder,
-                                                                       const OpenOptions& options);
+/// The rig of `options.rig_file`, else of rig.yaml in `folder`, else nothing. `size` is that of the
+/// images of one eye, where it is known (see read_rig).
+[[nodiscard]] Result<std::optional<camera::StereoRig>> read_rig_beside(
+    const std::string& folder, const OpenOptions& options, std::optional<ImageSize> size = {});
+/// Size that the header of an image file says; nothing where it cannot be read.
+[[nodiscard]] std::optional<ImageSize> image_size_of(const std::string& path);
+/// Half of it, for one eye of a side-by-side image; nothing for odd widths.
+[[nodiscard]] std::optional<ImageSize> one_eye(std::optional<ImageSize> both);
+/// Scales the rig to images that are binned or enlarged by a whole number (camera::scaled_to) and
+/// says so in `notes`. Any other size leaves the rig, and the frames are refused: a ratio like 2/3
+/// may as well be another cut-out of the sensor, with other angles.
+void fit_rig(camera::StereoRig& rig,
+             std::optional<ImageSize> images,
+             std::vector<std::string>& notes);
 /// The rate to give to frames without stamps: from the options, else `otherwise_hz`.
 [[nodiscard]] Result<double> chosen_rate_hz(const OpenOptions& options, double otherwise_hz);
 /// Error when a rate is asked for although the recording has stamps.

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "io/file.hpp"
+#include "io/image_file.hpp"
 #include "io/recording.hpp"
 #include "io/rig_file.hpp"
 #include "io/text.hpp"
+#include "surefoot/camera/rig_scaling.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -27,6 +29,16 @@ bool is_kitti(const std::string& folder) {
         if (is_folder(join_path(folder, name))) return true;
     }
     return false;
+}
+
+/// Whichever layout the folder has.
+Result<Recording> index_any(const std::string& folder, const OpenOptions& options) {
+    const std::string inner = join_path(folder, "mav0");
+    if (is_folder(join_path(inner, "cam0"))) return index_euroc(inner, options);
+    if (is_folder(join_path(folder, "cam0"))) return index_euroc(folder, options);
+    if (is_kitti(folder)) return index_kitti(folder, options);
+    if (is_file(join_path(folder, "rgb.txt"))) return index_tum_rgbd(folder, options);
+    return index_side_by_side(folder, options);
 }
 
 }  // namespace
@@ -101,11 +113,44 @@ Result<std::vector<CsvRow>> parse_tum_list(std::string_view text, const std::str
     return rows;
 }
 
+std::optional<ImageSize> image_size_of(const std::string& path) {
+    const Result<std::string> bytes = read_file(path);
+    if (!bytes) return std::nullopt;
+    const Result<ImageHeader> header = check_image(*bytes, path);
+    if (!header) return std::nullopt;
+    return ImageSize{header->width, header->height};
+}
+
+std::optional<ImageSize> one_eye(std::optional<ImageSize> both) {
+    if (!both || both->width % 2 != 0) return std::nullopt;
+    return ImageSize{both->width / 2, both->height};
+}
+
+void fit_rig(camera::StereoRig& rig,
+             std::optional<ImageSize> images,
+             std::vector<std::string>& notes) {
+    const ImageSize of_rig{rig.left.width, rig.left.height};
+    if (!images || *images == of_rig) return;
+    if (!camera::is_binning(rig.left, images->width, images->height)) return;
+    Result<camera::StereoRig> scaled = camera::scaled_to(rig, images->width, images->height);
+    if (!scaled) return;
+    rig = std::move(scaled).value();
+    notes.push_back(fmt::format(
+        "the calibration for {} x {} px is scaled by {} to the images of {} x {} px; right only if "
+        "these show the whole picture",
+        of_rig.width,
+        of_rig.height,
+        static_cast<double>(images->width) / of_rig.width,
+        images->width,
+        images->height));
+}
+
 Result<std::optional<camera::StereoRig>> read_rig_beside(const std::string& folder,
-                                                         const OpenOptions& options) {
+                                                         const OpenOptions& options,
+                                                         std::optional<ImageSize> size) {
     const std::string path = options.rig_file.value_or(join_path(folder, "rig.yaml"));
     if (!options.rig_file && !is_file(path)) return std::optional<camera::StereoRig>();
-    Result<camera::StereoRig> rig = read_rig(path);
+    Result<camera::StereoRig> rig = read_rig(path, size);
     if (!rig) return rig.error();
     return std::optional<camera::StereoRig>(std::move(rig).value());
 }
@@ -130,15 +175,13 @@ std::int64_t stamp_at(int index, double rate_hz) noexcept {
 }
 
 Result<Recording> index_recording(const std::string& folder, const OpenOptions& options) {
-    if (!is_folder(folder)) {
-        return input_error(fmt::format("{}: no such folder", folder));
-    }
-    const std::string inner = join_path(folder, "mav0");
-    if (is_folder(join_path(inner, "cam0"))) return index_euroc(inner, options);
-    if (is_folder(join_path(folder, "cam0"))) return index_euroc(folder, options);
-    if (is_kitti(folder)) return index_kitti(folder, options);
-    if (is_file(join_path(folder, "rgb.txt"))) return index_tum_rgbd(folder, options);
-    return index_side_by_side(folder, options);
+    if (!is_folder(folder)) return input_error(fmt::format("{}: no such folder", folder));
+    Result<Recording> recording = index_any(folder, options);
+    if (!recording || recording->frames.empty()) return recording;
+    const std::optional<ImageSize> size = image_size_of(recording->frames.front().left);
+    const bool side_by_side = recording->storage == Recording::Storage::side_by_side;
+    fit_rig(recording->rig, side_by_side ? one_eye(size) : size, recording->info.notes);
+    return recording;
 }
 
 }  // namespace surefoot::io

@@ -11,6 +11,7 @@
 #include "io/io_testing.hpp"
 #include "io/recorder.hpp"
 #include "io/rig_file.hpp"
+#include "surefoot/camera/rig_scaling.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -321,15 +322,41 @@ TEST(EurocSource, BadListsAndCalibrationsAreNamed) {
     record(folder / "g", 2);
     for (const char* camera : {"cam0", "cam1"}) {
         replace_in_file(
-            folder / ("g/mav0/" + std::string(camera) + "/sensor.yaml"), "[32, 20]", "[64, 40]");
+            folder / ("g/mav0/" + std::string(camera) + "/sensor.yaml"), "[32, 20]", "[48, 30]");
     }
     EXPECT_TRUE(contains(
         play(folder / "g").errors,
-        "image is 32 x 20 px, but the rig is for 64 x 40 px: a rig for another resolution"));
+        "image is 32 x 20 px, but the rig is for 48 x 30 px: a rig for another resolution"));
     OpenOptions rate;
     rate.rate_hz = 10.0;
     record(folder / "h", 2);
     EXPECT_TRUE(contains(play(folder / "h", rate).errors, "has stamps of its own"));
+}
+
+/// Images that were binned two by two: the calibration follows, and the source says so.
+TEST(EurocSource, ACalibrationOfTwiceTheSizeIsHalved) {
+    const TemporaryFolder folder;
+    record(folder / "r", 2);
+    const auto before = open_source(folder / "r");
+    ASSERT_TRUE(before.ok());
+    EXPECT_TRUE((*before)->info().notes.empty());
+    const auto doubled = camera::scaled_to((*before)->rig(), 64, 40);
+    ASSERT_TRUE(doubled.ok());
+    OpenOptions options;
+    options.rig_file = folder / "doubled.yaml";
+    ASSERT_TRUE(write_rig_yaml(*options.rig_file, *doubled).ok());
+    const auto source = open_source(folder / "r", options);
+    ASSERT_TRUE(source.ok()) << source.error().message;
+    ASSERT_EQ((*source)->info().notes.size(), 1U);
+    EXPECT_TRUE(
+        contains((*source)->info().notes[0],
+                 "the calibration for 64 x 40 px is scaled by 0.5 to the images of 32 x 20"));
+    EXPECT_EQ((*source)->rig().left.width, 32);
+    const Eigen::Vector3d p(0.2, 0.1, 1.0);
+    EXPECT_LT((*project((*source)->rig().left.model, p) - *project((*before)->rig().left.model, p))
+                  .norm(),
+              1e-12);
+    EXPECT_EQ(play(folder / "r", options).errors, "");
 }
 
 TEST(EurocSource, WithoutImuAndWithoutImuCalibration) {
@@ -441,6 +468,20 @@ TEST(SideBySideSource, CutsInNaturalOrderAtFifteenHertz) {
     EXPECT_TRUE(contains(play(folder.path(), options).errors, "other.yaml: cannot read"));
 }
 
+TEST(SideBySideSource, HalfTheSizeOfItsCalibration) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_png(folder / "a.png", noise_image(2 * kWidth, kHeight, 1)).ok());
+    const std::string rig =
+        "resolution: [64, 40]\nbaseline_m: 0.1\nfocal_px: 60\nprincipal_px: [31.5, 19.5]\n";
+    ASSERT_TRUE(write_file(folder / "rig.yaml", rig).ok());
+    const auto source = open_source(folder.path());
+    ASSERT_TRUE(source.ok()) << source.error().message;
+    const auto& lens = std::get<camera::PinholeRadTan>((*source)->rig().left.model);
+    EXPECT_EQ(lens.fx_px, 30.0);
+    EXPECT_EQ(lens.cx_px, 15.5);
+    EXPECT_EQ(play(folder.path()).errors, "");
+}
+
 TEST(SideBySideSource, PlaysAVideo) {
     const TemporaryFolder folder;
     const std::string path = folder / "walk.avi";
@@ -465,6 +506,18 @@ TEST(SideBySideSource, PlaysAVideo) {
     EXPECT_NEAR(played.frames[2].left.at(10, 10), 100, kJpegError);
     EXPECT_NEAR(played.frames[2].right.at(20, 10), 200, kJpegError);
     EXPECT_EQ(played.frames[2].time_ns, 400'000'000) << "the video's own 5 Hz";
+    ASSERT_TRUE(write_file(folder / "rig.yaml",
+                           "resolution: [64, 40]\nbaseline_m: 0.1\nfocal_px: 60\nprincipal_px: "
+                           "[31, 19]\n")
+                    .ok());
+    EXPECT_EQ(play(path).frames.size(), 4U) << "a calibration of twice the size";
+    ASSERT_TRUE(write_file(folder / "rig.yaml", kSideBySideRig).ok());
+    ASSERT_TRUE(write_file(folder / "rig.yaml",
+                           "resolution: [64, 40]\nbaseline_m: 0.1\nfocal_px: 60\nprincipal_px: "
+                           "[31, 19]\n")
+                    .ok());
+    EXPECT_EQ(play(path).frames.size(), 4U) << "a calibration of twice the size";
+    ASSERT_TRUE(write_file(folder / "rig.yaml", kSideBySideRig).ok());
     const auto info = inspect(path);
     ASSERT_TRUE(info.ok());
     EXPECT_EQ(info->frames, 4);

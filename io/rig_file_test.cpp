@@ -132,8 +132,8 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
     const auto bad_full = [&](const std::string& from, const std::string& to) {
         return message(parse_rig_yaml(replaced(full, from, to), "rig.yaml"));
     };
-    EXPECT_TRUE(
-        contains(bad_full("model: pinhole", "model: fish"), "none of pinhole | kannala_brandt"));
+    EXPECT_TRUE(contains(bad_full("model: pinhole", "model: fish"),
+                         "none of pinhole | pinhole_rational | kannala_brandt"));
     EXPECT_TRUE(contains(bad_full("coefficients: [", "coefficients: [1, 2, "), "at most 5 belong"));
     EXPECT_TRUE(contains(bad_full("T_left_right: [", "T_left_right: [5"), "not a rigid motion"));
     EXPECT_TRUE(contains(bad_full("  focal_px", "  focal_length_px"),
@@ -242,8 +242,8 @@ TEST(RigOpenCv, WhatIsMissingOrWrongIsNamed) {
     EXPECT_TRUE(contains(bad("5.3e+02", ".Nan"), "M1: nan is outside"));
     EXPECT_TRUE(contains(bad("5.3e+02", "-1."), "M1: focal lengths -1 and 540 must be above 0"));
     EXPECT_TRUE(contains(bad("0.8, 0., 0.6, 0.", "0.8, 0., 0.9, 0."), "R: not a rigid motion"));
-    EXPECT_TRUE(
-        contains(bad("-0.2, 0., 0., 0.3", "-0.2, 0., 0., 0.3, 0.5"), "coefficient 6 is 0.5"));
+    EXPECT_TRUE(contains(bad("-0.2, 0., 0., 0.3", "-0.2, 0., 0., 0.3, 0., 0., 0., 0.5"),
+                         "coefficient 9 is 0.5"));
     EXPECT_TRUE(contains(bad("image_width: 640\n", ""), "does not hold the image size"));
 }
 

@@ -100,7 +100,8 @@ Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
             fmt::join(found, ", ")));
     }
     return input_error(
-        fmt::format("{}: holds {}; say which with --resolution, or use it with its images",
+        fmt::format("{}: holds {}; use it with its images, or take one out with 'surefoot rig "
+                    "FILE --resolution WxH --out rig.yaml'",
                     ini.name,
                     fmt::join(found, ", ")));
 }

@@ -24,7 +24,8 @@ Result<Recording> index_side_by_side(const std::string& folder, const OpenOption
             "rgb.txt + depth.txt (TUM RGB-D), side-by-side images (.png .jpg .pgm .ppm) + rig.yaml",
             folder));
     }
-    const Result<std::optional<camera::StereoRig>> rig = read_rig_beside(folder, options);
+    const Result<std::optional<camera::StereoRig>> rig =
+        read_rig_beside(folder, options, one_eye(image_size_of(join_path(folder, names->front()))));
     if (!rig) return rig.error();
     if (!rig->has_value()) {
         return input_error(fmt::format(

@@ -37,9 +37,11 @@ class VideoSource final : public camera::FrameSource {
     VideoSource(std::string path,
                 const cv::VideoCapture& capture,
                 camera::StereoRig rig,
+                std::optional<ImageSize> size,
                 double rate_hz)
         : capture_(capture), rig_(std::move(rig)), rate_hz_(rate_hz) {
         rig_.rate_hz = rate_hz;
+        fit_rig(rig_, size, info_.notes);
         info_.kind = "video";
         info_.path = std::move(path);
         // Containers guess this number from duration and rate; some do not know it at all.
@@ -82,6 +84,32 @@ class VideoSource final : public camera::FrameSource {
     int index_ = 0;
 };
 
+double rate_of(const camera::StereoRig& rig) {
+    return rig.rate_hz > 0.0 ? rig.rate_hz : kDefaultRate_hz;
+}
+
+/// The rig of a video of one eye's `size`, if that is known.
+Result<camera::StereoRig> rig_of(const std::string& path,
+                                 const OpenOptions& options,
+                                 std::optional<ImageSize> size) {
+    Result<std::optional<camera::StereoRig>> rig = read_rig_beside(folder_of(path), options, size);
+    if (!rig) return rig.error();
+    if (!rig->has_value()) {
+        return input_error(fmt::format(
+            "{}: a video but no rig; put a rig.yaml beside it or give one with --rig", path));
+    }
+    return **rig;
+}
+
+Result<std::unique_ptr<camera::FrameSource>> open_motion_jpeg(const std::string& path,
+                                                              const OpenOptions& options) {
+    const Result<camera::StereoRig> rig = rig_of(path, options, {});
+    if (!rig) return rig.error();
+    const Result<double> rate_hz = chosen_rate_hz(options, rate_of(*rig));
+    if (!rate_hz) return rate_hz.error();
+    return open_mjpeg(path, *rig, *rate_hz);
+}
+
 }  // namespace
 
 bool is_video_name(const std::string& path) {
@@ -92,18 +120,8 @@ bool is_video_name(const std::string& path) {
 
 Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
                                                         const OpenOptions& options) {
-    Result<std::optional<camera::StereoRig>> rig = read_rig_beside(folder_of(path), options);
-    if (!rig) return rig.error();
-    if (!rig->has_value()) {
-        return input_error(fmt::format(
-            "{}: a video but no rig; put a rig.yaml beside it or give one with --rig", path));
-    }
-    const double rig_hz = (*rig)->rate_hz > 0.0 ? (*rig)->rate_hz : kDefaultRate_hz;
-    if (extension_of(path) == ".mjpeg" || extension_of(path) == ".mjpg") {
-        const Result<double> rate_hz = chosen_rate_hz(options, rig_hz);
-        if (!rate_hz) return rate_hz.error();
-        return open_mjpeg(path, **rig, *rate_hz);
-    }
+    if (extension_of(path) == ".mjpeg" || extension_of(path) == ".mjpg")
+        return open_motion_jpeg(path, options);
     cv::VideoCapture capture;
     bool opened = false;
     try {
@@ -113,12 +131,17 @@ Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
     }
     if (!opened)
         return input_error(path + ": cannot be opened as a video (damaged, or unknown codec)");
+    const std::optional<ImageSize> size =
+        one_eye(ImageSize{static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH)),
+                          static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT))});
+    const Result<camera::StereoRig> rig = rig_of(path, options, size);
+    if (!rig) return rig.error();
     double own_hz = capture.get(cv::CAP_PROP_FPS);
-    if (!(own_hz >= 0.1 && own_hz <= 1000.0)) own_hz = rig_hz;
+    if (!(own_hz >= 0.1 && own_hz <= 1000.0)) own_hz = rate_of(*rig);
     const Result<double> rate_hz = chosen_rate_hz(options, own_hz);
     if (!rate_hz) return rate_hz.error();
     return std::unique_ptr<camera::FrameSource>(
-        std::make_unique<VideoSource>(path, std::move(capture), **rig, *rate_hz));
+        std::make_unique<VideoSource>(path, std::move(capture), *rig, size, *rate_hz));
 }
 
 }  // namespace surefoot::io

@@ -431,6 +431,24 @@ std::string recording_json(const io::RecordingInfo& info) {
     return object.dump(kIndent);
 }
 
+std::string rig_json(const io::RigFile& file, const std::vector<std::string>& written) {
+    const camera::StereoRig& rig = file.rig;
+    const auto focal_px = [](const camera::Camera& camera) {
+        return std::visit([](const auto& m) { return Json{m.fx_px, m.fy_px}; }, camera.model);
+    };
+    const Json object = {
+        {"format", io::name_of(file.format)},
+        {"width", rig.left.width},
+        {"height", rig.left.height},
+        {"focal_left_px", focal_px(rig.left)},
+        {"focal_right_px", rig.right ? focal_px(*rig.right) : Json(nullptr)},
+        {"baseline_m", rig.right ? Json(rig.T_left_right.translation_m.norm()) : Json(nullptr)},
+        {"rectified", rig.rectified},
+        {"notes", file.notes},
+        {"written", written}};
+    return object.dump(kIndent);
+}
+
 std::string copied_json(const Copied& copied, const std::string& folder) {
     const Json object = {{"frames", copied.frames},
                          {"complete", !copied.error.has_value()},

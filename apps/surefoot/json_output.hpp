@@ -22,6 +22,7 @@
 #include "eval/trajectory.hpp"
 #include "io/config_yaml.hpp"
 #include "io/recorder.hpp"
+#include "io/rig_formats.hpp"
 #include "sim/scenes.hpp"
 #include "surefoot/core/machine.hpp"
 #include "surefoot/gate/gate.hpp"
@@ -57,6 +58,8 @@ struct ReportCamera {
 [[nodiscard]] std::string settings_json(const std::vector<io::ConfigEntry>& entries);
 [[nodiscard]] std::string scenes_json(const std::vector<sim::SceneInfo>& scenes);
 [[nodiscard]] std::string recording_json(const io::RecordingInfo& info);
+[[nodiscard]] std::string rig_json(const io::RigFile& file,
+                                   const std::vector<std::string>& written);
 [[nodiscard]] std::string copied_json(const Copied& copied, const std::string& folder);
 [[nodiscard]] std::string scan_json(const Scanned& scanned);
 [[nodiscard]] std::string replay_json(const std::vector<FrameReport>& frames,

@@ -82,6 +82,7 @@ struct AllOptions {
     RecordOptions record;
     ReplayOptions replay;
     InfoOptions info;
+    RigOptions rig;
 };
 
 void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
@@ -407,6 +408,39 @@ void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
         ->type_name("FILE|NAME");
 }
 
+void add_rig(CLI::App& app, RigOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(app,
+                                   "rig",
+                                   "checks a calibration file, shows it, writes it in any format",
+                                   "surefoot rig out/floor_recording --as kalibr --out "
+                                   "out/camchain.yaml"),
+                          o,
+                          rig,
+                          exit_code,
+                          Reads::no_settings);
+    verb->add_option(
+            "file",
+            o.file,
+            "rig.yaml, OpenCV or Kalibr YAML, ROS camera_info (the left file or a folder), "
+            "ZED SN*.conf, KITTI calib.txt, EuRoC folder")
+        ->required()
+        ->type_name("FILE");
+    CLI::Option* out = verb->add_option("--out",
+                                        o.out,
+                                        "what to write; for ros a folder, or the "
+                                        "left file")
+                           ->type_name("FILE");
+    verb->add_option("--as", o.format, "format to write")
+        ->check(CLI::IsMember({"surefoot", "opencv", "kalibr", "ros", "zed"}))
+        ->needs(out);
+    verb->add_option(
+            "--resolution",
+            o.resolution,
+            "size of the images: picks it from a ZED file, scales others if the shape is the "
+            "same")
+        ->type_name("WxH");
+}
+
 void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     CLI::App* config_verb =
         bind(add_verb(app,
@@ -516,6 +550,7 @@ int main_with_arguments(int argc, char** argv) {
     add_gate(app, all.gate, exit_code);
     add_eval(app, all, exit_code);
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);
+    add_rig(app, all.rig, exit_code);
     add_rest(app, all, exit_code);
     try {
         app.parse(argc, argv);

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/log.hpp"
 #include "apps/surefoot/resources.hpp"
 #include "io/imu_stream.hpp"
 #include "io/recording.hpp"
@@ -98,7 +99,9 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& re
     }
     auto source =
         request.source.starts_with(kLivePrefix) ? open_live(request) : open_recording(request);
-    if (source && !request.imu_file.empty())
+    if (!source) return source;
+    for (const std::string& note : (*source)->info().notes) log_warning(note);
+    if (!request.imu_file.empty())
         source = io::with_imu(std::move(source).value(), request.imu_file);
     if (!source || request.max_frames <= 0) return source;
     return std::unique_ptr<camera::FrameSource>(

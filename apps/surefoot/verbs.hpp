@@ -184,6 +184,15 @@ struct ReplayOptions {
 };
 int replay(const ReplayOptions& options);
 
+struct RigOptions {
+    CommonOptions common;
+    std::string file;
+    std::string format = "surefoot";  ///< to write
+    std::string resolution;           ///< "WxH", empty = the file's
+    std::string out;                  ///< empty = only look
+};
+int rig(const RigOptions& options);
+
 struct InfoOptions {
     CommonOptions common;
     std::string source;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/frame.hpp"
@@ -15,7 +16,8 @@ struct SourceInfo {
     std::string path;
     std::optional<int> frames;  ///< how many there are, where that is known beforehand
     bool has_imu = false;
-    bool modelled = false;  ///< frames come with depth and motion that nobody measured
+    std::vector<std::string> notes;  ///< what a user should know about how it was opened
+    bool modelled = false;           ///< frames come with depth and motion that nobody measured
 };
 
 /// Where frames come from: a recording, a video, a camera, a simulated scene. Frames come in time

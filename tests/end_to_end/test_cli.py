@@ -12,7 +12,7 @@ from surefoot_cli import ROOT, CliTest, grey_png, read_asc, surefoot
 # In the order in which one example needs another's results.
 VERBS = [["sim"], ["run"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"], ["eval", "trajectory"],
          ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["config"], ["doctor"], ["bench"], ["record"],
-         ["replay"], ["info"]]
+         ["replay"], ["info"], ["rig"]]
 GATE_EXIT_CODES = (0, 3, 4)
 
 
@@ -89,6 +89,7 @@ class Verbs(CliTest):
             (["record", recording, "--out", self.dir / "copy"], "frames complete error folder"),
             (["replay", recording, "--speed", 1000], "frames late speed per_frame"),
             (["info", recording], "kind frames rate_hz gaps imu_samples has_truth"),
+            (["rig", recording], "format width height focal_left_px focal_right_px baseline_m rectified notes written"),
         )
         self.assertEqual({tuple(v) for v in VERBS} - {("gate",), ("eval",)},
                          {tuple(call[:2]) if call[0] == "eval" else (call[0],) for call, _ in promised})
@@ -103,6 +104,26 @@ class Verbs(CliTest):
         self.assertLessEqual({"false_safe", "false_unsafe"}, set(maps["traversability"]))
         self.assertEqual({"name", "median_ms", "p99_ms", "peer_ms"}, set(answers["bench gate"]["benchmarks"][0]))
         self.assertEqual(len(answers[f"replay {recording}"]["per_frame"]), 3)
+
+    def test_a_calibration_goes_through_every_format(self):
+        source = self.dir / "rig.yaml"
+        source.write_text("resolution: [1280, 720]\nbaseline_m: 0.12\nfocal_px: 700.5\nprincipal_px: [640, 360]\n")
+        for form, name in (("opencv", "o.yml"), ("kalibr", "k.yaml"), ("ros", "folder"), ("zed", "SN1.conf"),
+                           ("surefoot", "again.yaml")):
+            written = self.json_of("rig", source, "--as", form, "--out", self.dir / name)["written"]
+            self.assertEqual(len(written), 2 if form == "ros" else 1)
+            back = self.json_of("rig", self.dir / name)
+            self.assertEqual(back["format"], form)
+            self.assertEqual(back["focal_right_px"], [700.5, 700.5])
+            self.assertAlmostEqual(back["baseline_m"], 0.12, places=12)
+            source = self.dir / name
+        half = self.json_of("rig", source, "--resolution", "640x360")
+        self.assertEqual((half["width"], half["focal_left_px"]), (640, [350.25, 350.25]))
+        process = surefoot("rig", source, "--resolution", "640x480")
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("cannot be scaled to 640 x 480 px", process.stderr)
+        for wrong in ("640", "axb", "0x0", "640x"):
+            self.assertIn("--resolution", surefoot("rig", source, "--resolution", wrong).stderr)
 
     def test_settings_are_checked_by_every_verb(self):
         for verb, rest in (("gate", ["--map", "x", "--pose", "0,0,0", "--command", "9"]), ("info", ["x"]),
