@@ -430,10 +430,9 @@ TEST(RigZed, TheSizePicksTheSection) {
     EXPECT_EQ(std::get<camera::PinholeRadTan>(vga->rig.left.model).fx_px, 350.94);
     EXPECT_EQ(std::get<camera::PinholeRadTan>(vga->rig.left.model).p1, 0.0);
     EXPECT_EQ(vga->rig.left.width, 672);
-    EXPECT_EQ(
-        message(parse_zed_rig(kZed, "SN1.conf")),
-        "SN1.conf: holds HD (1280x720), VGA (672x376); say which with --resolution, or use it "
-        "with its images");
+    EXPECT_EQ(message(parse_zed_rig(kZed, "SN1.conf")),
+              "SN1.conf: holds HD (1280x720), VGA (672x376); use it with its images, or take "
+              "one out with 'surefoot rig FILE --resolution WxH --out rig.yaml'");
     EXPECT_TRUE(contains(message(parse_zed_rig(kZed, "SN1.conf", ImageSize{1920, 1080})),
                          "SN1.conf: nothing for 1920x1080 px; it holds HD (1280x720), VGA"));
 }

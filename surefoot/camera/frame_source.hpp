@@ -16,8 +16,8 @@ struct SourceInfo {
     std::string path;
     std::optional<int> frames;  ///< how many there are, where that is known beforehand
     bool has_imu = false;
-    std::vector<std::string> notes;  ///< what a user should know about how it was opened
-    bool modelled = false;           ///< frames come with depth and motion that nobody measured
+    bool modelled = false;  ///< frames come with depth and motion that nobody measured
+    std::vector<std::string> notes = {};  ///< what a user should know about how it was opened
 };
 
 /// Where frames come from: a recording, a video, a camera, a simulated scene. Frames come in time
