@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/camera/rectification.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,6 +15,11 @@ namespace {
 constexpr int kBorderSamples = 128;  ///< per side of an image
 constexpr double kZoomStep = 1.002;  ///< how fast the view shrinks until all of it is covered
 constexpr int kMaxZoomSteps = 700;   ///< 1.002^700 = 4 times
+/// A plane image of a wider view is nearly all border: at 150 deg its outermost pixel covers 1/15
+/// of the angle of the middle one.
+constexpr double kWidestPlane_deg = 150.0;
+constexpr int kMaxSide_px = 16384;
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 /// Rectangle on the plane z = 1 of the rectified frame.
 struct View {
@@ -97,6 +104,16 @@ bool border_has_source(const RectifiedRig& rig, const RectifiedEye& eye) {
     return true;
 }
 
+/// Takes the focal length that was asked for; the middle of the image shows what it showed.
+void zoom_to(double focal_px, RectifiedRig& rig) {
+    const double factor = focal_px / rig.fx_px;
+    const double middle_u = 0.5 * (rig.width - 1);
+    const double middle_v = 0.5 * (rig.height - 1);
+    rig.fx_px = rig.fy_px = focal_px;
+    rig.cx_px = middle_u + (rig.cx_px - middle_u) * factor;
+    rig.cy_px = middle_v + (rig.cy_px - middle_v) * factor;
+}
+
 void fill_image(Rectification& plan, double max_field_of_view_deg) {
     const double limit = std::tan(0.5 * max_field_of_view_deg * std::numbers::pi / 180.0);
     View view{-limit, limit, -limit, limit};
@@ -113,13 +130,7 @@ void fill_image(Rectification& plan, double max_field_of_view_deg) {
             (!plan.right || border_has_source(plan.rig, *plan.right))) {
             return;
         }
-        // Zoom about the middle of the image.
-        const double middle_u = 0.5 * (plan.rig.width - 1);
-        const double middle_v = 0.5 * (plan.rig.height - 1);
-        plan.rig.fx_px *= kZoomStep;
-        plan.rig.fy_px *= kZoomStep;
-        plan.rig.cx_px = middle_u + (plan.rig.cx_px - middle_u) * kZoomStep;
-        plan.rig.cy_px = middle_v + (plan.rig.cy_px - middle_v) * kZoomStep;
+        zoom_to(plan.rig.fx_px * kZoomStep, plan.rig);
     }
     plan.rig = widest;
 }
@@ -133,26 +144,84 @@ void keep_intrinsics(const PinholeRadTan& model, RectifiedRig& rig) {
 
 }  // namespace
 
+void RectificationConfig::describe(ConfigVisitor& visitor) {
+    visitor.number("rectified_focal_px",
+                   rectified_focal_px,
+                   0.0,
+                   1e5,
+                   "focal length of rectified images; 0 = the smallest that leaves no pixel black");
+    visitor.integer("rectified_width_px",
+                    rectified_width_px,
+                    0,
+                    kMaxSide_px,
+                    "width of rectified images; 0 = as the raw ones");
+    visitor.integer("rectified_height_px",
+                    rectified_height_px,
+                    0,
+                    kMaxSide_px,
+                    "height of rectified images; 0 = as the raw ones");
+    visitor.number("max_view_deg",
+                   max_view_deg,
+                   10.0,
+                   kWidestPlane_deg,
+                   "widest view where the focal length is not given; wide lenses thin out the "
+                   "middle of a plane image");
+}
+
+std::optional<std::string> RectificationConfig::problem(int raw_width, int raw_height) const {
+    const int width = rectified_width_px > 0 ? rectified_width_px : raw_width;
+    const int height = rectified_height_px > 0 ? rectified_height_px : raw_height;
+    if (width < 2 || height < 2 || width > kMaxSide_px || height > kMaxSide_px) {
+        return fmt::format(
+            "camera.rectified_width_px, camera.rectified_height_px: {}x{} px must be between 2 and "
+            "{} on each side",
+            width,
+            height,
+            kMaxSide_px);
+    }
+    if (!(max_view_deg >= 10.0 && max_view_deg <= kWidestPlane_deg)) {
+        return fmt::format(
+            "camera.max_view_deg = {} must be from 10 to {}", max_view_deg, kWidestPlane_deg);
+    }
+    if (rectified_focal_px == 0.0) return std::nullopt;
+    const double longest = std::max(width, height) - 1;
+    const double view_deg = 2.0 * std::atan2(0.5 * longest, rectified_focal_px) * kDegreesPerRadian;
+    if (!(rectified_focal_px > 0.0 && view_deg <= kWidestPlane_deg)) {
+        return fmt::format(
+            "camera.rectified_focal_px = {} must be at least {:.0f} for a {}x{} image: a plane "
+            "image "
+            "shows at most {} deg",
+            rectified_focal_px,
+            std::ceil(0.5 * longest / std::tan(0.5 * kWidestPlane_deg / kDegreesPerRadian)),
+            width,
+            height,
+            kWidestPlane_deg);
+    }
+    return std::nullopt;
+}
+
 Rectification plan_rectification(const StereoRig& rig,
-                                 double max_field_of_view_deg,
+                                 const RectificationConfig& config,
                                  double virtual_baseline_m) {
-    SUREFOOT_ASSERT(!rig.problem());
+    SUREFOOT_ASSERT(!rig.problem() && !config.problem(rig.left.width, rig.left.height));
     Rectification plan;
     plan.left.camera = rig.left;
-    plan.rig.width = rig.left.width;
-    plan.rig.height = rig.left.height;
+    plan.rig.width = config.rectified_width_px > 0 ? config.rectified_width_px : rig.left.width;
+    plan.rig.height = config.rectified_height_px > 0 ? config.rectified_height_px : rig.left.height;
     plan.rig.baseline_m = rig.right ? rig.T_left_right.translation_m.norm() : virtual_baseline_m;
     if (rig.right)
         plan.right = RectifiedEye{.camera = *rig.right, .offset_x_m = plan.rig.baseline_m};
 
     const auto* pinhole = std::get_if<PinholeRadTan>(&rig.left.model);
     const bool ideal_rgbd = !rig.right && pinhole != nullptr && !pinhole->has_distortion();
-    plan.identity = rig.rectified || ideal_rgbd;
+    const bool same_size = plan.rig.width == rig.left.width && plan.rig.height == rig.left.height;
+    plan.identity = (rig.rectified || ideal_rgbd) && same_size && config.rectified_focal_px == 0.0;
     if (plan.identity) {
         keep_intrinsics(*pinhole, plan.rig);
     } else {
         if (plan.right) turn_eyes(rig.T_left_right, plan.left, *plan.right);
-        fill_image(plan, max_field_of_view_deg);
+        fill_image(plan, config.max_view_deg);
+        if (config.rectified_focal_px > 0.0) zoom_to(config.rectified_focal_px, plan.rig);
     }
     const Eigen::Matrix3d R_left_rectified = plan.left.R_rectified_raw.transpose();
     plan.rig.T_body_camera =

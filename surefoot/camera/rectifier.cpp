@@ -3,51 +3,31 @@
 
 #include <cmath>
 #include <limits>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "surefoot/camera/rectification.hpp"
+#include "surefoot/camera/remap.hpp"
 
 namespace surefoot::camera {
 namespace {
 
-/// Where each rectified pixel comes from, in cv::remap's fixed point (1/32 px).
-struct RemapTable {
-    cv::Mat position;  ///< CV_16SC2, whole pixels
-    cv::Mat fraction;  ///< CV_16UC1, index of the bilinear weights
-};
-
-/// Far enough outside that bilinear interpolation reads the constant border alone.
-constexpr float kNowhere_px = -100.0F;
+/// Direction that a rectified pixel shows, in the rectified frame.
+Eigen::Vector3d ray_of(const RectifiedRig& rig, int u, int v) {
+    return {(u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0};
+}
 
 RemapTable make_table(const RectifiedRig& rig, const RectifiedEye& eye) {
-    cv::Mat source(rig.height, rig.width, CV_32FC2);
+    RemapTable table(rig.width, rig.height, eye.camera.width, eye.camera.height);
     const double u_max = eye.camera.width - 1;
     const double v_max = eye.camera.height - 1;
     for (int v = 0; v < rig.height; ++v) {
-        auto* row = source.ptr<cv::Vec2f>(v);
         for (int u = 0; u < rig.width; ++u) {
-            const Eigen::Vector3d ray(
-                (u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
-            const auto raw = raw_from_ray(eye, ray);
+            const auto raw = raw_from_ray(eye, ray_of(rig, u, v));
             const bool seen =
                 raw && raw->x() >= 0.0 && raw->y() >= 0.0 && raw->x() <= u_max && raw->y() <= v_max;
-            row[u] = seen ? cv::Vec2f(static_cast<float>(raw->x()), static_cast<float>(raw->y()))
-                          : cv::Vec2f(kNowhere_px, kNowhere_px);
+            if (seen) table.set(u, v, static_cast<float>(raw->x()), static_cast<float>(raw->y()));
         }
     }
-    RemapTable table;
-    cv::convertMaps(source, cv::noArray(), table.position, table.fraction, CV_16SC2);
     return table;
-}
-
-void remap(const RemapTable& table, const GreyImage& raw, GreyImage& out) {
-    out.resize(table.position.cols, table.position.rows);
-    // cv::Mat has no view of const pixels; remap only reads them.
-    const cv::Mat source(raw.height(), raw.width(), CV_8UC1, const_cast<std::uint8_t*>(raw.data()));
-    cv::Mat target(out.height(), out.width(), CV_8UC1, out.data());
-    cv::remap(
-        source, target, table.position, table.fraction, cv::INTER_LINEAR, cv::BORDER_CONSTANT, 0);
 }
 
 }  // namespace
@@ -68,13 +48,15 @@ Rectifier::~Rectifier() = default;
 Rectifier::Rectifier(Rectifier&&) noexcept = default;
 Rectifier& Rectifier::operator=(Rectifier&&) noexcept = default;
 
-Result<Rectifier> Rectifier::make(const StereoRig& rig) {
+Result<Rectifier> Rectifier::make(const StereoRig& rig, const RectificationConfig& config) {
     if (const auto problem = rig.problem()) {
         return input_error("rig " + (rig.name.empty() ? "" : "'" + rig.name + "'") + ": " +
                            *problem);
     }
+    if (const auto problem = config.problem(rig.left.width, rig.left.height))
+        return usage_error(*problem);
     auto impl = std::make_unique<Impl>();
-    impl->plan = plan_rectification(rig, kMaxFieldOfView_deg, kVirtualBaseline_m);
+    impl->plan = plan_rectification(rig, config, kVirtualBaseline_m);
     if (!impl->plan.identity) {
         impl->left = make_table(impl->plan.rig, impl->plan.left);
         if (impl->plan.right) impl->right = make_table(impl->plan.rig, *impl->plan.right);
@@ -91,25 +73,26 @@ bool Rectifier::is_identity() const noexcept {
 }
 
 void Rectifier::rectify(const StereoFrame& frame, RectifiedPair& out) const {
-    const RectifiedRig& rig = impl_->plan.rig;
+    const Camera& raw = impl_->plan.left.camera;
     const bool stereo = impl_->plan.right.has_value();
-    SUREFOOT_ASSERT(frame.left.width() == rig.width && frame.left.height() == rig.height);
+    SUREFOOT_ASSERT(frame.left.width() == raw.width && frame.left.height() == raw.height);
     SUREFOOT_ASSERT(!stereo ||
-                    (frame.right.width() == rig.width && frame.right.height() == rig.height));
+                    (frame.right.width() == raw.width && frame.right.height() == raw.height));
     if (!stereo) out.right = GreyImage();
     if (impl_->plan.identity) {
         out.left = frame.left;
         if (stereo) out.right = frame.right;
         return;
     }
-    remap(impl_->left, frame.left, out.left);
-    if (stereo) remap(impl_->right, frame.right, out.right);
+    impl_->left.remap(frame.left.view(), out.left);
+    if (stereo) impl_->right.remap(frame.right.view(), out.right);
 }
 
 void Rectifier::rectify_depth(const Image<float>& raw_depth_m, Image<float>& out) const {
     const RectifiedRig& rig = impl_->plan.rig;
+    const Camera& camera = impl_->plan.left.camera;
     SUREFOOT_ASSERT(!impl_->plan.right);
-    SUREFOOT_ASSERT(raw_depth_m.width() == rig.width && raw_depth_m.height() == rig.height);
+    SUREFOOT_ASSERT(raw_depth_m.width() == camera.width && raw_depth_m.height() == camera.height);
     if (impl_->plan.identity) {
         out = raw_depth_m;
         return;
@@ -117,12 +100,10 @@ void Rectifier::rectify_depth(const Image<float>& raw_depth_m, Image<float>& out
     out.resize(rig.width, rig.height);
     for (int v = 0; v < rig.height; ++v) {
         for (int u = 0; u < rig.width; ++u) {
-            const Eigen::Vector3d ray(
-                (u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
-            const auto raw = raw_from_ray(impl_->plan.left, ray);
+            const auto raw = raw_from_ray(impl_->plan.left, ray_of(rig, u, v));
             // Averaging across an edge would invent a surface: the nearest pixel, or none.
             const bool seen = raw && raw->x() > -0.5 && raw->y() > -0.5 &&
-                              raw->x() < rig.width - 0.5 && raw->y() < rig.height - 0.5;
+                              raw->x() < camera.width - 0.5 && raw->y() < camera.height - 0.5;
             out.at(u, v) = seen ? raw_depth_m.at(static_cast<int>(std::lround(raw->x())),
                                                  static_cast<int>(std::lround(raw->y())))
                                 : std::numeric_limits<float>::quiet_NaN();

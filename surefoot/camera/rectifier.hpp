@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "surefoot/camera/rectification.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/frame.hpp"
 #include "surefoot/core/result.hpp"
@@ -22,25 +23,25 @@ struct RectifiedPair {
 /// rigs). Thread-compatible: const calls may run at the same time.
 ///
 /// Both cameras are turned by half of their relative rotation each, then together until x runs
-/// along the baseline (after Bouguet). The common focal length is the smallest that leaves no
-/// rectified pixel without a source, but shows at most `kMaxFieldOfView_deg` from side to side: a
-/// wider view would thin out the middle of a fisheye image, where the ground is.
+/// along the baseline (after Bouguet). The common focal length is that of the configuration, or the
+/// smallest that leaves no rectified pixel without a source and shows no more than the widest view.
 class Rectifier {
   public:
-    static constexpr double kMaxFieldOfView_deg = 105.0;
     /// RGB-D depth is turned into the disparity of a pair with this baseline.
     static constexpr double kVirtualBaseline_m = 0.08;
 
-    /// Fails with the rig's problem in words.
-    [[nodiscard]] static Result<Rectifier> make(const StereoRig& rig);
+    /// Fails with the rig's or the configuration's problem in words.
+    [[nodiscard]] static Result<Rectifier> make(const StereoRig& rig,
+                                                const RectificationConfig& config = {});
 
     ~Rectifier();
     Rectifier(Rectifier&&) noexcept;
     Rectifier& operator=(Rectifier&&) noexcept;
 
     [[nodiscard]] const RectifiedRig& rig() const noexcept;
-    /// Remaps both images bilinearly; copies when the rig is rectified already. The images must
-    /// have the size of the rig (its source checks that). Pixels without a source become 0.
+    /// Remaps both images bilinearly (`RemapTable`); copies when the rig is rectified already. The
+    /// images must have the size of the rig (its source checks that). Pixels without a source
+    /// become 0.
     void rectify(const StereoFrame& frame, RectifiedPair& out) const;
     /// RGB-D: depth along z [m] of every rectified pixel, from the nearest raw pixel; NaN =
     /// unknown.

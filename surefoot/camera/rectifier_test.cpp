@@ -184,12 +184,84 @@ TEST(Rectifier, EurocKeepsItsFieldOfView) {
     EXPECT_NEAR(ideal.cy_px, 240.0, 40.0);
 }
 
+/// Directions of the middles of the left and right border, from side to side.
+double view_deg(const RectifiedRig& rig) {
+    return (std::atan(rig.cx_px / rig.fx_px) + std::atan((rig.width - 1 - rig.cx_px) / rig.fx_px)) *
+           180.0 / std::numbers::pi;
+}
+
 TEST(Rectifier, FisheyeBecomesAPinholeOfLimitedView) {
     const RectifiedRig ideal = make(test::fisheye_rig()).rig();
-    const double view_deg = (std::atan(ideal.cx_px / ideal.fx_px) +
-                             std::atan((ideal.width - 1 - ideal.cx_px) / ideal.fx_px)) *
-                            180.0 / std::numbers::pi;
-    EXPECT_NEAR(view_deg, Rectifier::kMaxFieldOfView_deg, 0.5);
+    EXPECT_NEAR(view_deg(ideal), RectificationConfig{}.max_view_deg, 0.5);
+}
+
+/// cv::fisheye::stereoRectify gives such lenses a focal length of 0 or of thousands of pixels.
+TEST(Rectifier, WideLensesGetASensibleFocalLength) {
+    const StereoRig rig = test::fisheye_rig();
+    const RectifiedRig ideal = make(rig).rig();
+    // 960 px over 105 deg.
+    EXPECT_GT(ideal.fx_px, 340.0);
+    EXPECT_LT(ideal.fx_px, 400.0);
+    EXPECT_NEAR(ideal.cx_px, 0.5 * (ideal.width - 1), 0.1 * ideal.width);
+    EXPECT_NEAR(ideal.cy_px, 0.5 * (ideal.height - 1), 0.1 * ideal.height);
+}
+
+TEST(Rectifier, TheUserChoosesFocalLengthAndSize) {
+    const StereoRig rig = test::fisheye_rig();
+    RectificationConfig config;
+    config.rectified_focal_px = 260.0;
+    config.rectified_width_px = 800;
+    config.rectified_height_px = 450;
+    const auto rectifier = Rectifier::make(rig, config);
+    ASSERT_TRUE(rectifier.ok());
+    const RectifiedRig& ideal = rectifier->rig();
+    EXPECT_EQ(ideal.fx_px, 260.0);
+    EXPECT_EQ(ideal.fy_px, 260.0);
+    EXPECT_EQ(ideal.width, 800);
+    EXPECT_EQ(ideal.height, 450);
+    EXPECT_NEAR(view_deg(ideal), 2.0 * std::atan(400.0 / 260.0) * 180.0 / std::numbers::pi, 1.0);
+    StereoFrame frame;
+    frame.left = GreyImage(rig.left.width, rig.left.height, 90);
+    frame.right = frame.left;
+    RectifiedPair pair;
+    rectifier->rectify(frame, pair);
+    ASSERT_EQ(pair.left.width(), 800);
+    ASSERT_EQ(pair.right.height(), 450);
+    EXPECT_EQ(pair.left.at(400, 225), 90);
+    // Pixels and points still belong together.
+    const Eigen::Vector3d p_camera(0.3, -0.1, 0.9);
+    const auto raw = rectifier->raw_from_point(Side::right, p_camera);
+    ASSERT_TRUE(raw);
+    const auto pixel = rectifier->rectified_from_raw(Side::right, *raw);
+    ASSERT_TRUE(pixel);
+    EXPECT_NEAR(
+        pixel->x(), ideal.cx_px + 260.0 * (p_camera.x() - ideal.baseline_m) / p_camera.z(), 1e-6);
+    EXPECT_NEAR(pixel->y(), ideal.cy_px + 260.0 * p_camera.y() / p_camera.z(), 1e-6);
+}
+
+TEST(Rectifier, RectifiedImagesCanBeMadeSmaller) {
+    RectificationConfig config;
+    config.rectified_width_px = 336;
+    config.rectified_height_px = 188;
+    const auto rectifier = Rectifier::make(test::zed_rig(), config);
+    ASSERT_TRUE(rectifier.ok());
+    EXPECT_FALSE(rectifier->is_identity());
+    // Half the pixels over the same view: the border pixels keep their directions.
+    EXPECT_NEAR(rectifier->rig().fx_px, 342.0 * 335.0 / 671.0, 0.5);
+    EXPECT_NEAR(view_deg(rectifier->rig()), view_deg(make(test::zed_rig()).rig()), 0.3);
+}
+
+TEST(Rectifier, SaysWhichViewCannotBeShown) {
+    RectificationConfig config;
+    config.rectified_focal_px = 20.0;
+    const auto made = Rectifier::make(test::fisheye_rig(), config);
+    ASSERT_FALSE(made.ok());
+    EXPECT_EQ(made.error().message,
+              "camera.rectified_focal_px = 20 must be at least 129 for a 960x600 image: a plane "
+              "image shows at most 150 deg");
+    config.rectified_focal_px = 0.0;
+    config.rectified_height_px = 1;
+    EXPECT_FALSE(Rectifier::make(test::fisheye_rig(), config).ok());
 }
 
 TEST(Rectifier, MixedLensesShareOneView) {

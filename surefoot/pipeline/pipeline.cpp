@@ -65,7 +65,7 @@ Result<Pipeline> Pipeline::make(const PipelineConfig& config,
                                 Executor& executor,
                                 Clock clock) {
     if (const auto problem = config.problem()) return usage_error(*problem);
-    auto rectifier = camera::Rectifier::make(rig);
+    auto rectifier = camera::Rectifier::make(rig, config.camera);
     if (!rectifier) return rectifier.error();
     return Pipeline(config,
                     rig,

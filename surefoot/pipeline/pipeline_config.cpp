@@ -9,6 +9,7 @@ namespace surefoot::pipeline {
 
 void PipelineConfig::describe(ConfigVisitor& visitor) {
     visitor.group("mount", mount);
+    visitor.group("camera", camera);
     visitor.group("stereo", stereo);
     visitor.group("odometry", odometry);
     visitor.group("ground", ground);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "surefoot/camera/rectification.hpp"
 #include "surefoot/core/config.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/ground/ground_config.hpp"
@@ -17,6 +18,7 @@ namespace surefoot::pipeline {
 /// Every setting of the chain, nested by module. Defaults stand in the modules' structs.
 struct PipelineConfig {
     AlignmentConfig mount;
+    camera::RectificationConfig camera;
     stereo::MatcherConfig stereo;
     odometry::OdometryConfig odometry;
     ground::GroundConfig ground;
