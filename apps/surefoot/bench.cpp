@@ -4,6 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "apps/surefoot/bench_result.hpp"
@@ -13,6 +16,8 @@
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "surefoot/camera/rectifier.hpp"
+#include "surefoot/camera/reproject.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
 
 namespace surefoot::app {
@@ -54,6 +59,114 @@ Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Execut
     }
     const Percentiles frame = frame_percentiles(record);
     results.push_back({"chain/whole_frame", frame.median, frame.p99, std::nullopt});
+    return results;
+}
+
+/// Median time of a peer's work on the same data [ms].
+double peer_ms(int repeats, const std::function<void()>& work) {
+    return timed("", repeats, work).median_ms;
+}
+
+/// A pair of real lenses (the published calibration of EuRoC) with images of a given size.
+camera::StereoRig lenses_at(int width, int height) {
+    const auto lens = [&](double f, double cx, double cy) {
+        // k1, k2 as published; the rest follows the size.
+        return camera::Camera{camera::PinholeRadTan{.fx_px = f * width,
+                                                    .fy_px = f * width,
+                                                    .cx_px = cx * width,
+                                                    .cy_px = cy * height,
+                                                    .k1 = -0.28341,
+                                                    .k2 = 0.07396},
+                              width,
+                              height};
+    };
+    camera::StereoRig rig;
+    rig.name = "bench";
+    rig.left = lens(0.609, 0.488, 0.517);
+    rig.right = lens(0.608, 0.505, 0.532);
+    rig.T_left_right = {exp_so3({0.002, -0.014, 0.001}), {0.11, 0.0, 0.0}};
+    return rig;
+}
+
+/// The same rectification by cv::remap: its maps from our rectifier.
+cv::Mat opencv_source(const camera::Rectifier& rectifier, camera::Side side) {
+    const camera::RectifiedRig& rig = rectifier.rig();
+    constexpr double kFar_m = 1e6;  // the eyes share their directions there
+    cv::Mat source(rig.height, rig.width, CV_32FC2);
+    for (int v = 0; v < rig.height; ++v) {
+        for (int u = 0; u < rig.width; ++u) {
+            const auto raw = rectifier.raw_from_point(
+                side, rig.point(u, v, rig.depth_to_disparity_px_m() / kFar_m));
+            source.at<cv::Vec2f>(v, u) =
+                raw ? cv::Vec2f(static_cast<float>(raw->x()), static_cast<float>(raw->y()))
+                    : cv::Vec2f(-100.0F, -100.0F);
+        }
+    }
+    return source;
+}
+
+/// Rectification of a pair and the points of a disparity image, beside OpenCV's, one thread each.
+Result<std::vector<BenchResult>> bench_camera(const CommonOptions&, Executor&) {
+    constexpr int kRepeats = 51;
+    std::vector<BenchResult> results;
+    for (const auto& [width, height] : {std::pair{672, 376}, std::pair{1280, 720}}) {
+        const std::string size = fmt::format("{}x{}", width, height);
+        const auto rectifier = camera::Rectifier::make(lenses_at(width, height));
+        if (!rectifier) return rectifier.error();
+        StereoFrame frame;
+        frame.left = GreyImage(width, height);
+        for (std::size_t i = 0; i < frame.left.size(); ++i)
+            frame.left.data()[i] = static_cast<std::uint8_t>(i * 2654435761U >> 24U);
+        frame.right = frame.left;
+        camera::RectifiedPair pair;
+        results.push_back(timed(
+            "camera/rectify_pair_" + size, kRepeats, [&] { rectifier->rectify(frame, pair); }));
+        const cv::Mat raw(height, width, CV_8UC1, frame.left.data());
+        cv::Mat position[2];
+        cv::Mat fraction[2];
+        cv::Mat target;
+        for (int k = 0; k < 2; ++k) {
+            cv::convertMaps(opencv_source(*rectifier, static_cast<camera::Side>(k)),
+                            cv::noArray(),
+                            position[k],
+                            fraction[k],
+                            CV_16SC2);
+        }
+        results.back().peer_ms = peer_ms(kRepeats, [&] {
+            for (int k = 0; k < 2; ++k)
+                cv::remap(raw, target, position[k], fraction[k], cv::INTER_LINEAR);
+        });
+
+        Image<float> disparity_px(width, height);
+        for (std::size_t i = 0; i < disparity_px.size(); ++i)
+            disparity_px.data()[i] = 1.0F + static_cast<float>(i % 97);
+        const camera::Reprojector reprojector(rectifier->rig());
+        Image<Eigen::Vector3f> points_m;
+        results.push_back(timed("camera/points_" + size, kRepeats, [&] {
+            reprojector.points(disparity_px.view(), points_m);
+        }));
+        const camera::RectifiedRig& rig = rectifier->rig();
+        const cv::Mat Q = (cv::Mat_<double>(4, 4) << 1,
+                           0,
+                           0,
+                           -rig.cx_px,
+                           0,
+                           1,
+                           0,
+                           -rig.cy_px,
+                           0,
+                           0,
+                           0,
+                           rig.fx_px,
+                           0,
+                           0,
+                           1.0 / rig.baseline_m,
+                           0);
+        const cv::Mat disparity(height, width, CV_32FC1, disparity_px.data());
+        cv::Mat points;
+        results.back().peer_ms =
+            peer_ms(kRepeats, [&] { cv::reprojectImageTo3D(disparity, points, Q); });
+    }
     return results;
 }
 
@@ -158,6 +271,7 @@ int bench(const BenchOptions& options) {
     const auto executor = make_executor(options.common);
     using Group = Result<std::vector<BenchResult>> (*)(const CommonOptions&, Executor&);
     const std::pair<const char*, Group> groups[] = {{"chain", bench_chain},
+                                                    {"camera", bench_camera},
                                                     {"traversability", bench_traversability},
                                                     {"gate", bench_gate},
                                                     {"sim", bench_sim}};
@@ -172,9 +286,14 @@ int bench(const BenchOptions& options) {
         fmt::print("{}\n", bench_json(all));
         return kExitOk;
     }
-    fmt::print("{:<28}{:>12}{:>12}\n", "what", "median ms", "p99 ms");
-    for (const BenchResult& r : all)
-        fmt::print("{:<28}{:>12.3f}{:>12.3f}\n", r.name, r.median_ms, r.p99_ms);
+    fmt::print("{:<28}{:>12}{:>12}{:>12}\n", "what", "median ms", "p99 ms", "OpenCV ms");
+    for (const BenchResult& r : all) {
+        fmt::print("{:<28}{:>12.3f}{:>12.3f}{:>12}\n",
+                   r.name,
+                   r.median_ms,
+                   r.p99_ms,
+                   r.peer_ms ? fmt::format("{:.3f}", *r.peer_ms) : "");
+    }
     return kExitOk;
 }
 

@@ -8,12 +8,15 @@
 
 #include "apps/surefoot/bench_result.hpp"
 #include "apps/surefoot/cameras.hpp"
+#include "apps/surefoot/board_accuracy.hpp"
 #include "apps/surefoot/copy_frames.hpp"
+#include "apps/surefoot/measured_pair.hpp"
 #include "apps/surefoot/rig_view.hpp"
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/scan.hpp"
 #include "apps/surefoot/suite_case.hpp"
 #include "eval/dem.hpp"
+#include "eval/depth_design.hpp"
 #include "eval/depth_errors.hpp"
 #include "eval/map_comparison.hpp"
 #include "eval/maps.hpp"
@@ -50,6 +53,14 @@ struct ReportCamera {
                                           const std::vector<eval::PathError>& by_length);
 [[nodiscard]] std::string maps_json(const eval::MapComparison& result);
 [[nodiscard]] std::string depth_json(const eval::DepthErrors& errors);
+[[nodiscard]] std::string measured_depth_json(const MeasuredPair& measured,
+                                              const std::string& folder);
+[[nodiscard]] std::string depth_accuracy_json(const std::string& rig,
+                                              const std::vector<DistanceAccuracy>& rows,
+                                              const std::string& folder);
+[[nodiscard]] std::string depth_design_json(const eval::DepthDesign& design,
+                                            const std::vector<eval::ResolvableHeight>& rows,
+                                            const std::string& folder);
 [[nodiscard]] std::string dem_json(const grid::GridGeometry& geometry,
                                    std::int64_t known_cells,
                                    const eval::CloudBounds& bounds,

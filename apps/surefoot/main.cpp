@@ -74,6 +74,8 @@ struct AllOptions {
     EvalTrajectoryOptions eval_trajectory;
     EvalMapsOptions eval_maps;
     EvalDepthOptions eval_depth;
+    DepthOptions depth;
+    DepthAccuracyOptions depth_accuracy;
     DemOptions dem;
     EvalSuiteOptions eval_suite;
     ConfigOptions config;
@@ -255,6 +257,85 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
             "without it the ground under the present feet is assumed, and listed in 'assumed'")
         ->type_name("M")
         ->check(CLI::Range(0.0, 2.0));
+}
+
+void add_depth(CLI::App& app, DepthOptions& o, int& exit_code) {
+    CLI::App* verb =
+        bind(add_verb(app,
+                      "depth",
+                      "disparity, its sigma and points of one pair of images",
+                      "surefoot depth out/floor_recording/mav0/cam0/data/1000000000.png "
+                      "out/floor_recording/mav0/cam1/data/1000000000.png --rig zed_vga "
+                      "--out out/floor_depth"),
+             o,
+             depth,
+             exit_code);
+    verb->add_option("left", o.left, "image of the left eye")->required()->type_name("LEFT");
+    verb->add_option("right", o.right, "image of the right eye")->required()->type_name("RIGHT");
+    verb->add_option("--rig",
+                     o.rig,
+                     "calibration file, or name of a built-in rig; without it the pair is taken as "
+                     "rectified, and there is no cloud")
+        ->type_name("FILE|NAME");
+    verb->add_option("--out",
+                     o.out_dir,
+                     "folder for disparity.pfm, sigma.pfm, outlier_probability.pfm, cloud.ply and "
+                     "pictures")
+        ->required()
+        ->type_name("DIR");
+}
+
+void add_depth_accuracy(CLI::App& app, DepthAccuracyOptions& o, int& exit_code) {
+    CLI::App* verb =
+        bind(add_verb(app,
+                      "depth-accuracy",
+                      "error of depth by distance on a flat textured board; or, with --design, the "
+                      "smallest step that a rig resolves",
+                      "surefoot depth-accuracy --rig zed_vga --distances 1,2 --repeats 1 --set "
+                      "sim.profile=zed --out out/accuracy\n"
+                      "  surefoot depth-accuracy --design --baseline 0.12 --focal 342 --size "
+                      "672x376 --out out/design"),
+             o,
+             depth_accuracy,
+             exit_code);
+    verb->add_option("--rig", o.rig, "calibration file, or name of a built-in rig")
+        ->type_name("FILE|NAME");
+    verb->add_option("--out", o.out_dir, "folder for the page, its plots and the table")
+        ->required()
+        ->type_name("DIR");
+    CLI::Option* distances =
+        verb->add_option("--distances", o.distances_m, "of the board or floor, separated by commas")
+            ->delimiter(',')
+            ->check(CLI::Range(0.1, 20.0))
+            ->type_name("M");
+    verb->add_option("--repeats", o.repeats, "rendered boards per distance")
+        ->check(CLI::Range(1, 1000));
+    verb->add_option("--board", o.board_m, "side of the square board; its inner 80 % count")
+        ->check(CLI::Range(0.05, 4.0))
+        ->type_name("M");
+    CLI::Option* pairs = verb->add_option("--pairs",
+                                          o.pairs_file,
+                                          "real images instead of rendered ones: lines LEFT RIGHT "
+                                          "DISTANCE_M, board across the optical axis")
+                             ->type_name("FILE")
+                             ->excludes(distances);
+    CLI::Option* design = verb->add_flag(
+        "--design", o.design, "smallest resolvable height by range, from the figures of a camera");
+    design->excludes(pairs);
+    verb->add_option("--baseline", o.baseline_m, "of the rig otherwise")
+        ->type_name("M")
+        ->needs(design);
+    verb->add_option("--focal", o.focal_px, "of the rig otherwise")->type_name("PX")->needs(design);
+    verb->add_option("--size", o.size, "of the rig otherwise")
+        ->type_name("WIDTHxHEIGHT")
+        ->needs(design);
+    verb->add_option("--sigma", o.sigma_px, "of a disparity; the floor of our matcher otherwise")
+        ->type_name("PX")
+        ->needs(design);
+    verb->add_option("--height", o.height_m, "of the camera above the floor")
+        ->type_name("M")
+        ->needs(design);
+    verb->add_option("--pitch", o.pitch_deg, "below the horizon")->type_name("DEG")->needs(design);
 }
 
 void add_eval_depth(CLI::App& eval_verb, EvalDepthOptions& o, int& exit_code) {
@@ -473,8 +554,9 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
         bench,
         exit_code);
     bench_verb
-        ->add_option("group", all.bench.group, "chain, traversability, gate, sim; empty = all")
-        ->check(CLI::IsMember({"chain", "traversability", "gate", "sim"}));
+        ->add_option(
+            "group", all.bench.group, "chain, camera, traversability, gate, sim; empty = all")
+        ->check(CLI::IsMember({"chain", "camera", "traversability", "gate", "sim"}));
 
     CLI::App* record_verb =
         bind(add_verb(app,
@@ -546,6 +628,8 @@ int main_with_arguments(int argc, char** argv) {
     add_rate(app, all.rate, exit_code);
     add_fuse(app, all.fuse, exit_code);
     add_ground(app, all.ground, exit_code);
+    add_depth(app, all.depth, exit_code);
+    add_depth_accuracy(app, all.depth_accuracy, exit_code);
     add_dem(app, all.dem, exit_code);
     add_gate(app, all.gate, exit_code);
     add_eval(app, all, exit_code);

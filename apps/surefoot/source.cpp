@@ -11,6 +11,7 @@
 #include "io/imu_stream.hpp"
 #include "io/recording.hpp"
 #include "io/rig_file.hpp"
+#include "sim/rigs.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -106,6 +107,11 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& re
     if (!source || request.max_frames <= 0) return source;
     return std::unique_ptr<camera::FrameSource>(
         std::make_unique<LimitedSource>(std::move(source).value(), request.max_frames));
+}
+
+Result<camera::StereoRig> load_rig(const std::string& path_or_name) {
+    if (std::filesystem::exists(path_or_name)) return io::read_rig(path_or_name);
+    return sim::rig_preset(path_or_name);
 }
 
 Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_name) {

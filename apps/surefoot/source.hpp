@@ -39,6 +39,9 @@ inline constexpr std::string_view kLivePrefix = "v4l2:";
 [[nodiscard]] Result<std::unique_ptr<sim::SceneSource>> open_simulation(
     const SourceRequest& request, Executor& executor);
 
+/// A calibration by path, or one of the simulator's rigs by its name.
+[[nodiscard]] Result<camera::StereoRig> load_rig(const std::string& path_or_name);
+
 /// A machine file by path or by built-in name; nothing for an empty choice.
 [[nodiscard]] Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_name);
 

@@ -121,6 +121,33 @@ struct EvalDepthOptions {
 };
 int eval_depth(const EvalDepthOptions& options);
 
+struct DepthOptions {
+    CommonOptions common;
+    std::string left;
+    std::string right;
+    std::string rig;  ///< file or built-in name; empty = the pair is rectified
+    std::string out_dir;
+};
+int depth(const DepthOptions& options);
+
+struct DepthAccuracyOptions {
+    CommonOptions common;
+    std::string rig = "zed_vga";      ///< file or built-in name
+    std::vector<double> distances_m;  ///< empty = the usual
+    int repeats = 3;                  ///< textures and noises per distance
+    std::string pairs_file;           ///< instead of the simulator
+    double board_m = 0.6;             ///< side of the textured board
+    std::string out_dir;
+    bool design = false;
+    double baseline_m = 0.0;  ///< --design: 0 = as the rig
+    double focal_px = 0.0;    ///< --design: 0 = as the rig
+    std::string size;         ///< --design: WIDTHxHEIGHT, empty = as the rig
+    double sigma_px = 0.0;    ///< --design: of a disparity; 0 = the floor of our matcher
+    double height_m = 1.0;    ///< --design: of the camera above the floor
+    double pitch_deg = 32.0;  ///< --design: below the horizon
+};
+int depth_accuracy(const DepthAccuracyOptions& options);
+
 struct DemOptions {
     CommonOptions common;
     std::string cloud;

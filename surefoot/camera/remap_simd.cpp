@@ -31,7 +31,7 @@ constexpr int kShift = 5;  // 32 units per pixel
 static_assert(RemapTable::kUnits == 1 << kShift);
 static_assert(std::endian::native == std::endian::little, "the left neighbour is the low byte");
 
-using D16 = hn::ScalableTag<std::uint16_t>;
+using D16 = hn::CappedTag<std::uint16_t, kBlock>;
 using V16 = hn::Vec<D16>;
 
 /// Neighbours of one block.

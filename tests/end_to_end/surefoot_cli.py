@@ -62,10 +62,15 @@ def read_asc(path):
     return header, rows
 
 
-def grey_png(width, height):
-    """A flat 8-bit grey PNG, by the book (W3C PNG specification, chunks IHDR, IDAT, IEND)."""
+def png_of(image):
+    """An 8-bit grey PNG of rows of values, by the book (W3C PNG specification, chunks IHDR, IDAT, IEND)."""
     def chunk(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-    rows = b"".join(b"\0" + bytes([128]) * width for _ in range(height))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)) +
+    rows = b"".join(b"\0" + bytes(row) for row in image)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(image[0]), len(image), 8, 0, 0, 0, 0)) +
             chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def grey_png(width, height):
+    """A flat one."""
+    return png_of([[128] * width] * height)

@@ -10,7 +10,7 @@ import unittest
 from surefoot_cli import ROOT, CliTest, grey_png, read_asc, surefoot
 
 # In the order in which one example needs another's results.
-VERBS = [["sim"], ["run"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"], ["eval", "trajectory"],
+VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"], ["eval", "trajectory"],
          ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["config"], ["doctor"], ["bench"], ["record"],
          ["replay"], ["info"], ["rig"]]
 GATE_EXIT_CODES = (0, 3, 4)
@@ -18,7 +18,7 @@ GATE_EXIT_CODES = (0, 3, 4)
 
 class Verbs(CliTest):
     def test_every_verb_of_the_program_is_listed_here(self):
-        listed = re.findall(r"^  ([a-z]+) ", surefoot("--help").stdout.split("Subcommands:")[1], re.M)
+        listed = re.findall(r"^  ([a-z-]+) ", surefoot("--help").stdout.split("Subcommands:")[1], re.M)
         self.assertEqual(sorted(listed), sorted({verb[0] for verb in VERBS}))
 
     def test_every_help_has_an_example_and_the_example_runs(self):
@@ -67,9 +67,14 @@ class Verbs(CliTest):
         (self.dir / "flat.asc").write_text(grid + "\n")
         steps = ROOT / "tests" / "conformance" / "elevation" / "steps.txt"
         depth = ROOT / "tests" / "conformance" / "depth"
+        eye = lambda camera: recording / "mav0" / camera / "data" / "1000000000.png"
         promised = (  # in an order in which each finds what it needs
             (["sim", "floor", "--frames", 3, "--out", recording], "frames complete error folder"),
             (["run", recording, "--out", run, "--machine", "rex"], "source frames complete gravity_source map timing"),
+            (["depth", eye("cam0"), eye("cam1"), "--rig", "zed_vga", "--out", self.dir / "depth"],
+             "width height density_percent trusted_percent median_sigma_px row_error camera folder"),
+            (["depth-accuracy", "--distances", 1, "--repeats", 1, "--out", self.dir / "accuracy"],
+             "rig distances folder"),
             (["rate", self.dir / "flat.asc", "--out", self.dir / "rated"], "width height resolution_m folder"),
             (["fuse", steps, "--preset", "ethz", "--out", self.dir / "fused"], "steps folder"),
             (["ground", run / "map.ply", "--origin", "0,0,0.95"], "tilt_deg height_m inlier_ratio normal"),

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/measured_pair.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "apps/surefoot/writes.hpp"
+#include "eval/picture.hpp"
+#include "io/file.hpp"
+#include "io/pfm.hpp"
+#include "io/point_cloud.hpp"
+#include "surefoot/camera/reproject.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Above this median row difference a matcher that looks along rows loses accuracy and matches.
+constexpr double kMaxRowError_px = 0.5;
+
+Status write_picture(const std::string& path, const eval::Picture& picture) {
+    const auto png = eval::encode_png(picture);
+    return io::write_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+/// Trusted points in the left optical frame, with their grey value and the sigma of their depth.
+io::PointCloud cloud_of(const MeasuredPair& measured, const camera::RectifiedRig& rig) {
+    Image<Eigen::Vector3f> points_m;
+    camera::Reprojector(rig).points(measured.depth.disparity_px.view(), points_m);
+    io::PointCloud cloud;
+    io::CloudScalar sigma_m{"sigma_z_m", {}};
+    for (std::size_t i = 0; i < points_m.size(); ++i) {
+        const Eigen::Vector3d point_m = points_m.data()[i].cast<double>();
+        if (!point_m.allFinite() ||
+            measured.depth.outlier_probability.data()[i] > kTrustedOutlierProbability) {
+            continue;
+        }
+        const std::uint8_t grey = measured.pair.left.data()[i];
+        cloud.points_m.push_back(point_m);
+        cloud.colours.push_back({grey, grey, grey});
+        // dz = z^2 / (f b) dd, the derivative of z = f b / d
+        sigma_m.values.push_back(
+            static_cast<float>(point_m.z() * point_m.z() / rig.depth_to_disparity_px_m() *
+                               static_cast<double>(measured.depth.sigma_px.data()[i])));
+    }
+    cloud.width = static_cast<int>(cloud.points_m.size());
+    cloud.scalars.push_back(std::move(sigma_m));
+    return cloud;
+}
+
+Status write_depth(const MeasuredPair& measured, const std::string& folder) {
+    if (auto made = io::make_folder(folder); !made) return made;
+    const DepthImage& depth = measured.depth;
+    const double fb = measured.rig ? measured.rig->depth_to_disparity_px_m() : 0.0;
+    const auto at = [&](const char* name) { return io::join_path(folder, name); };
+    const std::string size =
+        fmt::format("{}x{} px", depth.disparity_px.width(), depth.disparity_px.height());
+    Writes writes;
+    writes += io::write_pfm(at("disparity.pfm"), depth.disparity_px);
+    writes += io::write_pfm(at("sigma.pfm"), depth.sigma_px);
+    writes += io::write_pfm(at("outlier_probability.pfm"), depth.outlier_probability);
+    writes += write_picture(
+        at("disparity.png"),
+        eval::render_disparity(depth.disparity_px, fb, {"Disparity of the left eye", size}));
+    writes += write_picture(
+        at("sigma.png"),
+        eval::render_sigma(depth.sigma_px, "px", {"One sigma of the disparity", size}));
+    if (measured.rig) {
+        writes += io::write_ply(at("cloud.ply"), cloud_of(measured, *measured.rig));
+    } else {
+        // What an earlier call left there would belong to other images.
+        writes += io::remove_file(at("cloud.ply"));
+    }
+    return writes.first();
+}
+
+void say_rows(const stereo::PairCheck& check, bool has_rig) {
+    if (!check.enough()) {
+        log_warning(fmt::format(
+            "depth: only {} of {} corners were found again within 8 rows; whether the pair is "
+            "rectified cannot be told",
+            check.matched,
+            check.corners));
+    } else if (check.row_error_px > kMaxRowError_px) {
+        log_warning(
+            fmt::format("depth: rows differ by {:.2f} px (median of {} corners, {:+.2f} px signed; "
+                        "limit {}): {}",
+                        check.row_error_px,
+                        check.matched,
+                        check.row_offset_px,
+                        kMaxRowError_px,
+                        has_rig ? "the calibration does not fit these images"
+                                : "the pair is not rectified; give its --rig"));
+    }
+}
+
+void print_depth(const MeasuredPair& measured, const std::string& folder) {
+    const PairFigures figures = figures_of(measured.depth);
+    fmt::print("{}x{} px, {:.1f} % matched, {:.1f} % trusted; median sigma {:.3f} px\n",
+               measured.depth.disparity_px.width(),
+               measured.depth.disparity_px.height(),
+               figures.density_percent,
+               figures.trusted_percent,
+               figures.median_sigma_px);
+    if (measured.check.enough()) {
+        fmt::print("rows agree within {:.2f} px (median of {} corners)\n",
+                   measured.check.row_error_px,
+                   measured.check.matched);
+    }
+    fmt::print("written to {}{}\n", folder, measured.rig ? "" : "; no cloud without a --rig");
+}
+
+}  // namespace
+
+int depth(const DepthOptions& options) {
+    const auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
+    std::optional<camera::StereoRig> rig;
+    if (!options.rig.empty()) {
+        const auto loaded = load_rig(options.rig);
+        if (!loaded) return report(loaded.error());
+        rig = *loaded;
+    }
+    const auto executor = make_executor(options.common);
+    const auto measured =
+        measure_files(options.left, options.right, rig, settings->pipeline, *executor);
+    if (!measured) return report(measured.error());
+    say_rows(measured->check, rig.has_value());
+    if (auto status = write_depth(*measured, options.out_dir); !status)
+        return report(status.error());
+    if (options.common.json) {
+        fmt::print("{}\n", measured_depth_json(*measured, options.out_dir));
+    } else {
+        print_depth(*measured, options.out_dir);
+    }
+    return kExitOk;
+}
+
+}  // namespace surefoot::app

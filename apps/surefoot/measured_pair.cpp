@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/measured_pair.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/image_file.hpp"
+#include "surefoot/stereo/matcher.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Corners are looked for as far as the matcher looks, but in at most this far: the time grows with
+/// it.
+constexpr int kMaxCornerDisparity_px = 256;
+
+std::string size_text(const GreyImage& image) {
+    return fmt::format("{}x{}", image.width(), image.height());
+}
+
+Status check_sizes(const StereoFrame& frame, const std::optional<camera::StereoRig>& rig) {
+    if (frame.left.width() != frame.right.width() || frame.left.height() != frame.right.height()) {
+        return input_error(fmt::format(
+            "the images differ in size: left {}, right {} px; one stereo pair has one size",
+            size_text(frame.left),
+            size_text(frame.right)));
+    }
+    if (!rig) return {};
+    if (!rig->right) {
+        return input_error(fmt::format("rig '{}' has one camera; depth needs two", rig->name));
+    }
+    if (frame.left.width() != rig->left.width || frame.left.height() != rig->left.height) {
+        return input_error(fmt::format("the images are {} px but rig '{}' was calibrated at {}x{}",
+                                       size_text(frame.left),
+                                       rig->name,
+                                       rig->left.width,
+                                       rig->left.height));
+    }
+    return {};
+}
+
+Status check_pair_of(const stereo::PairCheck& check) {
+    if (!check.exchanged()) return {};
+    return input_error(
+        fmt::format("left and right seem to be exchanged: {} of {} corners lie farther right in "
+                    "the right image "
+                    "than in the left one; give the images the other way round",
+                    check.backward,
+                    check.matched));
+}
+
+}  // namespace
+
+Result<MeasuredPair> measure_pair(const StereoFrame& frame,
+                                  const std::optional<camera::StereoRig>& rig,
+                                  const pipeline::PipelineConfig& config,
+                                  Executor& executor) {
+    if (auto status = check_sizes(frame, rig); !status) return status.error();
+    MeasuredPair measured;
+    if (rig) {
+        const auto rectifier = camera::Rectifier::make(*rig, config.camera);
+        if (!rectifier) return rectifier.error();
+        rectifier->rectify(frame, measured.pair);
+        measured.rig = rectifier->rig();
+    } else {
+        measured.pair = {frame.left, frame.right};
+    }
+    const GreyImage& left = measured.pair.left;
+    const GreyImage& right = measured.pair.right;
+    if (left.width() <= config.stereo.disparities) {
+        return input_error(fmt::format(
+            "images of {} px are too narrow for stereo.disparities = {}: nothing in them "
+            "could be matched; set fewer",
+            size_text(left),
+            config.stereo.disparities));
+    }
+    measured.check = stereo::check_pair(
+        left.view(),
+        right.view(),
+        {.disparity_px = std::min(config.stereo.disparities, kMaxCornerDisparity_px)});
+    if (auto status = check_pair_of(measured.check); !status) return status.error();
+    stereo::make_sgbm_matcher(config.stereo)
+        ->match(left.view(), right.view(), executor, measured.depth);
+    return measured;
+}
+
+Result<MeasuredPair> measure_files(const std::string& left,
+                                   const std::string& right,
+                                   const std::optional<camera::StereoRig>& rig,
+                                   const pipeline::PipelineConfig& config,
+                                   Executor& executor) {
+    auto left_image = io::read_grey_image(left);
+    if (!left_image) return left_image.error();
+    auto right_image = io::read_grey_image(right);
+    if (!right_image) return right_image.error();
+    StereoFrame frame;
+    frame.left = std::move(left_image).value();
+    frame.right = std::move(right_image).value();
+    auto measured = measure_pair(frame, rig, config, executor);
+    if (!measured)
+        return input_error(fmt::format("{}, {}: {}", left, right, measured.error().message));
+    return measured;
+}
+
+PairFigures figures_of(const DepthImage& depth) {
+    std::vector<float> sigmas_px;
+    std::size_t known = 0;
+    for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
+        if (!std::isfinite(depth.disparity_px.data()[i])) continue;
+        ++known;
+        if (depth.outlier_probability.data()[i] <= kTrustedOutlierProbability)
+            sigmas_px.push_back(depth.sigma_px.data()[i]);
+    }
+    const double percent = 100.0 / static_cast<double>(depth.disparity_px.size());
+    PairFigures figures{percent * static_cast<double>(known),
+                         percent * static_cast<double>(sigmas_px.size()),
+                         std::numeric_limits<double>::quiet_NaN()};
+    if (sigmas_px.empty()) return figures;
+    const auto middle = sigmas_px.begin() + static_cast<std::ptrdiff_t>(sigmas_px.size() / 2);
+    std::nth_element(sigmas_px.begin(), middle, sigmas_px.end());
+    figures.median_sigma_px = static_cast<double>(*middle);
+    return figures;
+}
+
+}  // namespace surefoot::app

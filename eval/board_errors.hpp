@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::eval {
+
+/// The plane through points of a board in front of a camera: 1/z = (x/z, y/z, 1) . inverse_depth.
+/// Noise of a disparity is even in 1/z, so that the fit has no bias.
+struct BoardPlane {
+    Eigen::Vector3d inverse_depth_1_m = Eigen::Vector3d::Zero();
+    /// Depth [m] on the optical axis.
+    [[nodiscard]] double distance_m() const { return 1.0 / inverse_depth_1_m.z(); }
+    /// Depth [m] in the direction (x/z, y/z).
+    [[nodiscard]] double depth_m(double x, double y) const {
+        return 1.0 / inverse_depth_1_m.dot(Eigen::Vector3d(x, y, 1.0));
+    }
+};
+
+/// Least squares, repeated without the points beyond 4 sigma (by the median absolute deviation).
+/// Nothing for fewer than 100 points, points in one line, or a plane through the camera.
+[[nodiscard]] std::optional<BoardPlane> fit_board(std::span<const Eigen::Vector3d> points_m);
+
+/// How a stereo camera sees a flat board that stands across its optical axis.
+struct BoardErrors {
+    double axial_m = 0.0;  ///< distance of the fitted plane on the axis - true distance
+    double std_m = 0.0;    ///< of all depths about the fitted plane, outliers included
+    /// Error of a length on the board, as a share of it: what is taken for farther looks larger.
+    double lateral_share = 0.0;
+    std::int64_t points = 0;
+};
+[[nodiscard]] std::optional<BoardErrors> board_errors(std::span<const Eigen::Vector3d> points_m,
+                                                      double distance_m);
+
+/// Several looks at one distance: mean of the axial and lateral errors, rms of the deviations.
+[[nodiscard]] BoardErrors mean_of(std::span<const BoardErrors> looks);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace surefoot::eval {
+
+/// Lines over a quantity, both axes from 0, as an SVG that stands alone and fits into a report.
+struct LinePlot {
+    struct Point {
+        double x = 0.0;
+        double y = 0.0;
+    };
+    struct Line {
+        std::string label;
+        std::vector<Point> points;  ///< ascending in x; one that is not finite interrupts the line
+        bool dashed = false;        ///< what others found
+    };
+    std::string title;
+    std::string x_label;  ///< with their units
+    std::string y_label;
+    std::vector<Line> lines;  ///< kColours at most
+    static constexpr std::size_t kColours = 5;
+};
+/// Empty string when no line has a finite point.
+[[nodiscard]] std::string line_plot_svg(const LinePlot& plot);
+
+}  // namespace surefoot::eval

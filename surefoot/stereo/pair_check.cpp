@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/pair_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace surefoot::stereo {
+namespace {
+
+constexpr int kHalf_px = 7;  ///< of the window around a corner
+constexpr int kMaxCorners = 300;
+constexpr double kCornerQuality = 0.01;  ///< of the best corner
+constexpr double kMinCorrelation = 0.9;
+/// A second place that fits nearly as well (a fence, a tiled floor) says nothing.
+constexpr double kMaxSecond = 0.95;
+
+cv::Mat as_mat(ImageView<const std::uint8_t> image) {
+    // cv::Mat has no view of const pixels; these are only read.
+    return {image.height,
+            image.width,
+            CV_8UC1,
+            const_cast<std::uint8_t*>(image.data),
+            static_cast<std::size_t>(image.stride)};
+}
+
+struct Shift {
+    double columns_px;  ///< right minus left
+    double rows_px;
+};
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Where a corner went: the best normalised correlation, with a parabola across the rows.
+std::optional<Shift> shift_of(const cv::Mat& left,
+                              const cv::Mat& right,
+                              const cv::Point& corner,
+                              const PairSearch& search) {
+    const cv::Rect window(
+        corner.x - kHalf_px, corner.y - kHalf_px, 2 * kHalf_px + 1, 2 * kHalf_px + 1);
+    const cv::Rect all(0, 0, left.cols, left.rows);
+    if ((window & all) != window) return std::nullopt;
+    const cv::Rect strip = all & cv::Rect(window.x - search.disparity_px,
+                                          window.y - search.rows_px,
+                                          window.width + 2 * search.disparity_px,
+                                          window.height + 2 * search.rows_px);
+    cv::Mat score;
+    cv::matchTemplate(right(strip), left(window), score, cv::TM_CCOEFF_NORMED);
+    double best = 0.0;
+    cv::Point at;
+    cv::minMaxLoc(score, nullptr, &best, nullptr, &at);
+    // A best place on the edge of what was searched may go on beyond it.
+    if (!(best >= kMinCorrelation) || at.y == 0 || at.y == score.rows - 1) return std::nullopt;
+    const double above = score.at<float>(at.y - 1, at.x);
+    const double below = score.at<float>(at.y + 1, at.x);
+    const double bend = above + below - 2.0 * best;
+    const double fine = bend < 0.0 ? 0.5 * (above - below) / bend : 0.0;
+    const cv::Rect peak(at.x - kHalf_px / 2, at.y - kHalf_px / 2, kHalf_px, kHalf_px);
+    score(peak & cv::Rect(0, 0, score.cols, score.rows)).setTo(-1.0);
+    double second = 0.0;
+    cv::minMaxLoc(score, nullptr, &second);
+    if (second > kMaxSecond * best) return std::nullopt;
+    return Shift{static_cast<double>(strip.x + at.x - window.x), strip.y + at.y + fine - window.y};
+}
+
+}  // namespace
+
+PairCheck check_pair(ImageView<const std::uint8_t> left,
+                     ImageView<const std::uint8_t> right,
+                     const PairSearch& search) {
+    SUREFOOT_ASSERT(left.width == right.width && left.height == right.height);
+    PairCheck check;
+    if (left.width <= 2 * kHalf_px + 2 || left.height <= 2 * kHalf_px + 2) return check;
+    const cv::Mat left_mat = as_mat(left);
+    const cv::Mat right_mat = as_mat(right);
+    std::vector<cv::Point2f> corners;
+    // Spread over the image, whatever its size.
+    const double distance_px = std::max(6.0, std::sqrt(left.width * (left.height / 1200.0)));
+    cv::goodFeaturesToTrack(left_mat, corners, kMaxCorners, kCornerQuality, distance_px);
+    check.corners = static_cast<int>(corners.size());
+    std::vector<double> rows_px;
+    std::vector<double> absolute_px;
+    for (const cv::Point2f& corner : corners) {
+        const auto shift = shift_of(left_mat, right_mat, corner, search);
+        if (!shift) continue;
+        rows_px.push_back(shift->rows_px);
+        absolute_px.push_back(std::abs(shift->rows_px));
+        check.backward += shift->columns_px > 1.0 ? 1 : 0;
+    }
+    check.matched = static_cast<int>(rows_px.size());
+    if (rows_px.empty()) return check;
+    check.row_offset_px = median(std::move(rows_px));
+    check.row_error_px = median(std::move(absolute_px));
+    return check;
+}
+
+}  // namespace surefoot::stereo

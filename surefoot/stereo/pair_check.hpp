@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "surefoot/core/views.hpp"
+
+namespace surefoot::stereo {
+
+/// How well two images fit together as a rectified pair: what corners of the left one say that are
+/// found again in the right one, a few rows up and down and in both directions along the row.
+struct PairCheck {
+    int corners = 0;             ///< found in the left image
+    int matched = 0;             ///< of these, found again without doubt
+    double row_offset_px = 0.0;  ///< median row in the right image minus row in the left one
+    double row_error_px = 0.0;   ///< median of its absolute value
+    int backward = 0;            ///< of the matched, more than 1 px to the right of where they were
+
+    /// The median is believed from this many corners on.
+    static constexpr int kEnough = 20;
+    [[nodiscard]] bool enough() const noexcept { return matched >= kEnough; }
+    /// The right image is the left one: four of five corners moved the wrong way. Real pairs move
+    /// that way only where the eyes squint.
+    [[nodiscard]] bool exchanged() const noexcept { return enough() && 5 * backward > 4 * matched; }
+};
+
+/// Farthest that corners are looked for [px].
+struct PairSearch {
+    int disparity_px = 128;
+    int rows_px = 8;
+};
+
+/// Images of equal size. Those without corners give none, not an error.
+[[nodiscard]] PairCheck check_pair(ImageView<const std::uint8_t> left,
+                                   ImageView<const std::uint8_t> right,
+                                   const PairSearch& search = {});
+
+}  // namespace surefoot::stereo
