@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sim/test_cameras.hpp"
 #include "surefoot/camera/rectifier.hpp"
 
@@ -12,24 +14,24 @@ namespace {
 TEST(BoardView, TheBoardStandsWhereItWasPut) {
     const camera::StereoRig rig = test::small_rig();
     const camera::RectifiedRig rectified = camera::Rectifier::make(rig).value().rig();
+    const int u = static_cast<int>(rectified.cx_px);
+    const int v = static_cast<int>(rectified.cy_px);
     Serial serial;
     BoardView view;
     for (const double distance_m : {0.3, 0.8, 2.0}) {
         view.distance_m = distance_m;
         const auto seen = see_board(view, rig, rectified, serial);
         ASSERT_TRUE(seen.ok());
-        const double fb = rectified.depth_to_disparity_px_m();
-        const int u = static_cast<int>(rectified.cx_px);
-        const int v = static_cast<int>(rectified.cy_px);
-        EXPECT_NEAR(fb / seen->disparity_px.at(u, v), distance_m, 1e-6);
+        const auto depth_m = [&](int row) {
+            return rectified.depth_to_disparity_px_m() /
+                   static_cast<double>(seen->disparity_px.at(u, row));
+        };
+        EXPECT_NEAR(depth_m(v), distance_m, 1e-6);
         // Half of the board, seen from its middle: just inside and just outside.
-        const double half_px = 0.5 * view.side_m * rectified.fx_px / distance_m;
-        if (half_px + 2 > v) continue;
-        EXPECT_NEAR(
-            fb / seen->disparity_px.at(u, v - static_cast<int>(half_px) + 2), distance_m, 1e-6);
-        EXPECT_NEAR(fb / seen->disparity_px.at(u, v - static_cast<int>(half_px) - 2),
-                    distance_m + 1.5,
-                    1e-6);
+        const int edge_px = static_cast<int>(0.5 * view.side_m * rectified.fx_px / distance_m);
+        if (edge_px + 2 > v) continue;  // the board fills the image
+        EXPECT_NEAR(depth_m(v - edge_px + 2), distance_m, 1e-6);
+        EXPECT_NEAR(depth_m(v - edge_px - 2), distance_m + 1.5, 1e-6);
     }
 }
 

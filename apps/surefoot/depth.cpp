@@ -81,7 +81,7 @@ Status write_depth(const MeasuredPair& measured, const std::string& folder) {
 void say_rows(const stereo::PairCheck& check, bool has_rig) {
     if (!check.enough()) {
         log_warning(fmt::format(
-            "depth: only {} of {} corners were found again within 8 rows; whether the pair is "
+            "depth: only {} of {} corners were found again within 32 rows; whether the pair is "
             "rectified cannot be told",
             check.matched,
             check.corners));

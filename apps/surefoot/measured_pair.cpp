@@ -13,9 +13,11 @@
 namespace surefoot::app {
 namespace {
 
-/// Corners are looked for as far as the matcher looks, but in at most this far: the time grows with
+/// Corners are looked for as far as the matcher looks, but at most this far: the time grows with
 /// it.
 constexpr int kMaxCornerDisparity_px = 256;
+/// Raw images of real rigs differ by tens of rows.
+constexpr int kFarRows_px = 32;
 
 std::string size_text(const GreyImage& image) {
     return fmt::format("{}x{}", image.width(), image.height());
@@ -40,6 +42,16 @@ Status check_sizes(const StereoFrame& frame, const std::optional<camera::StereoR
                                        rig->left.height));
     }
     return {};
+}
+
+/// Looks farther up and down, which takes its time, only where a few rows do not suffice.
+stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities) {
+    stereo::PairSearch search;
+    search.disparity_px = std::min(disparities, kMaxCornerDisparity_px);
+    const stereo::PairCheck near = check_pair(pair.left.view(), pair.right.view(), search);
+    if (near.enough() || near.corners < stereo::PairCheck::kEnough) return near;
+    search.rows_px = kFarRows_px;
+    return check_pair(pair.left.view(), pair.right.view(), search);
 }
 
 Status check_pair_of(const stereo::PairCheck& check) {
@@ -77,10 +89,7 @@ Result<MeasuredPair> measure_pair(const StereoFrame& frame,
             size_text(left),
             config.stereo.disparities));
     }
-    measured.check = stereo::check_pair(
-        left.view(),
-        right.view(),
-        {.disparity_px = std::min(config.stereo.disparities, kMaxCornerDisparity_px)});
+    measured.check = check_rows(measured.pair, config.stereo.disparities);
     if (auto status = check_pair_of(measured.check); !status) return status.error();
     stereo::make_sgbm_matcher(config.stereo)
         ->match(left.view(), right.view(), executor, measured.depth);
@@ -116,8 +125,8 @@ PairFigures figures_of(const DepthImage& depth) {
     }
     const double percent = 100.0 / static_cast<double>(depth.disparity_px.size());
     PairFigures figures{percent * static_cast<double>(known),
-                         percent * static_cast<double>(sigmas_px.size()),
-                         std::numeric_limits<double>::quiet_NaN()};
+                        percent * static_cast<double>(sigmas_px.size()),
+                        std::numeric_limits<double>::quiet_NaN()};
     if (sigmas_px.empty()) return figures;
     const auto middle = sigmas_px.begin() + static_cast<std::ptrdiff_t>(sigmas_px.size() / 2);
     std::nth_element(sigmas_px.begin(), middle, sigmas_px.end());

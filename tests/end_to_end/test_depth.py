@@ -71,7 +71,7 @@ class Depth(CliTest):
         # Below the horizon lies the floor, 1 m below the camera that looks 32 deg down.
         middle = disparity[188 * 672 + 400]
         self.assertAlmostEqual(342 * 0.12 / middle, 1.0 / 0.52992, delta=0.03)
-        points = self.json_of("ground", out / "cloud.ply")
+        points = self.json_of("ground", out / "cloud.ply", "--frame", "optical")
         self.assertAlmostEqual(points["height_m"], 1.0, delta=0.01)
         self.assertAlmostEqual(points["tilt_deg"], 32.0, delta=0.5)
         self.json_of("depth", left, right, "--rig", "zed_vga", "--out", other, "--threads", 2)
