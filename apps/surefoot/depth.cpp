@@ -107,7 +107,7 @@ void print_depth(const MeasuredPair& measured, const std::string& folder) {
                figures.trusted_percent,
                figures.median_sigma_px);
     if (measured.check.enough()) {
-        fmt::print("rows agree within {:.2f} px (median of {} corners)\n",
+        fmt::print("rows differ by {:.2f} px (median of {} corners)\n",
                    measured.check.row_error_px,
                    measured.check.matched);
     }

@@ -298,8 +298,9 @@ void add_depth_accuracy(CLI::App& app, DepthAccuracyOptions& o, int& exit_code) 
              o,
              depth_accuracy,
              exit_code);
-    verb->add_option("--rig", o.rig, "calibration file, or name of a built-in rig")
-        ->type_name("FILE|NAME");
+    CLI::Option* rig =
+        verb->add_option("--rig", o.rig, "calibration file, or name of a built-in rig")
+            ->type_name("FILE|NAME");
     verb->add_option("--out", o.out_dir, "folder for the page, its plots and the table")
         ->required()
         ->type_name("DIR");
@@ -318,6 +319,7 @@ void add_depth_accuracy(CLI::App& app, DepthAccuracyOptions& o, int& exit_code) 
                                           "real images instead of rendered ones: lines LEFT RIGHT "
                                           "DISTANCE_M, board across the optical axis")
                              ->type_name("FILE")
+                             ->needs(rig)
                              ->excludes(distances);
     CLI::Option* design = verb->add_flag(
         "--design", o.design, "smallest resolvable height by range, from the figures of a camera");

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bilinear remap in two passes over blocks that stay in the first-level cache:
 //   1. fetch: for every pixel the two neighbours of the upper and of the lower row, as one 16-bit
-//      load each (left neighbour in the low byte). Loads one by one beat gathers, which cost these
-//      processors more than they save.
+//      load each (left neighbour in the low byte). Loads one by one beat 32-bit gathers
+//      (measured on an AMD EPYC with AVX-512: 0.7 of their time).
 //   2. blend, 16-bit lanes. With h = (32 - fx) left + fx right <= 8160 the sum of both rows needs
-//   18
-//      bits, so h = 32 a + b is split and the halves are blended apart:
+//      18 bits, so h = 32 a + b is split and the halves are blended apart:
 //        ((32 - fy) h0 + fy h1 + 512) >> 10
 //          = (A + (((32 - fy) b0 + fy b1 + 512) >> 5)) >> 5,   A = (32 - fy) a0 + fy a1,
 //      which is exact: 32 A is a whole multiple of 32. (32 - f) p + f q is taken as 32 p + f (q -
