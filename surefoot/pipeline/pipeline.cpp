@@ -67,6 +67,12 @@ Result<Pipeline> Pipeline::make(const PipelineConfig& config,
     if (const auto problem = config.problem()) return usage_error(*problem);
     auto rectifier = camera::Rectifier::make(rig, config.camera);
     if (!rectifier) return rectifier.error();
+    if (rectifier->rig().width != rig.left.width || rectifier->rig().height != rig.left.height) {
+        return usage_error(
+            "camera.rectified_width_px, camera.rectified_height_px: odometry needs rectified "
+            "images "
+            "of the size of the raw ones; only single pairs (depth, depth-accuracy) take another");
+    }
     return Pipeline(config,
                     rig,
                     std::make_unique<camera::Rectifier>(std::move(rectifier).value()),

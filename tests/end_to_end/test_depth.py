@@ -152,6 +152,17 @@ class Accuracy(CliTest):
         self.assertEqual(process.returncode, 2)
         self.assertIn("a plane image shows at most", process.stderr)
 
+    def test_a_run_takes_another_focal_length_but_not_another_size(self):
+        run = ["run", "sim:floor", "--max-frames", 3, "--out", self.dir / "run"]
+        report = self.json_of(*run, "--set", "camera.rectified_focal_px=400")
+        self.assertEqual(report["camera"]["focal_px"], [400, 400])
+        self.assertGreater(report["map"]["known_cells"], 1000)
+        for wrong in (["camera.rectified_width_px=600"],
+                      ["camera.rectified_focal_px=400", "--set", "sim.sensor=analytic"]):
+            process = surefoot(*run, "--set", *wrong)
+            self.assertEqual(process.returncode, 2, wrong)
+            self.assertIn("camera.rectified_width_px" if len(wrong) == 1 else "rectified already", process.stderr)
+
     def test_real_images_with_their_distances(self):
         # A wall at 41.04 / 20 m: the whole image moves by 20 px.
         rows = speckle(672, 376)
