@@ -79,6 +79,9 @@ void SimTruth::remember_depth(const StereoFrame& frame) {
 void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline) {
     while (!depths_.empty() && depths_.front().first < frame.index) depths_.pop_front();
     if (depths_.empty() || depths_.front().first != frame.index) return;
+    // The exact depth is that of the raw image: another virtual pinhole shows other pixels.
+    const auto* lens = std::get_if<camera::PinholeRadTan>(&scene_->rig().left.model);
+    if (lens == nullptr || lens->fx_px != pipeline.rig().fx_px) return;
     const Image<float>& truth_m = depths_.front().second;
     const camera::DepthImage& depth = pipeline.depth();
     const double fb_px_m = pipeline.rig().depth_to_disparity_px_m();
