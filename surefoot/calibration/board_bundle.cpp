@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/calibration/board_bundle.hpp"
+
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "surefoot/calibration/lens_projection.hpp"
+
+namespace surefoot::calibration {
+namespace {
+
+constexpr int kPinhole = 12;  ///< block size of all pinhole kinds; what a kind lacks stays 0
+constexpr int kFisheye = 8;
+
+/// The denominator of the rational model can cancel its numerator, which leaves a direction that no
+/// view determines: a prior keeps the coefficients near zero along it. Beside corner noise of 0.15
+/// px it is one of standard deviation 3, the size of what lenses in the field have (Azure Kinect:
+/// 0.5 -2.6 1.5 / 0.4 -2.5 1.4).
+constexpr double kPriorWeight_px = 0.05;
+constexpr double kRationalBound = 20.0;
+constexpr std::array<int, 6> kRadial{4, 5, 8, 9, 10, 11};  ///< k1 k2 k3 k4 k5 k6
+
+using PoseBlock = std::array<double, 6>;  ///< rotation vector, translation
+
+PoseBlock block_of(const Pose& T) {
+    const Eigen::Vector3d w = log_so3(T.rotation);
+    const Eigen::Vector3d& t = T.translation_m;
+    return {w.x(), w.y(), w.z(), t.x(), t.y(), t.z()};
+}
+
+Pose pose_of(const PoseBlock& b) {
+    return {exp_so3({b[0], b[1], b[2]}), {b[3], b[4], b[5]}};
+}
+
+template <typename T>
+void transform(const T* pose, const T* p, T* result) {
+    ceres::AngleAxisRotatePoint(pose, p, result);
+    for (int i = 0; i < 3; ++i) result[i] += pose[3 + i];
+}
+
+template <typename T>
+void transform_inverse(const T* pose, const T* p, T* result) {
+    const T back[3] = {-pose[0], -pose[1], -pose[2]};
+    const T shifted[3] = {p[0] - pose[3], p[1] - pose[4], p[2] - pose[5]};
+    ceres::AngleAxisRotatePoint(back, shifted, result);
+}
+
+/// Reprojection of one sight, left or right.
+template <bool kIsFisheye>
+struct Reprojection {
+    Eigen::Vector3d point;
+    Eigen::Vector2d pixel;
+
+    template <typename T>
+    bool operator()(const T* lens, const T* T_left_board, T* residual) const {
+        const T p_board[3] = {T(point.x()), T(point.y()), T(point.z())};
+        T p[3];
+        transform(T_left_board, p_board, p);
+        return project(lens, p, residual);
+    }
+
+    template <typename T>
+    bool operator()(const T* lens,
+                    const T* T_left_right,
+                    const T* T_left_board,
+                    T* residual) const {
+        const T p_board[3] = {T(point.x()), T(point.y()), T(point.z())};
+        T p_left[3];
+        T p[3];
+        transform(T_left_board, p_board, p_left);
+        transform_inverse(T_left_right, p_left, p);
+        return project(lens, p, residual);
+    }
+
+    template <typename T>
+    bool project(const T* lens, const T* p, T* residual) const {
+        T predicted[2];
+        const bool visible =
+            kIsFisheye ? project_fisheye(lens, p, predicted) : project_pinhole(lens, p, predicted);
+        residual[0] = pixel.x() - predicted[0];
+        residual[1] = pixel.y() - predicted[1];
+        return visible;
+    }
+};
+
+struct Prior {
+    template <typename T>
+    bool operator()(const T* lens, T* residual) const {
+        for (const int i : kRadial) *residual++ = lens[i] * kPriorWeight_px;
+        return true;
+    }
+};
+
+template <bool kIsFisheye>
+ceres::CostFunction* cost_of(const Sight& sight) {
+    constexpr int kLens = kIsFisheye ? kFisheye : kPinhole;
+    using Functor = Reprojection<kIsFisheye>;
+    auto* functor = new Functor{sight.point_board_m, sight.pixel};  // the cost function owns it
+    if (sight.eye == 0) return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6>(functor);
+    return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
+}
+
+/// Parameters of a lens that stay as they are.
+std::vector<int> fixed_parameters(LensKind kind, Freedom freedom) {
+    const int block = kind == LensKind::fisheye ? kFisheye : kPinhole;
+    const int used = static_cast<int>(parameter_names(kind).size());
+    const int moving = freedom == Freedom::focal ? 2 : freedom == Freedom::low_order ? 6 : used;
+    std::vector<int> fixed;
+    for (int i = moving; i < block; ++i) fixed.push_back(i);
+    return fixed;
+}
+
+/// The problem as Ceres sees it, over copies of the bundle's values.
+class Graph {
+  public:
+    Graph(const BoardBundle& bundle, const BundleOptions& options) : bundle_(bundle) {
+        const bool fisheye = bundle.kind == LensKind::fisheye;
+        for (const Eigen::VectorXd& lens : bundle.lenses) {
+            lenses_.emplace_back().fill(0.0);
+            for (int i = 0; i < lens.size(); ++i)
+                lenses_.back()[static_cast<std::size_t>(i)] = lens[i];
+        }
+        T_left_right_ = block_of(bundle.T_left_right);
+        for (const Pose& T : bundle.T_left_board) poses_.push_back(block_of(T));
+        for (const Sight& sight : bundle.sights) {
+            auto* cost = fisheye ? cost_of<true>(sight) : cost_of<false>(sight);
+            auto* loss = options.huber_px > 0.0 ? new ceres::HuberLoss(options.huber_px) : nullptr;
+            double* lens = lenses_[static_cast<std::size_t>(sight.eye)].data();
+            double* pose = poses_[static_cast<std::size_t>(sight.view)].data();
+            if (sight.eye == 0)
+                problem_.AddResidualBlock(cost, loss, lens, pose);
+            else
+                problem_.AddResidualBlock(cost, loss, lens, T_left_right_.data(), pose);
+        }
+        for (Lens& lens : lenses_) set_freedom(lens.data(), options.freedom);
+    }
+
+    std::optional<double> run(const BundleOptions& options) {
+        ceres::Solver::Options settings;
+        settings.linear_solver_type = ceres::DENSE_SCHUR;
+        settings.num_threads = 1;
+        settings.max_num_iterations = options.max_iterations;
+        settings.function_tolerance = options.tolerance;
+        settings.parameter_tolerance = options.tolerance;
+        settings.logging_type = ceres::SILENT;
+        auto* order = new ceres::ParameterBlockOrdering;  // boards are eliminated first
+        for (PoseBlock& pose : poses_)
+            if (problem_.HasParameterBlock(pose.data())) order->AddElementToGroup(pose.data(), 0);
+        for (double* block : shared_blocks()) order->AddElementToGroup(block, 1);
+        settings.linear_solver_ordering.reset(order);
+        ceres::Solver::Summary summary;
+        ceres::Solve(settings, &problem_, &summary);
+        if (!summary.IsSolutionUsable()) return std::nullopt;
+        return summary.final_cost;
+    }
+
+    void store(BoardBundle& bundle) const {
+        for (std::size_t i = 0; i < lenses_.size(); ++i) {
+            for (int k = 0; k < bundle.lenses[i].size(); ++k)
+                bundle.lenses[i][k] = lenses_[i][static_cast<std::size_t>(k)];
+        }
+        bundle.T_left_right = pose_of(T_left_right_);
+        for (std::size_t i = 0; i < poses_.size(); ++i) bundle.T_left_board[i] = pose_of(poses_[i]);
+    }
+
+    /// In the blocks' own coordinates.
+    std::optional<Eigen::MatrixXd> covariance() {
+        ceres::Covariance::Options settings;
+        settings.algorithm_type = ceres::SPARSE_QR;
+        settings.num_threads = 1;
+        ceres::Covariance result(settings);
+        std::vector<const double*> blocks;
+        for (double* block : shared_blocks()) blocks.push_back(block);
+        if (!result.Compute(blocks, &problem_)) return std::nullopt;
+        int rows = 0;
+        for (const double* block : blocks) rows += problem_.ParameterBlockSize(block);
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> all(rows, rows);
+        if (!result.GetCovarianceMatrix(blocks, all.data())) return std::nullopt;
+        return Eigen::MatrixXd(all);
+    }
+
+  private:
+    using Lens = std::array<double, kPinhole>;
+
+    std::vector<double*> shared_blocks() {
+        std::vector<double*> blocks;
+        for (Lens& lens : lenses_) blocks.push_back(lens.data());
+        if (lenses_.size() > 1) blocks.push_back(T_left_right_.data());
+        return blocks;
+    }
+
+    void set_freedom(double* lens, Freedom freedom) {
+        if (freedom == Freedom::poses) return problem_.SetParameterBlockConstant(lens);
+        const std::vector<int> fixed = fixed_parameters(bundle_.kind, freedom);
+        const int block = bundle_.kind == LensKind::fisheye ? kFisheye : kPinhole;
+        if (!fixed.empty()) problem_.SetManifold(lens, new ceres::SubsetManifold(block, fixed));
+        for (const int focal : {0, 1}) problem_.SetParameterLowerBound(lens, focal, 1.0);
+        if (bundle_.kind != LensKind::rational || freedom != Freedom::everything) return;
+        for (const int radial : kRadial) {
+            problem_.SetParameterLowerBound(lens, radial, -kRationalBound);
+            problem_.SetParameterUpperBound(lens, radial, kRationalBound);
+        }
+        problem_.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<Prior, 6, kPinhole>(new Prior), nullptr, lens);
+    }
+
+    const BoardBundle& bundle_;
+    std::vector<Lens> lenses_;
+    PoseBlock T_left_right_{};
+    std::vector<PoseBlock> poses_;
+    ceres::Problem problem_;
+};
+
+/// d theta of R Exp(theta) per change of the rotation vector of R (right Jacobian of SO(3); Sola
+/// et al. 2018, equation 143).
+Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
+    const double angle = w.norm();
+    const Eigen::Matrix3d W = skew(w);
+    if (angle < 1e-5) return Eigen::Matrix3d::Identity() - 0.5 * W;
+    const double a = (1.0 - std::cos(angle)) / (angle * angle);
+    const double b = (angle - std::sin(angle)) / (angle * angle * angle);
+    return Eigen::Matrix3d::Identity() - a * W + b * W * W;
+}
+
+}  // namespace
+
+std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
+    Graph graph(bundle, options);
+    const std::optional<double> cost = graph.run(options);
+    if (cost) graph.store(bundle);
+    return cost;
+}
+
+std::vector<Eigen::Vector2d> residuals_px(const BoardBundle& bundle) {
+    const bool fisheye = bundle.kind == LensKind::fisheye;
+    std::vector<std::array<double, kPinhole>> lenses(bundle.lenses.size());
+    for (std::size_t i = 0; i < lenses.size(); ++i)
+        std::copy(bundle.lenses[i].begin(), bundle.lenses[i].end(), lenses[i].begin());
+    const Pose T_right_left = bundle.T_left_right.inverse();
+    std::vector<Eigen::Vector2d> residuals;
+    for (const Sight& sight : bundle.sights) {
+        Eigen::Vector3d p =
+            bundle.T_left_board[static_cast<std::size_t>(sight.view)] * sight.point_board_m;
+        if (sight.eye == 1) p = T_right_left * p;
+        const double* lens = lenses[static_cast<std::size_t>(sight.eye)].data();
+        Eigen::Vector2d predicted;
+        const bool visible = fisheye ? project_fisheye(lens, p.data(), predicted.data())
+                                     : project_pinhole(lens, p.data(), predicted.data());
+        if (!visible) predicted.setConstant(std::numeric_limits<double>::quiet_NaN());
+        residuals.emplace_back(sight.pixel - predicted);
+    }
+    return residuals;
+}
+
+std::optional<Eigen::MatrixXd> covariance(const BoardBundle& bundle, double sigma_px) {
+    Graph graph(bundle, {});
+    const std::optional<Eigen::MatrixXd> all = graph.covariance();
+    if (!all) return std::nullopt;
+    const Eigen::Index block = bundle.kind == LensKind::fisheye ? kFisheye : kPinhole;
+    const Eigen::Index used = bundle.lenses.front().size();
+    const auto lenses = static_cast<Eigen::Index>(bundle.lenses.size());
+    const Eigen::Index pose = lenses > 1 ? 6 : 0;
+    // Rows of the result per row of the blocks: unused lens parameters go; the pose changes from
+    // (rotation vector, translation) to (translation, rotation) in the right camera's frame.
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(lenses * used + pose, all->rows());
+    for (Eigen::Index i = 0; i < lenses; ++i)
+        J.block(i * used, i * block, used, used).setIdentity();
+    if (pose > 0) {
+        const Eigen::Index row = lenses * used;
+        const Eigen::Index column = lenses * block;
+        J.block<3, 3>(row, column + 3) = bundle.T_left_right.R().transpose();
+        J.block<3, 3>(row + 3, column) = right_jacobian(log_so3(bundle.T_left_right.rotation));
+    }
+    return Eigen::MatrixXd(sigma_px * sigma_px * J * *all * J.transpose());
+}
+
+}  // namespace surefoot::calibration

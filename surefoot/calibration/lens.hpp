@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "surefoot/camera/camera_model.hpp"
+
+namespace surefoot::calibration {
+
+/// What a calibration estimates of a lens.
+enum class LensKind : std::uint8_t {
+    pinhole4,  ///< fx fy cx cy k1 k2 p1 p2
+    pinhole5,  ///< ... and k3
+    rational,  ///< ... and k4 k5 k6, the denominator of the radial part
+    fisheye,   ///< fx fy cx cy k1 k2 k3 k4 of Kannala and Brandt
+};
+inline constexpr const char* kLensKindNames[] = {"pinhole4", "pinhole5", "rational", "fisheye"};
+
+struct ImageSize {
+    int width = 0;
+    int height = 0;
+};
+
+/// Names of the parameters of a kind, in the order of its covariance.
+[[nodiscard]] std::vector<std::string> parameter_names(LensKind kind);
+
+/// The model that a list of parameters in that order means.
+[[nodiscard]] camera::CameraModel model_of(LensKind kind, const Eigen::VectorXd& parameters);
+
+}  // namespace surefoot::calibration

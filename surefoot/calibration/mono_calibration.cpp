@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/calibration/mono_calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "surefoot/calibration/bundle_start.hpp"
+
+namespace surefoot::calibration {
+namespace {
+
+constexpr const char* kUnexplained =
+    "calibration: no camera explains the views; are the board, the order of its points and the "
+    "lens "
+    "model right?";
+
+std::vector<std::size_t> usable_views(const Board& board,
+                                      std::span<const BoardView> views,
+                                      ImageSize size,
+                                      const CalibrationOptions& options,
+                                      std::vector<RejectedView>& rejected) {
+    std::vector<std::size_t> usable;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        if (const auto found = view_problem(board, views[i], size, options.least_points))
+            reject(rejected, i, *found);
+        else
+            usable.push_back(i);
+    }
+    const auto motion = [&](std::size_t a, std::size_t b) { return motion_px(views[a], views[b]); };
+    return select_views(usable, motion, options.selection, rejected);
+}
+
+BoardBundle bundle_of(const Board& board,
+                      std::span<const BoardView> views,
+                      std::span<const std::size_t> kept,
+                      ImageSize size,
+                      LensKind kind) {
+    const std::vector<Eigen::Vector3d> points = board.points_m();
+    BoardBundle bundle;
+    bundle.kind = kind;
+    bundle.size = size;
+    bundle.T_left_board.resize(kept.size());
+    for (std::size_t v = 0; v < kept.size(); ++v) {
+        const BoardView& view = views[kept[v]];
+        for (std::size_t i = 0; i < view.ids.size(); ++i)
+            bundle.sights.push_back({0,
+                                     static_cast<int>(v),
+                                     view.ids[i],
+                                     points[static_cast<std::size_t>(view.ids[i])],
+                                     view.pixels[i]});
+    }
+    return bundle;
+}
+
+/// How much the boards of a bundle differ.
+struct Variety {
+    double tilt_deg = 0.0;        ///< between the two that differ most
+    double distance_ratio = 1.0;  ///< farthest over nearest
+};
+
+Variety variety_of(const BoardBundle& bundle) {
+    std::vector<Pose> poses;
+    const std::vector<double> rms = view_rms_px(bundle);
+    for (std::size_t v = 0; v < rms.size(); ++v)
+        if (!std::isnan(rms[v])) poses.push_back(bundle.T_left_board[v]);
+    Variety variety;
+    for (const Pose& a : poses) {
+        for (const Pose& b : poses) {
+            const double cosine = std::clamp(a.R().col(2).dot(b.R().col(2)), -1.0, 1.0);
+            variety.tilt_deg =
+                std::max(variety.tilt_deg, std::acos(cosine) * 180.0 / std::numbers::pi);
+            variety.distance_ratio =
+                std::max(variety.distance_ratio, a.translation_m.norm() / b.translation_m.norm());
+        }
+    }
+    return variety;
+}
+
+/// Why the result must not be used, or nothing.
+std::string doubt(const MonoCalibration& result,
+                  const CalibrationOptions& options,
+                  const Variety& variety) {
+    if (variety.tilt_deg < options.least_tilt_deg) return "the views are too much alike";
+    if (result.covariance.size() == 0) return "the views do not determine the camera";
+    const double share = std::sqrt(result.covariance(0, 0)) / result.parameters[0];
+    if (!(share <= options.most_focal_sigma)) {
+        return fmt::format(
+            "the views leave the focal length of {:.1f} px open by {:.1f} % (one sigma), allowed "
+            "are "
+            "{:.1f} %",
+            result.parameters[0],
+            100.0 * share,
+            100.0 * options.most_focal_sigma);
+    }
+    return result.camera.problem().value_or("");
+}
+
+/// Views that left the bundle, with their reasons.
+void reject_dropped(const RobustFit& fit,
+                    std::span<const std::size_t> kept,
+                    std::vector<RejectedView>& rejected) {
+    for (const DroppedView& view : fit.dropped) {
+        reject(
+            rejected,
+            kept[static_cast<std::size_t>(view.view)],
+            fmt::format("rms {:.2f} px, the other views allow {:.2f}", view.rms_px, view.limit_px));
+    }
+}
+
+std::vector<ViewFit> view_fits(const BoardBundle& bundle,
+                               std::span<const std::size_t> kept,
+                               std::span<const Sight> all,
+                               const RobustFit& fit) {
+    std::vector<EyeFit> eyes = eye_fits(bundle, all, fit.outliers, 0);
+    const std::vector<double> rms = view_rms_px(bundle);
+    std::vector<ViewFit> views;
+    for (std::size_t v = 0; v < kept.size(); ++v)
+        if (!std::isnan(rms[v]))
+            views.push_back({kept[v], bundle.T_left_board[v], std::move(eyes[v])});
+    return views;
+}
+
+}  // namespace
+
+Result<MonoCalibration> calibrate_mono(const Board& board,
+                                       std::span<const BoardView> views,
+                                       ImageSize size,
+                                       LensKind kind,
+                                       const CalibrationOptions& options) {
+    if (const auto found = board.problem()) return usage_error(*found);
+    MonoCalibration result;
+    result.kind = kind;
+    const auto least = static_cast<std::size_t>(options.limits.least_views);
+    const std::vector<std::size_t> kept =
+        usable_views(board, views, size, options, result.rejected);
+    if (kept.size() < least) {
+        return input_error(
+            fmt::format("calibration: {} usable and different views of the board, at least {} are "
+                        "needed ({})",
+                        kept.size(),
+                        least,
+                        summary_of(result.rejected, views.size())));
+    }
+
+    BoardBundle bundle = bundle_of(board, views, kept, size, kind);
+    const std::vector<Sight> all = bundle.sights;
+    if (!start_bundle(bundle)) return input_error(kUnexplained);
+    const std::vector<double> start_rms = view_rms_px(bundle);
+    for (std::size_t v = 0; v < kept.size(); ++v)
+        if (std::isnan(start_rms[v])) reject(result.rejected, kept[v], "no board pose explains it");
+    const std::optional<RobustFit> fit = solve_robustly(bundle, options.limits);
+    if (!fit) return input_error(kUnexplained);
+    reject_dropped(*fit, kept, result.rejected);
+    const auto left = static_cast<std::size_t>(views_left(bundle));
+    if (fit->contradiction || left < least || 2 * left < kept.size()) {
+        return input_error(
+            fmt::format("calibration: only {} of {} views agree with each other; are the board's "
+                        "size, the order "
+                        "of its points and the lens model right? ({})",
+                        left - (fit->contradiction ? 1 : 0),
+                        kept.size(),
+                        summary_of(result.rejected, views.size())));
+    }
+
+    result.parameters = bundle.lenses[0];
+    result.camera = {model_of(kind, result.parameters), size.width, size.height};
+    result.covariance = covariance(bundle, fit->sigma_px).value_or(Eigen::MatrixXd());
+    const Variety variety = variety_of(bundle);
+    if (const std::string found = doubt(result, options, variety); !found.empty()) {
+        return input_error(fmt::format(
+            "calibration: {}; the boards differ by {:.1f} deg in tilt (at least {:.0f} are needed) "
+            "and {:.2f} times in distance: show it tilted by 20 to 40 deg about both axes, near "
+            "and "
+            "far",
+            found,
+            variety.tilt_deg,
+            options.least_tilt_deg,
+            variety.distance_ratio));
+    }
+    result.rms_px = rms_px(bundle);
+    result.sigma_px = fit->sigma_px;
+    result.views = view_fits(bundle, kept, all, *fit);
+    return result;
+}
+
+}  // namespace surefoot::calibration

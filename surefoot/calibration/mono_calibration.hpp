@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "surefoot/calibration/board.hpp"
+#include "surefoot/calibration/eye_fit.hpp"
+#include "surefoot/calibration/lens.hpp"
+#include "surefoot/calibration/robust_bundle.hpp"
+#include "surefoot/calibration/view_selection.hpp"
+#include "surefoot/camera/camera_model.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::calibration {
+
+struct CalibrationOptions {
+    int least_points = 8;  ///< per view; a pose takes four, the rest checks it
+    RobustLimits limits;
+    SelectionLimits selection;
+    /// Largest standard deviation of the focal length over itself that is let through. ASSUMPTION:
+    /// 5 %; depth is wrong by as much.
+    double most_focal_sigma = 0.05;
+    /// Between the two boards that differ most. Parallel boards tell a pinhole camera no more than
+    /// one (Zhang 2000, section 3.4). ASSUMPTION: 5 deg; users are told to tilt by 20 and more.
+    double least_tilt_deg = 5.0;
+};
+
+struct ViewFit {
+    std::size_t index = 0;  ///< into the views given
+    Pose T_camera_board;
+    EyeFit eye;
+};
+
+struct MonoCalibration {
+    LensKind kind = LensKind::pinhole5;
+    camera::Camera camera;
+    Eigen::VectorXd parameters;  ///< order of parameter_names(kind), pixels
+    /// Of `parameters`, from the scatter of the residuals: true when corner noise is independent
+    /// and the model is right.
+    Eigen::MatrixXd covariance;
+    double rms_px = 0.0;    ///< root of the mean squared distance over all points, as in OpenCV
+    double sigma_px = 0.0;  ///< noise of a coordinate, degrees of freedom counted
+    std::vector<ViewFit> views;          ///< used, ascending
+    std::vector<RejectedView> rejected;  ///< ascending
+};
+
+/// A camera from views of a flat board. Starts by trying focal lengths (see start_bundle), refines
+/// with Huber's loss, leaves out views and points that do not belong, and ends with least squares.
+/// Fails with a sentence when too little is left or the views do not determine the camera.
+[[nodiscard]] Result<MonoCalibration> calibrate_mono(const Board& board,
+                                                     std::span<const BoardView> views,
+                                                     ImageSize size,
+                                                     LensKind kind,
+                                                     const CalibrationOptions& options = {});
+
+}  // namespace surefoot::calibration

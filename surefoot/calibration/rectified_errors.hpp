@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "surefoot/calibration/board.hpp"
+#include "surefoot/calibration/lens.hpp"
+#include "surefoot/camera/rectification.hpp"
+
+namespace surefoot::calibration {
+
+/// Root of the mean squared row difference of the points that both views of a pair show, after
+/// rectification [px of the rectified image]. Points without a rectified place do not count; NaN
+/// when none is left.
+[[nodiscard]] double row_rms_px(const camera::Rectification& plan,
+                                std::span<const std::pair<BoardView, BoardView>> pairs);
+
+/// A stereo calibration as one vector: left lens, right lens, and where T_left_right is.
+struct StereoParameters {
+    LensKind kind = LensKind::pinhole5;
+    ImageSize size;
+    Eigen::VectorXd left;
+    Eigen::VectorXd right;
+    Pose T_left_right;
+};
+[[nodiscard]] camera::StereoRig rig_of(const StereoParameters& parameters);
+
+/// Standard deviation of the depth of a point on the axis of the rectified left camera, from the
+/// covariance of the parameters alone (left, right, T_left_right by right perturbation): the
+/// point's two raw pixels stay, the calibration moves. First order. NaN where an image does not
+/// show the point.
+[[nodiscard]] double depth_sigma_m(const StereoParameters& parameters,
+                                   const Eigen::MatrixXd& covariance,
+                                   double distance_m);
+
+}  // namespace surefoot::calibration

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/calibration/stereo_calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "surefoot/calibration/rectified_errors.hpp"
+#include "surefoot/calibration/relative_pose.hpp"
+#include "surefoot/camera/rectifier.hpp"
+
+namespace surefoot::calibration {
+namespace {
+
+constexpr std::array<double, 3> kDistances_m{0.5, 1.0, 2.0};
+/// Gross scatter of a relative pose, in robust standard deviations: such a pair would only disturb
+/// the joint solution that judges the others.
+constexpr double kGrossSigmas = 8.0;
+constexpr double kMadToSigma = 1.4826;
+/// Scatter that is always let through, of the baseline and in rad: noiseless views scatter less.
+constexpr double kLeastScatter = 1e-3;
+
+/// One pair as the two cameras alone see it.
+struct Pair {
+    std::size_t index = 0;
+    const ViewFit* left = nullptr;
+    const ViewFit* right = nullptr;
+    Pose T_left_right;
+    double alone_rms_px = 0.0;
+};
+
+/// Over all points of both images, whatever each camera alone made of single ones.
+double alone_rms(const EyeFit& left, const EyeFit& right) {
+    double square = 0.0;
+    for (const Eigen::Vector2d& r : left.residuals_px) square += r.squaredNorm();
+    for (const Eigen::Vector2d& r : right.residuals_px) square += r.squaredNorm();
+    return std::sqrt(square /
+                     static_cast<double>(left.residuals_px.size() + right.residuals_px.size()));
+}
+
+std::vector<Pair> pairs_of(const MonoCalibration& left, const MonoCalibration& right) {
+    std::vector<Pair> pairs;
+    for (const ViewFit& l : left.views) {
+        const auto r = std::find_if(right.views.begin(),
+                                    right.views.end(),
+                                    [&](const ViewFit& view) { return view.index == l.index; });
+        if (r == right.views.end()) continue;
+        pairs.push_back({l.index,
+                         &l,
+                         &*r,
+                         l.T_camera_board * r->T_camera_board.inverse(),
+                         alone_rms(l.eye, r->eye)});
+    }
+    return pairs;
+}
+
+/// Pairs that both eyes can use, repeated and superfluous ones left out.
+std::vector<std::size_t> usable_pairs(const Board& board,
+                                      std::span<const BoardView> left,
+                                      std::span<const BoardView> right,
+                                      ImageSize size,
+                                      const CalibrationOptions& options,
+                                      std::vector<RejectedView>& rejected) {
+    std::vector<std::size_t> usable;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        const auto bad_left = view_problem(board, left[i], size, options.least_points);
+        const auto bad_right = view_problem(board, right[i], size, options.least_points);
+        if (bad_left) reject(rejected, i, "left: " + *bad_left);
+        if (bad_right) reject(rejected, i, "right: " + *bad_right);
+        if (!bad_left && !bad_right) usable.push_back(i);
+    }
+    const auto motion = [&](std::size_t a, std::size_t b) {
+        return std::max(motion_px(left[a], left[b]), motion_px(right[a], right[b]));
+    };
+    return select_views(usable, motion, options.selection, rejected);
+}
+
+std::vector<BoardView> chosen(std::span<const BoardView> views,
+                              std::span<const std::size_t> indices) {
+    std::vector<BoardView> result;
+    for (const std::size_t i : indices) result.push_back(views[i]);
+    return result;
+}
+
+/// One camera from the views of the pairs; its indices become those of the pairs, and views that it
+/// leaves out take their pair along.
+Result<MonoCalibration> calibrate_eye(const char* name,
+                                      const Board& board,
+                                      std::span<const BoardView> views,
+                                      std::span<const std::size_t> indices,
+                                      ImageSize size,
+                                      LensKind kind,
+                                      const StereoOptions& options,
+                                      std::vector<RejectedView>& rejected) {
+    CalibrationOptions eye = options.eye;
+    eye.selection = {0.0, indices.size()};  // pairs are selected, not single views
+    auto result = calibrate_mono(board, chosen(views, indices), size, kind, eye);
+    if (!result) {
+        std::string text = fmt::format("{} camera: {}", name, result.error().message);
+        if (!rejected.empty()) text += fmt::format(" ({})", summary_of(rejected, views.size()));
+        return Error{result.error().code, text};
+    }
+    for (const RejectedView& view : result->rejected)
+        reject(rejected, indices[view.index], fmt::format("{}: {}", name, view.reason));
+    for (ViewFit& view : result->views) view.index = indices[view.index];
+    return result;
+}
+
+std::string scatter_text(const PoseDistance& off) {
+    return fmt::format("its relative pose is {:.4f} m and {:.2f} deg off the median of the pairs",
+                       off.translation_m,
+                       off.rotation_rad * 180.0 / std::numbers::pi);
+}
+
+/// Removes pairs whose relative pose is far outside the scatter of the others.
+void drop_gross(std::vector<Pair>& pairs, const Pose& middle, std::vector<RejectedView>& rejected) {
+    std::vector<double> metres;
+    std::vector<double> radians;
+    for (const Pair& pair : pairs) {
+        metres.push_back(distance(middle, pair.T_left_right).translation_m);
+        radians.push_back(distance(middle, pair.T_left_right).rotation_rad);
+    }
+    const double most_m = std::max(kGrossSigmas * kMadToSigma * median(metres),
+                                   kLeastScatter * middle.translation_m.norm());
+    const double most_rad = std::max(kGrossSigmas * kMadToSigma * median(radians), kLeastScatter);
+    std::erase_if(pairs, [&](const Pair& pair) {
+        const PoseDistance off = distance(middle, pair.T_left_right);
+        const bool gross = off.translation_m > most_m || off.rotation_rad > most_rad;
+        if (gross) {
+            reject(rejected,
+                   pair.index,
+                   scatter_text(off) + "; are its images of the same moment, and in order?");
+        }
+        return gross;
+    });
+}
+
+void add_sights(std::span<const Eigen::Vector3d> points,
+                const BoardView& view,
+                int eye,
+                int index,
+                std::vector<Sight>& sights) {
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+        const auto id = static_cast<std::size_t>(view.ids[i]);
+        sights.push_back({eye, index, view.ids[i], points[id], view.pixels[i]});
+    }
+}
+
+/// Both lenses and all boards as the cameras alone found them, with the median relative pose.
+BoardBundle bundle_of(const Board& board,
+                      std::span<const BoardView> left_views,
+                      std::span<const BoardView> right_views,
+                      const MonoCalibration& left,
+                      const MonoCalibration& right,
+                      std::span<const Pair> pairs) {
+    BoardBundle bundle;
+    bundle.kind = left.kind;
+    bundle.size = {left.camera.width, left.camera.height};
+    bundle.lenses = {left.parameters, right.parameters};
+    const std::vector<Eigen::Vector3d> points = board.points_m();
+    std::vector<Pose> relative;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Pair& pair = pairs[i];
+        relative.push_back(pair.T_left_right);
+        bundle.T_left_board.push_back(pair.left->T_camera_board);
+        const int view = static_cast<int>(i);
+        add_sights(points, left_views[pair.index], 0, view, bundle.sights);
+        add_sights(points, right_views[pair.index], 1, view, bundle.sights);
+    }
+    bundle.T_left_right = median_pose(relative);
+    return bundle;
+}
+
+RobustLimits limits_of(std::span<const Pair> pairs, const StereoOptions& options) {
+    std::vector<double> alone;
+    for (const Pair& pair : pairs) alone.push_back(pair.alone_rms_px);
+    const double usual_px = median(alone);
+    RobustLimits limits = options.eye.limits;
+    limits.least_views = options.least_pairs;
+    for (const double rms : alone)
+        limits.view_limits_px.push_back(options.pair_factor * std::max(rms, usual_px));
+    return limits;
+}
+
+void reject_dropped(const RobustFit& fit,
+                    std::span<const Pair> pairs,
+                    const Pose& T_left_right,
+                    std::vector<RejectedView>& rejected) {
+    for (const DroppedView& dropped : fit.dropped) {
+        const Pair& pair = pairs[static_cast<std::size_t>(dropped.view)];
+        reject(
+            rejected,
+            pair.index,
+            fmt::format("rms {:.2f} px together, {:.2f} px each image alone, allowed are {:.2f}; "
+                        "{}: are its images of the same moment?",
+                        dropped.rms_px,
+                        pair.alone_rms_px,
+                        dropped.limit_px,
+                        scatter_text(distance(T_left_right, pair.T_left_right))));
+    }
+}
+
+/// What follows from the solution: fits, rows, depth.
+void describe(const BoardBundle& bundle,
+              std::span<const Sight> all,
+              std::span<const Pair> pairs,
+              const RobustFit& fit,
+              StereoCalibration& result) {
+    std::vector<EyeFit> left = eye_fits(bundle, all, fit.outliers, 0);
+    std::vector<EyeFit> right = eye_fits(bundle, all, fit.outliers, 1);
+    const std::vector<double> rms = view_rms_px(bundle);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (std::isnan(rms[i])) continue;
+        result.pairs.push_back({pairs[i].index,
+                                bundle.T_left_board[i],
+                                std::move(left[i]),
+                                std::move(right[i]),
+                                rms[i]});
+    }
+    result.rms_px = rms_px(bundle);
+    result.sigma_px = fit.sigma_px;
+}
+
+/// The points of a view that the estimate used.
+BoardView used_points(const BoardView& view, const EyeFit& fit) {
+    BoardView used;
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+        const auto& out = fit.outliers;
+        if (std::find(out.begin(), out.end(), view.ids[i]) != out.end()) continue;
+        used.ids.push_back(view.ids[i]);
+        used.pixels.push_back(view.pixels[i]);
+    }
+    return used;
+}
+
+void describe_rectified(std::span<const BoardView> left_views,
+                        std::span<const BoardView> right_views,
+                        const StereoParameters& parameters,
+                        StereoCalibration& result) {
+    std::vector<std::pair<BoardView, BoardView>> used;
+    for (const PairFit& pair : result.pairs) {
+        used.emplace_back(used_points(left_views[pair.index], pair.left),
+                          used_points(right_views[pair.index], pair.right));
+    }
+    const camera::Rectification plan = camera::plan_rectification(
+        result.rig, camera::Rectifier::kMaxFieldOfView_deg, camera::Rectifier::kVirtualBaseline_m);
+    result.row_rms_px = row_rms_px(plan, used);
+    result.rectified_focal_px = plan.rig.fx_px;
+    for (std::size_t i = 0; i < kDistances_m.size(); ++i)
+        result.depth_errors[i] = {kDistances_m[i],
+                                  depth_sigma_m(parameters, result.covariance, kDistances_m[i])};
+}
+
+Result<std::vector<Pair>> agreeing_pairs(const MonoCalibration& left,
+                                         const MonoCalibration& right,
+                                         std::size_t views,
+                                         int least,
+                                         std::vector<RejectedView>& rejected) {
+    std::vector<Pair> pairs = pairs_of(left, right);
+    std::vector<Pose> relative;
+    for (const Pair& pair : pairs) relative.push_back(pair.T_left_right);
+    if (!pairs.empty()) drop_gross(pairs, median_pose(relative), rejected);
+    if (static_cast<int>(pairs.size()) >= least) return pairs;
+    return input_error(
+        fmt::format("stereo calibration: {} usable pairs, at least {} are needed ({})",
+                    pairs.size(),
+                    least,
+                    summary_of(rejected, views)));
+}
+
+}  // namespace
+
+Result<StereoCalibration> calibrate_stereo(const Board& board,
+                                           std::span<const BoardView> left_views,
+                                           std::span<const BoardView> right_views,
+                                           ImageSize size,
+                                           LensKind kind,
+                                           const StereoOptions& options) {
+    if (left_views.size() != right_views.size()) {
+        return usage_error(fmt::format("stereo calibration: {} left views for {} right ones",
+                                       left_views.size(),
+                                       right_views.size()));
+    }
+    StereoCalibration result;
+    result.kind = kind;
+    if (const auto found = board.problem()) return usage_error(*found);
+    const std::vector<std::size_t> usable =
+        usable_pairs(board, left_views, right_views, size, options.eye, result.rejected);
+    const auto left =
+        calibrate_eye("left", board, left_views, usable, size, kind, options, result.rejected);
+    if (!left) return left.error();
+    const auto right =
+        calibrate_eye("right", board, right_views, usable, size, kind, options, result.rejected);
+    if (!right) return right.error();
+    const auto pairs =
+        agreeing_pairs(*left, *right, left_views.size(), options.least_pairs, result.rejected);
+    if (!pairs) return pairs.error();
+    BoardBundle bundle = bundle_of(board, left_views, right_views, *left, *right, *pairs);
+    const std::vector<Sight> all = bundle.sights;
+    const std::optional<RobustFit> fit = solve_robustly(bundle, limits_of(*pairs, options));
+    if (!fit) return input_error("stereo calibration: the joint optimisation failed");
+    reject_dropped(*fit, *pairs, bundle.T_left_right, result.rejected);
+    if (fit->contradiction) {
+        return input_error(fmt::format(
+            "stereo calibration: no {} pairs agree on one relative pose; were the images taken at "
+            "the same moment, and do left and right belong together? ({})",
+            options.least_pairs,
+            summary_of(result.rejected, left_views.size())));
+    }
+
+    const StereoParameters parameters{
+        kind, size, bundle.lenses[0], bundle.lenses[1], bundle.T_left_right};
+    result.rig = rig_of(parameters);
+    if (const auto found = result.rig.problem())
+        return input_error("stereo calibration: " + *found);
+    const auto uncertainty = covariance(bundle, fit->sigma_px);
+    if (!uncertainty)
+        return input_error("stereo calibration: the pairs do not determine the cameras");
+    result.covariance = *uncertainty;
+    describe(bundle, all, *pairs, *fit, result);
+    describe_rectified(left_views, right_views, parameters, result);
+    return result;
+}
+
+}  // namespace surefoot::calibration

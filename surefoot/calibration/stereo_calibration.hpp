@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "surefoot/calibration/mono_calibration.hpp"
+#include "surefoot/camera/stereo_rig.hpp"
+
+namespace surefoot::calibration {
+
+struct StereoOptions {
+    CalibrationOptions eye;
+    /// A pair whose rms in the joint solution exceeds this many times what its two images show
+    /// alone was not taken at one moment (or the rig bent): most of its error is not noise.
+    double pair_factor = 1.5;
+    int least_pairs = 3;
+};
+
+/// What a pair says about the solution.
+struct PairFit {
+    std::size_t index = 0;  ///< into the views given
+    Pose T_left_board;
+    EyeFit left;
+    EyeFit right;
+    double rms_px = 0.0;  ///< both images
+};
+
+/// Error of depth that the calibration alone causes, one sigma.
+struct DepthError {
+    double distance_m = 0.0;
+    double sigma_m = 0.0;
+};
+
+struct StereoCalibration {
+    LensKind kind = LensKind::pinhole5;
+    camera::StereoRig rig;  ///< left, right, T_left_right; the rest is not touched
+    /// Order: left lens, right lens (parameter_names), T_left_right (translation [m], rotation
+    /// [rad]; right perturbation).
+    Eigen::MatrixXd covariance;
+    double rms_px = 0.0;              ///< both images, as OpenCV defines it
+    double sigma_px = 0.0;            ///< noise of a coordinate, degrees of freedom counted
+    double row_rms_px = 0.0;          ///< row difference of the corners in the rectified images
+    double rectified_focal_px = 0.0;  ///< of those images
+    /// Of a point straight ahead of the rectified left camera at 0.5, 1 and 2 m.
+    std::array<DepthError, 3> depth_errors;
+    std::vector<PairFit> pairs;          ///< used, ascending
+    std::vector<RejectedView> rejected;  ///< ascending
+};
+
+/// Two cameras and how they stand to each other, from views at the same moments: left[i] and
+/// right[i] are a pair; an empty view means that the board was not found. Each camera is calibrated
+/// alone first; pairs whose relative pose does not agree with the others are found, and left out,
+/// the worst first; then everything is estimated jointly.
+[[nodiscard]] Result<StereoCalibration> calibrate_stereo(const Board& board,
+                                                         std::span<const BoardView> left,
+                                                         std::span<const BoardView> right,
+                                                         ImageSize size,
+                                                         LensKind kind,
+                                                         const StereoOptions& options = {});
+
+}  // namespace surefoot::calibration
