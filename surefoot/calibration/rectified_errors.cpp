@@ -2,7 +2,9 @@
 #include "surefoot/calibration/rectified_errors.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -36,10 +38,17 @@ std::optional<Eigen::Vector2d> seen(const camera::RectifiedEye& eye,
     return raw;
 }
 
+/// The turns of the eyes do not depend on how much is shown, and little is planned quickly.
 camera::Rectification plan_of(const camera::StereoRig& rig) {
-    return camera::plan_rectification(
-        rig, camera::Rectifier::kMaxFieldOfView_deg, camera::Rectifier::kVirtualBaseline_m);
+    constexpr double kFieldOfView_deg = 20.0;
+    return camera::plan_rectification(rig, kFieldOfView_deg, camera::Rectifier::kVirtualBaseline_m);
 }
+
+/// The raw pixels of a point in both images.
+struct PixelPair {
+    Eigen::Vector2d left;
+    Eigen::Vector2d right;
+};
 
 StereoParameters moved(const StereoParameters& from, const Eigen::VectorXd& delta) {
     const Eigen::Index lens = from.left.size();
@@ -50,16 +59,18 @@ StereoParameters moved(const StereoParameters& from, const Eigen::VectorXd& delt
     return to;
 }
 
-/// Depth that a calibration makes of two raw pixels.
-double depth_m(const StereoParameters& parameters,
-               const Eigen::Vector2d& left,
-               const Eigen::Vector2d& right) {
+/// Depths that a calibration makes of pairs of raw pixels.
+Eigen::VectorXd depths_m(const StereoParameters& parameters, std::span<const PixelPair> pixels) {
+    Eigen::VectorXd depths = Eigen::VectorXd::Constant(std::ssize(pixels), kNan);
     const camera::StereoRig rig = rig_of(parameters);
-    if (rig.problem()) return kNan;
+    if (rig.problem()) return depths;
     const camera::Rectification plan = plan_of(rig);
-    const auto l = rectified(plan.left, left);
-    const auto r = rectified(*plan.right, right);
-    return l && r ? plan.rig.baseline_m / (l->x() - r->x()) : kNan;
+    for (Eigen::Index i = 0; i < depths.size(); ++i) {
+        const auto left = rectified(plan.left, pixels[static_cast<std::size_t>(i)].left);
+        const auto right = rectified(*plan.right, pixels[static_cast<std::size_t>(i)].right);
+        if (left && right) depths[i] = plan.rig.baseline_m / (left->x() - right->x());
+    }
+    return depths;
 }
 
 }  // namespace
@@ -97,26 +108,30 @@ camera::StereoRig rig_of(const StereoParameters& parameters) {
     return rig;
 }
 
-double depth_sigma_m(const StereoParameters& parameters,
-                     const Eigen::MatrixXd& covariance,
-                     double distance_m) {
+std::vector<double> depth_sigmas_m(const StereoParameters& parameters,
+                                   const Eigen::MatrixXd& covariance,
+                                   std::span<const double> distances_m) {
     const camera::Rectification plan = plan_of(rig_of(parameters));
-    const Eigen::Vector3d p_rectified(0.0, 0.0, distance_m);
-    const auto left = seen(plan.left, p_rectified);
-    const auto right = seen(*plan.right, p_rectified);
-    if (!left || !right) return kNan;
+    std::vector<PixelPair> pixels;
+    for (const double z_m : distances_m) {
+        const Eigen::Vector3d p_rectified(0.0, 0.0, z_m);
+        const auto left = seen(plan.left, p_rectified);
+        const auto right = seen(*plan.right, p_rectified);
+        const Eigen::Vector2d none = Eigen::Vector2d::Constant(kNan);
+        pixels.push_back({left.value_or(none), right.value_or(none)});
+    }
     // Independent directions of error, each one standard deviation long.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    double variance = 0.0;
+    Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(std::ssize(pixels));
     for (Eigen::Index i = 0; i < covariance.cols(); ++i) {
         const double sigma = std::sqrt(std::max(0.0, solver.eigenvalues()[i]));
         const Eigen::VectorXd step = kStep * sigma * solver.eigenvectors().col(i);
-        const double slope = (depth_m(moved(parameters, step), *left, *right) -
-                              depth_m(moved(parameters, -step), *left, *right)) /
-                             (2.0 * kStep);
-        variance += slope * slope;
+        const Eigen::VectorXd change =
+            depths_m(moved(parameters, step), pixels) - depths_m(moved(parameters, -step), pixels);
+        variance += (change.array() / (2.0 * kStep)).square();
     }
-    return std::sqrt(variance);
+    const Eigen::ArrayXd sigmas = variance.sqrt();
+    return {sigmas.begin(), sigmas.end()};
 }
 
 }  // namespace surefoot::calibration

@@ -27,12 +27,12 @@ struct StereoParameters {
 };
 [[nodiscard]] camera::StereoRig rig_of(const StereoParameters& parameters);
 
-/// Standard deviation of the depth of a point on the axis of the rectified left camera, from the
-/// covariance of the parameters alone (left, right, T_left_right by right perturbation): the
-/// point's two raw pixels stay, the calibration moves. First order. NaN where an image does not
-/// show the point.
-[[nodiscard]] double depth_sigma_m(const StereoParameters& parameters,
-                                   const Eigen::MatrixXd& covariance,
-                                   double distance_m);
+/// Standard deviation of the depth of points on the axis of the rectified left camera, from the
+/// covariance of the parameters alone (left, right, T_left_right by right perturbation): the two
+/// raw pixels of a point stay, the calibration moves. First order, one value per distance. NaN
+/// where an image does not show the point.
+[[nodiscard]] std::vector<double> depth_sigmas_m(const StereoParameters& parameters,
+                                                 const Eigen::MatrixXd& covariance,
+                                                 std::span<const double> distances_m);
 
 }  // namespace surefoot::calibration

@@ -11,6 +11,8 @@ namespace surefoot::calibration {
 namespace {
 
 constexpr double kHuberSigmas = 2.5;
+/// When views are judged, a single corner counts for no more than this: it can leave alone.
+constexpr double kClipSigmas = 10.0;
 /// Enough to tell a view that does not belong: its rms is known to a thousandth.
 constexpr double kRoughTolerance = 1e-5;
 /// Noiseless input must not shrink the loss to nothing: no corner is known better [px].
@@ -39,8 +41,8 @@ double common_limit_px(const std::vector<double>& all, const RobustLimits& limit
 }
 
 /// The view that exceeds its limit most, or comes nearest to it.
-DroppedView worst_view(const BoardBundle& bundle, const RobustLimits& limits) {
-    const std::vector<double> all = view_rms_px(bundle);
+DroppedView worst_view(const BoardBundle& bundle, const RobustLimits& limits, double sigma_px) {
+    const std::vector<double> all = view_rms_px(bundle, kClipSigmas * sigma_px);
     const double common_px = common_limit_px(all, limits);
     DroppedView worst{-1, 0.0, common_px};
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -75,13 +77,17 @@ double unbiased_sigma_px(const BoardBundle& bundle) {
 
 }  // namespace
 
-std::vector<double> view_rms_px(const BoardBundle& bundle) {
+std::vector<double> view_rms_px(const BoardBundle& bundle, double clip_px) {
     std::vector<double> square(bundle.T_left_board.size(), 0.0);
     std::vector<double> count(bundle.T_left_board.size(), 0.0);
     const std::vector<Eigen::Vector2d> residuals = residuals_px(bundle);
     for (std::size_t i = 0; i < residuals.size(); ++i) {
-        square[static_cast<std::size_t>(bundle.sights[i].view)] += residuals[i].squaredNorm();
-        count[static_cast<std::size_t>(bundle.sights[i].view)] += 1.0;
+        const auto view = static_cast<std::size_t>(bundle.sights[i].view);
+        // Not std::min: NaN must stay NaN.
+        const double length_px = residuals[i].norm();
+        const double counted_px = length_px > clip_px ? clip_px : length_px;
+        square[view] += counted_px * counted_px;
+        count[view] += 1.0;
     }
     for (std::size_t v = 0; v < square.size(); ++v) square[v] = std::sqrt(square[v] / count[v]);
     return square;
@@ -111,8 +117,9 @@ std::optional<RobustFit> solve_robustly(BoardBundle& bundle, const RobustLimits&
             Freedom::everything, kHuberSigmas * sigma_px, 50, kRoughTolerance};
         if (!solve(bundle, rough)) return std::nullopt;
         sigma_px = robust_sigma_px(bundle);
-        const DroppedView worst = worst_view(bundle, limits);
+        DroppedView worst = worst_view(bundle, limits, sigma_px);
         if (!(worst.rms_px > worst.limit_px)) break;
+        worst.rms_px = view_rms_px(bundle)[static_cast<std::size_t>(worst.view)];
         if (views_left(bundle) <= limits.least_views) {
             fit.contradiction = worst;
             break;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "surefoot/calibration/board_bundle.hpp"
@@ -36,8 +38,10 @@ struct RobustFit {
     double sigma_px = 0.0;  ///< standard deviation of a coordinate, unbiased
 };
 
-/// Root of the mean squared distance over the sights of each view; NaN without sights.
-[[nodiscard]] std::vector<double> view_rms_px(const BoardBundle& bundle);
+/// Root of the mean squared distance over the sights of each view; NaN without sights. Distances
+/// beyond `clip_px` count as that long.
+[[nodiscard]] std::vector<double> view_rms_px(
+    const BoardBundle& bundle, double clip_px = std::numeric_limits<double>::infinity());
 /// The same over all sights, as OpenCV defines it.
 [[nodiscard]] double rms_px(const BoardBundle& bundle);
 

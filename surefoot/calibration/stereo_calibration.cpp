@@ -248,9 +248,10 @@ void describe_rectified(std::span<const BoardView> left_views,
         result.rig, camera::Rectifier::kMaxFieldOfView_deg, camera::Rectifier::kVirtualBaseline_m);
     result.row_rms_px = row_rms_px(plan, used);
     result.rectified_focal_px = plan.rig.fx_px;
+    const std::vector<double> sigmas_m =
+        depth_sigmas_m(parameters, result.covariance, kDistances_m);
     for (std::size_t i = 0; i < kDistances_m.size(); ++i)
-        result.depth_errors[i] = {kDistances_m[i],
-                                  depth_sigma_m(parameters, result.covariance, kDistances_m[i])};
+        result.depth_errors[i] = {kDistances_m[i], sigmas_m[i]};
 }
 
 Result<std::vector<Pair>> agreeing_pairs(const MonoCalibration& left,

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/calibration/mono_calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "surefoot/calibration/synthetic_views_for_test.hpp"
+
+namespace surefoot::calibration {
+namespace {
+
+using testing::nees;
+using testing::synthetic_views;
+using testing::SyntheticViews;
+using testing::view_of;
+
+constexpr double kNoise_px = 0.1;
+constexpr ImageSize kSize{752, 480};
+const Board kBoard{.columns = 7, .rows = 5, .spacing_m = 0.04};
+
+struct Case {
+    const char* name;
+    LensKind kind;
+    Eigen::VectorXd truth;
+};
+
+Eigen::VectorXd values(std::initializer_list<double> list) {
+    Eigen::VectorXd result(static_cast<Eigen::Index>(list.size()));
+    std::copy(list.begin(), list.end(), result.begin());
+    return result;
+}
+
+std::vector<Case> cases() {
+    return {{"pinhole4",
+             LensKind::pinhole4,
+             values({458.7, 457.3, 367.2, 248.4, -0.283, 0.074, 0.0002, 0.00002})},
+            {"pinhole5",
+             LensKind::pinhole5,
+             values({620.0, 621.5, 380.1, 231.0, -0.31, 0.13, 0.001, -0.0007, -0.04})},
+            {"fisheye",
+             LensKind::fisheye,
+             values({227.0, 226.4, 372.2, 246.9, 0.0121, 0.0056, -0.0061, 0.0005})}};
+}
+
+camera::StereoRig rig_of(LensKind kind, const Eigen::VectorXd& truth) {
+    camera::StereoRig rig;
+    rig.left = {model_of(kind, truth), kSize.width, kSize.height};
+    return rig;
+}
+
+SyntheticViews pinhole_views(int count, Rng& rng, double tilt_rad = 0.7) {
+    return synthetic_views(
+        kBoard, rig_of(LensKind::pinhole5, cases()[1].truth), count, kNoise_px, rng, tilt_rad);
+}
+
+class EveryLens : public ::testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryLens, ::testing::ValuesIn(cases()), [](const auto& tested) {
+    return std::string(tested.param.name);
+});
+
+/// Over all seeds the normalised squared errors add up to chi square of seeds times parameters;
+/// their mean may be off by 3.3 standard deviations (99.9 %).
+TEST_P(EveryLens, FindsTheTruthWithinItsOwnUncertainty) {
+    const Case& c = GetParam();
+    constexpr int kSeeds = 5;
+    double sum = 0.0;
+    int beyond_three_sigma = 0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        Rng rng(static_cast<std::uint64_t>(100 + seed));
+        const SyntheticViews views =
+            synthetic_views(kBoard, rig_of(c.kind, c.truth), 12, kNoise_px, rng);
+        const auto result = calibrate_mono(kBoard, views.left, kSize, c.kind);
+        ASSERT_TRUE(result) << "seed " << seed << ": " << result.error().message;
+        EXPECT_EQ(result->views.size(), 12U) << "seed " << seed;
+        EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01) << "seed " << seed;
+        const Eigen::VectorXd error = result->parameters - c.truth;
+        const Eigen::VectorXd sigmas =
+            error.cwiseQuotient(result->covariance.diagonal().cwiseSqrt());
+        beyond_three_sigma += static_cast<int>((sigmas.array().abs() > 3.0).count());
+        sum += nees(error, result->covariance);
+    }
+    const double freedom = kSeeds * static_cast<double>(c.truth.size());
+    EXPECT_NEAR(sum, freedom, 3.3 * std::sqrt(2.0 * freedom));
+    EXPECT_LE(beyond_three_sigma, 1) << "of " << freedom << " values 0.1 are expected";
+}
+
+TEST(MonoCalibration, RationalLensNeverDiverges) {
+    const Eigen::VectorXd truth =
+        values({420.0, 421.0, 370.0, 244.0, 0.51, -0.6, 0.0004, -0.0002, 0.3, 0.8, -0.6, 0.35});
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        Rng rng(seed);
+        const SyntheticViews views =
+            synthetic_views(kBoard, rig_of(LensKind::rational, truth), 12, kNoise_px, rng);
+        const auto result = calibrate_mono(kBoard, views.left, kSize, LensKind::rational);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01);
+        for (const int i : {0, 1, 2, 3}) {
+            EXPECT_NEAR(result->parameters[i], truth[i], 3.0 * std::sqrt(result->covariance(i, i)))
+                << parameter_names(LensKind::rational)[static_cast<std::size_t>(i)];
+        }
+    }
+}
+
+TEST(MonoCalibration, SameInputGivesTheSameBytes) {
+    Rng rng(7);
+    const SyntheticViews views = pinhole_views(8, rng);
+    const auto a = calibrate_mono(kBoard, views.left, kSize, LensKind::pinhole5);
+    const auto b = calibrate_mono(kBoard, views.left, kSize, LensKind::pinhole5);
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->parameters, b->parameters);
+    EXPECT_EQ(a->covariance, b->covariance);
+}
+
+TEST(MonoCalibration, LeavesOutWhatDoesNotBelong) {
+    Rng rng(8);
+    SyntheticViews views = pinhole_views(14, rng);
+    views.left[2].pixels[5].x() += 6.0;                                      // one bad corner
+    views.left[4].pixels[0].y() = std::numeric_limits<double>::quiet_NaN();  //
+    views.left[6].ids.resize(4);                                             // too few points
+    views.left[6].pixels.resize(4);                                          //
+    views.left[7] = {};                                                      // not found
+    std::swap(views.left[8].pixels[3], views.left[8].pixels[17]);            // mixed up ids
+    std::reverse(views.left[8].pixels.begin() + 5, views.left[8].pixels.end() - 5);
+    views.left[9].ids.back() = 1000;  // not on the board
+    views.left[10].ids.pop_back();    // ids without pixels
+    views.left[12] = views.left[11];  // twice the same
+    const auto result = calibrate_mono(kBoard, views.left, kSize, LensKind::pinhole5);
+    ASSERT_TRUE(result) << result.error().message;
+    std::vector<std::size_t> rejected;
+    for (const RejectedView& view : result->rejected) {
+        rejected.push_back(view.index);
+        EXPECT_FALSE(view.reason.empty()) << view.index;
+    }
+    EXPECT_EQ(rejected, (std::vector<std::size_t>{4, 6, 7, 8, 9, 10, 12}));
+    EXPECT_EQ(result->views[2].eye.outliers, std::vector<int>{views.left[2].ids[5]});
+    EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01);
+}
+
+std::string refusal(std::span<const BoardView> views, ImageSize size = kSize) {
+    const auto result = calibrate_mono(kBoard, views, size, LensKind::pinhole5);
+    return result ? "" : result.error().message;
+}
+
+TEST(MonoCalibration, RefusesWhatDeterminesNothing) {
+    EXPECT_NE(refusal({}).find("at least 3"), std::string::npos);
+    Rng rng(9);
+    const SyntheticViews views = pinhole_views(3, rng);
+    EXPECT_NE(refusal(std::span(views.left).first(1)).find("at least 3"), std::string::npos);
+    EXPECT_NE(refusal(views.left, {0, 0}).find("outside the 0x0 image"), std::string::npos);
+    const std::vector<BoardView> copies(10, views.left[0]);
+    EXPECT_NE(refusal(copies).find("the same as view 0"), std::string::npos);
+}
+
+TEST(MonoCalibration, SaysThatTiltIsMissing) {
+    Rng rng(10);
+    const camera::Camera camera{
+        model_of(LensKind::pinhole5, cases()[1].truth), kSize.width, kSize.height};
+    std::vector<BoardView> still;     // one pose, ten times
+    std::vector<BoardView> parallel;  // moved, never turned
+    for (int i = 0; i < 10; ++i) {
+        const Pose tilted{exp_so3({0.4, 0.2, 0.0}), {-0.12, -0.08, 0.5}};
+        still.push_back(view_of(kBoard, camera, tilted, 2.0 * kNoise_px, rng));
+        Pose moved = tilted;
+        moved.translation_m += Eigen::Vector3d(0.01 * (i - 5), 0.01 * (i % 3), 0.03 * i);
+        parallel.push_back(view_of(kBoard, camera, moved, kNoise_px, rng));
+    }
+    for (const auto& views : {still, parallel}) {
+        const std::string text = refusal(views);
+        EXPECT_NE(text.find("deg in tilt"), std::string::npos) << text;
+    }
+}
+
+}  // namespace
+}  // namespace surefoot::calibration
