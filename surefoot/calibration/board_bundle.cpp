@@ -195,7 +195,6 @@ class Graph {
     }
 
     void set_freedom(double* lens, Freedom freedom) {
-        if (freedom == Freedom::poses) return problem_.SetParameterBlockConstant(lens);
         const std::vector<int> fixed = fixed_parameters(bundle_.kind, freedom);
         const int block = bundle_.kind == LensKind::fisheye ? kFisheye : kPinhole;
         if (!fixed.empty()) problem_.SetManifold(lens, new ceres::SubsetManifold(block, fixed));

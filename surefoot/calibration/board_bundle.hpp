@@ -29,10 +29,10 @@ struct BoardBundle {
     std::vector<Sight> sights;
 };
 
+/// What of a lens may move; board poses and T_left_right always do.
 enum class Freedom : std::uint8_t {
-    poses,       ///< board poses and T_left_right; lenses stay
-    focal,       ///< poses, fx and fy
-    low_order,   ///< poses, fx fy cx cy k1 k2
+    focal,       ///< fx and fy
+    low_order,   ///< fx fy cx cy k1 k2
     everything,  ///< the whole model
 };
 
