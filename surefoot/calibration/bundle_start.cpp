@@ -137,15 +137,20 @@ bool start_bundle(BoardBundle& bundle) {
         set_focal(trial, candidate.focal_px);
         (void)score(trial);
         const std::optional<double> cost = refine(trial);
-        if (!cost || !(*cost / static_cast<double>(trial.sights.size()) < best_cost)) continue;
-        best_cost = *cost / static_cast<double>(trial.sights.size());
+        if (!cost) continue;
+        // What a start cannot explain must not make it look better.
+        const auto missing = static_cast<double>(bundle.sights.size() - trial.sights.size());
+        const double total = *cost + missing * kStartHuber_px * kSaturation_px;
+        if (!(total < best_cost)) continue;
+        best_cost = total;
         best = std::move(trial);
     }
-    if (best) add_missing(bundle, *best);
+    if (best) {
+        add_missing(bundle, *best);
+        bundle = std::move(*best);
+    }
     bundle.kind = wanted;
     if (!best) return false;
-    bundle = std::move(*best);
-    bundle.kind = wanted;
     const Eigen::Index known = bundle.lenses[0].size();
     bundle.lenses[0].conservativeResize(static_cast<Eigen::Index>(parameter_names(wanted).size()));
     bundle.lenses[0].tail(bundle.lenses[0].size() - known).setZero();

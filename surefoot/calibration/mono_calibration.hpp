@@ -42,7 +42,7 @@ struct MonoCalibration {
     /// Of `parameters`, from the scatter of the residuals: true when corner noise is independent
     /// and the model is right.
     Eigen::MatrixXd covariance;
-    double rms_px = 0.0;    ///< root of the mean squared distance over all points, as in OpenCV
+    double rms_px = 0.0;    ///< root of the mean squared distance of the points used, as in OpenCV
     double sigma_px = 0.0;  ///< noise of a coordinate, degrees of freedom counted
     std::vector<ViewFit> views;          ///< used, ascending
     std::vector<RejectedView> rejected;  ///< ascending
