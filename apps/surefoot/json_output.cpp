@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only here is nlohmann-json included (it costs six seconds a translation unit).
+// Only here and in calibration_json.cpp is nlohmann-json included (six seconds a translation unit).
 #include "apps/surefoot/json_output.hpp"
 
 #include <fmt/format.h>

@@ -78,6 +78,9 @@ struct AllOptions {
     DepthAccuracyOptions depth_accuracy;
     DemOptions dem;
     EvalSuiteOptions eval_suite;
+    CalibrateOptions calibrate_mono;
+    CalibrateOptions calibrate_stereo;
+    BoardImagesOptions render_boards;
     ConfigOptions config;
     DoctorOptions doctor;
     BenchOptions bench;
@@ -524,6 +527,88 @@ void add_rig(CLI::App& app, RigOptions& o, int& exit_code) {
         ->type_name("WxH");
 }
 
+void add_calibration(CLI::App* verb, CalibrateOptions& o) {
+    verb->add_option("--board",
+                     o.board,
+                     "chessboard:9x6:0.025 (inner corners, metres), circles:6x6:0.02, "
+                     "asymmetric_circles:4x11:0.04, charuco:8x5:0.03:0.022[:DICT_5X5_100]")
+        ->required()
+        ->type_name("TEXT");
+    verb->add_option(
+            "--model",
+            o.model,
+            "lens; pinhole = pinhole4 (k1 k2 p1 p2), pinhole5 adds k3; rational is not written "
+            "to rig files yet and refused")
+        ->check(CLI::IsMember({"pinhole", "pinhole4", "pinhole5", "rational", "fisheye"}));
+    verb->add_option("--out", o.out_dir, "folder for the rig, report.html, views.json")
+        ->required()
+        ->type_name("DIR");
+}
+
+void add_calibrate(CLI::App& app, AllOptions& all, int& exit_code) {
+    CLI::App* verb = app.add_subcommand("calibrate", "lenses and rigs from images of a board");
+    verb->require_subcommand(1);
+    verb->footer(
+        "Example:\n  surefoot calibrate render --board charuco:8x5:0.03:0.022 --rig zed_vga "
+        "--views 12 --out out/boards");
+    auto& r = all.render_boards;
+    CLI::App* render =
+        bind(add_verb(*verb,
+                      "render",
+                      "draws images of a board as a careful operator shows it, with their truth",
+                      "surefoot calibrate render --board chessboard:8x5:0.03 --rig zed_vga --views "
+                      "12 --out out/chess"),
+             r,
+             render_boards,
+             exit_code,
+             Reads::no_settings);
+    render->add_option("--board", r.board, "as for mono")->required()->type_name("TEXT");
+    render->add_option("--rig", r.rig, "calibration file, or name of a built-in rig")
+        ->required()
+        ->type_name("FILE|NAME");
+    render->add_option("--views", r.views, "how many")->check(CLI::Range(1, 500));
+    render->add_option("--out", r.out_dir, "folder for left*.png, right*.png, rig.yaml")
+        ->required()
+        ->type_name("DIR");
+
+    auto& m = all.calibrate_mono;
+    CLI::App* mono = bind(add_verb(*verb,
+                                   "mono",
+                                   "one camera from images of a board",
+                                   "surefoot calibrate mono out/chess --eye left --board "
+                                   "chessboard:8x5:0.03 --out out/camera --json"),
+                          m,
+                          calibrate,
+                          exit_code,
+                          Reads::no_settings);
+    mono->add_option("source", m.source, "folder of images, or a video")
+        ->required()
+        ->type_name("SOURCE");
+    mono->add_option("--eye", m.eye, "where the folder holds left* and right*: which")
+        ->check(CLI::IsMember({"left", "right"}));
+    add_calibration(mono, m);
+
+    auto& s = all.calibrate_stereo;
+    s.stereo = true;
+    CLI::App* stereo = bind(add_verb(*verb,
+                                     "stereo",
+                                     "two cameras and how they stand to each other",
+                                     "surefoot calibrate stereo out/chess --board "
+                                     "chessboard:8x5:0.03 --out out/rig"),
+                            s,
+                            calibrate,
+                            exit_code,
+                            Reads::no_settings);
+    stereo
+        ->add_option("source",
+                     s.source,
+                     "folder with left* and right*, with folders left and right, or side-by-side "
+                     "images; or a side-by-side video")
+        ->required()
+        ->type_name("SOURCE");
+    add_calibration(stereo, s);
+}
+
 void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     CLI::App* config_verb =
         bind(add_verb(app,
@@ -637,6 +722,7 @@ int main_with_arguments(int argc, char** argv) {
     add_eval(app, all, exit_code);
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);
     add_rig(app, all.rig, exit_code);
+    add_calibrate(app, all, exit_code);
     add_rest(app, all, exit_code);
     try {
         app.parse(argc, argv);

@@ -172,6 +172,27 @@ struct EvalSuiteOptions {
 };
 int eval_suite(const EvalSuiteOptions& options);
 
+struct CalibrateOptions {
+    CommonOptions common;
+    bool stereo = false;
+    std::string source;
+    std::string board;  ///< as calibration::parse_board reads it
+    std::string model = "pinhole5";
+    std::string eye;  ///< one camera of two in a folder: left | right
+    std::string out_dir;
+};
+int calibrate(const CalibrateOptions& options);
+
+struct BoardImagesOptions {
+    CommonOptions common;  ///< seed: of poses and noise
+    std::string board;
+    std::string rig;
+    std::string out_dir;
+    int views = 20;
+};
+/// `calibrate render`: images of a board with known truth.
+int render_boards(const BoardImagesOptions& options);
+
 struct ConfigOptions {
     CommonOptions common;
     bool check_only = false;

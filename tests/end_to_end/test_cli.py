@@ -10,9 +10,10 @@ import unittest
 from surefoot_cli import ROOT, CliTest, grey_png, read_asc, surefoot
 
 # In the order in which one example needs another's results.
-VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"], ["eval", "trajectory"],
-         ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["config"], ["doctor"], ["bench"], ["record"],
-         ["replay"], ["info"], ["rig"]]
+VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"],
+         ["eval", "trajectory"], ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["calibrate"],
+         ["calibrate", "render"], ["calibrate", "mono"], ["calibrate", "stereo"], ["config"], ["doctor"], ["bench"],
+         ["record"], ["replay"], ["info"], ["rig"]]
 GATE_EXIT_CODES = (0, 3, 4)
 
 

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/surefoot/calibration_json.hpp"
+#include "apps/surefoot/calibration_report.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "apps/surefoot/writes.hpp"
+#include "io/file.hpp"
+#include "io/rig_file.hpp"
+#include "surefoot/calibration/detect_board.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+
+std::string found_words(const calibration::BoardView& view, const std::string& problem) {
+    return problem.empty() ? fmt::format("{} points", view.ids.size()) : problem;
+}
+
+/// Looks for the board in the images of one moment and remembers what was found.
+void look(const BoardImages& images, bool stereo, CalibrationRun& run) {
+    FoundView found;
+    found.name = images.name;
+    auto left = calibration::detect_board(run.board, images.left.view());
+    found.left = std::move(left.view);
+    found.left_problem = std::move(left.problem);
+    if (stereo) {
+        auto right = calibration::detect_board(run.board, images.right.view());
+        found.right = std::move(right.view);
+        found.right_problem = std::move(right.problem);
+        if (found.left_problem.empty() && found.right_problem.empty())
+            found.right = calibration::turned_like(run.board, found.left, found.right);
+        log_info(fmt::format("{}: left {}; right {}",
+                             found.name,
+                             found_words(found.left, found.left_problem),
+                             found_words(found.right, found.right_problem)));
+    } else {
+        log_info(fmt::format("{}: {}", found.name, found_words(found.left, found.left_problem)));
+    }
+    const bool whole = found.left_problem.empty() && found.right_problem.empty();
+    if (whole && run.sample.left.empty()) run.sample = images;
+    run.views.push_back(std::move(found));
+}
+
+/// Why an image cannot belong to this calibration; the first image sets the size.
+std::string size_problem(const BoardImages& images, bool stereo, calibration::ImageSize& size) {
+    if (size.width == 0) size = {images.left.width(), images.left.height()};
+    const auto differs = [&](const GreyImage& image) {
+        return image.width() != size.width || image.height() != size.height;
+    };
+    const GreyImage& odd = differs(images.left) ? images.left : images.right;
+    if (!differs(images.left) && !(stereo && differs(images.right))) return {};
+    return fmt::format("{}: {} x {} px, but the first image has {} x {}; all must be alike",
+                       images.name,
+                       odd.width(),
+                       odd.height(),
+                       size.width,
+                       size.height);
+}
+
+Status find_boards(const CalibrateOptions& options, CalibrationRun& run) {
+    std::string problem;
+    const auto about = for_board_images(
+        options.source, options.stereo, options.eye, [&](const BoardImages& images) {
+            if (problem.empty()) problem = size_problem(images, options.stereo, run.size);
+            if (problem.empty()) look(images, options.stereo, run);
+        });
+    if (!about) return about.error();
+    if (!problem.empty()) return input_error(problem);
+    run.notes = about->notes;
+    for (const bool left : {true, false}) {
+        if (!left && !options.stereo) break;
+        std::vector<calibration::BoardView> views;
+        for (const FoundView& view : run.views) views.push_back(left ? view.left : view.right);
+        run.coverage.push_back(
+            calibration::coverage_of(run.board, views, run.size.width, run.size.height));
+    }
+    return {};
+}
+
+Status solve(calibration::LensKind kind, CalibrationRun& run) {
+    std::vector<calibration::BoardView> left;
+    std::vector<calibration::BoardView> right;
+    for (const FoundView& view : run.views) {
+        left.push_back(view.left);
+        right.push_back(view.right);
+    }
+    if (run.cameras() == 1) {
+        auto mono = calibration::calibrate_mono(run.board, left, run.size, kind);
+        if (!mono) return mono.error();
+        run.mono = std::move(*mono);
+        return {};
+    }
+    auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);
+    if (!stereo) return stereo.error();
+    run.stereo = std::move(*stereo);
+    return {};
+}
+
+/// The guidance goes to stderr even where the calibration then fails: it says what to do.
+void advise(const CalibrationRun& run) {
+    for (const std::string& note : run.notes) log_warning(note);
+    for (int camera = 0; camera < run.cameras(); ++camera) {
+        for (const std::string& advice : run.coverage[static_cast<std::size_t>(camera)].advice)
+            log_warning(camera_name(run, camera) + ": " + advice);
+    }
+}
+
+Status write_results(const CalibrateOptions& options, const CalibrationRun& run) {
+    if (Status made = io::make_folder(options.out_dir); !made) return made;
+    const auto path = [&](const char* name) { return io::join_path(options.out_dir, name); };
+    Writes writes;
+    writes +=
+        io::write_rig_yaml(path(options.stereo ? "rig.yaml" : "camera.yaml"), calibrated_rig(run));
+    writes += io::write_file(path("report.html"), calibration_html(run));
+    writes += io::write_file(path("views.json"), views_json(run));
+    return writes.first();
+}
+
+std::string depth_words(const calibration::DepthError& error) {
+    if (std::isnan(error.sigma_m)) return fmt::format("not seen at {:g} m;", error.distance_m);
+    return fmt::format("{:.2f} mm at {:g} m;", kMillimetres * error.sigma_m, error.distance_m);
+}
+
+void print_result(const CalibrationRun& run, const std::string& folder) {
+    for (const calibration::RejectedView& rejected : rejected_views(run)) {
+        fmt::print(
+            "left out {}: {}\n", run.views[rejected.index].name, why_left_out(run, rejected));
+    }
+    for (const CalibratedEye& eye : calibrated_eyes(run)) {
+        fmt::print(
+            "{}: f {:.2f} +- {:.2f}, {:.2f} +- {:.2f} px; centre {:.2f} +- {:.2f}, {:.2f} "
+            "+- {:.2f} px\n",
+            eye.name,
+            eye.parameters[0],
+            eye.sigmas[0],
+            eye.parameters[1],
+            eye.sigmas[1],
+            eye.parameters[2],
+            eye.sigmas[2],
+            eye.parameters[3],
+            eye.sigmas[3]);
+    }
+    const std::size_t used = calibrated_eyes(run).front().views.size();
+    fmt::print("{} of {} views used, rms {:.3f} px",
+               used,
+               run.views.size(),
+               run.stereo ? run.stereo->rms_px : run.mono->rms_px);
+    if (run.stereo) {
+        const auto& stereo = *run.stereo;
+        fmt::print(
+            ", rows after rectification {:.3f} px\nbaseline {:.2f} mm; depth error of the "
+            "calibration, one sigma:",
+            stereo.row_rms_px,
+            kMillimetres * stereo.rig.T_left_right.translation_m.norm());
+        for (const calibration::DepthError& error : stereo.depth_errors)
+            fmt::print(" {}", depth_words(error));
+    }
+    fmt::print("\nreport: {}\n", io::join_path(folder, "report.html"));
+}
+
+}  // namespace
+
+int calibrate(const CalibrateOptions& options) {
+    const auto board = calibration::parse_board(options.board);
+    if (!board) {
+        return report(usage_error(
+            fmt::format("--board '{}': expected KIND:COLUMNSxROWS:SPACING, for example "
+                        "chessboard:9x6:0.025, circles:6x6:0.02, asymmetric_circles:4x11:0.04 or "
+                        "charuco:8x5:0.03:0.022[:DICT_5X5_100]",
+                        options.board)));
+    }
+    if (const Status status = calibration::check_detectable(*board); !status)
+        return report(status.error());
+    // "pinhole" is the model with the fewest coefficients.
+    const std::string model = options.model == "pinhole" ? "pinhole4" : options.model;
+    const auto* const kind = std::find(
+        std::begin(calibration::kLensKindNames), std::end(calibration::kLensKindNames), model);
+    if (kind == std::end(calibration::kLensKindNames))
+        return report(usage_error(fmt::format("--model '{}': no such lens model", options.model)));
+    const auto chosen =
+        static_cast<calibration::LensKind>(kind - std::begin(calibration::kLensKindNames));
+    if (chosen == calibration::LensKind::rational) {
+        return report(usage_error(
+            "--model rational: rig files cannot hold this lens yet; take pinhole5 or fisheye"));
+    }
+    CalibrationRun run;
+    run.source = options.source;
+    run.board_text = options.board;
+    run.board = *board;
+    if (const Status status = find_boards(options, run); !status) return report(status.error());
+    advise(run);
+    if (const Status status = solve(chosen, run); !status) return report(status.error());
+    if (const Status status = write_results(options, run); !status) return report(status.error());
+    if (options.common.json) {
+        fmt::print("{}\n", calibration_json(run));
+    } else {
+        print_result(run, options.out_dir);
+    }
+    return kExitOk;
+}
+
+}  // namespace surefoot::app

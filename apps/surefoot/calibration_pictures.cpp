@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/calibration_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/figure.hpp"
+#include "eval/percentile.hpp"
+#include "surefoot/camera/rectifier.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using eval::PointPx;
+namespace palette = eval::palette;
+
+/// Image planes are drawn about this wide.
+constexpr double kWidth_px = 900.0;
+
+/// A white sheet for the image plane of a camera, and how many of its pixels are one of the image.
+struct Plane {
+    eval::Figure figure;
+    double scale = 1.0;
+
+    [[nodiscard]] PointPx at(const Eigen::Vector2d& pixel) const {
+        // The outer corner of the first pixel lies at (-1/2, -1/2).
+        return {figure.plot.left + scale * (pixel.x() + 0.5),
+                figure.plot.top + scale * (pixel.y() + 0.5)};
+    }
+};
+
+Plane plane_of(const calibration::ImageSize& size, const eval::FigureText& text) {
+    Plane plane;
+    plane.scale = kWidth_px / std::max(1, size.width);
+    const int width = std::max(1, static_cast<int>(std::lround(plane.scale * size.width)));
+    const int height = std::max(1, static_cast<int>(std::lround(plane.scale * size.height)));
+    plane.figure = eval::make_figure(width, height, false, {}, text);
+    return plane;
+}
+
+void stripe(const calibration::Coverage& coverage, eval::Figure& figure) {
+    using calibration::Coverage;
+    for (int v = 0; v < figure.plot.height; ++v) {
+        for (int u = 0; u < figure.plot.width; ++u) {
+            const int column = u * Coverage::kColumns / figure.plot.width;
+            const int row = v * Coverage::kRows / figure.plot.height;
+            if (coverage.points.at(column, row) == 0)
+                figure.picture.at(figure.plot.left + u, figure.plot.top + v) =
+                    eval::hatched_grey(u, v);
+        }
+    }
+}
+
+/// Views that the result rests on, by index.
+std::vector<bool> used_views(const CalibrationRun& run) {
+    std::vector<bool> used(run.views.size(), true);
+    for (const calibration::RejectedView& rejected : rejected_views(run))
+        used[rejected.index] = false;
+    return used;
+}
+
+/// Two images of equal height beside each other.
+GreyImage side_by_side(const GreyImage& left, const GreyImage& right) {
+    GreyImage both(left.width() + right.width(), left.height());
+    for (int v = 0; v < left.height(); ++v) {
+        std::copy(left.row(v), left.row(v) + left.width(), both.row(v));
+        std::copy(right.row(v), right.row(v) + right.width(), both.row(v) + left.width());
+    }
+    return both;
+}
+
+}  // namespace
+
+eval::Picture coverage_picture(const CalibrationRun& run, int camera) {
+    const auto& coverage = run.coverage[static_cast<std::size_t>(camera)];
+    Plane plane = plane_of(run.size,
+                           {fmt::format("Where the board was seen, {}", camera_name(run, camera)),
+                            fmt::format("{:.0f} % of the image; blue: used, orange: left out, "
+                                        "stripes: never seen",
+                                        100.0 * coverage.seen_share)});
+    stripe(coverage, plane.figure);
+    const std::vector<bool> used = used_views(run);
+    for (std::size_t i = 0; i < run.views.size(); ++i) {
+        const auto& view = camera == 0 ? run.views[i].left : run.views[i].right;
+        const eval::Rgb8 colour = used[i] ? palette::kSafe : palette::kUnsafe;
+        for (const Eigen::Vector2d& pixel : view.pixels)
+            eval::fill_circle(plane.figure.picture, plane.at(pixel), 2.5, colour);
+    }
+    eval::draw_rect(plane.figure.picture, plane.figure.plot, 2, palette::kInk);
+    return std::move(plane.figure.picture);
+}
+
+eval::Picture residual_picture(const CalibrationRun& run, const CalibratedEye& eye) {
+    std::vector<double> lengths_px;
+    for (const auto& view : eye.views) {
+        for (const auto& residual : view.fit.residuals_px) lengths_px.push_back(residual.norm());
+    }
+    std::sort(lengths_px.begin(), lengths_px.end());
+    const double usual_px = lengths_px.empty() ? 1.0 : eval::percentile_of_sorted(lengths_px, 0.95);
+    constexpr double kShown_px = 20.0;  // length of that residual in the picture
+    const double enlarged = kShown_px / std::max(usual_px, 1e-6);
+    const bool right = std::string(eye.name) == "right";
+    Plane plane = plane_of(
+        run.size,
+        {fmt::format("Measured minus predicted, {}", eye.name),
+         fmt::format(
+             "{} points; 95 % within {:.2f} px; drawn {:.0f} times enlarged; orange: left out",
+             lengths_px.size(),
+             usual_px,
+             enlarged / plane_of(run.size, {}).scale)});
+    for (const auto& view : eye.views) {
+        const auto& seen = right ? run.views[view.index].right : run.views[view.index].left;
+        for (std::size_t i = 0; i < view.fit.ids.size(); ++i) {
+            const int id = view.fit.ids[i];
+            const bool outlier =
+                std::find(view.fit.outliers.begin(), view.fit.outliers.end(), id) !=
+                view.fit.outliers.end();
+            const PointPx from = plane.at(pixel_of(seen, id));
+            const Eigen::Vector2d d = enlarged * view.fit.residuals_px[i];
+            const eval::Rgb8 colour = outlier ? palette::kUnsafe : palette::kSafe;
+            eval::draw_line(
+                plane.figure.picture, from, {from.u + d.x(), from.v + d.y()}, 1, colour);
+            eval::fill_circle(plane.figure.picture, from, 1.5, colour);
+        }
+    }
+    eval::draw_rect(plane.figure.picture, plane.figure.plot, 2, palette::kInk);
+    return std::move(plane.figure.picture);
+}
+
+eval::Picture epipolar_picture(const CalibrationRun& run) {
+    if (!run.stereo) return {};
+    const auto rectifier = camera::Rectifier::make(run.stereo->rig);
+    if (!rectifier) return {};
+    StereoFrame frame;
+    frame.left = run.sample.left;
+    frame.right = run.sample.right;
+    camera::RectifiedPair pair;
+    rectifier->rectify(frame, pair);
+    const GreyImage both = side_by_side(pair.left, pair.right);
+    eval::Picture picture(both.width(), both.height());
+    for (std::size_t i = 0; i < both.size(); ++i)
+        picture.data()[i] = {both.data()[i], both.data()[i], both.data()[i]};
+    constexpr int kLines = 16;
+    for (int line = 0; line < kLines; ++line) {
+        const double v = (line + 0.5) * both.height() / kLines;
+        eval::draw_line(picture,
+                        {0.0, v},
+                        {static_cast<double>(both.width()), v},
+                        1,
+                        line % 2 == 0 ? palette::kGreen : palette::kUnsafe);
+    }
+    return picture;
+}
+
+}  // namespace surefoot::app
