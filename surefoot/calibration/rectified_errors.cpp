@@ -40,8 +40,9 @@ std::optional<Eigen::Vector2d> seen(const camera::RectifiedEye& eye,
 
 /// The turns of the eyes do not depend on how much is shown, and little is planned quickly.
 camera::Rectification plan_of(const camera::StereoRig& rig) {
-    constexpr double kFieldOfView_deg = 20.0;
-    return camera::plan_rectification(rig, kFieldOfView_deg, camera::Rectifier::kVirtualBaseline_m);
+    camera::RectificationConfig config;
+    config.max_view_deg = 20.0;
+    return camera::plan_rectification(rig, config, camera::Rectifier::kVirtualBaseline_m);
 }
 
 /// The raw pixels of a point in both images.
