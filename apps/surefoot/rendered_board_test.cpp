@@ -133,7 +133,7 @@ TEST(RenderedBoard, BlurAndNoiseCostLittle) {
 }
 
 TEST(RenderedBoard, BigCirclesSeenAtASlantAreCorrected) {
-    // Centres of ellipses would be off by 0.35 px here.
+    // Centres of gravity alone are off by 0.2 px here.
     const Board board = board_of("circles:6x5:0.04");
     const Pose T_camera_board{exp_so3({0.0, 0.9, 0.0}), {-0.06, -0.08, 0.45}};
     const GreyImage image = rendered(board, pinhole(), T_camera_board);
