@@ -38,15 +38,15 @@ Status set_automatic(V4l2Device& device, bool on) {
         // A menu of which UVC cameras have two entries: manual, and one of the two automatic ones.
         constexpr int kOff = V4L2_EXPOSURE_MANUAL;
         Status status = device.set_control(
-            V4L2_CID_EXPOSURE_AUTO, "camera.auto", on ? V4L2_EXPOSURE_APERTURE_PRIORITY : kOff);
+            V4L2_CID_EXPOSURE_AUTO, "live.auto", on ? V4L2_EXPOSURE_APERTURE_PRIORITY : kOff);
         if (!status && on)
-            status = device.set_control(V4L2_CID_EXPOSURE_AUTO, "camera.auto", V4L2_EXPOSURE_AUTO);
+            status = device.set_control(V4L2_CID_EXPOSURE_AUTO, "live.auto", V4L2_EXPOSURE_AUTO);
         if (!status) return status;
     }
     for (const std::uint32_t id :
          {std::uint32_t{V4L2_CID_AUTOGAIN}, std::uint32_t{V4L2_CID_AUTO_WHITE_BALANCE}}) {
         if (!device.control(id)) continue;
-        if (Status status = device.set_control(id, "camera.auto", on ? 1 : 0); !status)
+        if (Status status = device.set_control(id, "live.auto", on ? 1 : 0); !status)
             return status;
     }
     return {};
@@ -97,7 +97,7 @@ void CameraConfig::describe(ConfigVisitor& visitor) {
 std::optional<std::string> CameraConfig::problem() const {
     const bool manual = exposure_ms > 0.0 || gain >= 0 || white_balance_k > 0;
     if (!manual || automatic != AutoControl::on) return std::nullopt;
-    return "camera.auto = on, but camera.exposure_ms, gain or white_balance_k gives a value; "
+    return "live.auto = on, but live.exposure_ms, gain or white_balance_k gives a value; "
            "choose "
            "one of the two";
 }
@@ -157,7 +157,7 @@ Result<VideoMode> LiveCamera::chosen_mode(V4l2Device& device) const {
                     width,
                     rig_.left.height,
                     address_.rate_hz ? fmt::format(" at {:g} Hz", *address_.rate_hz) : "",
-                    config_.format == FormatChoice::any ? "" : " in the format of camera.format",
+                    config_.format == FormatChoice::any ? "" : " in the format of live.format",
                     list_of(modes)));
 }
 
@@ -173,13 +173,13 @@ Status LiveCamera::set_controls(V4l2Device& device) const {
                                    V4L2_CID_EXPOSURE_AUTO,
                                    V4L2_EXPOSURE_MANUAL,
                                    V4L2_CID_EXPOSURE_ABSOLUTE,
-                                   "camera.exposure_ms (in 0.1 ms)",
+                                   "live.exposure_ms (in 0.1 ms)",
                                    value);
         if (!status) return status;
     }
     if (config_.gain >= 0) {
         Status status =
-            set_manual(device, V4L2_CID_AUTOGAIN, 0, V4L2_CID_GAIN, "camera.gain", config_.gain);
+            set_manual(device, V4L2_CID_AUTOGAIN, 0, V4L2_CID_GAIN, "live.gain", config_.gain);
         if (!status) return status;
     }
     if (config_.white_balance_k == 0) return {};
@@ -187,7 +187,7 @@ Status LiveCamera::set_controls(V4l2Device& device) const {
                       V4L2_CID_AUTO_WHITE_BALANCE,
                       0,
                       V4L2_CID_WHITE_BALANCE_TEMPERATURE,
-                      "camera.white_balance_k",
+                      "live.white_balance_k",
                       config_.white_balance_k);
 }
 

@@ -116,7 +116,7 @@ Status LiveCamera::reconnect() {
     if (stop_ && stop_()) return {};
     return input_error(
         fmt::format("{}: no frame for {:.1f} s after {} frames ({}); check cable and "
-                    "power (camera.reconnect_s = {:g})",
+                    "power (live.reconnect_s = {:g})",
                     info_.path,
                     1e-3 * silent_ms_,
                     index_,

@@ -424,13 +424,13 @@ TEST(LiveCamera, SaysWhatCannotBeSet) {
     FakeCamera camera = small_camera();
     CameraConfig config;
     config.gain = 101;
-    EXPECT_TRUE(contains(open_error(camera, config), "camera.gain = 101 is outside 0 .. 100"));
+    EXPECT_TRUE(contains(open_error(camera, config), "live.gain = 101 is outside 0 .. 100"));
     config = {};
     config.exposure_ms = 40.0;
     EXPECT_TRUE(contains(open_error(camera, config), "= 400 is outside 1 .. 300"));
     config = {};
     config.white_balance_k = 4600;
-    EXPECT_TRUE(contains(open_error(camera, config), "no control for camera.white_balance_k"));
+    EXPECT_TRUE(contains(open_error(camera, config), "no control for live.white_balance_k"));
     config = {};
     config.gain = 3;
     config.automatic = AutoControl::on;
@@ -449,7 +449,7 @@ TEST(LiveCamera, RefusesAnotherFormatThanAskedFor) {
                          "1344 x 376 px with both eyes, but the rig has two eyes of 32 x 24 px"));
     CameraConfig config;
     config.format = FormatChoice::mjpeg;
-    EXPECT_TRUE(contains(open_error(camera, config), "in the format of camera.format"));
+    EXPECT_TRUE(contains(open_error(camera, config), "in the format of live.format"));
     camera.fourcc = V4L2_PIX_FMT_H264;
     EXPECT_TRUE(contains(open_error(camera), "it has H264 64x24@30"));
     camera.open_error = EACCES;

@@ -145,7 +145,7 @@ bool is_kannala_brandt(const camera::CameraModel& model) noexcept {
 
 RectifiedMatrices rectified_matrices(const camera::StereoRig& rig) {
     const camera::Rectification plan = camera::plan_rectification(
-        rig, camera::Rectifier::kMaxFieldOfView_deg, camera::Rectifier::kVirtualBaseline_m);
+        rig, camera::RectificationConfig{}, camera::Rectifier::kVirtualBaseline_m);
     const camera::RectifiedRig& r = plan.rig;
     const auto rows = [](const Eigen::Matrix3d& M) {
         std::vector<double> out;

@@ -20,7 +20,7 @@ void Settings::describe(ConfigVisitor& visitor) {
     sim.describe(visitor);
     visitor.group("laser", laser);
     visitor.end_group();
-    visitor.group("camera", camera);
+    visitor.group("live", camera);
 }
 
 Result<Settings> load_settings(const CommonOptions& options) {

@@ -245,7 +245,7 @@ void describe_rectified(std::span<const BoardView> left_views,
                           used_points(right_views[pair.index], pair.right));
     }
     const camera::Rectification plan = camera::plan_rectification(
-        result.rig, camera::Rectifier::kMaxFieldOfView_deg, camera::Rectifier::kVirtualBaseline_m);
+        result.rig, camera::RectificationConfig{}, camera::Rectifier::kVirtualBaseline_m);
     result.row_rms_px = row_rms_px(plan, used);
     result.rectified_focal_px = plan.rig.fx_px;
     const std::vector<double> sigmas_m =

@@ -56,7 +56,9 @@ Eigen::VectorXd error_of(const camera::StereoRig& truth, const camera::StereoRig
 /// Error of depth of the point 1 m ahead of the rectified camera that a calibration believes in,
 /// when the true cameras take the pictures.
 double depth_error_m(const camera::StereoRig& truth, const camera::StereoRig& found) {
-    const camera::Rectification plan = camera::plan_rectification(found, 105.0, 0.08);
+    camera::RectificationConfig config;
+    config.max_view_deg = 105.0;
+    const camera::Rectification plan = camera::plan_rectification(found, config, 0.08);
     const Eigen::Vector3d p_left = plan.left.R_rectified_raw.transpose() * Eigen::Vector3d::UnitZ();
     const auto on_plane = [](const camera::RectifiedEye& eye, const Eigen::Vector2d& raw) {
         const Eigen::Vector3d p = eye.R_rectified_raw * *camera::unproject(eye.camera.model, raw);
