@@ -267,14 +267,14 @@ const Match& tuned(const Candidate& candidate, const std::vector<Pair>& pairs) {
 }
 
 std::vector<Candidate> candidates() {
-    Candidate ours{"census search", {}};
+    Candidate ours{"our search alone", {}};
     for (const int slope : {3, 5, 8, 11})
         for (const int jump : {30, 42, 54})
             for (const int least : {6, 12, 20}) ours.settings.push_back(census(slope, jump, least));
     std::vector<Candidate> all = {ours};
     for (const auto& [name, mode] :
-         {std::pair{"OpenCV SGBM, 3-way", static_cast<int>(cv::StereoSGBM::MODE_SGBM_3WAY)},
-          std::pair{"OpenCV SGBM, HH4", static_cast<int>(cv::StereoSGBM::MODE_HH4)}}) {
+         {std::pair{"OpenCV SGBM 3-way", static_cast<int>(cv::StereoSGBM::MODE_SGBM_3WAY)},
+          std::pair{"OpenCV SGBM HH4", static_cast<int>(cv::StereoSGBM::MODE_HH4)}}) {
         Candidate theirs{name, {}};
         for (const double slope : {2.0, 4.0, 8.0, 14.0})
             for (const double jump : {20.0, 32.0, 60.0})
@@ -404,10 +404,10 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     scores.print("set,pair,matcher,bad_1,bad_2,density,cpu_ms\n");
     constexpr int k3Way = cv::StereoSGBM::MODE_SGBM_3WAY;
     constexpr int kHh4 = cv::StereoSGBM::MODE_HH4;
-    report(scores, "defaults", "census, whole matcher", chain(), pairs);
-    report(scores, "defaults", "census search", census(11, 54, 10), pairs);
-    report(scores, "defaults", "OpenCV SGBM, 3-way", opencv(k3Way, 8.0, 32.0, 63), pairs);
-    report(scores, "defaults", "OpenCV SGBM, HH4", opencv(kHh4, 8.0, 32.0, 63), pairs);
+    report(scores, "defaults", "our whole matcher", chain(), pairs);
+    report(scores, "defaults", "our search alone", census(11, 54, 10), pairs);
+    report(scores, "defaults", "OpenCV SGBM 3-way", opencv(k3Way, 8.0, 32.0, 63), pairs);
+    report(scores, "defaults", "OpenCV SGBM HH4", opencv(kHh4, 8.0, 32.0, 63), pairs);
     for (const Candidate& candidate : candidates()) {
         report(scores, "tuned", candidate.name, tuned(candidate, pairs), pairs);
         fmt::print(stderr, "{} tuned\n", candidate.name);

@@ -526,6 +526,11 @@ std::string copied_json(const Copied& copied, const std::string& folder) {
     return object.dump(kIndent);
 }
 
+std::string rendered_boards_json(std::size_t views, const std::string& folder) {
+    const Json object = {{"views", views}, {"folder", folder}};
+    return object.dump(kIndent);
+}
+
 std::string scan_json(const Scanned& scanned) {
     const Json object = {{"points", scanned.points},
                          {"stations", scanned.stations},

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/surefoot/bench_result.hpp"
-#include "apps/surefoot/cameras.hpp"
 #include "apps/surefoot/board_accuracy.hpp"
+#include "apps/surefoot/cameras.hpp"
 #include "apps/surefoot/copy_frames.hpp"
 #include "apps/surefoot/measured_pair.hpp"
 #include "apps/surefoot/rig_view.hpp"
@@ -44,6 +44,8 @@ struct ReportCamera {
 };
 /// Nothing where the report has no camera, or one that is not whole (an older or damaged file).
 [[nodiscard]] std::optional<ReportCamera> parse_report_camera(const std::string& report_json);
+/// Images of a board that were drawn.
+[[nodiscard]] std::string rendered_boards_json(std::size_t views, const std::string& folder);
 /// The same without the list of frames, for stdout.
 [[nodiscard]] std::string run_json(const RunRecord& record, const pipeline::Pipeline& pipeline);
 [[nodiscard]] std::string verdict_json(const gate::Verdict& verdict,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/rendered_boards.hpp"
 #include "apps/surefoot/thread_pool.hpp"
@@ -66,7 +67,10 @@ int render_boards(const BoardImagesOptions& options) {
         }
     }
     if (!writes.first()) return report(writes.first().error());
-    fmt::print("{} views of {} in {}\n", poses.size(), options.board, options.out_dir);
+    if (options.common.json)
+        fmt::print("{}\n", rendered_boards_json(poses.size(), options.out_dir));
+    else
+        fmt::print("{} views of {} in {}\n", poses.size(), options.board, options.out_dir);
     return kExitOk;
 }
 

@@ -88,6 +88,13 @@ class Verbs(CliTest):
             (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases scenes carriers bins"),
             (["dem", run / "map.ply", "--resolution", 0.1, "--out", self.dir / "dem.asc"],
              "width height resolution_m origin_m known_cells points skipped file"),
+            (["calibrate", "render", "--board", "chessboard:8x5:0.03", "--rig", "zed_vga", "--views", 12, "--out",
+              self.dir / "chess"], "views folder"),
+            (["calibrate", "mono", self.dir / "chess", "--eye", "left", "--board", "chessboard:8x5:0.03", "--out",
+              self.dir / "camera"], "model width height views used rms_px sigma_px cameras rejected advice notes"),
+            (["calibrate", "stereo", self.dir / "chess", "--board", "chessboard:8x5:0.03", "--out", self.dir / "rig"],
+             "model views used rms_px sigma_px row_rms_px rectified_focal_px baseline_m rotation_rad depth_errors "
+             "cameras rejected advice notes"),
             (["config"], "settings"),
             (["config", "--check"], "valid problem"),
             (["doctor"], "version machine rig depth_sigma floor steps cameras"),
@@ -97,14 +104,15 @@ class Verbs(CliTest):
             (["info", recording], "kind frames rate_hz gaps imu_samples has_truth"),
             (["rig", recording], "format width height focal_left_px focal_right_px baseline_m rectified notes written"),
         )
-        self.assertEqual({tuple(v) for v in VERBS} - {("gate",), ("eval",)},
-                         {tuple(call[:2]) if call[0] == "eval" else (call[0],) for call, _ in promised})
+        self.assertEqual({tuple(v) for v in VERBS} - {("gate",), ("eval",), ("calibrate",)},
+                         {tuple(call[:2]) if call[0] in ("eval", "calibrate") else (call[0],) for call, _ in promised})
         answers = {}
         for call, names in promised:
             with self.subTest(" ".join(map(str, call[:2]))):
                 answer = self.json_of(*call)
                 self.assertLessEqual(set(names.split()), set(answer))
                 answers[" ".join(map(str, call[:2]))] = answer
+        self.assertAlmostEqual(answers["calibrate stereo"]["baseline_m"], 0.12, delta=2e-4)
         maps = answers["eval maps"]
         self.assertLessEqual({"median_abs_m", "p90_abs_m"}, set(maps["elevation"]))
         self.assertLessEqual({"false_safe", "false_unsafe"}, set(maps["traversability"]))
