@@ -102,8 +102,9 @@ std::string drawn(const LinePlot::Line& line, const char* colour, const Axes& ax
 }
 
 std::string key(const LinePlot::Line& line, const char* colour, std::size_t place) {
+    const std::size_t row = place / 3;
     const double u = kLeft + static_cast<double>(place % 3) * 180.0;
-    const double v = 34.0 + static_cast<double>(place / 3) * 18.0;
+    const double v = 34.0 + static_cast<double>(row) * 18.0;
     return fmt::format(
                "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
                "stroke-width=\"3\"{}/>",

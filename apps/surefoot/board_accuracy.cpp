@@ -238,6 +238,7 @@ Result<std::vector<DistanceAccuracy>> measure_accuracy(const DepthAccuracyOption
     std::map<double, std::vector<Look>> by_distance;
     for (const Look& look : *looks) by_distance[look.distance_m].push_back(look);
     std::vector<DistanceAccuracy> rows;
+    rows.reserve(by_distance.size());
     for (const auto& [distance_m, same] : by_distance)
         rows.push_back(summary_of(distance_m, same, thesis_camera(rig.name)));
     return rows;

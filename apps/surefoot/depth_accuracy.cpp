@@ -262,6 +262,7 @@ int show_design(const DepthAccuracyOptions& options, const Settings& settings) {
     std::vector<double> ranges_m = options.distances_m;
     if (ranges_m.empty()) ranges_m.assign(kDesignRanges_m.begin(), kDesignRanges_m.end());
     std::vector<eval::ResolvableHeight> rows;
+    rows.reserve(ranges_m.size());
     for (const double range_m : ranges_m) rows.push_back(eval::resolvable_height(*design, range_m));
     eval::ReportContent content;
     content.title = "What a stereo camera resolves";

@@ -359,6 +359,7 @@ void add_thumbnails(std::span<const SuiteResult> results,
         if (known == nullptr || is_worse(result, *known)) known = &result;
     }
     std::vector<const SuiteResult*> shown_cases;
+    shown_cases.reserve(worst.size());
     for (const auto& [scene, result] : worst) shown_cases.push_back(result);
     std::sort(shown_cases.begin(), shown_cases.end(), [](const auto* a, const auto* b) {
         return is_worse(*a, *b);
