@@ -46,8 +46,7 @@ Status set_automatic(V4l2Device& device, bool on) {
     for (const std::uint32_t id :
          {std::uint32_t{V4L2_CID_AUTOGAIN}, std::uint32_t{V4L2_CID_AUTO_WHITE_BALANCE}}) {
         if (!device.control(id)) continue;
-        if (Status status = device.set_control(id, "live.auto", on ? 1 : 0); !status)
-            return status;
+        if (Status status = device.set_control(id, "live.auto", on ? 1 : 0); !status) return status;
     }
     return {};
 }

@@ -91,8 +91,7 @@ Result<MeasuredPair> measure_pair(const StereoFrame& frame,
     }
     measured.check = check_rows(measured.pair, config.stereo.disparities);
     if (auto status = check_pair_of(measured.check); !status) return status.error();
-    stereo::make_matcher(config.stereo)
-        ->match(left.view(), right.view(), executor, measured.depth);
+    stereo::make_matcher(config.stereo)->match(left.view(), right.view(), executor, measured.depth);
     return measured;
 }
 
