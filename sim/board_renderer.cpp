@@ -88,7 +88,7 @@ class Sheet {
 Eigen::Vector2d place_on_sheet(const camera::Camera& camera,
                                const Pose& T_sheet_camera,
                                const Eigen::Vector2d& pixel) {
-    const Eigen::Vector2d nowhere = Eigen::Vector2d::Constant(std::nan(""));
+    Eigen::Vector2d nowhere = Eigen::Vector2d::Constant(std::nan(""));
     const auto ray = camera::unproject(camera.model, pixel);
     if (!ray) return nowhere;
     const Eigen::Vector3d direction = T_sheet_camera.rotation * *ray;

@@ -221,8 +221,8 @@ void Prism::intersect(const Vector3d& origin,
                       std::span<RayHit> hits) const {
     struct Facing {
         Vector3d normal;
-        double outside_m;
-        int face;
+        double outside_m = 0.0;
+        int face = 0;
     };
     constexpr std::size_t kMaxFaces = 16;
     std::array<Facing, kMaxFaces> facing;

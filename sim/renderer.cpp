@@ -210,8 +210,11 @@ void Renderer::render_instant(const RayField& rays,
 void Renderer::shade_by_face(std::span<const RayHit> hits,
                              std::span<const Sight> sights,
                              std::span<Seen> out) const {
+    // Filled as far as they are read: zeros would cost more than the work.
+    // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
     std::array<std::size_t, CastBlock::kPixels> todo;
     std::array<std::size_t, CastBlock::kPixels> chosen;
+    // NOLINTEND(cppcoreguidelines-pro-type-member-init)
     std::array<Sight, CastBlock::kPixels> chosen_sights;
     std::array<Seen, CastBlock::kPixels> chosen_seen;
     std::iota(todo.begin(), todo.begin() + static_cast<std::ptrdiff_t>(hits.size()), 0U);

@@ -125,6 +125,7 @@ void Shader::surface(int surface, std::span<const Sight> sights, std::span<Seen>
         return;
     }
     TextureBatch batch;
+    // Filled as far as it is read. NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
     std::array<float, TextureBatch::kMost> albedo;
     for (std::size_t done = 0; done < sights.size(); done += batch.count) {
         const auto part = sights.subspan(done, std::min(sights.size() - done, albedo.size()));

@@ -66,7 +66,7 @@ struct Plan {
                                            const Placement& placement,
                                            const TextureBatch& in,
                                            float* out) {
-    Plan plan;
+    Plan plan;  // make_plan fills it. NOLINT(cppcoreguidelines-pro-type-member-init)
     const int most_taps = make_plan(in, plan);
     for (int tap = 0; tap < most_taps; ++tap) add_tap(cells, tap, in.count, plan);
     for (std::size_t i = 0; i < in.count; ++i) {

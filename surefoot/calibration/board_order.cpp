@@ -156,6 +156,7 @@ std::vector<std::vector<int>> turns_of(const Board& board) {
     const std::vector<Eigen::Vector2d> places_m = places_of(board);
     const auto count = static_cast<int>(places_m.size());
     std::vector<int> identity;
+    identity.reserve(places_m.size());
     for (int id = 0; id < count; ++id) identity.push_back(id);
     std::vector<std::vector<int>> turns = {identity};
     if (board.kind == BoardKind::charuco) return turns;
@@ -221,6 +222,7 @@ std::optional<std::vector<Eigen::Vector2d>> ordered_points(
     ImageView<const std::uint8_t> image) {
     const std::vector<Eigen::Vector2d> places_m = places_of(board);
     std::vector<Eigen::Vector2d> centred_m;
+    centred_m.reserve(places_m.size());
     for (const auto& place_m : places_m)
         centred_m.push_back(place_m - 0.5 * (places_m.front() + places_m.back()));
     std::optional<Points> best;

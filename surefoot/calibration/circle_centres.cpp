@@ -149,10 +149,10 @@ Eigen::Vector2d offset_of_centroid(const LocalMap& map, double radius_sq_m2) {
     const Eigen::Matrix2d inverse = map.J_px_m.inverse();
     Eigen::Vector2d gradient;  // of log det J
     for (Eigen::Index k = 0; k < 2; ++k) {
-        Eigen::Matrix2d dJ;
-        dJ.row(0) = map.H_u.row(k);
-        dJ.row(1) = map.H_v.row(k);
-        gradient[k] = (inverse * dJ).trace();
+        Eigen::Matrix2d slope;
+        slope.row(0) = map.H_u.row(k);
+        slope.row(1) = map.H_v.row(k);
+        gradient[k] = (inverse * slope).trace();
     }
     const Eigen::Vector2d curvature(map.H_u.trace(), map.H_v.trace());
     return 0.25 * radius_sq_m2 * (0.5 * curvature + map.J_px_m * gradient);

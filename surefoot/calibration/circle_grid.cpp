@@ -132,10 +132,12 @@ std::optional<Spots> grown_grid(const Board& board, const Spots& spots) {
     const std::vector<Node> wanted = nodes_of(board);
     if (lattice.size() != wanted.size()) return std::nullopt;
     std::vector<Node> grown;
+    grown.reserve(lattice.size());
     for (const auto& [node, spot] : lattice) grown.push_back(node);
     const Node low = corner_of(grown);
     for (int variant = 0; variant < 8; ++variant) {
         std::vector<Node> nodes;
+        nodes.reserve(wanted.size());
         for (const Node& node : wanted) nodes.push_back(turned(node, variant));
         const Node corner = corner_of(nodes);
         Spots ordered;

@@ -56,7 +56,7 @@ ViewShape shape_of(const Board& board,
     const auto map = fit_local_map(places_m, view.pixels);
     if (!map) return shape;
     const Eigen::JacobiSVD<Eigen::Matrix2d> svd(map->J_px_m);
-    const Eigen::Vector2d scales_px_m = svd.singularValues();
+    const Eigen::Vector2d& scales_px_m = svd.singularValues();
     if (!(scales_px_m[1] > 0.0)) return shape;
     shape.spacing_px = board.spacing_m * std::sqrt(scales_px_m[0] * scales_px_m[1]);
     shape.tilt_deg =
@@ -66,10 +66,10 @@ ViewShape shape_of(const Board& board,
     const Eigen::Matrix2d inverse = map->J_px_m.inverse();
     Eigen::Vector2d growth_m;
     for (Eigen::Index k = 0; k < 2; ++k) {
-        Eigen::Matrix2d dJ;
-        dJ.row(0) = map->H_u.row(k);
-        dJ.row(1) = map->H_v.row(k);
-        growth_m[k] = (inverse * dJ).trace();
+        Eigen::Matrix2d slope;
+        slope.row(0) = map->H_u.row(k);
+        slope.row(1) = map->H_v.row(k);
+        growth_m[k] = (inverse * slope).trace();
     }
     const Eigen::Vector2d growth_px = inverse.transpose() * growth_m;
     if (std::abs(growth_px.x()) > std::abs(growth_px.y())) {
