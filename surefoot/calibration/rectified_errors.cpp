@@ -29,8 +29,7 @@ std::optional<Eigen::Vector2d> rectified(const camera::RectifiedEye& eye,
 
 std::optional<Eigen::Vector2d> seen(const camera::RectifiedEye& eye,
                                     const Eigen::Vector3d& p_rectified) {
-    const auto raw =
-        camera::raw_from_ray(eye, p_rectified - eye.offset_x_m * Eigen::Vector3d::UnitX());
+    auto raw = camera::raw_from_ray(eye, p_rectified - eye.offset_x_m * Eigen::Vector3d::UnitX());
     if (!raw || raw->x() < -0.5 || raw->y() < -0.5 || raw->x() > eye.camera.width - 0.5 ||
         raw->y() > eye.camera.height - 0.5) {
         return std::nullopt;

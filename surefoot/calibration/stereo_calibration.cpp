@@ -261,6 +261,7 @@ Result<std::vector<Pair>> agreeing_pairs(const MonoCalibration& left,
                                          std::vector<RejectedView>& rejected) {
     std::vector<Pair> pairs = pairs_of(left, right);
     std::vector<Pose> relative;
+    relative.reserve(pairs.size());
     for (const Pair& pair : pairs) relative.push_back(pair.T_left_right);
     if (!pairs.empty()) drop_gross(pairs, median_pose(relative), rejected);
     if (static_cast<int>(pairs.size()) >= least) return pairs;

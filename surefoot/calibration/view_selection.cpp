@@ -42,7 +42,7 @@ std::vector<std::size_t> select_views(std::span<const std::size_t> candidates,
                                       const Motion& motion_px,
                                       const SelectionLimits& limits,
                                       std::vector<RejectedView>& rejected) {
-    const std::vector<std::size_t> different =
+    std::vector<std::size_t> different =
         without_repeats(candidates, motion_px, limits.least_motion_px, rejected);
     if (different.size() <= limits.most_views) return different;
     std::vector<double> apart(different.size(), std::numeric_limits<double>::infinity());
