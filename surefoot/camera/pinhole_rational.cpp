@@ -43,14 +43,14 @@ std::array<double, 7> product(const Cubic& a, const Cubic& b, const Factor& fact
 bool inside_domain(const PinholeRational& model, const Cubic& N, const Cubic& D, double r2) {
     const double tangential = 6.0 * std::hypot(model.p1, model.p2) * std::sqrt(r2);
     const auto one = [](std::size_t, std::size_t) { return 1.0; };
-    const std::array<double, 7> D_squared = product(D, D, one);
+    const std::array<double, 7> squared = product(D, D, one);
     std::array<double, 7> along = product(N, D, [](std::size_t i, std::size_t j) {
         return 1.0 + 2.0 * static_cast<double>(i) - 2.0 * static_cast<double>(j);
     });
     std::array<double, 7> across = product(N, D, one);
-    for (std::size_t i = 0; i < D_squared.size(); ++i) {
-        along[i] -= tangential * D_squared[i];
-        across[i] -= tangential * D_squared[i];
+    for (std::size_t i = 0; i < squared.size(); ++i) {
+        along[i] -= tangential * squared[i];
+        across[i] -= tangential * squared[i];
     }
     return positive_on(D, r2) && positive_on(along, r2) && positive_on(across, r2);
 }
