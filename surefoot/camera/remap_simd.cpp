@@ -94,11 +94,11 @@ HWY_INLINE std::size_t blend_vectors(const RemapTable::View& table,
     return i;
 }
 
-void remap_pixels(const RemapTable::View& table,
-                  const std::uint8_t* source,
-                  int stride,
-                  std::uint8_t* out,
-                  std::size_t count) {
+void remap_here(const RemapTable::View& table,
+                const std::uint8_t* source,
+                int stride,
+                std::uint8_t* out,
+                std::size_t count) {
     Fetched near;  // filled block by block. NOLINT(cppcoreguidelines-pro-type-member-init)
     for (std::size_t first = 0; first < count; first += kBlock) {
         const std::size_t block = std::min(kBlock, count - first);
@@ -127,14 +127,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace surefoot::camera {
 
-HWY_EXPORT(remap_pixels);
+HWY_EXPORT(remap_here);
 
 void remap_pixels(const RemapTable::View& table,
                   const std::uint8_t* source,
                   int stride,
                   std::uint8_t* out,
                   std::size_t count) {
-    HWY_DYNAMIC_DISPATCH(remap_pixels)(table, source, stride, out, count);
+    HWY_DYNAMIC_DISPATCH(remap_here)(table, source, stride, out, count);
 }
 
 }  // namespace surefoot::camera

@@ -37,7 +37,7 @@ HWY_INLINE int reproject_vectors(D d, const DisparityRow& row, int first, float*
     return u;
 }
 
-void reproject_row(const DisparityRow& row, Eigen::Vector3f* out) {
+void reproject_here(const DisparityRow& row, Eigen::Vector3f* out) {
     float* floats = out->data();
     const int done = reproject_vectors(hn::ScalableTag<float>(), row, 0, floats);
     reproject_vectors(hn::CappedTag<float, 1>(), row, done, floats);
@@ -49,10 +49,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace surefoot::camera {
 
-HWY_EXPORT(reproject_row);
+HWY_EXPORT(reproject_here);
 
 void reproject_row(const DisparityRow& row, Eigen::Vector3f* out) {
-    if (row.width > 0) HWY_DYNAMIC_DISPATCH(reproject_row)(row, out);
+    if (row.width > 0) HWY_DYNAMIC_DISPATCH(reproject_here)(row, out);
 }
 
 }  // namespace surefoot::camera
