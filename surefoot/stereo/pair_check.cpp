@@ -57,8 +57,8 @@ std::optional<Shift> shift_of(const cv::Mat& left,
     cv::minMaxLoc(score, nullptr, &best, nullptr, &at);
     // A best place on the edge of what was searched may go on beyond it.
     if (!(best >= kMinCorrelation) || at.y == 0 || at.y == score.rows - 1) return std::nullopt;
-    const double above = score.at<float>(at.y - 1, at.x);
-    const double below = score.at<float>(at.y + 1, at.x);
+    const auto above = static_cast<double>(score.at<float>(at.y - 1, at.x));
+    const auto below = static_cast<double>(score.at<float>(at.y + 1, at.x));
     const double bend = above + below - 2.0 * best;
     const double fine = bend < 0.0 ? 0.5 * (above - below) / bend : 0.0;
     const cv::Rect peak(at.x - kHalf_px / 2, at.y - kHalf_px / 2, kHalf_px, kHalf_px);

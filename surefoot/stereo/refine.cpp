@@ -122,7 +122,7 @@ void SubpixelRefiner::solve_block(int first,
     }
     row.radius_px = r;
     row.width = width;
-    row.enough = static_cast<float>((2 * r + 1) * (2 * r + 1) / 5);
+    row.enough = 0.2F * static_cast<float>((2 * r + 1) * (2 * r + 1));
     row.correlation = static_cast<float>(config_.correlation);
     row.min_noise_grey = static_cast<float>(config_.min_noise_grey);
     row.prior_sigma_px = static_cast<float>(config_.prior_sigma_px);

@@ -212,7 +212,7 @@ void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& ou
     step.disparities = config.disparities;
     step.penalties = penalties;
     const auto count = static_cast<std::size_t>(std::min(kLanes, width - u));
-    kernels::WinnerRows winners;
+    kernels::WinnerRows winners;  // all of it is written. NOLINT(*-member-init)
     for (int v = strip * kLanes; v < std::min(height, (strip + 1) * kLanes); ++v) {
         for (int byte = 0; byte < kCensusBytes; ++byte) {
             step.left[byte] = left_census.row(byte, v) + u;

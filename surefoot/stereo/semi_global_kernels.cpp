@@ -16,7 +16,7 @@ namespace surefoot::stereo::kernels::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-const hn::CappedTag<std::uint8_t, kLanes> kBytes;
+constexpr hn::CappedTag<std::uint8_t, kLanes> kBytes;
 using Bytes = hn::VFromD<decltype(kBytes)>;
 
 int lanes() {
@@ -27,16 +27,16 @@ void census_row(const std::uint8_t* grey,
                 std::ptrdiff_t stride,
                 int width,
                 std::uint8_t* const out[kCensusBytes]) {
-    constexpr auto window = census_window();
+    constexpr auto kWindow = census_window();
     for (int u = 0; u < width; u += lanes()) {
         const Bytes center = hn::LoadU(kBytes, grey + u);
         for (int byte = 0; byte < kCensusBytes; ++byte) {
             Bytes word = hn::Zero(kBytes);
             for (std::size_t bit = 0; bit < 8; ++bit) {
                 const std::size_t index = 8 * static_cast<std::size_t>(byte) + bit;
-                if (index >= window.size()) break;
+                if (index >= kWindow.size()) break;
                 const Bytes neighbour =
-                    hn::LoadU(kBytes, grey + u + window[index].du + window[index].dv * stride);
+                    hn::LoadU(kBytes, grey + u + kWindow[index].du + kWindow[index].dv * stride);
                 const Bytes flag = hn::Set(kBytes, static_cast<std::uint8_t>(1U << bit));
                 word = hn::Or(word, hn::IfThenElseZero(hn::Lt(neighbour, center), flag));
             }
