@@ -1,17 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "apps/surefoot/verbs.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/result.hpp"
 
 namespace surefoot::app {
+
+struct Timing {
+    double median_ms = 0.0;  ///< of the clock on the wall
+    double p99_ms = 0.0;
+    /// Least processor time of the process in one call: what a crowded machine leaves comparable.
+    std::optional<double> least_cpu_ms = {};
+};
 
 /// One line of `surefoot bench`.
 struct BenchResult {
     std::string name;
-    double median_ms = 0.0;
-    double p99_ms = 0.0;
-    std::optional<double> peer_ms;  ///< the same job by somebody else, measured in the same run
+    Timing ours;
+    std::optional<Timing> peer = {};  ///< the same job by somebody else, measured in the same run
 };
+
+/// Times `work`, after one call that warms up.
+[[nodiscard]] Timing timed(int repeats, const std::function<void()>& work);
+
+/// Matching, beside OpenCV's; with two threads also two matchers at once, the most that two threads
+/// could bring.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common,
+                                                            Executor& executor);
 
 }  // namespace surefoot::app

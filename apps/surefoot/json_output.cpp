@@ -707,11 +707,18 @@ std::string suite_json(std::span<const SuiteResult> results) {
 
 std::string bench_json(const std::vector<BenchResult>& results) {
     Json list = Json::array();
+    const auto optional = [](const std::optional<double>& value) {
+        return value ? Json(*value) : Json(nullptr);
+    };
     for (const auto& result : results) {
-        list.push_back({{"name", result.name},
-                        {"median_ms", result.median_ms},
-                        {"p99_ms", result.p99_ms},
-                        {"peer_ms", result.peer_ms ? Json(*result.peer_ms) : Json(nullptr)}});
+        const Timing peer = result.peer.value_or(Timing{});
+        list.push_back(
+            {{"name", result.name},
+             {"median_ms", result.ours.median_ms},
+             {"p99_ms", result.ours.p99_ms},
+             {"least_cpu_ms", optional(result.ours.least_cpu_ms)},
+             {"peer_ms", optional(result.peer ? std::optional(peer.median_ms) : std::nullopt)},
+             {"peer_least_cpu_ms", optional(peer.least_cpu_ms)}});
     }
     return Json{{"benchmarks", list}}.dump(kIndent);
 }

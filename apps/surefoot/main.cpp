@@ -643,7 +643,7 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     bench_verb
         ->add_option(
             "group", all.bench.group, "chain, camera, traversability, gate, sim; empty = all")
-        ->check(CLI::IsMember({"chain", "camera", "traversability", "gate", "sim"}));
+        ->check(CLI::IsMember({"chain", "camera", "stereo", "traversability", "gate", "sim"}));
 
     CLI::App* record_verb =
         bind(add_verb(app,

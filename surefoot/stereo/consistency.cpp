@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/stereo/match_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
 
 namespace surefoot::stereo {
@@ -14,8 +15,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 static_assert(kFarthest_px == 15, "steps of 1, 2, 4 and 8 reach that far");
 constexpr float kSteepestGround = 0.4F;
-/// Steps of a ramp are spread over this many pixels.
-constexpr int kRampReach_px = 4;
+constexpr int kBlockColumns = 256;
 
 int right_pixel(int u, float disparity_px) noexcept {
     return static_cast<int>(std::floor(static_cast<float>(u) - disparity_px + 0.5F));
@@ -40,22 +40,6 @@ void drop_hidden_in_row(float* d, int width, float tolerance_px, std::vector<flo
     }
 }
 
-/// Jumps along one line of pixels, `stride` elements apart.
-void mark_line(const float* d, std::uint8_t* jump, int count, int stride, float jump_px) {
-    int last = -1;  // the last known pixel
-    for (int i = 0; i < count; ++i) {
-        const float here = d[i * stride];
-        if (std::isnan(here)) continue;
-        const bool torn = last >= 0 && std::abs(here - d[last * stride]) >
-                                           jump_px + kSteepestGround * static_cast<float>(i - last);
-        const bool ramp = i >= kRampReach_px && std::abs(here - d[(i - kRampReach_px) * stride]) >
-                                                    jump_px + kSteepestGround * kRampReach_px;
-        if (torn) jump[last * stride] = jump[i * stride] = 255;
-        if (ramp) jump[(i - kRampReach_px / 2) * stride] = 255;
-        last = i;
-    }
-}
-
 }  // namespace
 
 void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparity_px) {
@@ -68,15 +52,44 @@ void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparit
     });
 }
 
-void mark_jumps(const Image<float>& disparity_px, double jump_px, Image<std::uint8_t>& jumps) {
+void mark_jumps(Executor& executor,
+                const Image<float>& disparity_px,
+                double jump_px,
+                Image<std::uint8_t>& jumps) {
     const int width = disparity_px.width();
     const int height = disparity_px.height();
     jumps.resize(width, height);
-    jumps.fill(0);
-    const auto limit = static_cast<float>(jump_px);
-    for (int v = 0; v < height; ++v) mark_line(disparity_px.row(v), jumps.row(v), width, 1, limit);
-    for (int u = 0; u < width; ++u)
-        mark_line(disparity_px.data() + u, jumps.data() + u, height, width, limit);
+    const rows::JumpRule rule{static_cast<float>(jump_px), kSteepestGround};
+    constexpr int kRamp_px = rows::kRampHalf_px;
+    for_row_blocks(executor, height, [&](int first, int last) {
+        for (int v = first; v < last; ++v) {
+            rows::mark_along(disparity_px.row(v), width, rule, jumps.row(v));
+            if (v < kRamp_px || v >= height - kRamp_px) continue;
+            rows::mark_ramps(disparity_px.row(v - kRamp_px),
+                             disparity_px.row(v + kRamp_px),
+                             width,
+                             rule,
+                             jumps.row(v));
+        }
+    });
+    // Both sides of a jump along a column: what differs from the last known pixel on the way down,
+    // and on the way up.
+    const int blocks = (width + kBlockColumns - 1) / kBlockColumns;
+    executor.parallel_for(blocks, [&](int block) {
+        const int u = block * kBlockColumns;
+        const int count = std::min(kBlockColumns, width - u);
+        float last_px[kBlockColumns];
+        float rows_since[kBlockColumns];
+        for (const bool down : {true, false}) {
+            std::fill_n(last_px, kBlockColumns, kNan);
+            std::fill_n(rows_since, kBlockColumns, 0.0F);
+            for (int k = 0; k < height; ++k) {
+                const int v = down ? k : height - 1 - k;
+                rows::mark_from_last(
+                    disparity_px.row(v) + u, count, rule, last_px, rows_since, jumps.row(v) + u);
+            }
+        }
+    });
 }
 
 void distance_to_marks(const Image<std::uint8_t>& marks, Image<std::uint8_t>& distance_px) {

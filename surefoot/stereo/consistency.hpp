@@ -13,10 +13,13 @@ namespace surefoot::stereo {
 void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparity_px);
 
 /// Marks (255) the pixels on both sides of a jump: a known neighbour along the row or the column,
-/// holes skipped, differs by more than `jump_px` plus 0.4 px for each pixel of distance. Ground
-/// seen at a usable angle slopes less (baseline / camera height); the ramps that matchers draw
-/// behind edges more.
-void mark_jumps(const Image<float>& disparity_px, double jump_px, Image<std::uint8_t>& jumps);
+/// holes skipped, differs by more than `jump_px` plus 0.4 px for each pixel of distance, and the
+/// middle between two pixels 4 apart that do. Ground seen at a usable angle slopes less (baseline /
+/// camera height); the ramps that matchers draw behind edges more.
+void mark_jumps(Executor& executor,
+                const Image<float>& disparity_px,
+                double jump_px,
+                Image<std::uint8_t>& jumps);
 
 /// Distances are counted up to here.
 inline constexpr int kFarthest_px = 15;

@@ -2,12 +2,15 @@
 #include "surefoot/stereo/consistency.hpp"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/stereo/test_executors.hpp"
 
 namespace surefoot::stereo {
 namespace {
@@ -59,13 +62,19 @@ TEST(DropHidden, MatchesOutsideTheRightImageGo) {
     EXPECT_EQ(known_columns(image), (std::vector<int>{1, 3}));
 }
 
-TEST(MarkJumps, BothSidesOfAStepAndAcrossAHole) {
+Image<std::uint8_t> jumps_of(const Image<float>& disparity_px) {
+    Serial serial;
     Image<std::uint8_t> jumps;
-    mark_jumps(row_image({5, 5, 5, 9, 9, 9}), 1.0, jumps);
+    mark_jumps(serial, disparity_px, 1.0, jumps);
+    return jumps;
+}
+
+TEST(MarkJumps, BothSidesOfAStepAndAcrossAHole) {
+    Image<std::uint8_t> jumps = jumps_of(row_image({5, 5, 5, 9, 9, 9}));
     EXPECT_EQ(jumps.at(2, 0), 255);
     EXPECT_EQ(jumps.at(3, 0), 255);
     EXPECT_EQ(jumps.at(0, 0), 0);
-    mark_jumps(row_image({5, 5, kNan, kNan, 9, 9}), 1.0, jumps);
+    jumps = jumps_of(row_image({5, 5, kNan, kNan, 9, 9}));
     EXPECT_EQ(jumps.at(1, 0), 255);
     EXPECT_EQ(jumps.at(4, 0), 255);
 }
@@ -74,8 +83,7 @@ TEST(MarkJumps, ARampThatNoGroundHasIsAJump) {
     std::vector<float> ramp;
     for (int u = 0; u < 20; ++u)
         ramp.push_back(10.0F + 0.9F * static_cast<float>(std::clamp(u - 6, 0, 8)));
-    Image<std::uint8_t> jumps;
-    mark_jumps(row_image(ramp), 1.0, jumps);
+    const Image<std::uint8_t> jumps = jumps_of(row_image(ramp));
     EXPECT_EQ(jumps.at(10, 0), 255);
     EXPECT_EQ(jumps.at(2, 0), 0);
     EXPECT_EQ(jumps.at(18, 0), 0);
@@ -88,9 +96,50 @@ TEST(MarkJumps, GroundAtAUsableAngleIsNone) {
         for (int u = 0; u < 30; ++u) floor.at(u, v) = 3.0F + 0.3F * static_cast<float>(v);
     }
     floor.at(10, 10) = kNan;
-    Image<std::uint8_t> jumps;
-    mark_jumps(floor, 1.0, jumps);
+    const Image<std::uint8_t> jumps = jumps_of(floor);
     for (std::size_t i = 0; i < jumps.size(); ++i) EXPECT_EQ(jumps.data()[i], 0) << "pixel " << i;
+}
+
+/// The rule of mark_jumps along one line of pixels, `stride` elements apart, word by word.
+void mark_line(const float* d, std::uint8_t* jump, int count, int stride) {
+    int last = -1;  // the last known pixel
+    for (int i = 0; i < count; ++i) {
+        const float here = d[i * stride];
+        if (std::isnan(here)) continue;
+        const auto differs = [&](int from) {
+            return std::abs(here - d[from * stride]) > 1.0F + 0.4F * static_cast<float>(i - from);
+        };
+        if (last >= 0 && differs(last)) jump[last * stride] = jump[i * stride] = 255;
+        if (i >= 4 && differs(i - 4)) jump[(i - 2) * stride] = 255;
+        last = i;
+    }
+}
+
+TEST(MarkJumps, FollowsTheRuleOnEveryProcessorAndThread) {
+    Rng rng(8);
+    for (const auto& [width, height] :
+         {std::pair{1, 1}, {2, 5}, {3, 2}, {5, 4}, {71, 40}, {300, 70}}) {
+        Image<float> in(width, height);
+        float surface_px = 20.0F;
+        for (std::size_t i = 0; i < in.size(); ++i) {
+            if (rng.uniform() < 0.1) surface_px = static_cast<float>(rng.uniform(15.0, 25.0));
+            surface_px += static_cast<float>(rng.uniform(-0.5, 0.5));
+            in.data()[i] = rng.uniform() < 0.3 ? kNan : surface_px;
+        }
+        Image<std::uint8_t> expected(width, height, 0);
+        for (int v = 0; v < height; ++v) mark_line(in.row(v), expected.row(v), width, 1);
+        for (int u = 0; u < width; ++u)
+            mark_line(in.data() + u, expected.data() + u, height, width);
+        test::TwoThreads threads;
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+            hwy::SetSupportedTargetsForTest(target);
+            EXPECT_EQ(jumps_of(in), expected) << hwy::TargetName(target) << " " << width;
+            Image<std::uint8_t> jumps;
+            mark_jumps(threads, in, 1.0, jumps);
+            EXPECT_EQ(jumps, expected) << hwy::TargetName(target) << " " << width;
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
 }
 
 TEST(DistanceToMarks, IsTheChessboardDistance) {

@@ -18,7 +18,7 @@ void Finisher::finish(ImageView<const std::uint8_t> left,
                       const Image<float>& found_px,
                       Executor& executor,
                       camera::DepthImage& depth) {
-    mark_jumps(found_px, kJump_px, jumps_);
+    mark_jumps(executor, found_px, kJump_px, jumps_);
     distance_to_marks(jumps_, jump_distance_px_);
     unknown_share(executor, found_px, kNeighbourhoodRadius_px, unknown_share_);
     refiner_.refine(left, right, jump_distance_px_, executor, depth.disparity_px, refinement_);

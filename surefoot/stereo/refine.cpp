@@ -83,13 +83,15 @@ void SubpixelRefiner::warp_block(int first,
     const auto columns = static_cast<std::size_t>(width);
     std::vector<std::int32_t> places(columns);
     std::vector<float> fractions(columns);
-    std::vector<std::int16_t> taps(4 * columns);
+    const std::size_t padded = columns + rows::kTapPadding;
+    std::vector<std::int16_t> taps(8 * padded);
     rows::WarpRow row;
     row.jump_margin_px = config_.jump_margin_px;
     row.width = width;
     row.place = places.data();
     row.fraction = fractions.data();
-    for (std::size_t k = 0; k < 4; ++k) row.taps[k] = taps.data() + k * columns;
+    for (std::size_t k = 0; k < 4; ++k) row.taps[k] = taps.data() + k * padded;
+    row.fours = taps.data() + 4 * padded;
     for (int v = first; v < last; ++v) {
         row.left = left_.row(v);
         row.right = right_.row(v);

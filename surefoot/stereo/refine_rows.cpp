@@ -11,6 +11,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "surefoot/stereo/confidence.hpp"
@@ -18,6 +19,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::stereo::rows::HWY_NAMESPACE {
 namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
 
 /// Grey levels are held in sixteenths.
 constexpr float kScale = 16.0F;
@@ -39,68 +42,6 @@ void smooth_image_row(const std::uint8_t* const in[5],
         const int total = sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u];
         out[u] = static_cast<std::int16_t>((total + 8) >> 4);
     }
-}
-
-HWY_INLINE void sort(float& a, float& b) {
-    const float low = a < b ? a : b;
-    const float high = a < b ? b : a;
-    a = low;
-    b = high;
-}
-
-/// The middle of nine by 19 exchanges (Paeth 1990).
-HWY_INLINE float middle(float* p) {
-    constexpr int kExchanges[19][2] = {{1, 2},
-                                       {4, 5},
-                                       {7, 8},
-                                       {0, 1},
-                                       {3, 4},
-                                       {6, 7},
-                                       {1, 2},
-                                       {4, 5},
-                                       {7, 8},
-                                       {0, 3},
-                                       {5, 8},
-                                       {4, 7},
-                                       {3, 6},
-                                       {1, 4},
-                                       {2, 5},
-                                       {4, 7},
-                                       {4, 2},
-                                       {6, 4},
-                                       {4, 2}};
-    for (const auto& exchange : kExchanges) sort(p[exchange[0]], p[exchange[1]]);
-    return p[4];
-}
-
-HWY_INLINE float known_or(float value, float instead) {
-    return value == value ? value : instead;
-}
-
-HWY_INLINE float median_at(
-    const float* a, const float* b, const float* c, int low, int u, int high) {
-    constexpr float kUnknown = -1.0F;  // disparities are positive
-    float p[9] = {known_or(a[low], kUnknown),
-                  known_or(a[u], kUnknown),
-                  known_or(a[high], kUnknown),
-                  known_or(b[low], kUnknown),
-                  known_or(b[u], kUnknown),
-                  known_or(b[high], kUnknown),
-                  known_or(c[low], kUnknown),
-                  known_or(c[u], kUnknown),
-                  known_or(c[high], kUnknown)};
-    const float found = middle(p);
-    return found > 0.0F ? found : std::numeric_limits<float>::quiet_NaN();
-}
-
-void median_row(const float* const lines[3], int width, float* HWY_RESTRICT out) {
-    const float* const a = lines[0];
-    const float* const b = lines[1];
-    const float* const c = lines[2];
-    const int last = width - 1;
-    out[0] = median_at(a, b, c, 0, 0, std::min(1, last));
-    for (int u = 1; u < last; ++u) out[u] = median_at(a, b, c, u - 1, u, u + 1);
-    if (last > 0) out[last] = median_at(a, b, c, last - 1, last, last);
 }
 
 void smooth_along_row(const float* HWY_RESTRICT center,
@@ -154,12 +95,15 @@ void place_taps(const WarpRow& row) {
         fraction[u] = kept - static_cast<float>(place[u]);
         used[u] = inside ? 1 : 0;
     }
-    for (int u = 1; u < row.width - 1; ++u) {
-        const std::int16_t* const r = row.right + place[u];
-        row.taps[0][u] = r[-1];
-        row.taps[1][u] = r[0];
-        row.taps[2][u] = r[1];
-        row.taps[3][u] = r[2];
+    // Four pixels at once, and then sorted by their place: a gather of each would take four times
+    // as many loads.
+    for (int u = 1; u < row.width - 1; ++u)
+        std::memcpy(row.fours + 4 * u, row.right + place[u] - 1, 4 * sizeof(std::int16_t));
+    const hn::ScalableTag<std::int16_t> tag;
+    for (int u = 0; u < row.width; u += static_cast<int>(hn::Lanes(tag))) {
+        hn::Vec<decltype(tag)> tap[4];
+        hn::LoadInterleaved4(tag, row.fours + 4 * u, tap[0], tap[1], tap[2], tap[3]);
+        for (int k = 0; k < 4; ++k) hn::StoreU(tap[k], tag, row.taps[k] + u);
     }
 }
 
@@ -380,7 +324,6 @@ HWY_AFTER_NAMESPACE();
 namespace surefoot::stereo::rows {
 
 HWY_EXPORT(smooth_image_row);
-HWY_EXPORT(median_row);
 HWY_EXPORT(smooth_along_row);
 HWY_EXPORT(warp_row);
 HWY_EXPORT(accumulate_row);
@@ -389,9 +332,6 @@ HWY_EXPORT(rate_row);
 
 void smooth_image(const std::uint8_t* const in[5], int width, int* scratch, std::int16_t* out) {
     HWY_DYNAMIC_DISPATCH(smooth_image_row)(in, width, scratch, out);
-}
-void median(const float* const lines[3], int width, float* out) {
-    HWY_DYNAMIC_DISPATCH(median_row)(lines, width, out);
 }
 void smooth_along(const float* center,
                   const float* const* before,

@@ -12,11 +12,6 @@ namespace surefoot::stereo::rows {
 /// is made; `scratch`: width + 4.
 void smooth_image(const std::uint8_t* const in[5], int width, int* scratch, std::int16_t* out);
 
-/// Median of 3 x 3 disparities; unknown (NaN) counts as less than all, so that it is the median
-/// only where five are unknown. `lines`: rows above, here and below; columns beyond the ends
-/// repeat.
-void median(const float* const lines[3], int width, float* out);
-
 /// See stereo::smooth_along. `before[k]` and `after[k]` are the lines k + 1 pixels away on either
 /// side, already shifted; where `margin_per_step` is 1 the first and last k + 1 pixels have no
 /// partners. `sum` and `count`: scratch of the row.
@@ -41,11 +36,15 @@ struct WarpRow {
     std::int16_t* gradient = nullptr;
     std::int16_t* error = nullptr;
     std::int16_t* used = nullptr;
-    // Scratch of the row: where in the right row, and its four pixels there.
+    // Scratch of the row: where in the right row, and its four pixels there, side by side and
+    // apart.
     std::int32_t* place = nullptr;
     float* fraction = nullptr;
-    std::int16_t* taps[4] = {};
+    std::int16_t* fours = nullptr;  ///< 4 (width + kTapPadding)
+    std::int16_t* taps[4] = {};     ///< width + kTapPadding each
 };
+/// Registers may reach this far beyond the end of the row.
+inline constexpr int kTapPadding = 64;
 /// Grey difference and gradient of every pixel at its disparity.
 void warp(const WarpRow& row);
 

@@ -2,18 +2,13 @@
 #include "surefoot/stereo/settle.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <limits>
 #include <vector>
 
-#include "surefoot/stereo/refine_rows.hpp"
+#include "surefoot/stereo/match_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
 
 namespace surefoot::stereo {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr int kNoCost = 255;
 
 /// What the left pixels of a row say about one pixel of the right row: cost * 256 + disparity of
 /// the cheapest.
@@ -32,11 +27,14 @@ void claim(const Winners& winners, int v, Claims& claims) {
     }
 }
 
-/// Vertex of the parabola through the costs at -1, 0 and 1; 0 beside the ends of the range.
-float vertex(int below, int here, int above) {
-    const int curvature = below + above - 2 * here;
-    if (below == kNoCost || above == kNoCost || curvature <= 0) return 0.0F;
-    return static_cast<float>(below - above) / static_cast<float>(2 * curvature);
+/// With which disparity the right pixel of each left one was claimed.
+void look_up(const Winners& winners, int v, const Claims& claims, std::uint8_t* claimed) {
+    const std::uint8_t* const d = winners.disparity.row(v);
+    for (int u = 0; u < winners.cost.width(); ++u) {
+        claimed[u] = u < d[u]
+                         ? std::uint8_t{0}
+                         : static_cast<std::uint8_t>(claims[static_cast<std::size_t>(u - d[u])]);
+    }
 }
 
 }  // namespace
@@ -50,21 +48,20 @@ void settle(const SettleConfig& config,
     disparity_px.resize(width, height);
     for_row_blocks(executor, height, [&](int first, int last) {
         Claims claims;
+        std::vector<std::uint8_t> claimed(static_cast<std::size_t>(width));
         for (int v = first; v < last; ++v) {
             claim(winners, v, claims);
-            for (int u = 0; u < width; ++u) {
-                const int d = winners.disparity.row(v)[u];
-                const int cost = winners.cost.row(v)[u];
-                float& out = disparity_px.row(v)[u];
-                out = kNan;
-                if (d == 0 || d > u) continue;
-                const int second = winners.second_cost.row(v)[u];
-                if (second * (100 - config.uniqueness_percent) < 100 * cost) continue;
-                const int claimed = claims[static_cast<std::size_t>(u - d)] % 256;
-                if (std::abs(claimed - d) > config.left_right_px) continue;
-                out = static_cast<float>(d) +
-                      vertex(winners.cost_below.row(v)[u], cost, winners.cost_above.row(v)[u]);
-            }
+            look_up(winners, v, claims, claimed.data());
+            rows::settle({winners.disparity.row(v),
+                          winners.cost.row(v),
+                          winners.cost_below.row(v),
+                          winners.cost_above.row(v),
+                          winners.second_cost.row(v),
+                          claimed.data(),
+                          width,
+                          config.uniqueness_percent,
+                          config.left_right_px,
+                          disparity_px.row(v)});
         }
     });
 }

@@ -79,6 +79,65 @@ TEST(Settle, InfinitelyFarIsNoDepth) {
     for (int u = 0; u < 4; ++u) EXPECT_TRUE(std::isnan(d.at(u, 0)));
 }
 
+/// What settle says, pixel by pixel.
+float settled_plainly(const SettleConfig& config, const Winners& w, int u, int v) {
+    const int d = w.disparity.at(u, v);
+    const int cost = w.cost.at(u, v);
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    if (d == 0 || d > u) return kNan;
+    if (w.second_cost.at(u, v) * (100 - config.uniqueness_percent) < 100 * cost) return kNan;
+    int claimed = d;
+    int cheapest = cost;
+    for (int other = 0; other < w.cost.width(); ++other) {
+        const int its_d = w.disparity.at(other, v);
+        if (other - its_d != u - d) continue;
+        const int its_cost = w.cost.at(other, v);
+        if (its_cost > cheapest || (its_cost == cheapest && its_d >= claimed)) continue;
+        claimed = its_d;
+        cheapest = its_cost;
+    }
+    if (std::abs(claimed - d) > config.left_right_px) return kNan;
+    const int below = w.cost_below.at(u, v);
+    const int above = w.cost_above.at(u, v);
+    const int curvature = below + above - 2 * cost;
+    if (below == 255 || above == 255 || curvature <= 0) return static_cast<float>(d);
+    return static_cast<float>(d) +
+           static_cast<float>(below - above) / static_cast<float>(2 * curvature);
+}
+
+TEST(Settle, FollowsTheRuleOnEveryProcessor) {
+    Rng rng(4);
+    const SettleConfig config{10, 1};
+    for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {70, 40}}) {
+        Winners winners;
+        winners.resize(width, height);
+        const auto byte = [&](double low, double high) {
+            return static_cast<std::uint8_t>(rng.uniform(low, high));
+        };
+        for (std::size_t i = 0; i < winners.cost.size(); ++i) {
+            winners.disparity.data()[i] = byte(0.0, 12.0);
+            winners.cost.data()[i] = byte(0.0, 120.0);
+            winners.cost_below.data()[i] = rng.uniform() < 0.1 ? 255 : byte(0.0, 250.0);
+            winners.cost_above.data()[i] = rng.uniform() < 0.1 ? 255 : byte(0.0, 250.0);
+            winners.second_cost.data()[i] = byte(60.0, 256.0);
+        }
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+            hwy::SetSupportedTargetsForTest(target);
+            const Image<float> out = settled(winners, config);
+            for (int v = 0; v < height; ++v) {
+                for (int u = 0; u < width; ++u) {
+                    const float expected = settled_plainly(config, winners, u, v);
+                    if (std::isnan(expected))
+                        ASSERT_TRUE(std::isnan(out.at(u, v))) << u << ", " << v;
+                    else
+                        ASSERT_EQ(out.at(u, v), expected) << u << ", " << v;
+                }
+            }
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
+}
+
 TEST(MedianFilter, IsTheMiddleOfNineOnEveryProcessor) {
     Rng rng(3);
     for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {7, 3}, {70, 9}}) {

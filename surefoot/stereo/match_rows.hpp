@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+/// The loops of settle.cpp and consistency.cpp over one row of an image, compiled once for every
+/// instruction set and chosen at run time; all give the same bytes.
+namespace surefoot::stereo::rows {
+
+/// Median of 3 x 3 disparities; unknown (NaN) counts as less than all, so that it is the median
+/// only where five are unknown. `lines`: rows above, here and below; columns beyond the ends
+/// repeat.
+void median(const float* const lines[3], int width, float* out);
+
+struct SettleRow {
+    const std::uint8_t* disparity = nullptr;
+    const std::uint8_t* cost = nullptr;
+    const std::uint8_t* cost_below = nullptr;
+    const std::uint8_t* cost_above = nullptr;
+    const std::uint8_t* second_cost = nullptr;
+    /// Disparity with which the right pixel of this match was claimed most cheaply.
+    const std::uint8_t* claimed = nullptr;
+    int width = 0;
+    int uniqueness_percent = 0;
+    int left_right_px = 0;
+    float* disparity_px = nullptr;  ///< out
+};
+/// See stereo::settle.
+void settle(const SettleRow& row);
+
+/// What counts as a jump between known pixels: a difference above step_px + slope * distance.
+struct JumpRule {
+    float step_px = 0.0F;
+    float slope = 0.0F;
+};
+/// Half the pixels over which the steps of a ramp are spread.
+inline constexpr int kRampHalf_px = 2;
+
+/// Writes 255 into `mark` on both sides of a jump along the row, holes skipped, and in the middle
+/// of a ramp of 2 kRampHalf_px; else 0.
+void mark_along(const float* disparity_px, int width, JumpRule rule, std::uint8_t* mark);
+/// Adds the middles of ramps between the rows kRampHalf_px above and below.
+void mark_ramps(
+    const float* above, const float* below, int width, JumpRule rule, std::uint8_t* mark);
+/// Adds the pixels that differ from the last known one of their column. `last_px` (NaN at first)
+/// and `rows_since` (0 at first) are kept from row to row.
+void mark_from_last(const float* disparity_px,
+                    int width,
+                    JumpRule rule,
+                    float* last_px,
+                    float* rows_since,
+                    std::uint8_t* mark);
+
+}  // namespace surefoot::stereo::rows
