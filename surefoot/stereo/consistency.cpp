@@ -92,34 +92,33 @@ void mark_jumps(Executor& executor,
     });
 }
 
-void distance_to_marks(const Image<std::uint8_t>& marks, Image<std::uint8_t>& distance_px) {
+void distance_to_marks(Executor& executor,
+                       const Image<std::uint8_t>& marks,
+                       Image<std::uint8_t>& distance_px) {
     const int width = marks.width();
     const int height = marks.height();
     distance_px.resize(width, height);
-    const auto nearer = [](std::uint8_t here, std::uint8_t other, int steps) {
-        const auto longer = static_cast<std::uint8_t>(other + steps);
-        const std::uint8_t far = other > kFarthest_px - steps ? std::uint8_t{255} : longer;
-        return here < far ? here : far;
-    };
     // Along each row, in steps of 1, 2, 4 and 8; then from row to row, straight or aslant. A longer
     // way along the row than down the column takes its first part along the row of the mark.
-    std::vector<std::uint8_t> before(static_cast<std::size_t>(width));
-    for (int v = 0; v < height; ++v) {
-        std::uint8_t* const d = distance_px.row(v);
-        for (int u = 0; u < width; ++u) d[u] = marks.row(v)[u] != 0 ? 0 : 255;
-        for (int step = 1; step <= kFarthest_px; step *= 2) {
-            std::copy(d, d + width, before.begin());
-            const std::uint8_t* const b = before.data();
-            for (int u = 0; u < width - step; ++u) d[u] = nearer(d[u], b[u + step], step);
-            for (int u = step; u < width; ++u) d[u] = nearer(d[u], b[u - step], step);
+    for_row_blocks(executor, height, [&](int first, int last) {
+        std::vector<std::uint8_t> before(static_cast<std::size_t>(width));
+        for (int v = first; v < last; ++v) {
+            std::uint8_t* const d = distance_px.row(v);
+            for (int u = 0; u < width; ++u) d[u] = marks.row(v)[u] != 0 ? 0 : 255;
+            for (int step = 1; step <= std::min(kFarthest_px, width - 1); step *= 2) {
+                std::copy(d, d + width, before.begin());
+                const std::uint8_t* const b = before.data();
+                rows::nearer(b + step, step, kFarthest_px, width - step, d);
+                rows::nearer(b, step, kFarthest_px, width - step, d + step);
+            }
         }
-    }
+    });
     const auto pass = [&](int v, int from) {
         std::uint8_t* const d = distance_px.row(v);
         const std::uint8_t* const b = distance_px.row(from);
-        for (int u = 0; u < width; ++u) d[u] = nearer(d[u], b[u], 1);
-        for (int u = 0; u < width - 1; ++u) d[u] = nearer(d[u], b[u + 1], 1);
-        for (int u = 1; u < width; ++u) d[u] = nearer(d[u], b[u - 1], 1);
+        rows::nearer(b, 1, kFarthest_px, width, d);
+        rows::nearer(b + 1, 1, kFarthest_px, width - 1, d);
+        rows::nearer(b, 1, kFarthest_px, width - 1, d + 1);
     };
     for (int v = 1; v < height; ++v) pass(v, v - 1);
     for (int v = height - 2; v >= 0; --v) pass(v, v + 1);

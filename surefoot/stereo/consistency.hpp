@@ -25,7 +25,9 @@ void mark_jumps(Executor& executor,
 inline constexpr int kFarthest_px = 15;
 /// Distance [px] of every pixel from the nearest marked one, along rows, columns and diagonals
 /// alike; 255 stands for more than kFarthest_px. After Rosenfeld and Pfaltz 1966.
-void distance_to_marks(const Image<std::uint8_t>& marks, Image<std::uint8_t>& distance_px);
+void distance_to_marks(Executor& executor,
+                       const Image<std::uint8_t>& marks,
+                       Image<std::uint8_t>& distance_px);
 
 /// Share of unknown pixels in the window of `radius_px` around each pixel, as far as it lies in the
 /// image.

@@ -147,8 +147,9 @@ TEST(DistanceToMarks, IsTheChessboardDistance) {
     Image<std::uint8_t> marks(40, 25, 0);
     for (int n = 0; n < 6; ++n)
         marks.at(static_cast<int>(rng.below(40)), static_cast<int>(rng.below(25))) = 255;
+    Serial serial;
     Image<std::uint8_t> distance;
-    distance_to_marks(marks, distance);
+    distance_to_marks(serial, marks, distance);
     for (int v = 0; v < 25; ++v) {
         for (int u = 0; u < 40; ++u) {
             int nearest = 255;
@@ -163,7 +164,7 @@ TEST(DistanceToMarks, IsTheChessboardDistance) {
         }
     }
     marks.fill(0);
-    distance_to_marks(marks, distance);
+    distance_to_marks(serial, marks, distance);
     EXPECT_EQ(distance.at(0, 0), 255);
 }
 

@@ -19,7 +19,7 @@ void Finisher::finish(ImageView<const std::uint8_t> left,
                       Executor& executor,
                       camera::DepthImage& depth) {
     mark_jumps(executor, found_px, kJump_px, jumps_);
-    distance_to_marks(jumps_, jump_distance_px_);
+    distance_to_marks(executor, jumps_, jump_distance_px_);
     unknown_share(executor, found_px, kNeighbourhoodRadius_px, unknown_share_);
     refiner_.refine(left, right, jump_distance_px_, executor, depth.disparity_px, refinement_);
     rate_matches(executor, refinement_, jump_distance_px_, unknown_share_, depth);

@@ -162,6 +162,20 @@ void mark_from_last_row(const float* HWY_RESTRICT d,
     }
 }
 
+void nearer_row(const std::uint8_t* HWY_RESTRICT other,
+                int steps,
+                int farthest,
+                int width,
+                std::uint8_t* HWY_RESTRICT here) {
+    const auto most = static_cast<std::uint8_t>(farthest - steps);
+    const auto step = static_cast<std::uint8_t>(steps);
+    for (int u = 0; u < width; ++u) {
+        const auto longer = static_cast<std::uint8_t>(other[u] + step);
+        const std::uint8_t far = other[u] > most ? std::uint8_t{255} : longer;
+        here[u] = here[u] < far ? here[u] : far;
+    }
+}
+
 }  // namespace
 }  // namespace surefoot::stereo::rows::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -174,6 +188,7 @@ HWY_EXPORT(settle_row);
 HWY_EXPORT(mark_along_row);
 HWY_EXPORT(mark_ramps_row);
 HWY_EXPORT(mark_from_last_row);
+HWY_EXPORT(nearer_row);
 
 void median(const float* const lines[3], int width, float* out) {
     HWY_DYNAMIC_DISPATCH(median_row)(lines, width, out);
@@ -196,6 +211,10 @@ void mark_from_last(const float* disparity_px,
                     std::uint8_t* mark) {
     HWY_DYNAMIC_DISPATCH(mark_from_last_row)
     (disparity_px, width, rule, last_px, rows_since, mark);
+}
+
+void nearer(const std::uint8_t* other, int steps, int farthest, int width, std::uint8_t* here) {
+    HWY_DYNAMIC_DISPATCH(nearer_row)(other, steps, farthest, width, here);
 }
 
 }  // namespace surefoot::stereo::rows

@@ -51,4 +51,8 @@ void mark_from_last(const float* disparity_px,
                     float* rows_since,
                     std::uint8_t* mark);
 
+/// A distance counted up to `farthest`, 255 beyond: the lesser of `here` and `steps` more than
+/// `other`. `here` and `other` must not overlap.
+void nearer(const std::uint8_t* other, int steps, int farthest, int width, std::uint8_t* here);
+
 }  // namespace surefoot::stereo::rows

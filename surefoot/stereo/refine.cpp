@@ -13,10 +13,12 @@ namespace {
 constexpr int kMaxWindowRadius_px = 16;
 constexpr int kMaxSmoothRadius_px = 16;
 
-void smooth_image_row(ImageView<const std::uint8_t> in, int v, Image<std::int16_t>& out) {
+void smooth_image_row(ImageView<const std::uint8_t> in,
+                      int v,
+                      std::vector<int>& scratch,
+                      Image<std::int16_t>& out) {
     const std::uint8_t* lines[5];
     for (int k = 0; k < 5; ++k) lines[k] = in.row(std::clamp(v + k - 2, 0, in.height - 1));
-    std::vector<int> scratch(static_cast<std::size_t>(in.width) + 4);
     rows::smooth_image(lines, in.width, scratch.data(), out.row(v));
 }
 
@@ -57,17 +59,14 @@ void smooth_along(const Image<float>& in,
         before[k - 1] = down ? in.row(v - k) : center - k;
         after[k - 1] = down ? in.row(v + k) : center + k;
     }
-    std::vector<float> scratch(2 * static_cast<std::size_t>(width));
-    rows::smooth_along(center,
-                       before,
-                       after,
-                       steps,
-                       down ? 0 : 1,
-                       width,
-                       static_cast<float>(same_surface_px),
-                       scratch.data(),
-                       scratch.data() + width,
-                       out.row(v));
+    rows::smooth_along({center,
+                        before,
+                        after,
+                        steps,
+                        down ? 0 : 1,
+                        width,
+                        static_cast<float>(same_surface_px),
+                        out.row(v)});
 }
 
 SubpixelRefiner::SubpixelRefiner(const RefineConfig& config) : config_(config) {
@@ -158,9 +157,10 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
     const int radius = config_.smooth_radius_px;
     const double same = config_.same_surface_px;
     for_row_blocks(executor, height, [&](int first, int last) {
+        std::vector<int> scratch(static_cast<std::size_t>(width) + 4);
         for (int v = first; v < last; ++v) {
-            smooth_image_row(left, v, left_);
-            smooth_image_row(right, v, right_);
+            smooth_image_row(left, v, scratch, left_);
+            smooth_image_row(right, v, scratch, right_);
             smooth_along(disparity_px, v, false, radius, same, horizontal_);
         }
     });

@@ -44,38 +44,37 @@ void smooth_image_row(const std::uint8_t* const in[5],
     }
 }
 
-void smooth_along_row(const float* HWY_RESTRICT center,
-                      const float* const* before,
-                      const float* const* after,
-                      int steps,
-                      int margin_per_step,
-                      int width,
-                      float limit,
-                      float* HWY_RESTRICT sum,
-                      float* HWY_RESTRICT count,
-                      float* HWY_RESTRICT out) {
-    std::fill(sum, sum + width, 0.0F);
-    std::fill(count, count + width, 1.0F);
+/// The lanes from `u` on, averaged with the neighbours of `steps` lines on either side.
+template <class D>
+HWY_INLINE void smooth_here(D d, const SmoothRow& row, int steps, int u) {
+    const auto center = hn::LoadU(d, row.center + u);
+    const auto limit = hn::Set(d, row.same_surface_px);
+    auto sum = hn::Zero(d);
+    auto count = hn::Set(d, 1.0F);
     for (int k = 0; k < steps; ++k) {
-        const float* const low_line = before[k];
-        const float* const high_line = after[k];
-        const int margin = margin_per_step * (k + 1);
-        for (int u = margin; u < width - margin; ++u) {
-            const float low = low_line[u] - center[u];
-            const float high = high_line[u] - center[u];
-            // NaN compares false. Without a branch, so that lanes need not agree.
-            const bool same = static_cast<int>(std::abs(low) <= limit) &
-                              static_cast<int>(std::abs(high) <= limit);
-            sum[u] += same ? low + high : 0.0F;
-            count[u] += same ? 2.0F : 0.0F;
-        }
+        const auto low = hn::Sub(hn::LoadU(d, row.before[k] + u), center);
+        const auto high = hn::Sub(hn::LoadU(d, row.after[k] + u), center);
+        // NaN compares false.
+        const auto same = hn::And(hn::Le(hn::Abs(low), limit), hn::Le(hn::Abs(high), limit));
+        sum = hn::Add(sum, hn::IfThenElseZero(same, hn::Add(low, high)));
+        count = hn::Add(count, hn::IfThenElseZero(same, hn::Set(d, 2.0F)));
     }
-    for (int u = 0; u < width; ++u) out[u] = center[u] + sum[u] / count[u];
+    hn::StoreU(hn::Add(center, hn::Div(sum, count)), d, row.out + u);
 }
 
-/// Nearest integer of |x| < 4096, without a rounding call.
-HWY_INLINE std::int16_t rounded(float x) {
-    return static_cast<std::int16_t>(static_cast<int>(x + 4096.5F) - 4096);
+void smooth_along_row(const SmoothRow& row) {
+    const hn::ScalableTag<float> whole;
+    const hn::CappedTag<float, 1> single;
+    const int lanes = static_cast<int>(hn::Lanes(whole));
+    const int margin = std::min(row.margin_per_step * row.steps, row.width / 2);
+    const auto beside_end = [&](int u) {
+        const int partners = row.margin_per_step > 0 ? std::min(u, row.width - 1 - u) : row.steps;
+        smooth_here(single, row, std::min(row.steps, partners), u);
+    };
+    int u = 0;
+    for (; u < margin; ++u) beside_end(u);
+    for (; u + lanes <= row.width - margin; u += lanes) smooth_here(whole, row, row.steps, u);
+    for (; u < row.width; ++u) beside_end(u);
 }
 
 void place_taps(const WarpRow& row) {
@@ -107,37 +106,60 @@ void place_taps(const WarpRow& row) {
     }
 }
 
+/// int16 pixels as floats.
+template <class D>
+HWY_INLINE hn::Vec<D> grey(D d, const std::int16_t* from) {
+    const hn::Rebind<std::int16_t, D> d16;
+    const hn::RebindToSigned<D> d32;
+    return hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d16, from)));
+}
+
+/// Nearest integers of |x| < 4096, halves upwards.
+template <class D>
+HWY_INLINE void store_rounded(D d, hn::Vec<D> x, std::int16_t* to) {
+    const hn::Rebind<std::int16_t, D> d16;
+    const hn::RebindToSigned<D> d32;
+    const auto shifted = hn::ConvertTo(d32, hn::Add(x, hn::Set(d, 4096.5F)));
+    hn::StoreU(hn::DemoteTo(d16, hn::Sub(shifted, hn::Set(d32, 4096))), d16, to);
+}
+
+template <class D>
+HWY_INLINE void warp_here(D d, const WarpRow& row, int u) {
+    const auto s = hn::LoadU(d, row.fraction + u);
+    const auto before = grey(d, row.taps[0] + u);
+    const auto low = grey(d, row.taps[1] + u);
+    const auto high = grey(d, row.taps[2] + u);
+    const auto after = grey(d, row.taps[3] + u);
+    const auto error = hn::Sub(grey(d, row.left + u), hn::Add(low, hn::Mul(s, hn::Sub(high, low))));
+    const auto slope_right = hn::Add(hn::Mul(hn::Sub(hn::Set(d, 1.0F), s), hn::Sub(high, before)),
+                                     hn::Mul(s, hn::Sub(after, low)));
+    const auto slope_left = hn::Sub(grey(d, row.left + u + 1), grey(d, row.left + u - 1));
+    const auto slope = hn::Mul(hn::Set(d, 0.25F), hn::Add(slope_left, slope_right));
+    const auto used = grey(d, row.used + u);
+    const auto valid =
+        hn::And(hn::Gt(used, hn::Zero(d)), hn::Le(hn::Abs(error), hn::Set(d, kMaxError)));
+    const auto kept = hn::Min(hn::Max(slope, hn::Set(d, -kMaxGradient)), hn::Set(d, kMaxGradient));
+    store_rounded(d, hn::IfThenElseZero(valid, error), row.error + u);
+    store_rounded(d, hn::IfThenElseZero(valid, kept), row.gradient + u);
+    store_rounded(d, hn::IfThenElseZero(valid, used), row.used + u);
+}
+
 void warp_row(const WarpRow& row) {
-    std::fill(row.used, row.used + row.width, std::int16_t{0});
-    std::fill(row.gradient, row.gradient + row.width, std::int16_t{0});
-    std::fill(row.error, row.error + row.width, std::int16_t{0});
-    if (row.width < 5) return;
+    const int width = row.width;
+    const auto clear = [&](int first, int last) {
+        for (std::int16_t* const out : {row.used, row.gradient, row.error})
+            std::fill(out + first, out + last, std::int16_t{0});
+    };
+    if (width < 5) return clear(0, width);
+    clear(0, 1);
+    clear(width - 1, width);
     place_taps(row);
-    const std::int16_t* HWY_RESTRICT l = row.left;
-    const float* HWY_RESTRICT fraction = row.fraction;
-    const std::int16_t* HWY_RESTRICT t0 = row.taps[0];
-    const std::int16_t* HWY_RESTRICT t1 = row.taps[1];
-    const std::int16_t* HWY_RESTRICT t2 = row.taps[2];
-    const std::int16_t* HWY_RESTRICT t3 = row.taps[3];
-    std::int16_t* HWY_RESTRICT g = row.gradient;
-    std::int16_t* HWY_RESTRICT e = row.error;
-    std::int16_t* HWY_RESTRICT used = row.used;
-    for (int u = 1; u < row.width - 1; ++u) {
-        const float s = fraction[u];
-        const auto before = static_cast<float>(t0[u]);
-        const auto low = static_cast<float>(t1[u]);
-        const auto high = static_cast<float>(t2[u]);
-        const auto after = static_cast<float>(t3[u]);
-        const float error = static_cast<float>(l[u]) - (low + s * (high - low));
-        const float slope_right = (1.0F - s) * (high - before) + s * (after - low);
-        const float slope = 0.25F * (static_cast<float>(l[u + 1] - l[u - 1]) + slope_right);
-        const bool valid =
-            static_cast<int>(used[u] != 0) & static_cast<int>(std::abs(error) <= kMaxError);
-        const float kept_slope = std::min(std::max(slope, -kMaxGradient), kMaxGradient);
-        e[u] = rounded(valid ? error : 0.0F);
-        g[u] = rounded(valid ? kept_slope : 0.0F);
-        used[u] = valid ? 1 : 0;
-    }
+    const hn::ScalableTag<float> whole;
+    const hn::CappedTag<float, 1> single;
+    const int lanes = static_cast<int>(hn::Lanes(whole));
+    int u = 1;
+    for (; u + lanes <= width - 1; u += lanes) warp_here(whole, row, u);
+    for (; u < width - 1; ++u) warp_here(single, row, u);
 }
 
 void add_column_sums(const std::int16_t* HWY_RESTRICT g,
@@ -333,18 +355,8 @@ HWY_EXPORT(rate_row);
 void smooth_image(const std::uint8_t* const in[5], int width, int* scratch, std::int16_t* out) {
     HWY_DYNAMIC_DISPATCH(smooth_image_row)(in, width, scratch, out);
 }
-void smooth_along(const float* center,
-                  const float* const* before,
-                  const float* const* after,
-                  int steps,
-                  int margin_per_step,
-                  int width,
-                  float same_surface_px,
-                  float* sum,
-                  float* count,
-                  float* out) {
-    HWY_DYNAMIC_DISPATCH(smooth_along_row)
-    (center, before, after, steps, margin_per_step, width, same_surface_px, sum, count, out);
+void smooth_along(const SmoothRow& row) {
+    HWY_DYNAMIC_DISPATCH(smooth_along_row)(row);
 }
 void warp(const WarpRow& row) {
     HWY_DYNAMIC_DISPATCH(warp_row)(row);

@@ -12,19 +12,19 @@ namespace surefoot::stereo::rows {
 /// is made; `scratch`: width + 4.
 void smooth_image(const std::uint8_t* const in[5], int width, int* scratch, std::int16_t* out);
 
-/// See stereo::smooth_along. `before[k]` and `after[k]` are the lines k + 1 pixels away on either
-/// side, already shifted; where `margin_per_step` is 1 the first and last k + 1 pixels have no
-/// partners. `sum` and `count`: scratch of the row.
-void smooth_along(const float* center,
-                  const float* const* before,
-                  const float* const* after,
-                  int steps,
-                  int margin_per_step,
-                  int width,
-                  float same_surface_px,
-                  float* sum,
-                  float* count,
-                  float* out);
+struct SmoothRow {
+    const float* center = nullptr;
+    /// The lines k + 1 pixels away on either side, already shifted.
+    const float* const* before = nullptr;
+    const float* const* after = nullptr;
+    int steps = 0;
+    int margin_per_step = 0;  ///< 1: the first and last k + 1 pixels have no partners there
+    int width = 0;
+    float same_surface_px = 0.0F;
+    float* out = nullptr;
+};
+/// See stereo::smooth_along.
+void smooth_along(const SmoothRow& row);
 
 struct WarpRow {
     const std::int16_t* left = nullptr;   ///< smoothed, 1/16 grey level
