@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <mutex>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "surefoot/core/assert.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
@@ -94,14 +96,70 @@ struct CensusPlanes {
     }
 };
 
+/// A path at one place of its way: costs per disparity and one row more, and the least of them.
+struct PathState {
+    std::uint8_t* costs = nullptr;
+    std::uint8_t* least = nullptr;
+};
+
+/// Paths at many places.
+struct PathStates {
+    AlignedBytes bytes;
+    std::ptrdiff_t stride = 0;
+
+    void resize(int count, int disparities) {
+        stride = static_cast<std::ptrdiff_t>(disparities + 2) * kLanes;
+        bytes.resize(static_cast<std::size_t>(count * stride));
+    }
+    [[nodiscard]] PathState at(int index) const {
+        std::uint8_t* const costs = bytes.data() + index * stride;
+        return {costs, costs + stride - kLanes};
+    }
+    void copy(int from, int to) const {
+        std::memcpy(at(to).costs, at(from).costs, static_cast<std::size_t>(stride));
+    }
+};
+
 /// What 64 rows need, column by column with the rows in the lanes.
 struct Strip {
     AlignedBytes left;
     AlignedBytes right;
     AlignedBytes grey;
-    AlignedBytes sums;
-    AlignedBytes state;
+    PathStates from_left;  ///< as it enters each block of 64 columns
+    PathStates from_right;
 };
+
+/// The costs of 64 x 64 pixels, as many as work at the same time. The one used last is handed out
+/// first: it lies in the cache of its processor.
+class BlockPool {
+  public:
+    void resize(std::size_t count, std::size_t size) {
+        if (blocks_.size() != count) blocks_ = std::vector<AlignedBytes>(count);
+        free_.clear();
+        for (AlignedBytes& block : blocks_) {
+            block.resize(size);
+            free_.push_back(block.data());
+        }
+    }
+    [[nodiscard]] std::uint8_t* take() {
+        const std::lock_guard lock(mutex_);
+        std::uint8_t* const block = free_.back();
+        free_.pop_back();
+        return block;
+    }
+    void give_back(std::uint8_t* block) {
+        const std::lock_guard lock(mutex_);
+        free_.push_back(block);
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<AlignedBytes> blocks_;
+    std::vector<std::uint8_t*> free_;
+};
+
+/// Strips of 64 rows that are worked on together: as many threads have something to do.
+constexpr int kStrips = 4;
 
 }  // namespace
 
@@ -114,20 +172,20 @@ struct SemiGlobalSearch::Workspace {
     Bordered right;
     CensusPlanes left_census;
     CensusPlanes right_census;
-    Strip strips[2];  ///< of this and of the next 64 rows
+    Strip strips[kStrips];
+    BlockPool pool;
     std::ptrdiff_t sums_stride = 0;
-    AlignedBytes above;  ///< per 64 columns: path from above
-    AlignedBytes least;  ///< and its least cost
+    PathStates from_above;  ///< per 64 columns
 
     [[nodiscard]] int column_blocks() const { return padded(width) / kLanes; }
-    [[nodiscard]] std::ptrdiff_t states() const {
-        return static_cast<std::ptrdiff_t>(config.disparities + 1) * kLanes;
-    }
 
     void resize();
     void take_census(Executor& executor);
-    void follow_strip(int strip);
+    void turn_strip(int strip);
+    void pass_strip(int strip);
     void follow_block(int strip, int block, Winners& out);
+    void follow_columns(int strip, int block, const std::uint8_t* sums, Winners& out);
+    [[nodiscard]] kernels::RowBlock row_block(int strip, int block) const;
 };
 
 void SemiGlobalSearch::Workspace::resize() {
@@ -135,25 +193,20 @@ void SemiGlobalSearch::Workspace::resize() {
     right_census.resize(width, height, config.disparities);
     // One more row than needed: places 4 KiB apart would share their lines of the cache.
     sums_stride = static_cast<std::ptrdiff_t>(config.disparities) * kLanes + kLanes;
+    pool.resize(kStrips, static_cast<std::size_t>(kLanes * sums_stride));
     const auto columns = static_cast<std::size_t>(padded(width));
     const auto front = static_cast<std::size_t>(padded(config.disparities));
-    const auto stride = static_cast<std::size_t>(sums_stride);
     for (Strip& strip : strips) {
         strip.left.resize(columns * kernels::kCensusRow);
         strip.right.resize((columns + front) * kernels::kCensusRow);
         strip.grey.resize(columns * kLanes);
-        strip.sums.resize(columns * stride);
-        strip.state.resize(static_cast<std::size_t>(states()));
+        strip.from_left.resize(column_blocks() + 1, config.disparities);
+        strip.from_right.resize(1, config.disparities);
     }
-    const auto blocks = static_cast<std::size_t>(column_blocks());
-    above.resize(blocks * static_cast<std::size_t>(states()));
-    least.resize(blocks * kLanes);
-    // The path from above begins with nothing; beyond the last disparity nothing is worse.
-    std::memset(least.data(), 0, blocks * kLanes);
+    from_above.resize(column_blocks(), config.disparities);
     for (int block = 0; block < column_blocks(); ++block) {
-        std::uint8_t* const state = above.data() + block * states();
-        std::memset(state, 0, static_cast<std::size_t>(states() - kLanes));
-        std::memset(state + states() - kLanes, 255, kLanes);
+        const PathState path = from_above.at(block);
+        kernels::begin_path(config.disparities, path.costs, path.least);
     }
 }
 
@@ -166,9 +219,9 @@ void SemiGlobalSearch::Workspace::take_census(Executor& executor) {
     });
 }
 
-/// Paths along the rows of a strip.
-void SemiGlobalSearch::Workspace::follow_strip(int strip) {
-    const Strip& s = strips[strip % 2];
+/// Census words and grey levels of a strip, the rows in the lanes.
+void SemiGlobalSearch::Workspace::turn_strip(int strip) {
+    const Strip& s = strips[strip % kStrips];
     const int v = strip * kLanes;
     const int front = right_census.front;
     const auto turn = [&](const std::uint8_t* rows, std::ptrdiff_t stride, std::uint8_t* out) {
@@ -189,26 +242,75 @@ void SemiGlobalSearch::Workspace::follow_strip(int strip) {
                  s.right.data() + (u + front) * kernels::kCensusRow + byte * kLanes);
         }
     }
-    kernels::RowStrip rows;
-    rows.left = s.left.data();
-    rows.right = s.right.data() + front * kernels::kCensusRow;
-    rows.grey = s.grey.data();
-    rows.sums = s.sums.data();
-    rows.sums_stride = sums_stride;
-    rows.state = s.state.data();
-    rows.width = width;
-    rows.disparities = config.disparities;
-    rows.penalties = penalties;
-    kernels::follow_rows(rows);
 }
 
-/// Path from above and winners, 64 columns of a strip.
-void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& out) {
+kernels::RowBlock SemiGlobalSearch::Workspace::row_block(int strip, int block) const {
+    const Strip& s = strips[strip % kStrips];
     const int u = block * kLanes;
-    const std::uint8_t* const sums = strips[strip % 2].sums.data() + u * sums_stride;
+    kernels::RowBlock rows;
+    rows.left = s.left.data() + u * kernels::kCensusRow;
+    rows.right = s.right.data() + (u + right_census.front) * kernels::kCensusRow;
+    rows.grey = s.grey.data() + u * kLanes;
+    rows.columns = std::min(kLanes, width - u);
+    rows.disparities = config.disparities;
+    rows.penalties = penalties;
+    rows.sums_stride = sums_stride;
+    return rows;
+}
+
+/// Follows the paths from the left once to note how they enter each block: their costs of a whole
+/// strip would not fit into a cache.
+void SemiGlobalSearch::Workspace::pass_strip(int strip) {
+    turn_strip(strip);
+    const Strip& s = strips[strip % kStrips];
+    const PathState start = s.from_left.at(0);
+    kernels::begin_path(config.disparities, start.costs, start.least);
+    for (int block = 0; block < column_blocks(); ++block) {
+        s.from_left.copy(block, block + 1);
+        if (block + 1 == column_blocks()) break;
+        kernels::RowBlock rows = row_block(strip, block);
+        rows.grey_before = rows.grey - (block > 0 ? kLanes : 0);
+        const PathState path = s.from_left.at(block + 1);
+        rows.state = path.costs;
+        rows.least = path.least;
+        kernels::pass_right(rows);
+    }
+    const PathState end = s.from_right.at(0);
+    kernels::begin_path(config.disparities, end.costs, end.least);
+}
+
+/// All three paths and the winners of 64 x 64 pixels. Needs the block to the right of it and the
+/// one above.
+void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& out) {
+    const Strip& s = strips[strip % kStrips];
+    std::uint8_t* const sums = pool.take();
+    kernels::RowBlock rows = row_block(strip, block);
+    rows.sums = sums;
+    rows.grey_before = rows.grey - (block > 0 ? kLanes : 0);
+    const PathState from_left = s.from_left.at(block);
+    rows.state = from_left.costs;
+    rows.least = from_left.least;
+    kernels::follow_right(rows);
+    const bool at_edge = block + 1 == column_blocks();
+    rows.grey_before = rows.grey + (at_edge ? rows.columns - 1 : kLanes) * kLanes;
+    const PathState from_right = s.from_right.at(0);
+    rows.state = from_right.costs;
+    rows.least = from_right.least;
+    kernels::follow_left(rows);
+    follow_columns(strip, block, sums, out);
+    pool.give_back(sums);
+}
+
+/// Path from above and winners of a block.
+void SemiGlobalSearch::Workspace::follow_columns(int strip,
+                                                 int block,
+                                                 const std::uint8_t* sums,
+                                                 Winners& out) {
+    const int u = block * kLanes;
+    const PathState path = from_above.at(block);
     kernels::ColumnStep step;
-    step.state = above.data() + block * states();
-    step.least = least.data() + block * kLanes;
+    step.state = path.costs;
+    step.least = path.least;
     step.disparities = config.disparities;
     step.penalties = penalties;
     const auto count = static_cast<std::size_t>(std::min(kLanes, width - u));
@@ -256,17 +358,18 @@ void SemiGlobalSearch::search(ImageView<const std::uint8_t> left,
     work.resize();
     out.resize(left.width, left.height);
     work.take_census(executor);
-    // The rows of the next strip beside the columns of this one: neither waits for the other.
     const int strips = padded(work.height) / kLanes;
-    work.follow_strip(0);
-    for (int strip = 0; strip < strips; ++strip) {
-        const int row_tasks = strip + 1 < strips ? 1 : 0;
-        executor.parallel_for(row_tasks + work.column_blocks(), [&](int task) {
-            if (task < row_tasks)
-                work.follow_strip(strip + 1);
-            else
-                work.follow_block(strip, task - row_tasks, out);
-        });
+    const int blocks = work.column_blocks();
+    for (int first = 0; first < strips; first += kStrips) {
+        const int count = std::min(kStrips, strips - first);
+        executor.parallel_for(count, [&](int k) { work.pass_strip(first + k); });
+        // From the right to the left, every strip one block behind the one above it.
+        for (int wave = 0; wave < blocks + count - 1; ++wave) {
+            executor.parallel_for(count, [&](int k) {
+                const int block = blocks - 1 - (wave - k);
+                if (block >= 0 && block < blocks) work.follow_block(first + k, block, out);
+            });
+        }
     }
 }
 

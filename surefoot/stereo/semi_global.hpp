@@ -50,9 +50,9 @@ void search_plainly(const SemiGlobalConfig& config,
                     Winners& out);
 
 /// The same bytes, fast: 64 rows (for the paths along rows) or 64 columns side by side in a
-/// register, so that no step needs its neighbour lane, and no cost volume but that of 64 rows. Run
-/// time dispatch picks the widest instructions of the processor; threads share strips of rows and
-/// columns. Nothing is allocated after the first pair of a size.
+/// register, so that no step needs its neighbour lane, and no cost volume but that of 64 x 64
+/// pixels, which stays in the cache. Run time dispatch picks the widest instructions of the
+/// processor; threads share strips of rows. Nothing is allocated after the first pair of a size.
 class SemiGlobalSearch {
   public:
     /// `config` must have no problem().

@@ -46,56 +46,85 @@ void census_row(const std::uint8_t* grey,
 }
 
 #if HWY_TARGET == HWY_SCALAR
-/// Row y holds column y, all of it.
-void turn(const std::uint8_t* in, std::ptrdiff_t stride, std::uint8_t* turned) {
-    for (int y = 0; y < kLanes; ++y) {
-        for (int x = 0; x < kLanes; ++x) turned[x * kLanes + y] = in[y * stride + x];
+void transpose_block(const std::uint8_t* in,
+                     std::ptrdiff_t in_stride,
+                     std::uint8_t* out,
+                     std::ptrdiff_t out_stride) {
+    std::uint8_t rows[kLanes][kLanes];
+    for (int y = 0; y < kLanes; ++y) std::memcpy(rows[y], in + y * in_stride, kLanes);
+    for (int x = 0; x < kLanes; ++x) {
+        for (int y = 0; y < kLanes; ++y) out[x * out_stride + y] = rows[y][x];
     }
-}
-constexpr int kPiece = kLanes;
-std::ptrdiff_t piece_at(int x, int /*y*/) {
-    return x * kLanes;
 }
 #else
-/// Four rounds of interleaving row i with row i + 8 turn 16 rows into columns, in every block of 16
-/// lanes apart: piece_at tells where column x, rows y to y + 15, has come to lie.
-void turn(const std::uint8_t* in, std::ptrdiff_t stride, std::uint8_t* turned) {
+/// Four rounds of interleaving row i with row i + 8 turn 16 rows into columns, in every 16 lanes
+/// apart: column x of these rows comes to lie in row x % 16, lanes from x / 16 * 16.
+HWY_INLINE void turn_sixteen(const std::uint8_t* in, std::ptrdiff_t stride, std::uint8_t* turned) {
     Bytes rows[16];
     Bytes mixed[16];
-    for (int y = 0; y < kLanes; y += 16) {
-        for (int x = 0; x < kLanes; x += lanes()) {
-            for (int i = 0; i < 16; ++i) rows[i] = hn::LoadU(kBytes, in + (y + i) * stride + x);
-            for (int round = 0; round < 2; ++round) {
-                for (int i = 0; i < 8; ++i) {
-                    mixed[2 * i] = hn::InterleaveLower(kBytes, rows[i], rows[i + 8]);
-                    mixed[2 * i + 1] = hn::InterleaveUpper(kBytes, rows[i], rows[i + 8]);
-                }
-                for (int i = 0; i < 8; ++i) {
-                    rows[2 * i] = hn::InterleaveLower(kBytes, mixed[i], mixed[i + 8]);
-                    rows[2 * i + 1] = hn::InterleaveUpper(kBytes, mixed[i], mixed[i + 8]);
-                }
-            }
-            for (int i = 0; i < 16; ++i) hn::Store(rows[i], kBytes, turned + (y + i) * kLanes + x);
+    for (int i = 0; i < 16; ++i) rows[i] = hn::LoadU(kBytes, in + i * stride);
+    for (int round = 0; round < 2; ++round) {
+        for (int i = 0; i < 8; ++i) {
+            mixed[2 * i] = hn::InterleaveLower(kBytes, rows[i], rows[i + 8]);
+            mixed[2 * i + 1] = hn::InterleaveUpper(kBytes, rows[i], rows[i + 8]);
+        }
+        for (int i = 0; i < 8; ++i) {
+            rows[2 * i] = hn::InterleaveLower(kBytes, mixed[i], mixed[i + 8]);
+            rows[2 * i + 1] = hn::InterleaveUpper(kBytes, mixed[i], mixed[i + 8]);
         }
     }
+    for (int i = 0; i < 16; ++i) hn::Store(rows[i], kBytes, turned + i * kLanes);
 }
-constexpr int kPiece = 16;
-std::ptrdiff_t piece_at(int x, int y) {
-    return (y + x % 16) * kLanes + x / 16 * 16;
-}
-#endif
 
 void transpose_block(const std::uint8_t* in,
                      std::ptrdiff_t in_stride,
                      std::uint8_t* out,
                      std::ptrdiff_t out_stride) {
-    HWY_ALIGN std::uint8_t turned[kLanes * kLanes];
-    turn(in, in_stride, turned);
-    for (int x = 0; x < kLanes; ++x) {
-        for (int y = 0; y < kLanes; y += kPiece)
-            std::memcpy(out + x * out_stride + y, turned + piece_at(x, y), kPiece);
+    HWY_ALIGN std::uint8_t turned[4][16 * kLanes];  // of rows 0-15, 16-31, 32-47, 48-63
+    for (int group = 0; group < 4; ++group) {
+        for (int x = 0; x < kLanes; x += lanes())
+            turn_sixteen(in + 16 * group * in_stride + x, in_stride, turned[group] + x);
+    }
+    for (int i = 0; i < 16; ++i) {
+        for (int x = 0; x < kLanes; x += lanes()) {
+            const auto rows = [&](int group) {
+                return hn::Load(kBytes, turned[group] + i * kLanes + x);
+            };
+            std::uint8_t* const to = out + (x + i) * out_stride;
+#if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4
+            for (int group = 0; group < 4; ++group) hn::Store(rows(group), kBytes, to + 16 * group);
+#elif HWY_TARGET == HWY_AVX2
+            for (int half = 0; half < 2; ++half) {
+                const Bytes upper = rows(2 * half);
+                const Bytes lower = rows(2 * half + 1);
+                hn::Store(hn::ConcatLowerLower(kBytes, lower, upper), kBytes, to + 32 * half);
+                hn::Store(hn::ConcatUpperUpper(kBytes, lower, upper),
+                          kBytes,
+                          to + 16 * out_stride + 32 * half);
+            }
+#else
+            const auto even = [](Bytes upper, Bytes lower) {
+                return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(lower), upper);
+            };
+            const auto odd = [](Bytes upper, Bytes lower) {
+                return hn::OddEvenBlocks(lower, hn::SwapAdjacentBlocks(upper));
+            };
+            const Bytes even_upper = even(rows(0), rows(1));
+            const Bytes even_lower = even(rows(2), rows(3));
+            const Bytes odd_upper = odd(rows(0), rows(1));
+            const Bytes odd_lower = odd(rows(2), rows(3));
+            hn::Store(hn::ConcatLowerLower(kBytes, even_lower, even_upper), kBytes, to);
+            hn::Store(
+                hn::ConcatLowerLower(kBytes, odd_lower, odd_upper), kBytes, to + 16 * out_stride);
+            hn::Store(
+                hn::ConcatUpperUpper(kBytes, even_lower, even_upper), kBytes, to + 32 * out_stride);
+            hn::Store(
+                hn::ConcatUpperUpper(kBytes, odd_lower, odd_upper), kBytes, to + 48 * out_stride);
+#endif
+        }
     }
 }
+#endif
 
 /// Bytes have no shift of their own.
 HWY_INLINE Bytes shift_right(Bytes value, int shift) {
@@ -134,57 +163,62 @@ HWY_INLINE Word word_at(const std::uint8_t* place) {
             hn::Load(kBytes, place + 3 * kLanes)};
 }
 
-/// One path, in the lanes from `first_lane`; the second one adds to the sums of the first.
-template <bool kForward>
-void follow(const RowStrip& strip, int first_lane) {
-    const Bytes slope = hn::Set(kBytes, strip.penalties.slope);
+enum class Sums : std::uint8_t { left_alone, written, added_to };
+
+/// One path through the block, in the lanes from `lane`.
+template <Sums kSums>
+void follow(const RowBlock& block, int lane) {
+    constexpr bool kRightwards = kSums != Sums::added_to;
+    const Bytes slope = hn::Set(kBytes, block.penalties.slope);
     const Bytes none = hn::Set(kBytes, std::uint8_t{255});
-    std::uint8_t* const state = strip.state + first_lane;
-    for (int d = 0; d < strip.disparities; ++d)
-        hn::Store(hn::Zero(kBytes), kBytes, state + d * kLanes);
-    hn::Store(none, kBytes, state + strip.disparities * kLanes);
-    Bytes least = hn::Zero(kBytes);
-    const int start = kForward ? 0 : strip.width - 1;
-    Bytes grey_before = hn::Load(kBytes, strip.grey + start * kLanes + first_lane);
-    for (int i = 0; i < strip.width; ++i) {
-        const std::ptrdiff_t u = kForward ? i : strip.width - 1 - i;
-        const Bytes grey = hn::Load(kBytes, strip.grey + u * kLanes + first_lane);
-        const Bytes jump = hn::Add(least, jump_penalty(strip.penalties, grey, grey_before));
+    std::uint8_t* const state = block.state + lane;
+    Bytes least = hn::Load(kBytes, block.least + lane);
+    Bytes grey_before = hn::Load(kBytes, block.grey_before + lane);
+    for (int i = 0; i < block.columns; ++i) {
+        const std::ptrdiff_t u = kRightwards ? i : block.columns - 1 - i;
+        const Bytes grey = hn::Load(kBytes, block.grey + u * kLanes + lane);
+        const Bytes jump = hn::Add(least, jump_penalty(block.penalties, grey, grey_before));
         grey_before = grey;
-        const Word left = word_at(strip.left + u * kCensusRow + first_lane);
-        const std::uint8_t* right = strip.right + u * kCensusRow + first_lane;
-        std::uint8_t* const sums = strip.sums + u * strip.sums_stride + first_lane;
+        const Word left = word_at(block.left + u * kCensusRow + lane);
+        const std::uint8_t* right = block.right + u * kCensusRow + lane;
+        std::uint8_t* const sums = block.sums + u * block.sums_stride + lane;
         Bytes below = none;
         Bytes here = hn::Load(kBytes, state);
         Bytes new_least = none;
-        for (int d = 0; d < strip.disparities; ++d) {
+        for (int d = 0; d < block.disparities; ++d) {
             const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
             const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
             const Bytes best = hn::Min(hn::Min(neighbour, here), jump);
             const Bytes cost = hn::Add(hn::Sub(best, least), distance(left, word_at(right)));
             hn::Store(cost, kBytes, state + d * kLanes);
-            const Bytes sum = kForward ? cost : hn::Add(cost, hn::Load(kBytes, sums + d * kLanes));
-            hn::Store(sum, kBytes, sums + d * kLanes);
+            if constexpr (kSums == Sums::written) hn::Store(cost, kBytes, sums + d * kLanes);
+            if constexpr (kSums == Sums::added_to) {
+                const Bytes before = hn::Load(kBytes, sums + d * kLanes);
+                hn::Store(hn::Add(cost, before), kBytes, sums + d * kLanes);
+            }
             new_least = hn::Min(new_least, cost);
             below = here;
             here = above;
             right -= kCensusRow;
         }
         least = new_least;
-        // Turned while it is still near.
-        const bool complete = !kForward && first_lane + lanes() == kLanes && u % kLanes == 0;
-        if (!complete) continue;
-        for (int d = 0; d < strip.disparities; ++d) {
-            std::uint8_t* const block = strip.sums + u * strip.sums_stride + d * kLanes;
-            transpose_block(block, strip.sums_stride, block, strip.sums_stride);
-        }
     }
+    hn::Store(least, kBytes, block.least + lane);
 }
 
-void follow_rows_here(const RowStrip& strip) {
-    for (int lane = 0; lane < kLanes; lane += lanes()) {
-        follow<true>(strip, lane);
-        follow<false>(strip, lane);
+void pass_right_here(const RowBlock& block) {
+    for (int lane = 0; lane < kLanes; lane += lanes()) follow<Sums::left_alone>(block, lane);
+}
+
+void follow_right_here(const RowBlock& block) {
+    for (int lane = 0; lane < kLanes; lane += lanes()) follow<Sums::written>(block, lane);
+}
+
+void follow_left_here(const RowBlock& block) {
+    for (int lane = 0; lane < kLanes; lane += lanes()) follow<Sums::added_to>(block, lane);
+    for (int d = 0; d < block.disparities; ++d) {
+        std::uint8_t* const plane = block.sums + d * kLanes;
+        transpose_block(plane, block.sums_stride, plane, block.sums_stride);
     }
 }
 
@@ -267,7 +301,9 @@ namespace surefoot::stereo::kernels {
 
 HWY_EXPORT(census_row);
 HWY_EXPORT(transpose_block);
-HWY_EXPORT(follow_rows_here);
+HWY_EXPORT(pass_right_here);
+HWY_EXPORT(follow_right_here);
+HWY_EXPORT(follow_left_here);
 HWY_EXPORT(follow_columns_here);
 
 void census(const std::uint8_t* grey,
@@ -282,8 +318,20 @@ void transpose(const std::uint8_t* in,
                std::ptrdiff_t out_stride) {
     HWY_DYNAMIC_DISPATCH(transpose_block)(in, in_stride, out, out_stride);
 }
-void follow_rows(const RowStrip& strip) {
-    HWY_DYNAMIC_DISPATCH(follow_rows_here)(strip);
+void begin_path(int disparities, std::uint8_t* state, std::uint8_t* least) {
+    const auto size = static_cast<std::size_t>(disparities) * kLanes;
+    std::memset(state, 0, size);
+    std::memset(state + size, 255, kLanes);
+    std::memset(least, 0, kLanes);
+}
+void pass_right(const RowBlock& block) {
+    HWY_DYNAMIC_DISPATCH(pass_right_here)(block);
+}
+void follow_right(const RowBlock& block) {
+    HWY_DYNAMIC_DISPATCH(follow_right_here)(block);
+}
+void follow_left(const RowBlock& block) {
+    HWY_DYNAMIC_DISPATCH(follow_left_here)(block);
 }
 void follow_columns(const ColumnStep& step, WinnerRows& out) {
     HWY_DYNAMIC_DISPATCH(follow_columns_here)(step, out);

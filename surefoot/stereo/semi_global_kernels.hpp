@@ -34,22 +34,31 @@ void transpose(const std::uint8_t* in,
                std::uint8_t* out,
                std::ptrdiff_t out_stride);
 
-/// 64 rows, side by side in the lanes.
-struct RowStrip {
-    const std::uint8_t* left = nullptr;   ///< [u] kCensusRow
-    const std::uint8_t* right = nullptr;  ///< the same; `disparities` more stand before u = 0
-    const std::uint8_t* grey = nullptr;   ///< [u] kLanes
-    std::uint8_t* sums = nullptr;         ///< result, see follow_rows
+/// Up to 64 columns of 64 rows, the rows side by side in the lanes.
+struct RowBlock {
+    const std::uint8_t* left = nullptr;   ///< [column] kCensusRow
+    const std::uint8_t* right = nullptr;  ///< the same; `disparities` more stand before column 0
+    const std::uint8_t* grey = nullptr;   ///< [column] kLanes
+    /// Of the column that the path comes from; at the edge of the image that of its first one.
+    const std::uint8_t* grey_before = nullptr;
+    std::uint8_t* state = nullptr;  ///< of the path: (disparities + 1) * kLanes, kept
+    std::uint8_t* least = nullptr;  ///< its least cost: kLanes, kept
+    std::uint8_t* sums = nullptr;   ///< [column] sums_stride: [d] kLanes
     std::ptrdiff_t sums_stride = 0;
-    std::uint8_t* state = nullptr;  ///< (disparities + 1) * kLanes
-    int width = 0;
+    int columns = 0;
     int disparities = 0;
     Penalties penalties;
 };
-/// Sums of the paths from the left and from the right. Block by block of 64 columns they come to
-/// lie with the columns in the lanes: column u of row v of the strip at
-/// sums[(u / 64 * 64 + v) * sums_stride + d * 64 + u % 64].
-void follow_rows(const RowStrip& strip);
+/// How a path begins: nothing is owed, and nothing is worse than what lies beyond the last
+/// disparity.
+void begin_path(int disparities, std::uint8_t* state, std::uint8_t* least);
+/// Follows the path from the left through the block; `sums` stay as they are.
+void pass_right(const RowBlock& block);
+/// The same, and `sums` become its costs.
+void follow_right(const RowBlock& block);
+/// Follows the path from the right, adds its costs to `sums` and turns them: column u of row v
+/// comes to lie at sums[v * sums_stride + d * kLanes + u].
+void follow_left(const RowBlock& block);
 
 /// Where winners of 64 columns go.
 struct WinnerRows {

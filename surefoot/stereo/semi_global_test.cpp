@@ -32,7 +32,13 @@ std::pair<GreyImage, GreyImage> pair_of(int width, int height, std::uint64_t see
 
 constexpr struct {
     int width, height, disparities;
-} kCases[] = {{1, 1, 1}, {5, 3, 2}, {64, 64, 16}, {65, 70, 64}, {150, 40, 96}, {40, 130, 256}};
+} kCases[] = {{1, 1, 1},
+              {5, 3, 2},
+              {64, 64, 16},
+              {65, 70, 64},
+              {150, 40, 96},
+              {40, 130, 256},
+              {130, 330, 16}};
 
 TEST(SemiGlobal, FastIsPlainOnEveryProcessor) {
     for (const auto& c : kCases) {
@@ -75,7 +81,7 @@ TEST(SemiGlobal, EveryPenaltyMeansTheSame) {
 }
 
 TEST(SemiGlobal, SameBytesForEveryExecutorAndAfterAnotherSize) {
-    const auto [left, right] = pair_of(200, 150, 5);
+    const auto [left, right] = pair_of(200, 290, 5);
     const auto [small_left, small_right] = pair_of(90, 70, 6);
     const SemiGlobalConfig config;
     Serial serial;
