@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/core/assert.hpp"
 #include "surefoot/stereo/match_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
 
@@ -104,7 +105,8 @@ void distance_to_marks(Executor& executor,
         std::vector<std::uint8_t> before(static_cast<std::size_t>(width));
         for (int v = first; v < last; ++v) {
             std::uint8_t* const d = distance_px.row(v);
-            for (int u = 0; u < width; ++u) d[u] = marks.row(v)[u] != 0 ? 0 : 255;
+            const std::uint8_t* const mark = marks.row(v);
+            for (int u = 0; u < width; ++u) d[u] = mark[u] != 0 ? 0 : 255;
             for (int step = 1; step <= std::min(kFarthest_px, width - 1); step *= 2) {
                 std::copy(d, d + width, before.begin());
                 const std::uint8_t* const b = before.data();
@@ -128,31 +130,23 @@ void unknown_share(Executor& executor,
                    const Image<float>& disparity_px,
                    int radius_px,
                    Image<float>& share) {
+    SUREFOOT_ASSERT(radius_px >= 0 && radius_px <= kMaxShareRadius_px);
     const int width = disparity_px.width();
     const int height = disparity_px.height();
     share.resize(width, height);
     for_row_blocks(executor, height, [&](int first, int last) {
-        std::vector<int> unknown(static_cast<std::size_t>(width), 0);
-        const auto add_row = [&](int v, int sign) {
+        std::vector<std::uint8_t> padded(static_cast<std::size_t>(width + 2 * radius_px), 0);
+        std::uint8_t* const counts = padded.data() + radius_px;
+        const auto add_row = [&](int v, std::int8_t sign) {
             if (v < 0 || v >= height) return;
-            const float* const d = disparity_px.row(v);
-            for (int u = 0; u < width; ++u)
-                unknown[static_cast<std::size_t>(u)] += std::isnan(d[u]) ? sign : 0;
+            rows::count_unknown(disparity_px.row(v), width, sign, counts);
         };
         for (int v = first - radius_px; v < first + radius_px; ++v) add_row(v, 1);
         for (int v = first; v < last; ++v) {
             add_row(v + radius_px, 1);
-            const int rows = std::min(height - 1, v + radius_px) - std::max(0, v - radius_px) + 1;
-            int sum = 0;
-            for (int u = 0; u < std::min(radius_px, width); ++u)
-                sum += unknown[static_cast<std::size_t>(u)];
-            for (int u = 0; u < width; ++u) {
-                if (u + radius_px < width) sum += unknown[static_cast<std::size_t>(u + radius_px)];
-                if (u > radius_px) sum -= unknown[static_cast<std::size_t>(u - radius_px - 1)];
-                const int columns =
-                    std::min(width - 1, u + radius_px) - std::max(0, u - radius_px) + 1;
-                share.row(v)[u] = static_cast<float>(sum) / static_cast<float>(rows * columns);
-            }
+            const int present =
+                std::min(height - 1, v + radius_px) - std::max(0, v - radius_px) + 1;
+            rows::unknown_share(counts, width, radius_px, present, share.row(v));
             add_row(v - radius_px, -1);
         }
     });

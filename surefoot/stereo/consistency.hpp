@@ -29,6 +29,8 @@ void distance_to_marks(Executor& executor,
                        const Image<std::uint8_t>& marks,
                        Image<std::uint8_t>& distance_px);
 
+/// Windows hold at most 15 x 15 pixels: they are counted in bytes.
+inline constexpr int kMaxShareRadius_px = 7;
 /// Share of unknown pixels in the window of `radius_px` around each pixel, as far as it lies in the
 /// image.
 void unknown_share(Executor& executor,

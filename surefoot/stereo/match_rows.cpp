@@ -162,6 +162,46 @@ void mark_from_last_row(const float* HWY_RESTRICT d,
     }
 }
 
+void count_unknown_row(const float* HWY_RESTRICT d,
+                       int width,
+                       std::int8_t sign,
+                       std::uint8_t* HWY_RESTRICT counts) {
+    const auto one = static_cast<std::uint8_t>(sign);
+    for (int u = 0; u < width; ++u) {
+        const std::uint8_t more = d[u] != d[u] ? one : std::uint8_t{0};
+        counts[u] = static_cast<std::uint8_t>(counts[u] + more);
+    }
+}
+
+void unknown_share_row(const std::uint8_t* HWY_RESTRICT counts,
+                       int width,
+                       int radius,
+                       int rows,
+                       float* HWY_RESTRICT share) {
+    const auto share_at = [&](int u) {
+        int unknown = 0;
+        for (int k = -radius; k <= radius; ++k) unknown += counts[u + k];
+        const int columns = std::min(width - 1, u + radius) - std::max(0, u - radius) + 1;
+        return static_cast<float>(unknown) / static_cast<float>(rows * columns);
+    };
+    const int inner = std::max(radius, width - radius);
+    for (int u = 0; u < std::min(radius, width); ++u) share[u] = share_at(u);
+    // Inside, where every window is whole, column after column of it for all pixels.
+    const auto area = static_cast<float>(rows * (2 * radius + 1));
+    constexpr int kChunk = 256;
+    std::uint8_t unknown[kChunk];
+    for (int first = radius; first < inner; first += kChunk) {
+        const int count = std::min(kChunk, inner - first);
+        std::fill_n(unknown, kChunk, std::uint8_t{0});
+        for (int k = -radius; k <= radius; ++k) {
+            for (int i = 0; i < count; ++i)
+                unknown[i] = static_cast<std::uint8_t>(unknown[i] + counts[first + k + i]);
+        }
+        for (int i = 0; i < count; ++i) share[first + i] = static_cast<float>(unknown[i]) / area;
+    }
+    for (int u = inner; u < width; ++u) share[u] = share_at(u);
+}
+
 void nearer_row(const std::uint8_t* HWY_RESTRICT other,
                 int steps,
                 int farthest,
@@ -188,6 +228,8 @@ HWY_EXPORT(settle_row);
 HWY_EXPORT(mark_along_row);
 HWY_EXPORT(mark_ramps_row);
 HWY_EXPORT(mark_from_last_row);
+HWY_EXPORT(count_unknown_row);
+HWY_EXPORT(unknown_share_row);
 HWY_EXPORT(nearer_row);
 
 void median(const float* const lines[3], int width, float* out) {
@@ -213,6 +255,12 @@ void mark_from_last(const float* disparity_px,
     (disparity_px, width, rule, last_px, rows_since, mark);
 }
 
+void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::uint8_t* counts) {
+    HWY_DYNAMIC_DISPATCH(count_unknown_row)(disparity_px, width, sign, counts);
+}
+void unknown_share(const std::uint8_t* counts, int width, int radius, int rows, float* share) {
+    HWY_DYNAMIC_DISPATCH(unknown_share_row)(counts, width, radius, rows, share);
+}
 void nearer(const std::uint8_t* other, int steps, int farthest, int width, std::uint8_t* here) {
     HWY_DYNAMIC_DISPATCH(nearer_row)(other, steps, farthest, width, here);
 }

@@ -51,6 +51,13 @@ void mark_from_last(const float* disparity_px,
                     float* rows_since,
                     std::uint8_t* mark);
 
+/// Adds `sign` to the count of every column whose pixel is unknown.
+void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::uint8_t* counts);
+/// Share of unknown pixels in windows of 2 radius + 1 columns and `rows` rows, of which `counts`
+/// says how many are unknown in each column; `counts` has `radius` zeros on either side. A window
+/// may hold at most 255 pixels.
+void unknown_share(const std::uint8_t* counts, int width, int radius, int rows, float* share);
+
 /// A distance counted up to `farthest`, 255 beyond: the lesser of `here` and `steps` more than
 /// `other`. `here` and `other` must not overlap.
 void nearer(const std::uint8_t* other, int steps, int farthest, int width, std::uint8_t* here);

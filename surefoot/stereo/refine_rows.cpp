@@ -44,6 +44,18 @@ void smooth_image_row(const std::uint8_t* const in[5],
     }
 }
 
+/// Calls here(tag, u) for the columns from `first` to before `last`, in whole registers and then
+/// one by one.
+template <class Here>
+HWY_INLINE void for_columns(int first, int last, const Here& here) {
+    const hn::ScalableTag<float> whole;
+    const hn::CappedTag<float, 1> single;
+    const int lanes = static_cast<int>(hn::Lanes(whole));
+    int u = first;
+    for (; u + lanes <= last; u += lanes) here(whole, u);
+    for (; u < last; ++u) here(single, u);
+}
+
 /// The lanes from `u` on, averaged with the neighbours of `steps` lines on either side.
 template <class D>
 HWY_INLINE void smooth_here(D d, const SmoothRow& row, int steps, int u) {
@@ -63,41 +75,51 @@ HWY_INLINE void smooth_here(D d, const SmoothRow& row, int steps, int u) {
 }
 
 void smooth_along_row(const SmoothRow& row) {
-    const hn::ScalableTag<float> whole;
     const hn::CappedTag<float, 1> single;
-    const int lanes = static_cast<int>(hn::Lanes(whole));
     const int margin = std::min(row.margin_per_step * row.steps, row.width / 2);
     const auto beside_end = [&](int u) {
         const int partners = row.margin_per_step > 0 ? std::min(u, row.width - 1 - u) : row.steps;
         smooth_here(single, row, std::min(row.steps, partners), u);
     };
-    int u = 0;
-    for (; u < margin; ++u) beside_end(u);
-    for (; u + lanes <= row.width - margin; u += lanes) smooth_here(whole, row, row.steps, u);
-    for (; u < row.width; ++u) beside_end(u);
+    for (int u = 0; u < margin; ++u) beside_end(u);
+    for_columns(
+        margin, row.width - margin, [&](auto d, int u) { smooth_here(d, row, row.steps, u); });
+    for (int u = row.width - margin; u < row.width; ++u) beside_end(u);
+}
+
+/// Where the lanes from `u` on are seen in the right row: whole pixel, fraction, and whether.
+template <class D>
+HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
+    const hn::RebindToSigned<D> d32;
+    const hn::Rebind<std::int16_t, D> d16;
+    const hn::Rebind<std::uint8_t, D> d8;
+    const auto column = hn::ConvertTo(d, hn::Iota(d32, u));
+    const auto x = hn::Sub(column, hn::LoadU(d, row.disparity_px + u));
+    const auto jump_px =
+        hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d8, row.jump_distance_px + u)));
+    const auto far = hn::Gt(jump_px, hn::Set(d, static_cast<float>(row.jump_margin_px)));
+    // NaN compares false. One column is left on each side for the gradients.
+    const auto inside = hn::And(hn::Ge(x, hn::Set(d, 1.0F)),
+                                hn::Lt(x, hn::Set(d, static_cast<float>(row.width - 3))));
+    const auto used = hn::And(inside, far);
+    const auto kept = hn::IfThenElse(used, x, hn::Set(d, 1.0F));
+    const auto place = hn::ConvertTo(d32, kept);
+    hn::StoreU(place, d32, row.place + u);
+    hn::StoreU(hn::Sub(kept, hn::ConvertTo(d, place)), d, row.fraction + u);
+    const auto one = hn::IfThenElseZero(hn::RebindMask(d32, used), hn::Set(d32, 1));
+    hn::StoreU(hn::DemoteTo(d16, one), d16, row.used + u);
 }
 
 void place_taps(const WarpRow& row) {
-    const float* HWY_RESTRICT d = row.disparity_px;
-    const std::uint8_t* HWY_RESTRICT jump = row.jump_distance_px;
-    std::int32_t* HWY_RESTRICT place = row.place;
-    float* HWY_RESTRICT fraction = row.fraction;
-    std::int16_t* HWY_RESTRICT used = row.used;
-    const auto end = static_cast<float>(row.width - 3);
-    for (int u = 1; u < row.width - 1; ++u) {
-        const float x = static_cast<float>(u) - d[u];
-        // NaN compares false. One column is left on each side for the gradients.
-        const bool inside = static_cast<int>(x >= 1.0F) & static_cast<int>(x < end) &
-                            static_cast<int>(jump[u] > row.jump_margin_px);
-        const float kept = inside ? x : 1.0F;
-        place[u] = static_cast<int>(kept);
-        fraction[u] = kept - static_cast<float>(place[u]);
-        used[u] = inside ? 1 : 0;
-    }
+    for_columns(1, row.width - 1, [&](auto d, int u) { place_here(d, row, u); });
+    const std::int16_t* const right = row.right;
+    const std::int32_t* const place = row.place;
+    std::int16_t* const fours = row.fours;
+    const int end = row.width - 1;
     // Four pixels at once, and then sorted by their place: a gather of each would take four times
     // as many loads.
-    for (int u = 1; u < row.width - 1; ++u)
-        std::memcpy(row.fours + 4 * u, row.right + place[u] - 1, 4 * sizeof(std::int16_t));
+    for (int u = 1; u < end; ++u)
+        std::memcpy(fours + 4 * u, right + place[u] - 1, 4 * sizeof(std::int16_t));
     const hn::ScalableTag<std::int16_t> tag;
     for (int u = 0; u < row.width; u += static_cast<int>(hn::Lanes(tag))) {
         hn::Vec<decltype(tag)> tap[4];
@@ -154,12 +176,7 @@ void warp_row(const WarpRow& row) {
     clear(0, 1);
     clear(width - 1, width);
     place_taps(row);
-    const hn::ScalableTag<float> whole;
-    const hn::CappedTag<float, 1> single;
-    const int lanes = static_cast<int>(hn::Lanes(whole));
-    int u = 1;
-    for (; u + lanes <= width - 1; u += lanes) warp_here(whole, row, u);
-    for (; u < width - 1; ++u) warp_here(single, row, u);
+    for_columns(1, width - 1, [&](auto d, int u) { warp_here(d, row, u); });
 }
 
 void add_column_sums(const std::int16_t* HWY_RESTRICT g,
@@ -193,20 +210,32 @@ void accumulate_row(const std::int16_t* g,
     add_column_sums(g, e, sign, width, c[1], c[2], c[3], c[4], c[5]);
 }
 
-/// prefix[u + radius + 1] = sum of column[0 ... u]; below 0 nothing, beyond the end the total. They
-/// wrap around; differences that fit are right all the same.
-void sum_up(const std::int32_t* column, int width, int radius, std::uint32_t* prefix) {
-    std::fill(prefix, prefix + radius + 1, 0U);
-    std::uint32_t sum = 0;
-    for (int u = 0; u < width; ++u) {
-        sum += static_cast<std::uint32_t>(column[u]);
-        prefix[u + radius + 1] = sum;
+/// prefix[k][u + radius + 1] = sum of columns[k][0 ... u]; below 0 nothing, beyond the end the
+/// total. They wrap around; differences that fit are right all the same. All six at once: a sum
+/// alone would wait for its own last addition.
+void sum_up(const SolveRow& row) {
+    const int radius = row.radius_px;
+    const int width = row.width;
+    const std::int32_t* HWY_RESTRICT columns[kSums];
+    std::uint32_t* HWY_RESTRICT prefix[kSums];
+    std::uint32_t sums[kSums] = {};
+    for (int k = 0; k < kSums; ++k) {
+        columns[k] = row.columns[k];
+        std::fill(row.prefix[k], row.prefix[k] + radius + 1, 0U);
+        prefix[k] = row.prefix[k] + radius + 1;
     }
-    std::fill(prefix + radius + 1 + width, prefix + 2 * radius + 1 + width, sum);
+    for (int u = 0; u < width; ++u) {
+        for (int k = 0; k < kSums; ++k) {
+            sums[k] += static_cast<std::uint32_t>(columns[k][u]);
+            prefix[k][u] = sums[k];
+        }
+    }
+    for (int k = 0; k < kSums; ++k)
+        std::fill(prefix[k] + width, prefix[k] + width + radius, sums[k]);
 }
 
 void solve_row(const SolveRow& row) {
-    for (int k = 0; k < kSums; ++k) sum_up(row.columns[k], row.width, row.radius_px, row.prefix[k]);
+    sum_up(row);
     const int span = 2 * row.radius_px + 1;
     const std::uint32_t* HWY_RESTRICT pn = row.prefix[0];
     const std::uint32_t* HWY_RESTRICT pg = row.prefix[1];
@@ -228,21 +257,23 @@ void solve_row(const SolveRow& row) {
         const float count = window(pn, u);
         const bool solvable = count >= row.enough;
         const float n = solvable ? count : 1.0F;
+        const float per_pixel = 1.0F / n;
         const float g = window(pg, u);
         const float e = window(pe, u);
-        const float gg = std::max(0.0F, (window(pgg, u) - g * g / n) * kUnit);
-        const float ge = (window(pge, u) - g * e / n) * kUnit;
-        const float ee = (window(pee, u) - e * e / n) * kUnit;
+        const float mean_g = g * per_pixel;
+        const float gg = std::max(0.0F, (window(pgg, u) - mean_g * g) * kUnit);
+        const float ge = (window(pge, u) - mean_g * e) * kUnit;
+        const float ee = (window(pee, u) - e * per_pixel * e) * kUnit;
         const float explained = gg > 0.0F ? ge * ge / gg : 0.0F;
-        const float variance = std::max(least_variance, (ee - explained) / n);
-        const float weight = 1.0F / (row.correlation * variance);
-        const float step = -ge * weight / (gg * weight + prior_weight);
+        const float variance = std::max(least_variance, (ee - explained) * per_pixel);
+        // The correction of least squares, held back by the prior: both weighed by the variance.
+        const float step = -ge / (gg + row.correlation * variance * prior_weight);
         const float shift = std::min(std::max(step, -row.max_step_px), row.max_step_px);
         const bool known = disparity_px[u] == disparity_px[u];
         const float unknown = disparity_px[u];  // NaN where it is used
         const float kept_shift = solvable ? shift : 0.0F;
         const float noise = solvable ? std::sqrt(variance) : kMaxError / kScale;
-        const float slope = solvable ? std::sqrt(gg / n) : 0.0F;
+        const float slope = solvable ? std::sqrt(gg * per_pixel) : 0.0F;
         shift_px[u] = known ? kept_shift : unknown;
         residual[u] = known ? noise : unknown;
         gradient[u] = known ? slope : unknown;

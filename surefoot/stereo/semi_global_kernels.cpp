@@ -172,6 +172,7 @@ void follow(const RowBlock& block, int lane) {
     const Bytes slope = hn::Set(kBytes, block.penalties.slope);
     const Bytes none = hn::Set(kBytes, std::uint8_t{255});
     std::uint8_t* const state = block.state + lane;
+    const int disparities = block.disparities;
     Bytes least = hn::Load(kBytes, block.least + lane);
     Bytes grey_before = hn::Load(kBytes, block.grey_before + lane);
     for (int i = 0; i < block.columns; ++i) {
@@ -185,7 +186,7 @@ void follow(const RowBlock& block, int lane) {
         Bytes below = none;
         Bytes here = hn::Load(kBytes, state);
         Bytes new_least = none;
-        for (int d = 0; d < block.disparities; ++d) {
+        for (int d = 0; d < disparities; ++d) {
             const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
             const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
             const Bytes best = hn::Min(hn::Min(neighbour, here), jump);
@@ -243,6 +244,11 @@ void follow_lanes(const ColumnStep& step, int lane, WinnerRows& out) {
                                             hn::LoadU(kBytes, step.grey + lane),
                                             hn::LoadU(kBytes, step.grey_above + lane)));
     const Word left = word_of(step.left, lane);
+    // Copies: the compiler must assume that what is stored below changes `step`.
+    const std::uint8_t* const right[kCensusBytes] = {
+        step.right[0] + lane, step.right[1] + lane, step.right[2] + lane, step.right[3] + lane};
+    const std::uint8_t* const sums = step.sums + lane;
+    const int disparities = step.disparities;
     Bytes below = none;
     Bytes here = hn::Load(kBytes, state);
     Bytes new_least = none;
@@ -256,18 +262,17 @@ void follow_lanes(const ColumnStep& step, int lane, WinnerRows& out) {
     Bytes sum_before = none;
     Bytes disparity = hn::Zero(kBytes);
     auto was_best = hn::Lt(none, none);
-    for (int d = 0; d < step.disparities; ++d) {
+    for (std::ptrdiff_t d = 0; d < disparities; ++d) {
         const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
         const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
         const Bytes path = hn::Min(hn::Min(neighbour, here), jump);
-        const Bytes cost =
-            hn::Add(hn::Sub(path, least), distance(left, word_of(step.right, lane - d)));
+        const Bytes cost = hn::Add(hn::Sub(path, least), distance(left, word_of(right, -d)));
         hn::Store(cost, kBytes, state + d * kLanes);
         new_least = hn::Min(new_least, cost);
         below = here;
         here = above;
 
-        const Bytes sum = hn::Add(cost, hn::Load(kBytes, step.sums + d * kLanes + lane));
+        const Bytes sum = hn::Add(cost, hn::Load(kBytes, sums + d * kLanes));
         const auto is_best = hn::Lt(sum, best_cost);
         const Bytes rest = hn::IfThenElse(was_best, second, hn::Min(second, sum));
         second = hn::IfThenElse(is_best, older, rest);
