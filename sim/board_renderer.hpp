@@ -2,33 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "surefoot/camera/camera_model.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/pose.hpp"
+#include "surefoot/core/printed_sheet.hpp"
 #include "surefoot/core/views.hpp"
 
 namespace surefoot::sim {
-
-/// What is printed on a flat sheet: black shapes on white paper, all in the plane z = 0 of the
-/// sheet's own frame, x to the right and y down as the camera sees it, z away from the viewer.
-struct PrintedSheet {
-    struct Rectangle {
-        double left_m = 0.0;
-        double top_m = 0.0;
-        double right_m = 0.0;
-        double bottom_m = 0.0;
-    };
-    struct Disc {
-        double x_m = 0.0;
-        double y_m = 0.0;
-        double radius_m = 0.0;
-    };
-    Rectangle paper;
-    std::vector<Rectangle> rectangles;
-    std::vector<Disc> discs;
-};
 
 /// Light, lens and sensor of a board's picture. Grey values are linear in light, 0..255.
 struct BoardLook {

@@ -10,7 +10,9 @@
 #include "io/file.hpp"
 #include "io/image_file.hpp"
 #include "io/rig_file.hpp"
+#include "sim/board_renderer.hpp"
 #include "sim/rigs.hpp"
+#include "surefoot/calibration/board_print.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -34,7 +36,7 @@ int render_boards(const BoardImagesOptions& options) {
     const auto board = calibration::parse_board(options.board);
     if (!board)
         return report(usage_error(fmt::format("--board '{}' cannot be read", options.board)));
-    const auto sheet = sheet_of(*board);
+    const auto sheet = calibration::print_of(*board);
     if (!sheet) return report(sheet.error());
     const auto rig = rig_of(options.rig);
     if (!rig) return report(rig.error());

@@ -9,6 +9,8 @@
 #include "apps/surefoot/rendered_boards.hpp"
 #include "io/file.hpp"
 #include "io/image_file.hpp"
+#include "sim/board_renderer.hpp"
+#include "surefoot/calibration/board_print.hpp"
 #include "surefoot/calibration/detect_board.hpp"
 
 namespace surefoot::app {
@@ -60,7 +62,8 @@ GreyImage rendered(const Board& board,
                    const Pose& T_camera_board,
                    const sim::BoardLook& look = {}) {
     Serial serial;
-    return sim::render_board(sheet_of(board).value(), camera, T_camera_board, look, 5, serial);
+    return sim::render_board(
+        calibration::print_of(board).value(), camera, T_camera_board, look, 5, serial);
 }
 
 std::vector<Pose> poses_for(const Board& board, const camera::Camera& camera, int count) {

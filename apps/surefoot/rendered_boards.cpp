@@ -17,9 +17,7 @@ constexpr double kFarthest = 1.7;
 constexpr double kBorder_px = 4.0;
 
 /// Whether an eye sees the whole sheet, well inside the image.
-bool sees(const BoardEye& eye,
-          const sim::PrintedSheet::Rectangle& paper,
-          const Pose& T_left_board) {
+bool sees(const BoardEye& eye, const PrintedSheet::Rectangle& paper, const Pose& T_left_board) {
     const Pose T_eye_board = eye.T_left_eye.inverse() * T_left_board;
     constexpr int kSteps = 8;  // along each side: straight edges bend in a fisheye
     for (int i = 0; i <= kSteps; ++i) {
@@ -42,20 +40,6 @@ bool sees(const BoardEye& eye,
 
 }  // namespace
 
-Result<sim::PrintedSheet> sheet_of(const calibration::Board& board) {
-    const auto print = calibration::print_of(board);
-    if (!print) return print.error();
-    sim::PrintedSheet sheet;
-    const auto copy = [](const calibration::BoardPrint::Rectangle& r) {
-        return sim::PrintedSheet::Rectangle{r.left_m, r.top_m, r.right_m, r.bottom_m};
-    };
-    sheet.paper = copy(print->paper);
-    for (const auto& rectangle : print->rectangles) sheet.rectangles.push_back(copy(rectangle));
-    for (const auto& disc : print->discs)
-        sheet.discs.push_back({disc.x_m, disc.y_m, disc.radius_m});
-    return sheet;
-}
-
 std::vector<BoardEye> eyes_of(const camera::StereoRig& rig) {
     std::vector<BoardEye> eyes = {{rig.left, Pose{}}};
     if (rig.right) eyes.push_back({*rig.right, rig.T_left_right});
@@ -66,7 +50,7 @@ std::vector<Pose> shown_poses(const calibration::Board& board,
                               std::span<const BoardEye> eyes,
                               int count,
                               Rng& rng) {
-    const auto sheet = sheet_of(board);
+    const auto sheet = calibration::print_of(board);
     if (!sheet || eyes.empty()) return {};
     const auto& paper = sheet->paper;
     const Eigen::Vector3d middle_m(

@@ -4,17 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "sim/board_renderer.hpp"
 #include "surefoot/calibration/board.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
-#include "surefoot/core/result.hpp"
 #include "surefoot/core/rng.hpp"
 
-// Pictures of boards whose truth is known: the simulator draws what the calibration prints.
+// Poses for pictures of boards whose truth is known.
 namespace surefoot::app {
-
-/// The board as the simulator draws it; fails where there is no such board.
-[[nodiscard]] Result<sim::PrintedSheet> sheet_of(const calibration::Board& board);
 
 /// A camera with its place in the frame of the left one.
 struct BoardEye {

@@ -9,7 +9,7 @@
 namespace surefoot::calibration {
 namespace {
 
-void add_squares(const Board& board, BoardPrint& print) {
+void add_squares(const Board& board, PrintedSheet& print) {
     const double side_m = board.spacing_m;
     for (int row = 0; row < squares(board.rows); ++row) {
         for (int column = row % 2; column < squares(board.columns); column += 2) {
@@ -26,7 +26,7 @@ void add_marker(const cv::aruco::Dictionary& dictionary,
                 double left_m,
                 double top_m,
                 double side_m,
-                BoardPrint& print) {
+                PrintedSheet& print) {
     const int inner = dictionary.markerSize;
     const int all = inner + 2;
     const cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(
@@ -43,7 +43,7 @@ void add_marker(const cv::aruco::Dictionary& dictionary,
     }
 }
 
-void add_markers(const Board& board, const cv::aruco::Dictionary& dictionary, BoardPrint& print) {
+void add_markers(const Board& board, const cv::aruco::Dictionary& dictionary, PrintedSheet& print) {
     const double margin_m = 0.5 * (board.spacing_m - board.marker_m);
     int id = 0;
     for (int row = 0; row < squares(board.rows); ++row) {
@@ -58,7 +58,7 @@ void add_markers(const Board& board, const cv::aruco::Dictionary& dictionary, Bo
     }
 }
 
-void add_circles(const Board& board, double circle_share, BoardPrint& print) {
+void add_circles(const Board& board, double circle_share, PrintedSheet& print) {
     const bool staggered = board.kind == BoardKind::asymmetric_circles;
     const double nearest_m = staggered ? board.spacing_m / std::numbers::sqrt2 : board.spacing_m;
     for (const Eigen::Vector3d& point_m : board.points_m())
@@ -67,9 +67,9 @@ void add_circles(const Board& board, double circle_share, BoardPrint& print) {
 
 }  // namespace
 
-Result<BoardPrint> print_of(const Board& board, double circle_share) {
+Result<PrintedSheet> print_of(const Board& board, double circle_share) {
     if (const auto problem = board.problem()) return usage_error(*problem);
-    BoardPrint print;
+    PrintedSheet print;
     const bool has_squares =
         board.kind == BoardKind::chessboard || board.kind == BoardKind::charuco;
     if (has_squares) {
