@@ -212,19 +212,19 @@ void Renderer::shade_by_face(std::span<const RayHit> hits,
                              std::span<Seen> out) const {
     // Filled as far as they are read: zeros would cost more than the work.
     // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
-    std::array<std::size_t, CastBlock::kPixels> todo;
+    std::array<std::size_t, CastBlock::kPixels> waiting;
     std::array<std::size_t, CastBlock::kPixels> chosen;
     // NOLINTEND(cppcoreguidelines-pro-type-member-init)
     std::array<Sight, CastBlock::kPixels> chosen_sights;
     std::array<Seen, CastBlock::kPixels> chosen_seen;
-    std::iota(todo.begin(), todo.begin() + static_cast<std::ptrdiff_t>(hits.size()), 0U);
+    std::iota(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(hits.size()), 0U);
     for (std::size_t left = hits.size(); left > 0;) {
-        const int face = hits[todo[0]].face;
+        const int face = hits[waiting[0]].face;
         std::size_t later = 0;
         std::size_t count = 0;
         for (std::size_t k = 0; k < left; ++k) {
-            const std::size_t i = todo[k];
-            (hits[i].face == face ? chosen[count++] : todo[later++]) = i;
+            const std::size_t i = waiting[k];
+            (hits[i].face == face ? chosen[count++] : waiting[later++]) = i;
         }
         left = later;
         if (face < 0) {
