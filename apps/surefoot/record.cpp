@@ -20,7 +20,7 @@ int record(const RecordOptions& options) {
                                options.max_frames,
                                options.common.seed,
                                settings->sim,
-                               settings->camera,
+                               settings->live,
                                options.imu_file},
                               *executor);
     if (!source) return report(source.error());

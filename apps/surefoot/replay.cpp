@@ -97,7 +97,7 @@ int replay(const ReplayOptions& options) {
                                0,
                                options.common.seed,
                                settings->sim,
-                               settings->camera},
+                               settings->live},
                               *executor);
     if (!source) return report(source.error());
     auto pipeline = pipeline::Pipeline::make(

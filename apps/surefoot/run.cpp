@@ -39,7 +39,7 @@ int run(const RunOptions& options) {
                                options.max_frames,
                                options.common.seed,
                                settings->sim,
-                               settings->camera,
+                               settings->live,
                                options.imu_file},
                               *executor);
     if (!source) return report(source.error());

@@ -20,7 +20,7 @@ void Settings::describe(ConfigVisitor& visitor) {
     sim.describe(visitor);
     visitor.group("laser", laser);
     visitor.end_group();
-    visitor.group("live", camera);
+    visitor.group("live", live);
 }
 
 Result<Settings> load_settings(const CommonOptions& options) {
@@ -37,16 +37,13 @@ Result<Settings> load_settings(const CommonOptions& options) {
     }
     if (auto status = apply_overrides(options, describe); !status) return status.error();
     if (const auto problem = settings.pipeline.problem()) return usage_error(*problem);
-    if (const auto problem = settings.camera.problem()) return usage_error(*problem);
-    const camera::RectificationConfig& wanted = settings.pipeline.camera;
-    const bool own_view = wanted.rectified_focal_px > 0.0 || wanted.rectified_width_px > 0 ||
-                          wanted.rectified_height_px > 0 ||
-                          wanted.max_view_deg != camera::RectificationConfig{}.max_view_deg;
+    if (const auto problem = settings.live.problem()) return usage_error(*problem);
+    const bool own_view = settings.pipeline.camera != camera::RectificationConfig{};
     if (settings.sim.sensor == sim::Sensor::analytic && own_view) {
         return usage_error(
             "camera.rectified_focal_px, .rectified_width_px, .rectified_height_px and "
-            ".max_view_deg "
-            "cannot be set with sim.sensor = analytic, whose depth is rectified already");
+            ".max_view_deg cannot be set with sim.sensor = analytic, whose depth is rectified "
+            "already");
     }
     return settings;
 }

@@ -22,7 +22,7 @@ struct Settings {
     eval::EvalMapsConfig maps;
     sim::SceneOptions sim;          ///< how simulated scenes are seen
     sim::LaserScannerConfig laser;  ///< and scanned
-    io::CameraConfig camera;        ///< how live cameras are used
+    io::CameraConfig live;          ///< how live cameras are used
 
     void describe(ConfigVisitor& visitor);
 };

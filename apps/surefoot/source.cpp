@@ -56,7 +56,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_live(const SourceRequest& requ
     const auto rig = io::read_rig(request.rig_file);
     if (!rig) return rig.error();
     auto camera = io::LiveCamera::open(
-        io::kernel_video_device(), *address, *rig, request.camera, [] { return interrupted(); });
+        io::kernel_video_device(), *address, *rig, request.live, [] { return interrupted(); });
     if (!camera) return camera.error();
     return std::unique_ptr<camera::FrameSource>(std::move(camera).value());
 }

@@ -22,9 +22,9 @@ struct SourceRequest {
     double rate_hz = 0.0;  ///< 0 = the source's own
     int max_frames = 0;    ///< 0 = all
     std::uint64_t seed = 1;
-    sim::SceneOptions sim = {};    ///< the rest of what a simulated scene wants to know
-    io::CameraConfig camera = {};  ///< and a live camera
-    std::string imu_file = {};     ///< samples of another device, see io::with_imu
+    sim::SceneOptions sim = {};  ///< the rest of what a simulated scene wants to know
+    io::CameraConfig live = {};  ///< and a live camera
+    std::string imu_file = {};   ///< samples of another device, see io::with_imu
 };
 
 /// What begins the name of a live camera.

@@ -18,6 +18,7 @@ struct RectificationConfig {
     /// view would thin out the middle of a fisheye image, where the ground is.
     double max_view_deg = 105.0;
 
+    [[nodiscard]] bool operator==(const RectificationConfig&) const = default;
     void describe(ConfigVisitor& visitor);
     /// First reason why it cannot be used on raw images of a size, or nothing.
     [[nodiscard]] std::optional<std::string> problem(int raw_width, int raw_height) const;
