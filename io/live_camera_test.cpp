@@ -9,6 +9,7 @@
 #include "io/fake_video_device.hpp"
 #include "io/frame_watch.hpp"
 #include "io/io_testing.hpp"
+#include "surefoot/camera/test_rigs.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -24,15 +25,7 @@ constexpr std::int64_t kStart_us = 5'000'000;
 constexpr std::int64_t kPeriod_us = 33'333;
 
 camera::StereoRig small_rig() {
-    camera::StereoRig rig;
-    camera::PinholeRadTan lens;
-    lens.fx_px = lens.fy_px = 30.0;
-    lens.cx_px = 15.5;
-    lens.cy_px = 11.5;
-    rig.left = {lens, kWidth, kHeight};
-    rig.right = rig.left;
-    rig.T_left_right = {exp_so3({0.0, 0.0, 0.0}), {0.12, 0.0, 0.0}};
-    return rig;
+    return camera::test::ideal_rig(kWidth, kHeight, 30.0);
 }
 
 FakeCamera small_camera() {

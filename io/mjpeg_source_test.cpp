@@ -9,6 +9,7 @@
 #include "io/file.hpp"
 #include "io/io_testing.hpp"
 #include "io/rig_file.hpp"
+#include "surefoot/camera/test_rigs.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -20,14 +21,7 @@ constexpr int kWidth = 64;
 constexpr int kHeight = 48;
 
 camera::StereoRig small_rig() {
-    camera::StereoRig rig;
-    camera::PinholeRadTan lens;
-    lens.fx_px = lens.fy_px = 60.0;
-    lens.cx_px = 31.5;
-    lens.cy_px = 23.5;
-    rig.left = {lens, kWidth, kHeight};
-    rig.right = rig.left;
-    rig.T_left_right = {exp_so3({0.0, 0.0, 0.0}), {0.12, 0.0, 0.0}};
+    camera::StereoRig rig = camera::test::ideal_rig(kWidth, kHeight, 60.0);
     rig.rate_hz = 20.0;
     return rig;
 }

@@ -3,7 +3,7 @@
 
 #include "surefoot/camera/stereo_rig.hpp"
 
-/// Rigs for the tests of this folder.
+/// Rigs for tests.
 namespace surefoot::camera::test {
 
 /// EuRoC MAV, VI-Sensor of the Vicon room sequences: published calibration of cam0 and cam1.
@@ -80,6 +80,20 @@ inline StereoRig zed_rig() {
     rig.right = rig.left;
     rig.T_left_right.translation_m = {0.12, 0.0, 0.0};
     rig.rectified = true;
+    return rig;
+}
+
+/// Lenses without distortion that look straight ahead, 0.12 m apart.
+inline StereoRig ideal_rig(int width, int height, double focal_px) {
+    StereoRig rig;
+    rig.left = {PinholeRadTan{.fx_px = focal_px,
+                              .fy_px = focal_px,
+                              .cx_px = 0.5 * (width - 1),
+                              .cy_px = 0.5 * (height - 1)},
+                width,
+                height};
+    rig.right = rig.left;
+    rig.T_left_right.translation_m = {0.12, 0.0, 0.0};
     return rig;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "surefoot/camera/test_rigs.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 
 namespace surefoot::pipeline {
@@ -13,16 +14,10 @@ constexpr int kWidth = 160;
 constexpr int kHeight = 120;
 constexpr std::int64_t kPeriod_ns = 66'000'000;
 
+/// One metre above the ground.
 camera::StereoRig small_rig() {
-    camera::StereoRig rig;
-    camera::PinholeRadTan lens;
-    lens.fx_px = lens.fy_px = 120.0;
-    lens.cx_px = 79.5;
-    lens.cy_px = 59.5;
-    rig.left = {lens, kWidth, kHeight};
-    rig.right = rig.left;
-    rig.T_left_right = {exp_so3({0.0, 0.0, 0.0}), {0.12, 0.0, 0.0}};
-    rig.T_body_left = Pose{exp_so3({0.0, 0.0, 0.0}), {0.0, 0.0, 1.0}};
+    camera::StereoRig rig = camera::test::ideal_rig(kWidth, kHeight, 120.0);
+    rig.T_body_left = Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, 1.0}};
     return rig;
 }
 
