@@ -12,9 +12,9 @@
 namespace surefoot::calibration {
 namespace {
 
-using testing::nees;
 using testing::synthetic_views;
 using testing::SyntheticViews;
+using testing::Uncertainty;
 using testing::view_of;
 
 constexpr double kNoise_px = 0.1;
@@ -74,13 +74,11 @@ INSTANTIATE_TEST_SUITE_P(Rigs, EveryRig, ::testing::ValuesIn(cases()), [](const 
     return std::string(tested.param.name);
 });
 
-/// As in mono_calibration_test: sums of chi square within 3.3 standard deviations.
 TEST_P(EveryRig, IsFoundWithinItsOwnUncertainty) {
     const Case& c = GetParam();
     constexpr int kSeeds = 3;
-    double sum = 0.0;
+    Uncertainty uncertainty;
     double depth_sum = 0.0;
-    int beyond_three_sigma = 0;
     for (int seed = 0; seed < kSeeds; ++seed) {
         Rng rng(static_cast<std::uint64_t>(200 + seed));
         const SyntheticViews views = synthetic_views(kBoard, c.rig, 10, kNoise_px, rng);
@@ -89,18 +87,12 @@ TEST_P(EveryRig, IsFoundWithinItsOwnUncertainty) {
         ASSERT_TRUE(result) << "seed " << seed << ": " << result.error().message;
         EXPECT_EQ(result->pairs.size(), 10U) << "seed " << seed;
         EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01) << "seed " << seed;
-        const Eigen::VectorXd error = error_of(c.rig, result->rig);
-        const Eigen::VectorXd sigmas =
-            error.cwiseQuotient(result->covariance.diagonal().cwiseSqrt());
-        beyond_three_sigma += static_cast<int>((sigmas.array().abs() > 3.0).count());
-        sum += nees(error, result->covariance);
+        uncertainty.add(error_of(c.rig, result->rig), result->covariance);
         const double depth = depth_error_m(c.rig, result->rig) / result->depth_errors[1].sigma_m;
         depth_sum += depth * depth;
         EXPECT_LT(std::abs(depth), 3.0) << "seed " << seed;
     }
-    const double freedom = kSeeds * 22.0;
-    EXPECT_NEAR(sum, freedom, 3.3 * std::sqrt(2.0 * freedom));
-    EXPECT_LE(beyond_three_sigma, 1) << "of " << freedom << " values 0.2 are expected";
+    uncertainty.expect_true();
     EXPECT_GT(depth_sum, 0.024) << "99.9 % of chi square with 3 degrees of freedom lie above";
 }
 

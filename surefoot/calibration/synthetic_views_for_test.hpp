@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <optional>
@@ -86,13 +88,29 @@ inline SyntheticViews synthetic_views(const Board& board,
     return views;
 }
 
-/// Squared error over its covariance; its mean is the number of parameters.
-inline double nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
-    const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
-    const Eigen::MatrixXd correlation =
-        sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
-    const Eigen::VectorXd scaled = error.cwiseQuotient(sigma);
-    return scaled.dot(correlation.ldlt().solve(scaled));
-}
+/// Errors of several calibrations against what they say about themselves.
+class Uncertainty {
+  public:
+    void add(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+        const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+        const Eigen::MatrixXd correlation =
+            sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+        const Eigen::VectorXd scaled = error.cwiseQuotient(sigma);
+        beyond_three_sigma_ += static_cast<int>((scaled.array().abs() > 3.0).count());
+        chi_square_ += scaled.dot(correlation.ldlt().solve(scaled));
+        values_ += static_cast<double>(error.size());
+    }
+    /// Squared errors over their covariance add up to chi square of as many degrees of freedom as
+    /// there are values; it may be off by 3.3 standard deviations (99.9 %).
+    void expect_true() const {
+        EXPECT_NEAR(chi_square_, values_, 3.3 * std::sqrt(2.0 * values_));
+        EXPECT_LE(beyond_three_sigma_, 1) << "of " << values_ << " values; 0.3 % are expected";
+    }
+
+  private:
+    double chi_square_ = 0.0;
+    double values_ = 0.0;
+    int beyond_three_sigma_ = 0;
+};
 
 }  // namespace surefoot::calibration::testing
