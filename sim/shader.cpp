@@ -141,7 +141,7 @@ void Shader::surface(int surface, std::span<const Sight> sights, std::span<Seen>
             batch.minor_texel[i] = look.minor_texel;
             batch.cosine[i] = look.cosine;
         }
-        textures_.reflectances(face.placement, batch, Registers::widest, albedo.data());
+        textures_.reflectances(face.placement, batch, albedo.data());
         const std::vector<Blocker> blockers = blockers_of(face, part);
         // Without shadows and stripes the light is the same all over a plane.
         const bool even = blockers.empty() && !(lighting_.stripe_width_m > 0.0);

@@ -127,9 +127,6 @@ struct Placement {
 /// Coarse blotches, many times the finest detail in size, hide that the tile repeats.
 inline constexpr double kBlotchScale = 1.0 / 13.7;
 
-/// Which registers a batch is looked up with: the same bits either way.
-enum class Registers : std::uint8_t { narrow, widest };
-
 /// Places on one surface that are looked up together, each with the footprint of its pixel as for
 /// Textures::reflectance.
 struct TextureBatch {
@@ -167,10 +164,10 @@ class Textures {
                                     const Eigen::Vector2f& along_texel,
                                     float minor_texel,
                                     float cosine) const noexcept;
-    /// The same, bit by bit, for a batch of places; `out` has room for all of them.
+    /// The same, bit by bit and on every processor, for a batch of places; `out` has room for all
+    /// of them.
     void reflectances(const Placement& placement,
                       const TextureBatch& batch,
-                      Registers registers,
                       float* out) const noexcept;
 
   private:

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sim/texture.hpp"
+#include "sim/texture_lookup.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sim/texture_batch.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
-#include "sim/texture.hpp"
-#include "sim/texture_lookup.hpp"
-
-/// Loops over arrays that the compiler turns into vector code (this file is compiled with -O3),
-/// once for every processor and once for those with AVX2, which can fetch eight texels at a time.
-namespace surefoot::sim {
+/// Plain loops over arrays that the compiler turns into vector code (this file is compiled with
+/// -O3), once for every instruction set, chosen at run time.
+HWY_BEFORE_NAMESPACE();
+namespace surefoot::sim::HWY_NAMESPACE {
 namespace {
 
 using Place = TextureTable::Place;
@@ -28,7 +34,7 @@ struct Plan {
     Array<std::uint32_t> coarse_sum;
 };
 
-[[gnu::always_inline]] inline int make_plan(const TextureBatch& in, Plan& plan) {
+HWY_INLINE int make_plan(const TextureBatch& in, Plan& plan) {
     int most_taps = 1;
     for (std::size_t i = 0; i < in.count; ++i) {
         const lookup::Cover cover =
@@ -47,10 +53,7 @@ struct Plan {
     return most_taps;
 }
 
-[[gnu::always_inline]] inline void add_tap(const std::uint32_t* cells,
-                                           int tap,
-                                           std::size_t count,
-                                           Plan& plan) {
+HWY_INLINE void add_tap(const std::uint32_t* cells, int tap, std::size_t count, Plan& plan) {
     for (std::size_t i = 0; i < count; ++i) {
         const lookup::Levels levels = lookup::levels_of(plan.level[i]);
         // Places that need no further tap look it up and forget it.
@@ -62,10 +65,10 @@ struct Plan {
     }
 }
 
-[[gnu::always_inline]] inline void look_up(const std::uint32_t* cells,
-                                           const Placement& placement,
-                                           const TextureBatch& in,
-                                           float* out) {
+void look_up(const std::uint32_t* cells,
+             const Placement& placement,
+             const TextureBatch& in,
+             float* out) {
     Plan plan;  // make_plan fills it. NOLINT(cppcoreguidelines-pro-type-member-init)
     const int most_taps = make_plan(in, plan);
     for (int tap = 0; tap < most_taps; ++tap) add_tap(cells, tap, in.count, plan);
@@ -83,41 +86,20 @@ struct Plan {
     }
 }
 
-void look_up_anywhere(const std::uint32_t* cells,
-                      const Placement& placement,
-                      const TextureBatch& in,
-                      float* out) {
-    look_up(cells, placement, in, out);
-}
-
-#if defined(__x86_64__)
-[[gnu::target("avx2")]] void look_up_avx2(const std::uint32_t* cells,
-                                          const Placement& placement,
-                                          const TextureBatch& in,
-                                          float* out) {
-    look_up(cells, placement, in, out);
-}
-
-bool has_avx2() {
-    static const bool has = __builtin_cpu_supports("avx2") != 0;
-    return has;
-}
-#endif
-
 }  // namespace
+}  // namespace surefoot::sim::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace surefoot::sim {
+
+HWY_EXPORT(look_up);
 
 void Textures::reflectances(const Placement& placement,
-                            const TextureBatch& in,
-                            [[maybe_unused]] Registers registers,
+                            const TextureBatch& batch,
                             float* out) const noexcept {
-    const std::uint32_t* cells = tables_[placement.table].cells();
-#if defined(__x86_64__)
-    if (registers == Registers::widest && has_avx2()) {
-        look_up_avx2(cells, placement, in, out);
-        return;
-    }
-#endif
-    look_up_anywhere(cells, placement, in, out);
+    HWY_DYNAMIC_DISPATCH(look_up)(tables_[placement.table].cells(), placement, batch, out);
 }
 
 }  // namespace surefoot::sim
+#endif  // HWY_ONCE

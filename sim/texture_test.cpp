@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/texture_patterns.hpp"
+#include "surefoot/camera/simd_targets_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
@@ -184,7 +185,7 @@ TEST(TextureTest, AMeanOfTapsIsTheMeanOfTheirSamples) {
     }
 }
 
-/// Whatever the registers, and also beyond what a scene needs.
+/// Whatever the instruction set, and also beyond what a scene needs.
 TEST(TextureTest, ABatchHasTheBitsOfSinglePlaces) {
     Material material;
     material.pattern = Pattern::tiles;
@@ -211,11 +212,11 @@ TEST(TextureTest, ABatchHasTheBitsOfSinglePlaces) {
             batch.cosine[i] = cosine;
             single[i] = textures.reflectance(placement, at_texel, along, minor, cosine);
         }
-        for (const Registers registers : {Registers::narrow, Registers::widest}) {
+        camera::test::on_every_target([&](const char* target) {
             std::vector<float> together(count);
-            textures.reflectances(placement, batch, registers, together.data());
-            EXPECT_EQ(together, single) << count;
-        }
+            textures.reflectances(placement, batch, together.data());
+            EXPECT_EQ(together, single) << count << " on " << target;
+        });
         if (count > 1) {
             const auto [least, most] = std::minmax_element(single.begin(), single.end());
             EXPECT_GT(*most - *least, 0.2F);
