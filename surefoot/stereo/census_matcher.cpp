@@ -9,10 +9,6 @@
 namespace surefoot::stereo {
 namespace {
 
-/// Islands smaller than this, whose pixels differ by at most kSpeckleRange_px, go.
-constexpr int kSpeckleSize_px = 100;
-constexpr double kSpeckleRange_px = 2.0;
-
 SemiGlobalConfig search_config(const MatcherConfig& config) {
     SemiGlobalConfig search;
     search.disparities = config.disparities;

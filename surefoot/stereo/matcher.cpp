@@ -12,7 +12,14 @@ void MatcherConfig::describe(ConfigVisitor& visitor) {
                     16,
                     512,
                     "search range [px], a multiple of 16; KITTI-size images want 96-128");
-    visitor.integer("block_size", block_size, 1, 11, "side of the matching window [px], odd");
+    visitor.integer("block_size", block_size, 1, 11, "sgbm: side of its window [px], odd");
+    visitor.enumeration("sgbm_mode", sgbm_mode, kSgbmModeNames, "sgbm: 3, 4 or 8 paths");
+    visitor.integer("bm_block_size", bm_block_size, 5, 51, "bm: side of its window [px], odd");
+    visitor.integer("bm_prefilter_cap",
+                    bm_prefilter_cap,
+                    1,
+                    63,
+                    "bm: steeper slopes of grey along a row are cut off here");
     visitor.integer("uniqueness_percent",
                     uniqueness_percent,
                     0,
@@ -33,6 +40,12 @@ std::optional<std::string> MatcherConfig::problem() const {
     if (block_size < 1 || block_size > 11 || block_size % 2 == 0) {
         return fmt::format("stereo.block_size = {} must be odd, from 1 to 11", block_size);
     }
+    if (bm_block_size < 5 || bm_block_size > 51 || bm_block_size % 2 == 0) {
+        return fmt::format("stereo.bm_block_size = {} must be odd, from 5 to 51", bm_block_size);
+    }
+    if (bm_prefilter_cap < 1 || bm_prefilter_cap > 63) {
+        return fmt::format("stereo.bm_prefilter_cap = {} must be from 1 to 63", bm_prefilter_cap);
+    }
     if (uniqueness_percent < 0 || uniqueness_percent > 50) {
         return fmt::format("stereo.uniqueness_percent = {} must be from 0 to 50",
                            uniqueness_percent);
@@ -47,8 +60,12 @@ std::optional<std::string> MatcherConfig::problem() const {
 }
 
 std::unique_ptr<Matcher> make_matcher(const MatcherConfig& config) {
-    return config.algorithm == Algorithm::census ? make_census_matcher(config)
-                                                 : make_sgbm_matcher(config);
+    switch (config.algorithm) {
+        case Algorithm::census: break;
+        case Algorithm::sgbm: return make_sgbm_matcher(config);
+        case Algorithm::bm: return make_bm_matcher(config);
+    }
+    return make_census_matcher(config);
 }
 
 }  // namespace surefoot::stereo

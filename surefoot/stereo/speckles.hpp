@@ -8,6 +8,11 @@
 
 namespace surefoot::stereo {
 
+/// Behind every search islands of fewer pixels go; pixels that differ by at most kSpeckleRange_px
+/// hang together.
+inline constexpr int kSpeckleSize_px = 100;
+inline constexpr int kSpeckleRange_px = 2;
+
 /// Removes small islands: pixels that hang together, each within `same_px` of the next along a row
 /// or a column, and are fewer than `min_size` in all become NaN. Works on runs of each row (union
 /// by root of their numbers), so that its cost grows with the edges in the image, not with its
