@@ -167,13 +167,10 @@ Match chain() {
     };
 }
 
-Match census(int slope, int jump, int least) {
+Match census(const stereo::SemiGlobalConfig& penalties) {
     return [=](const Pair& pair) {
-        stereo::SemiGlobalConfig config;
+        stereo::SemiGlobalConfig config = penalties;
         config.disparities = pair.disparities;
-        config.slope_penalty = slope;
-        config.jump_penalty = jump;
-        config.min_jump_penalty = least;
         Serial serial;
         stereo::Winners winners;
         stereo::SemiGlobalSearch(config).search(
@@ -181,7 +178,8 @@ Match census(int slope, int jump, int least) {
         Image<float> settled_px;
         Image<float> disparity_px;
         stereo::settle({}, winners, serial, settled_px);
-        stereo::SpeckleFilter().remove(100, 2.0, settled_px);
+        stereo::SpeckleFilter().remove(
+            stereo::kSpeckleSize_px, stereo::kSpeckleRange_px, settled_px);
         stereo::median_filter(settled_px, serial, disparity_px);
         return disparity_px;
     };
@@ -270,7 +268,9 @@ std::vector<Candidate> candidates() {
     Candidate ours{"our search alone", {}};
     for (const int slope : {3, 5, 8, 11})
         for (const int jump : {30, 42, 54})
-            for (const int least : {6, 12, 20}) ours.settings.push_back(census(slope, jump, least));
+            for (const int least : {6, 12, 20})
+                ours.settings.push_back(census(
+                    {.slope_penalty = slope, .jump_penalty = jump, .min_jump_penalty = least}));
     std::vector<Candidate> all = {ours};
     for (const auto& [name, mode] :
          {std::pair{"OpenCV SGBM 3-way", static_cast<int>(cv::StereoSGBM::MODE_SGBM_3WAY)},
@@ -405,7 +405,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     constexpr int k3Way = cv::StereoSGBM::MODE_SGBM_3WAY;
     constexpr int kHh4 = cv::StereoSGBM::MODE_HH4;
     report(scores, "defaults", "our whole matcher", chain(), pairs);
-    report(scores, "defaults", "our search alone", census(11, 54, 10), pairs);
+    report(scores, "defaults", "our search alone", census({}), pairs);
     report(scores, "defaults", "OpenCV SGBM 3-way", opencv(k3Way, 8.0, 32.0, 63), pairs);
     report(scores, "defaults", "OpenCV SGBM HH4", opencv(kHh4, 8.0, 32.0, 63), pairs);
     for (const Candidate& candidate : candidates()) {
