@@ -22,8 +22,10 @@ struct MatchEvidence {
 ///   sigma^2 = floor^2 + (gain residual / gradient)^2 + (share shift)^2 + (jump nearness)^2
 ///             + (hole unknown_share)^2, at most kMaxSigma_px.
 /// Fitted (likelihood of Student's t with 8 degrees of freedom) to Middlebury cones and cloth3 and
-/// to four scenes seen by the simulated ZED at one and two times its noise; other pairs and scenes:
-/// docs/accuracy.md. Images of an ideal camera scatter two to three times less than it says.
+/// to four scenes seen by the simulated ZED at one and two times its noise, then all coefficients
+/// times 1.12, so that 68 % lie within one sigma. Other pairs and scenes, and what was held out:
+/// docs/experiments/matching.md. Images of an ideal camera scatter two to three times less than it
+/// says.
 [[nodiscard]] float match_sigma_px(const MatchEvidence& evidence) noexcept;
 
 inline constexpr float kSigmaFloor_px = 0.125F;
