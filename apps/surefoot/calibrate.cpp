@@ -135,7 +135,8 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     for (const CalibratedEye& eye : calibrated_eyes(run)) {
         fmt::print(
             "{}: f {:.2f} +- {:.2f}, {:.2f} +- {:.2f} px; centre {:.2f} +- {:.2f}, {:.2f} "
-            "+- {:.2f} px\n",
+            "+- {:.2f} px; "
+            "directions +- {:.3f} px in the image, {:.2f} in its worst corner\n",
             eye.name,
             eye.parameters[0],
             eye.sigmas[0],
@@ -144,7 +145,9 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
             eye.parameters[2],
             eye.sigmas[2],
             eye.parameters[3],
-            eye.sigmas[3]);
+            eye.sigmas[3],
+            eye.mapping.median_px,
+            eye.mapping.largest_px);
     }
     const std::size_t used = calibrated_eyes(run).front().views.size();
     fmt::print("{} of {} views used, rms {:.3f} px",
@@ -185,10 +188,6 @@ int calibrate(const CalibrateOptions& options) {
         return report(usage_error(fmt::format("--model '{}': no such lens model", options.model)));
     const auto chosen =
         static_cast<calibration::LensKind>(kind - std::begin(calibration::kLensKindNames));
-    if (chosen == calibration::LensKind::rational) {
-        return report(usage_error(
-            "--model rational: rig files cannot hold this lens yet; take pinhole5 or fisheye"));
-    }
     CalibrationRun run;
     run.source = options.source;
     run.board_text = options.board;

@@ -19,7 +19,11 @@ Json eye_json(const CalibratedEye& eye, calibration::LensKind kind) {
         parameters[names[i]] = eye.parameters[static_cast<Eigen::Index>(i)];
         sigmas[names[i]] = eye.sigmas[static_cast<Eigen::Index>(i)];
     }
-    return {{"name", eye.name}, {"parameters", parameters}, {"sigmas", sigmas}};
+    return {{"name", eye.name},
+            {"parameters", parameters},
+            {"sigmas", sigmas},
+            {"mapping_sigma_px",
+             {{"median", eye.mapping.median_px}, {"largest", eye.mapping.largest_px}}}};
 }
 
 Json rejected_json(const CalibrationRun& run) {

@@ -93,6 +93,15 @@ eval::ReportTable lens_table(const CalibratedEye& eye, calibration::LensKind kin
                               fmt::format("{:.6g}", eye.parameters[k]),
                               fmt::format("{:.2g}", eye.sigmas[k])});
     }
+    table.hint = fmt::format(
+        "Together they put a direction into the image to {:.3f} px (one sigma, median), and to "
+        "{:.2f} px where it is known worst: in a corner that no board came near.{}",
+        eye.mapping.median_px,
+        eye.mapping.largest_px,
+        kind == calibration::LensKind::rational
+            ? " The coefficients of this lens can stand in for each other: look at the image, not "
+              "at them."
+            : "");
     return table;
 }
 

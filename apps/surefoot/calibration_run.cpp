@@ -9,10 +9,13 @@
 namespace surefoot::app {
 namespace {
 
-Eigen::VectorXd sigmas_of(const Eigen::MatrixXd& covariance,
-                          Eigen::Index first,
-                          Eigen::Index count) {
-    return covariance.diagonal().segment(first, count).cwiseMax(0.0).cwiseSqrt();
+/// What the covariance of the eye's parameters says of each and of all together.
+void add_uncertainty(const Eigen::MatrixXd& covariance,
+                     calibration::LensKind kind,
+                     CalibratedEye& eye) {
+    eye.sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    eye.mapping = calibration::mapping_sigmas_px(
+        kind, eye.parameters, covariance, {eye.camera.width, eye.camera.height});
 }
 
 /// In the order of calibration::parameter_names.
@@ -39,7 +42,8 @@ CalibratedEye stereo_eye(const calibration::StereoCalibration& stereo, bool left
     eye.camera = left ? stereo.rig.left : *stereo.rig.right;
     eye.parameters = std::visit([&](const auto& lens) { return parameters_of(lens, stereo.kind); },
                                 eye.camera.model);
-    eye.sigmas = sigmas_of(stereo.covariance, left ? 0 : count, count);
+    const Eigen::Index first = left ? 0 : count;
+    add_uncertainty(stereo.covariance.block(first, first, count, count), stereo.kind, eye);
     for (const calibration::PairFit& pair : stereo.pairs)
         eye.views.push_back({pair.index, left ? pair.left : pair.right});
     return eye;
@@ -54,7 +58,7 @@ std::vector<CalibratedEye> calibrated_eyes(const CalibrationRun& run) {
     eye.name = "camera";
     eye.camera = run.mono->camera;
     eye.parameters = run.mono->parameters;
-    eye.sigmas = sigmas_of(run.mono->covariance, 0, run.mono->parameters.size());
+    add_uncertainty(run.mono->covariance, run.mono->kind, eye);
     for (const calibration::ViewFit& view : run.mono->views)
         eye.views.push_back({view.index, view.eye});
     return {eye};

@@ -7,6 +7,7 @@
 
 #include "apps/surefoot/board_images.hpp"
 #include "surefoot/calibration/coverage.hpp"
+#include "surefoot/calibration/lens_mapping.hpp"
 #include "surefoot/calibration/stereo_calibration.hpp"
 
 namespace surefoot::app {
@@ -40,8 +41,9 @@ struct CalibrationRun {
 struct CalibratedEye {
     const char* name = "";
     camera::Camera camera;
-    Eigen::VectorXd parameters;  ///< order of parameter_names
-    Eigen::VectorXd sigmas;      ///< one standard deviation each
+    Eigen::VectorXd parameters;          ///< order of parameter_names
+    Eigen::VectorXd sigmas;              ///< one standard deviation each
+    calibration::MappingSigmas mapping;  ///< what they mean together
     struct View {
         std::size_t index = 0;  ///< into CalibrationRun::views
         calibration::EyeFit fit;

@@ -537,8 +537,7 @@ void add_calibration(CLI::App* verb, CalibrateOptions& o) {
     verb->add_option(
             "--model",
             o.model,
-            "lens; pinhole = pinhole4 (k1 k2 p1 p2), pinhole5 adds k3; rational is not written "
-            "to rig files yet and refused")
+            "lens; pinhole = pinhole4 (k1 k2 p1 p2), pinhole5 adds k3, rational k4 k5 k6")
         ->check(CLI::IsMember({"pinhole", "pinhole4", "pinhole5", "rational", "fisheye"}));
     verb->add_option("--out", o.out_dir, "folder for the rig, report.html, views.json")
         ->required()
