@@ -44,27 +44,34 @@ void must_explain(const Result<T>& result) {
 [[maybe_unused]] void fuzz_tum_trajectory(std::string_view bytes) {
     must_explain(io::parse_tum_trajectory(bytes, "f"));
 }
-[[maybe_unused]] void fuzz_rig_yaml(std::string_view bytes) {
-    must_explain(io::parse_rig_yaml(bytes, "f"));
-}
 /// A rig that is accepted is sound, and what can be written of it reads back.
-void must_be_sound(const Result<io::RigFile>& file) {
-    must_explain(file);
-    if (!file) return;
-    if (file->rig.problem()) std::abort();
-    if (!io::parse_rig_yaml(io::format_rig_yaml(file->rig), "again")) std::abort();
-    if (const auto text = io::format_zed_rig(file->rig); text) {
-        const io::ImageSize size{file->rig.left.width, file->rig.left.height};
+void must_be_sound(const camera::StereoRig& rig) {
+    if (rig.problem()) std::abort();
+    if (!io::parse_rig_yaml(io::format_rig_yaml(rig), "again")) std::abort();
+    if (const auto text = io::format_zed_rig(rig); text) {
+        const io::ImageSize size{rig.left.width, rig.left.height};
         must_explain(io::parse_zed_rig(*text, "again", size));
     }
-    if (const auto text = io::format_kalibr_rig(file->rig); text) {
+    if (const auto text = io::format_kalibr_rig(rig); text)
         must_explain(io::parse_kalibr_rig(*text, "again"));
-    }
+    if (const auto text = io::format_opencv_rig(rig); text)
+        must_explain(io::parse_opencv_rig(*text, "again"));
+    if (const auto texts = io::format_ros_rig(rig); texts)
+        must_explain(io::parse_ros_rig({texts->left, "l"}, {texts->right, "r"}));
+}
+void must_be_sound(const Result<camera::StereoRig>& rig) {
+    must_explain(rig);
+    if (rig) must_be_sound(*rig);
+}
+void must_be_sound(const Result<io::RigFile>& file) {
+    must_explain(file);
+    if (file) must_be_sound(file->rig);
+}
+[[maybe_unused]] void fuzz_rig_yaml(std::string_view bytes) {
+    must_be_sound(io::parse_rig_yaml(bytes, "f"));
 }
 [[maybe_unused]] void fuzz_opencv_rig(std::string_view bytes) {
-    const auto rig = io::parse_opencv_rig(bytes, "f", io::ImageSize{640, 480});
-    must_explain(rig);
-    if (rig) must_be_sound(io::RigFile{*rig, io::RigFormat::opencv, {}});
+    must_be_sound(io::parse_opencv_rig(bytes, "f", io::ImageSize{640, 480}));
 }
 [[maybe_unused]] void fuzz_kalibr_rig(std::string_view bytes) {
     must_be_sound(io::parse_kalibr_rig(bytes, "f"));
@@ -83,10 +90,12 @@ void must_be_sound(const Result<io::RigFile>& file) {
 [[maybe_unused]] void fuzz_kitti_rig(std::string_view bytes) {
     const auto calibration = io::parse_kitti_calibration(bytes, "f");
     must_explain(calibration);
-    if (calibration) must_explain(io::kitti_rig(*calibration, 0, 1, {1226, 370}, "f"));
+    if (calibration) must_be_sound(io::kitti_rig(*calibration, 0, 1, {1226, 370}, "f"));
 }
 [[maybe_unused]] void fuzz_euroc_camera(std::string_view bytes) {
-    must_explain(io::parse_euroc_camera(bytes, "f"));
+    const auto camera = io::parse_euroc_camera(bytes, "f");
+    must_explain(camera);
+    if (camera && camera->camera.problem()) std::abort();
     must_explain(io::parse_euroc_imu(bytes, "f"));
 }
 [[maybe_unused]] void fuzz_machine(std::string_view bytes) {
