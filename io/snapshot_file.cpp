@@ -34,6 +34,7 @@ void for_each_header_field(Snapshot& s, Visit visit) {
     visit(s.body_sin_yaw);
     visit(s.gravity_source);
     visit(s.health);
+    visit(s.camera);
 }
 
 template <typename Snapshot, typename Visit>
@@ -66,6 +67,9 @@ constexpr std::uint8_t last_of(grid::GravitySource) {
 }
 constexpr std::uint8_t last_of(grid::SnapshotHealth) {
     return 2;
+}
+constexpr std::uint8_t last_of(CameraState) {
+    return 3;
 }
 
 struct Reader {

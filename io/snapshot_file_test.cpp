@@ -30,6 +30,7 @@ std::unique_ptr<MapSnapshot> random_snapshot(int nx, int ny, std::uint64_t seed)
     s->body_sin_yaw = -0.8;
     s->gravity_source = grid::GravitySource::imu;
     s->health = grid::SnapshotHealth::degraded;
+    s->camera = CameraState::frozen;
     for (std::size_t i = 0; i < static_cast<std::size_t>(nx * ny); ++i) {
         s->height_tenth_mm[i] = static_cast<std::int32_t>(rng.next_u64());
         s->sigma_tenth_mm[i] = static_cast<std::uint16_t>(rng.next_u64());
@@ -63,6 +64,7 @@ TEST(SnapshotFile, RoundTripsEveryFieldAndIsSmall) {
     EXPECT_EQ((*copy)->version, original->version);
     EXPECT_EQ((*copy)->body_sin_yaw, original->body_sin_yaw);
     EXPECT_EQ((*copy)->health, original->health);
+    EXPECT_EQ((*copy)->camera, CameraState::frozen);
 }
 
 TEST(SnapshotFile, WhatLiesBeyondTheUsedCellsIsNotStored) {

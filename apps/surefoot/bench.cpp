@@ -213,6 +213,7 @@ Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
     input.T_odom_body.translation_m.z() = 0.99;
     input.gravity_source = grid::GravitySource::plane;
     input.health = grid::SnapshotHealth::ok;
+    input.camera = CameraState::ok;
     const auto snapshot = std::make_unique<grid::MapSnapshot>();
     if (auto status = grid::build_snapshot(input, *snapshot); !status) return status.error();
     gate::GateHealth health;

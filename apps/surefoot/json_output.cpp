@@ -232,6 +232,7 @@ Json frame_json(const FrameReport& frame) {
             {"depth_pixels", frame.depth_pixels},
             {"known_cells", frame.known_cells},
             {"ground_accepted", frame.ground.accepted},
+            {"camera", to_string(frame.camera)},
             {"repeated", frame.arrival.repeated},
             {"torn", frame.arrival.torn},
             {"dropped", frame.arrival.dropped},

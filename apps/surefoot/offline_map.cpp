@@ -49,12 +49,13 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     input.drift_m = no_drift.view();
     input.gravity_source = grid::GravitySource::plane;
     input.health = grid::SnapshotHealth::ok;
+    input.camera = CameraState::ok;
     input.version = 1;
     OfflineMap map{std::make_unique<grid::MapSnapshot>(), {}};
     if (auto status = grid::build_snapshot(input, *map.snapshot); !status) return status.error();
     map.assumed = {"no drift since the cells were seen",
                    "gravity is the z axis of the grid",
-                   "odometry was healthy"};
+                   "odometry and camera were healthy"};
     return map;
 }
 

@@ -51,6 +51,7 @@ std::unique_ptr<grid::MapSnapshot> level_map(double x_m, double known_from_m) {
     input.T_odom_body.translation_m = {x_m, 0.0, 0.99};
     input.gravity_source = grid::GravitySource::plane;
     input.health = grid::SnapshotHealth::ok;
+    input.camera = CameraState::ok;
     input.version = 1;
     input.frame_time_ns = input.pose_time_ns = kNanosecondsPerSecond;
     auto map = std::make_unique<grid::MapSnapshot>();

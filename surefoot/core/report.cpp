@@ -29,6 +29,16 @@ const char* to_string(HealthReason reason) noexcept {
     return "unknown";
 }
 
+const char* to_string(CameraState state) noexcept {
+    switch (state) {
+        case CameraState::unknown: return "UNKNOWN";
+        case CameraState::frozen: return "FROZEN";
+        case CameraState::corrupt: return "CORRUPT";
+        case CameraState::ok: return "OK";
+    }
+    return "UNKNOWN";
+}
+
 const char* to_string(Stage stage) noexcept {
     switch (stage) {
         case Stage::rectify: return "rectify";

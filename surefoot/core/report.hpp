@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "surefoot/core/camera_state.hpp"
 #include "surefoot/core/frame.hpp"
 
 namespace surefoot {
@@ -57,6 +58,7 @@ struct FrameReport {
     int index = 0;
     Work work = Work::odometry;
     FrameArrival arrival;
+    CameraState camera = CameraState::unknown;  ///< what the arrivals up to this one say
     /// Of a repeated or torn frame: the last pose again, lost, with the covariance of unseen
     /// motion.
     MotionEstimate motion;

@@ -17,6 +17,7 @@ enum class Proof : std::uint8_t {
     stamps_fresh,     ///< neither old nor from the future
     gravity_known,    ///< measured, not assumed
     pose_healthy,     ///< odometry neither lost nor degraded
+    camera_healthy,   ///< its images are new and whole
     command_known,    ///< the machine file has this movement and its class is enabled
     stance_known,     ///< ground under the present feet
     corridors_clear,  ///< nothing in the way of either foot

@@ -90,6 +90,15 @@ void check_pose_health(grid::SnapshotHealth health, Findings& findings) noexcept
         findings.deny(Reason::pose_lost);
 }
 
+void check_camera(CameraState camera, Findings& findings) noexcept {
+    if (camera == CameraState::frozen)
+        findings.deny(Reason::frame_frozen);
+    else if (camera == CameraState::corrupt)
+        findings.deny(Reason::frame_corrupt);
+    else if (camera != CameraState::ok)
+        findings.deny(Reason::not_ready);
+}
+
 /// The movement behind a command code, or nullptr: code 0, codes beyond the table, codes without an
 /// entry and classes that are switched off all come out the same.
 const Movement* movement_for(const Machine& machine, std::uint8_t command) noexcept {
@@ -124,6 +133,7 @@ void judge_readiness(const Machine& machine,
             findings.deny(Reason::plane_invalid);
     });
     findings.prove(Proof::pose_healthy, [&] { check_pose_health(map.health, findings); });
+    findings.prove(Proof::camera_healthy, [&] { check_camera(map.camera, findings); });
     findings.prove(Proof::command_known, [&] {
         if (movement_for(machine, query.command) == nullptr) findings.deny(Reason::unknown_command);
     });

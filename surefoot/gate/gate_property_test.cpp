@@ -238,6 +238,7 @@ TEST(GateProperty, random_bytes_never_crash_and_never_pass) {
         map->origin_y_tenth_mm = any(1'000'000'000);
         map->gravity_source = grid::GravitySource::imu;
         map->health = grid::SnapshotHealth::ok;
+        map->camera = CameraState::ok;
         map->frame_time_ns = map->pose_time_ns = kNowNs;
         seal(*map);
         ASSERT_TRUE(grid::is_intact(*map));

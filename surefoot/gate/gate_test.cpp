@@ -614,6 +614,22 @@ TEST(GateReadiness, odometry_must_be_healthy) {
     expect_error(ask(floor, kForward), Reason::pose_lost);
 }
 
+TEST(GateReadiness, the_camera_must_bring_new_and_whole_images) {
+    Terrain floor;
+    floor.input.camera = CameraState::frozen;
+    expect_error(ask(floor, kForward), Reason::frame_frozen);
+    floor.input.camera = CameraState::corrupt;
+    expect_error(ask(floor, kForward), Reason::frame_corrupt);
+    for (const int camera : {0, 4, 255}) {
+        floor.input.camera = static_cast<CameraState>(camera);
+        expect_error(ask(floor, kForward), Reason::not_ready);
+    }
+    // A freeze is older than its symptoms: it is the reason even where the map has aged, too.
+    floor.input.camera = CameraState::frozen;
+    floor.input.frame_time_ns = floor.input.pose_time_ns = kNowNs - 1000 * kMs;
+    expect_error(ask(floor, kForward), Reason::frame_frozen);
+}
+
 TEST(GateReadiness, a_damaged_map_is_an_internal_error) {
     Terrain floor;
     const auto map = floor.snapshot();

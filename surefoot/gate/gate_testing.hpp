@@ -46,6 +46,7 @@ struct Terrain {
         input.pose_time_ns = kNowNs - 10 * kMs;
         input.gravity_source = grid::GravitySource::imu;
         input.health = grid::SnapshotHealth::ok;
+        input.camera = CameraState::ok;
         input.version = 42;
         input.config_hash = 4711;
     }

@@ -61,6 +61,7 @@ std::uint64_t header_hash(const MapSnapshot& s) noexcept {
     add(std::bit_cast<std::uint64_t>(s.body_sin_yaw));
     add(s.gravity_source);
     add(s.health);
+    add(s.camera);
     for (const std::uint8_t byte : s.padding) add(byte);
     return hash;
 }

@@ -6,6 +6,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "surefoot/core/camera_state.hpp"
+
 namespace surefoot::grid {
 
 /// What supports the height of a cell.
@@ -23,7 +25,7 @@ enum class SnapshotHealth : std::uint8_t { lost = 0, degraded = 1, ok = 2 };
 /// cell (ix, iy) covers [origin + i * resolution, origin + (i + 1) * resolution) in odom.
 struct MapSnapshot {
     static constexpr std::uint32_t kMagic = 0x54465253;  // "SRFT"
-    static constexpr std::uint32_t kLayout = 1;
+    static constexpr std::uint32_t kLayout = 2;
     static constexpr int kMaxSide = 256;
     static constexpr int kMaxCells = kMaxSide * kMaxSide;
     static constexpr std::int32_t kUnknownHeight = std::numeric_limits<std::int32_t>::min();
@@ -49,7 +51,8 @@ struct MapSnapshot {
     double body_sin_yaw = 0.0;
     GravitySource gravity_source = GravitySource::assumed;
     SnapshotHealth health = SnapshotHealth::lost;
-    std::array<std::uint8_t, 6> padding{};
+    CameraState camera = CameraState::unknown;
+    std::array<std::uint8_t, 5> padding{};
 
     std::array<std::int32_t, kMaxCells> height_tenth_mm{};  ///< kUnknownHeight = never measured
     std::array<std::uint16_t, kMaxCells> sigma_tenth_mm{};  ///< one sigma of the height, saturated

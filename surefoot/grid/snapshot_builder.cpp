@@ -100,6 +100,7 @@ void write_header(const SnapshotInput& input, const Window& window, MapSnapshot&
     out.body_sin_yaw = std::sin(yaw);
     out.gravity_source = input.gravity_source;
     out.health = input.health;
+    out.camera = input.camera;
     out.padding = {};
 }
 

@@ -28,6 +28,7 @@ struct SnapshotInput {
     std::int64_t pose_time_ns = 0;
     GravitySource gravity_source = GravitySource::assumed;
     SnapshotHealth health = SnapshotHealth::lost;
+    CameraState camera = CameraState::unknown;
     std::uint64_t version = 0;
     std::uint64_t config_hash = 0;
     /// Neighbour cells whose heights differ by no more belong to one surface.

@@ -69,6 +69,10 @@ TEST_P(Arrival, ABadImageIsNeitherTrackedNorFused) {
         EXPECT_TRUE(report.motion.T_odom_body.translation_m ==
                     good.motion.T_odom_body.translation_m);
         EXPECT_EQ(report.fusion.points, 0);
+        EXPECT_EQ(report.camera,
+                  i < CameraMonitor::kBadFrames ? CameraState::ok
+                  : torn                        ? CameraState::corrupt
+                                                : CameraState::frozen);
         EXPECT_EQ(report.known_cells, good.known_cells);
         const double sigma_m = std::sqrt(report.motion.relative_covariance(0, 0));
         EXPECT_GT(sigma_m, last_sigma_m) << "what was not seen grows with its time";
@@ -79,6 +83,8 @@ TEST_P(Arrival, ABadImageIsNeitherTrackedNorFused) {
     EXPECT_EQ(after.frame_time_ns, before.frame_time_ns) << "the gate must see it grow old";
     EXPECT_EQ(after.pose_time_ns, before.pose_time_ns);
     EXPECT_EQ(after.version, before.version);
+    EXPECT_EQ(before.camera, CameraState::ok);
+    EXPECT_EQ(after.camera, torn ? CameraState::corrupt : CameraState::frozen);
 
     const FrameReport next = pipeline->process(moving_frame(5, 0.02), Work::full);
     EXPECT_EQ(next.motion.health, Health::ok);

@@ -127,6 +127,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     report.index = frame.index;
     report.work = work;
     report.arrival = frame.arrival;
+    report.camera = camera_monitor_.add(frame.arrival);
     if (!frame.arrival.is_new_and_whole()) {
         report.work = Work::odometry;
         report.motion = unseen(frame);
@@ -235,6 +236,7 @@ Status Pipeline::snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) con
     input.pose_time_ns = last_motion_.time_ns;
     input.gravity_source = alignment_.gravity_source;
     input.health = snapshot_health(last_motion_.health);
+    input.camera = camera_monitor_.state();
     input.version = version_;
     input.config_hash = config_hash;
     return grid::build_snapshot(input, out);

@@ -16,6 +16,7 @@
 #include "surefoot/grid/map_snapshot.hpp"
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
+#include "surefoot/pipeline/camera_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/traversability/traversability.hpp"
@@ -29,7 +30,8 @@ using Clock = std::int64_t (*)();
 /// bring depth and motion with them (`StereoFrame::ready`, on a rectified rig) are only mapped.
 /// Frames with a repeated or torn image (`StereoFrame::arrival`) are reported, and nothing else:
 /// the odometry would take a frozen picture for a machine that stands still. The snapshot keeps the
-/// stamps of the last good frame, so that the gate sees it grow old.
+/// stamps of the last good frame, so that the gate sees it grow old, and says what is wrong with
+/// the camera when there are several in a row.
 ///
 /// Order of calls: `make`, `align` once with the first frames, then `process` for every frame in
 /// time order (those used for the alignment included). One thread at a time.
@@ -101,6 +103,7 @@ class Pipeline {
     camera::DepthImage depth_;
     std::vector<Eigen::Vector3d> ground_points_;
     MotionEstimate last_motion_;
+    CameraMonitor camera_monitor_;
     std::int64_t last_fused_ns_ = 0;
     std::uint64_t version_ = 0;  ///< counts fused frames
 };

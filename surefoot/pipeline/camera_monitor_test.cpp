@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/pipeline/camera_monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+namespace surefoot::pipeline {
+namespace {
+
+/// States after each frame of a script: n = new, r = repeated, t = torn, d = new behind one damaged
+/// image, D = new behind two; states: u(nknown), o(k), f(rozen), c(orrupt).
+std::string states(std::string_view script) {
+    CameraMonitor monitor;
+    std::string result;
+    int repeated = 0;
+    for (const char frame : script) {
+        FrameArrival arrival;
+        repeated = frame == 'r' ? repeated + 1 : 0;
+        arrival.repeated = repeated;
+        arrival.torn = frame == 't';
+        arrival.damaged = frame == 'd' ? 1 : frame == 'D' ? 2 : 0;
+        const CameraState state = monitor.add(arrival);
+        EXPECT_EQ(state, monitor.state());
+        result += "ufco"[static_cast<std::size_t>(state)];
+    }
+    return result;
+}
+
+TEST(CameraMonitor, BeforeTheFirstWholeImageNothingIsKnown) {
+    EXPECT_EQ(CameraMonitor().state(), CameraState::unknown);
+    EXPECT_EQ(states("tn"), "uo");
+    EXPECT_EQ(states("ttnnn"), "uccco");
+}
+
+TEST(CameraMonitor, OneBadImageChangesNothing) {
+    EXPECT_EQ(states("nrnrntntndn"), "ooooooooooo");
+}
+
+TEST(CameraMonitor, TwoInARowInhibitAtOnceAndThreeNewOnesRelease) {
+    EXPECT_EQ(states("nrrnnn"), "oofffo");
+    EXPECT_EQ(states("nrrrrrrnnrnnn"), "ooffffffffffo");
+    EXPECT_EQ(states("nttnnn"), "ooccco");
+    EXPECT_EQ(states("nDnn"), "occo");
+    EXPECT_EQ(states("nrrnndnnn"), "oofffffoo");
+}
+
+TEST(CameraMonitor, TheLastKindOfFaultIsTheReason) {
+    EXPECT_EQ(states("nrt"), "ooc");
+    EXPECT_EQ(states("ntr"), "oof");
+    EXPECT_EQ(states("nrrtt"), "oofcc");
+}
+
+}  // namespace
+}  // namespace surefoot::pipeline
