@@ -7,3 +7,7 @@ if(SUREFOOT_COVERAGE)
   add_compile_options(--coverage -g1)
   add_link_options(--coverage)
 endif()
+if(SUREFOOT_FUZZ)
+  # Coverage of the libraries guides the search; without it libFuzzer sees only its own targets.
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
