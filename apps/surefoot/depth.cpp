@@ -19,9 +19,6 @@
 namespace surefoot::app {
 namespace {
 
-/// Above this median row difference a matcher that looks along rows loses accuracy and matches.
-constexpr double kMaxRowError_px = 0.5;
-
 Status write_picture(const std::string& path, const eval::Picture& picture) {
     const auto png = eval::encode_png(picture);
     return io::write_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
@@ -78,26 +75,6 @@ Status write_depth(const MeasuredPair& measured, const std::string& folder) {
     return writes.first();
 }
 
-void say_rows(const stereo::PairCheck& check, bool has_rig) {
-    if (!check.enough()) {
-        log_warning(fmt::format(
-            "depth: only {} of {} corners were found again within 32 rows; whether the pair is "
-            "rectified cannot be told",
-            check.matched,
-            check.corners));
-    } else if (check.row_error_px > kMaxRowError_px) {
-        log_warning(
-            fmt::format("depth: rows differ by {:.2f} px (median of {} corners, {:+.2f} px signed; "
-                        "limit {}): {}",
-                        check.row_error_px,
-                        check.matched,
-                        check.row_offset_px,
-                        kMaxRowError_px,
-                        has_rig ? "the calibration does not fit these images"
-                                : "the pair is not rectified; give its --rig"));
-    }
-}
-
 void print_depth(const MeasuredPair& measured, const std::string& folder) {
     const PairFigures figures = figures_of(measured.depth);
     fmt::print("{}x{} px, {:.1f} % matched, {:.1f} % trusted; median sigma {:.3f} px\n",
@@ -129,7 +106,8 @@ int depth(const DepthOptions& options) {
     const auto measured =
         measure_files(options.left, options.right, rig, settings->pipeline, *executor);
     if (!measured) return report(measured.error());
-    say_rows(measured->check, rig.has_value());
+    const std::string rows = row_problem(measured->check, rig.has_value());
+    if (!rows.empty()) log_warning("depth: " + rows);
     if (auto status = write_depth(*measured, options.out_dir); !status)
         return report(status.error());
     if (options.common.json) {

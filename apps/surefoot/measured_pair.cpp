@@ -18,6 +18,8 @@ namespace {
 constexpr int kMaxCornerDisparity_px = 256;
 /// Raw images of real rigs differ by tens of rows.
 constexpr int kFarRows_px = 32;
+/// Above this median row difference a matcher that looks along rows loses accuracy and matches.
+constexpr double kMaxRowError_px = 0.5;
 
 std::string size_text(const GreyImage& image) {
     return fmt::format("{}x{}", image.width(), image.height());
@@ -44,7 +46,8 @@ Status check_sizes(const StereoFrame& frame, const std::optional<camera::StereoR
     return {};
 }
 
-/// Looks farther up and down, which takes its time, only where a few rows do not suffice.
+}  // namespace
+
 stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities) {
     stereo::PairSearch search;
     search.disparity_px = std::min(disparities, kMaxCornerDisparity_px);
@@ -54,7 +57,7 @@ stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities)
     return check_pair(pair.left.view(), pair.right.view(), search);
 }
 
-Status check_pair_of(const stereo::PairCheck& check) {
+Status refuse_exchanged(const stereo::PairCheck& check) {
     if (!check.exchanged()) return {};
     return input_error(
         fmt::format("left and right seem to be exchanged: {} of {} corners lie farther right in "
@@ -64,7 +67,26 @@ Status check_pair_of(const stereo::PairCheck& check) {
                     check.matched));
 }
 
-}  // namespace
+std::string row_problem(const stereo::PairCheck& check, bool has_rig) {
+    if (!check.enough()) {
+        return fmt::format(
+            "only {} of {} corners were found again within {} rows; whether the pair is "
+            "rectified cannot be told",
+            check.matched,
+            check.corners,
+            kFarRows_px);
+    }
+    if (check.row_error_px <= kMaxRowError_px) return {};
+    return fmt::format(
+        "rows differ by {:.2f} px (median of {} corners, {:+.2f} px signed; "
+        "limit {}): {}",
+        check.row_error_px,
+        check.matched,
+        check.row_offset_px,
+        kMaxRowError_px,
+        has_rig ? "the calibration does not fit these images"
+                : "the pair is not rectified; give its --rig");
+}
 
 Result<MeasuredPair> measure_pair(const StereoFrame& frame,
                                   const std::optional<camera::StereoRig>& rig,
@@ -90,7 +112,7 @@ Result<MeasuredPair> measure_pair(const StereoFrame& frame,
             config.stereo.disparities));
     }
     measured.check = check_rows(measured.pair, config.stereo.disparities);
-    if (auto status = check_pair_of(measured.check); !status) return status.error();
+    if (auto status = refuse_exchanged(measured.check); !status) return status.error();
     stereo::make_matcher(config.stereo)->match(left.view(), right.view(), executor, measured.depth);
     return measured;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/executor.hpp"
@@ -36,6 +37,14 @@ inline constexpr float kTrustedOutlierProbability = 0.5F;
                                                  const std::optional<camera::StereoRig>& rig,
                                                  const pipeline::PipelineConfig& config,
                                                  Executor& executor);
+
+/// How well a rectified pair fits together. Looks farther up and down, which takes its time, only
+/// where a few rows do not suffice.
+[[nodiscard]] stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities);
+/// An error where left and right are exchanged.
+[[nodiscard]] Status refuse_exchanged(const stereo::PairCheck& check);
+/// What is wrong with the rows, in words; empty where nothing is.
+[[nodiscard]] std::string row_problem(const stereo::PairCheck& check, bool has_rig);
 
 /// Share of pixels with a match [%], and the median sigma of the trusted ones [px].
 struct PairFigures {

@@ -6,6 +6,8 @@
 #include <exception>
 
 #include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/measured_pair.hpp"
 #include "apps/surefoot/progress.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -31,6 +33,7 @@ RunSession::RunSession(pipeline::Pipeline& pipeline,
 
 void RunSession::drive(const std::string& label, const AfterFrame& after_frame) {
     const std::int64_t start_ns = steady_now_ns();
+    quiet_ = label.empty();
     watch_for_interrupts();
     try {
         process_all(label, after_frame);
@@ -97,11 +100,28 @@ std::optional<StereoFrame> RunSession::next_frame() {
 void RunSession::process(const StereoFrame& frame, const AfterFrame& after_frame) {
     const bool full = frame.index % depth_every_ == 0;
     const FrameReport report = pipeline_.process(frame, full ? Work::full : Work::odometry);
-    if (report.work == Work::full) truth_.compare_depth(frame, pipeline_);
+    if (report.work == Work::full) {
+        truth_.compare_depth(frame, pipeline_);
+        check_eyes(report);
+    }
     record_.fusion += report.fusion;
     record_.arrivals += report.arrival;
     record_.frames.push_back(report);
     if (after_frame) after_frame(report);
+}
+
+void RunSession::check_eyes(const FrameReport& report) {
+    const camera::RectifiedPair& pair = pipeline_.pair();
+    if (eye_checks_ == 0 || pair.right.empty()) return;
+    const stereo::PairCheck check = check_rows(pair, pipeline_.config().stereo.disparities);
+    --eye_checks_;
+    if (!check.enough() && eye_checks_ > 0) return;
+    eye_checks_ = 0;
+    const std::string where = fmt::format("{}: frame {}: ", record_.source.path, report.index);
+    if (const Status status = refuse_exchanged(check); !status && !record_.error)
+        record_.error = input_error(where + status.error().message);
+    const std::string rows = row_problem(check, true);
+    if (!rows.empty() && !quiet_) log_warning(where + rows);
 }
 
 }  // namespace surefoot::app

@@ -37,8 +37,8 @@ struct RunRecord {
                                        const Pose& T_body_fixed = Pose{});
 
 /// Drives a pipeline over a source: buffers the first frames for the alignment, then processes
-/// every frame. Stops at the first error of the source or when the user interrupts; what was
-/// computed before stays in `record` and in the pipeline's map.
+/// every frame. Stops at the first error of the source, when its eyes are exchanged, or when the
+/// user interrupts; what was computed before stays in `record` and in the pipeline's map.
 class RunSession {
   public:
     /// `rig`: the source's with its mount, as the pipeline uses it.
@@ -59,12 +59,16 @@ class RunSession {
     [[nodiscard]] std::vector<StereoFrame> first_frames();
     void process_all(const std::string& label, const AfterFrame& after_frame);
     void process(const StereoFrame& frame, const AfterFrame& after_frame);
+    /// Do the eyes belong together, and in this order? Asked until one frame tells.
+    void check_eyes(const FrameReport& report);
 
     pipeline::Pipeline& pipeline_;
     camera::FrameSource& source_;
     int depth_every_;
     eval::EvalMapsConfig maps_;
     io::FrameWatch watch_;
+    int eye_checks_ = 5;  ///< frames that may still be asked
+    bool quiet_ = false;
     SimTruth truth_;
     RunRecord record_;
 };

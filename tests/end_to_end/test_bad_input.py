@@ -1,6 +1,7 @@
 """Bad input: a clear sentence, exit code 1 or 2, and what was computed before is kept and valid."""
 import json
 import pathlib
+import random
 import resource
 import shutil
 import signal
@@ -9,7 +10,7 @@ import tempfile
 import time
 import unittest
 
-from surefoot_cli import BINARY, CliTest, grey_png, read_tum, surefoot
+from surefoot_cli import BINARY, CliTest, grey_png, png_of, read_tum, surefoot
 
 FRAMES = 6
 
@@ -132,6 +133,22 @@ class BadInput(CliTest):
         self.assertEqual(len(read_tum(self.dir / "out" / "trajectory.tum")), FRAMES)
         self.assertEqual(list((self.dir / "out").glob("*.tmp*")), [])
 
+    def test_a_camera_that_froze_is_an_error_of_its_own(self):
+        recording = self.broken_copy()
+        for camera in ("cam0", "cam1"):
+            for index in range(3, FRAMES):
+                shutil.copy(self.image(recording, camera, 2), self.image(recording, camera, index))
+        report = self.json_of("run", recording, "--machine", "rex", "--out", self.dir / "out")
+        self.assertEqual(report["arrivals"]["longest_freeze_frames"], FRAMES - 3)
+        frames = json.loads((self.dir / "out" / "report.json").read_text())["per_frame"]
+        self.assertEqual([f["camera"] for f in frames], ["OK"] * 4 + ["FROZEN"] * (FRAMES - 4))
+        process = surefoot("gate", "--map", self.dir / "out", "--pose", "0,0,0", "--command", 1, "--machine", "rex",
+                           "--json")
+        self.assertEqual(process.returncode, 4)
+        verdict = json.loads(process.stdout)
+        self.assertIn("FRAME_FROZEN", verdict["reasons"])
+        self.assertIn("the camera image stands still", verdict["text"])
+
     def test_interrupt_in_the_middle(self):
         out = self.dir / "out"
         process = subprocess.Popen([str(BINARY), "run", "sim:demo_stairs", "--out", str(out)],
@@ -146,6 +163,188 @@ class BadInput(CliTest):
         report = json.loads((out / "report.json").read_text())
         self.assertFalse(report["complete"])
         self.kept(report["frames"])
+
+
+def grainy(rows, draw):
+    """A picture with the noise of a sensor, one grey level."""
+    return [bytes(min(255, max(0, value + draw.randrange(-1, 2))) for value in row) for row in rows]
+
+
+def blobs(width, height, seed=1):
+    draw = random.Random(seed)
+    coarse = [[draw.randrange(256) for _ in range(width // 4 + 2)] for _ in range(height // 4 + 2)]
+    return [bytes(coarse[v // 4][u // 4] for u in range(width)) for v in range(height)]
+
+
+def moved(rows, columns, down=0):
+    return [(rows[max(0, v - down)] + rows[v][-1:] * columns)[columns:] for v in range(len(rows))]
+
+
+class BadImages(CliTest):
+    """Pictures that no calibration, no depth and no map can be made of, or not as they are given."""
+    SIZE = 320, 200
+    RIG = ("layout: side_by_side\nresolution: [320, 200]\nrate_hz: 15\nbaseline_m: 0.12\nfocal_px: 200\n"
+           "principal_px: [160, 100]\ndistortion: none\n")
+
+    def write(self, name, rows):
+        path = self.dir / name
+        path.write_bytes(png_of(rows))
+        return path
+
+    def source(self, left, right, frames=3):
+        """A folder of side-by-side frames that differ by their noise."""
+        folder, draw = self.dir / "source", random.Random(5)
+        folder.mkdir(exist_ok=True)
+        (folder / "rig.yaml").write_text(self.RIG)
+        for index in range(frames):
+            (folder / f"{index}.png").write_bytes(
+                png_of([a + b for a, b in zip(grainy(left, draw), grainy(right, draw))]))
+        return folder
+
+    def verdict_of(self, folder):
+        process = surefoot("gate", "--map", folder, "--pose", "0,0,0", "--command", 1, "--machine", "rex", "--json")
+        self.assertEqual(process.returncode, 4, "never OK")
+        return json.loads(process.stdout)["verdict"]
+
+    def test_pictures_without_anything_to_see_give_an_empty_map(self):
+        width, height = self.SIZE
+        draw = random.Random(7)
+        noise = [[draw.randbytes(width) for _ in range(height)] for _ in range(2)]
+        black, white = [bytes(width)] * height, [b"\xff" * width] * height
+        for left, right in ((black, black), (white, white), noise):
+            report = self.json_of("run", self.source(left, right), "--out", self.dir / "out")
+            self.assertEqual(report["map"]["known_cells"], 0)
+            self.assertIn("odometry was lost", report["map"]["reason"])
+            self.assertEqual(self.verdict_of(self.dir / "out"), "ERROR")
+
+    def test_noise_alone_is_not_trusted(self):
+        width, height = self.SIZE
+        draw = random.Random(8)
+        left, right = (self.write(name, [draw.randbytes(width) for _ in range(height)]) for name in ("l.png", "r.png"))
+        answer = self.json_of("depth", left, right, "--out", self.dir / "out")
+        self.assertLess(answer["trusted_percent"], 0.1)
+        self.assertIsNone(answer["row_error"]["median_abs_px"])
+
+    def test_a_saturated_picture_keeps_what_it_shows(self):
+        rows = [bytes(255 if value > 60 else value for value in row) for row in blobs(*self.SIZE)]
+        answer = self.json_of("depth", self.write("l.png", rows), self.write("r.png", moved(rows, 20)),
+                              "--out", self.dir / "out")
+        self.assertLess(answer["row_error"]["median_abs_px"], 0.1)
+        self.assertGreater(answer["trusted_percent"], 50)
+
+    def test_exchanged_and_crooked_eyes_are_said_by_a_run(self):
+        rows = blobs(*self.SIZE)
+        process = surefoot("run", self.source(moved(rows, 20), rows), "--out", self.dir / "out")
+        self.assertEqual(process.returncode, 1)
+        self.assertRegex(process.stderr, r"frame 0: left and right seem to be exchanged: \d+ of \d+ corners")
+        self.assertFalse(json.loads((self.dir / "out" / "report.json").read_text())["complete"])
+        process = self.run_ok("run", self.source(rows, moved(rows, 20, down=3)), "--out", self.dir / "out")
+        self.assertRegex(process.stderr, r"frame 0: rows differ by (2\.9|3\.0)\d px .*calibration does not fit")
+        process = self.run_ok("run", self.source(rows, moved(rows, 20)), "--out", self.dir / "out")
+        self.assertNotIn("rows differ", process.stderr)
+
+    def test_pixels_of_16_bits_have_no_known_scale(self):
+        deep = self.dir / "deep.pgm"
+        deep.write_bytes(b"P5 320 200 65535\n" + bytes(2 * 320 * 200))
+        flat = self.write("flat.png", [bytes(320)] * 200)
+        for left, right in ((deep, flat), (flat, deep)):
+            process = surefoot("depth", left, right, "--out", self.dir / "out")
+            self.assertEqual(process.returncode, 1)
+            self.assertIn("deep.pgm: 16 bits per channel", process.stderr)
+
+    def test_a_picture_as_wide_as_8k_is_only_large(self):
+        flat = self.write("flat.png", [bytes(7680)] * 1080)
+        answer = self.json_of("depth", flat, flat, "--set", "stereo.disparities=16", "--out", self.dir / "out")
+        self.assertEqual((answer["width"], answer["trusted_percent"]), (7680, 0))
+
+    def test_nan_and_giants_in_a_rig(self):
+        flat = self.write("flat.png", [bytes(320)] * 200)
+        for line, word in (("baseline_m: .nan", "baseline_m"), ("focal_px: nan", "focal_px"),
+                           ("principal_px: [.inf, 100]", "principal_px"), ("resolution: [99999, 1]", "resolution")):
+            key = line.split(":")[0]
+            rig = self.dir / "rig.yaml"
+            rig.write_text("".join(line + "\n" if old.startswith(key) else old for old in self.RIG.splitlines(True)))
+            for call in (["depth", flat, flat, "--rig", rig], ["run", "sim:floor", "--rig", rig],
+                         ["depth-accuracy", "--rig", rig]):
+                process = surefoot(*call, "--out", self.dir / "out")
+                self.assertNotEqual(process.returncode, 0)
+                self.assertRegex(process.stderr, rf"rig\.yaml:\d+: {word}")
+
+    def test_pairs_of_depth_accuracy(self):
+        rows = blobs(*self.SIZE)
+        (self.dir / "rig.yaml").write_text(self.RIG)
+        self.write("l.png", rows)
+        self.write("r.png", moved(rows, 20))
+        self.write("small.png", [bytes(160)] * 100)
+        pairs = self.dir / "pairs.txt"
+        for line, words in (("l.png small.png 1", "differ in size"), ("small.png small.png 1", "160x100 px but rig"),
+                            ("r.png l.png 1", "exchanged")):
+            pairs.write_text(line + "\n")
+            process = surefoot("depth-accuracy", "--pairs", pairs, "--rig", self.dir / "rig.yaml",
+                               "--out", self.dir / "out")
+            self.assertEqual(process.returncode, 1, process.stderr)
+            self.assertIn(words, process.stderr)
+
+
+class BadBoards(CliTest):
+    BOARD = "chessboard:7x5:0.03"
+
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory(prefix="surefoot-bad-boards-")
+        cls.good = pathlib.Path(cls.shared.name) / "good"
+        process = surefoot("calibrate", "render", "--board", cls.BOARD, "--rig", "zed_vga", "--views", 4,
+                           "--out", cls.good)
+        assert process.returncode == 0, process.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.shared.cleanup()
+
+    def refused(self, words, verb, names, board=BOARD):
+        """`names`: what each image is called, and which good one it is."""
+        folder = self.dir / "images"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        for name, good in names.items():
+            shutil.copy(self.good / good, folder / name)
+        process = surefoot("calibrate", verb, folder, "--board", board, "--out", self.dir / "out")
+        self.assertEqual(process.returncode, 1, process.stderr)
+        self.assertIn(words, process.stderr)
+        self.assertFalse((self.dir / "out").exists(), "no rig of what failed")
+
+    def test_too_little_is_said(self):
+        self.refused("1 usable and different views", "mono", {"a.png": "left000.png"})
+        self.refused("the same as view 0", "mono", {f"{i}.png": "left000.png" for i in range(5)})
+        self.refused("no chessboard of 9 x 9 inner corners", "mono", {"a.png": "left000.png"}, "chessboard:9x9:0.03")
+        self.refused("left camera: calibration: 1 usable", "stereo",
+                     {"left0.png": "left000.png", "right0.png": "right000.png"})
+
+    def test_exchanged_cameras_are_said(self):
+        self.refused("to the left of the left one; exchange the cameras", "stereo",
+                     {f"{side}{i}.png": f"{other}00{i}.png" for i in range(4)
+                      for side, other in (("left", "right"), ("right", "left"))})
+
+    def test_other_sizes_and_nothing_to_see(self):
+        folder = self.dir / "images"
+        folder.mkdir()
+        shutil.copy(self.good / "left000.png", folder / "a.png")
+        (folder / "b.png").write_bytes(grey_png(1, 1))
+        process = surefoot("calibrate", "mono", folder, "--board", self.BOARD, "--out", self.dir / "out")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("b.png: 1 x 1 px, but the first image has 672 x 376", process.stderr)
+        (folder / "a.png").write_bytes(grey_png(672, 376))
+        (folder / "b.png").write_bytes(png_of([random.Random(1).randbytes(672) for _ in range(376)]))
+        process = surefoot("calibrate", "mono", folder, "--board", self.BOARD, "--out", self.dir / "out")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("0 usable and different views", process.stderr)
+
+    def test_impossible_boards(self):
+        for board in ("chessboard:1x1:0.03", "chessboard:7x5:nan", "chessboard:7x5:-1", "circles:7x5",
+                      "chessboard:99999x5:0.03", "charuco:8x5:0.03:0.04"):
+            process = surefoot("calibrate", "mono", self.good, "--board", board, "--out", self.dir / "out")
+            self.assertEqual(process.returncode, 2, board)
+            self.assertIn("board", process.stderr)
 
 
 if __name__ == "__main__":
