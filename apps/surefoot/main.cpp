@@ -534,10 +534,9 @@ void add_calibration(CLI::App* verb, CalibrateOptions& o) {
                      "asymmetric_circles:4x11:0.04, charuco:8x5:0.03:0.022[:DICT_5X5_100]")
         ->required()
         ->type_name("TEXT");
-    verb->add_option(
-            "--model",
-            o.model,
-            "lens; pinhole = pinhole4 (k1 k2 p1 p2), pinhole5 adds k3, rational k4 k5 k6")
+    verb->add_option("--model",
+                     o.model,
+                     "lens; pinhole = pinhole4 (k1 k2 p1 p2), pinhole5 adds k3, rational k4 k5 k6")
         ->check(CLI::IsMember({"pinhole", "pinhole4", "pinhole5", "rational", "fisheye"}));
     verb->add_option("--out", o.out_dir, "folder for the rig, report.html, views.json")
         ->required()
