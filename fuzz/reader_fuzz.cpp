@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes must end in a value or in an error with a sentence: no crash, no endless loop, no huge
 // allocation. SUREFOOT_FUZZ_READER names the function under test.
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -54,9 +55,18 @@ void must_be_sound(const camera::StereoRig& rig) {
     }
     if (const auto text = io::format_kalibr_rig(rig); text)
         must_explain(io::parse_kalibr_rig(*text, "again"));
-    if (const auto text = io::format_opencv_rig(rig); text)
+    // These plan a rectification, along the border of the image: a fisheye of 672 x 376 px takes
+    // 0.3 s without sanitizers, and seconds with them.
+    camera::StereoRig small = rig;
+    small.left.width = std::min(small.left.width, 48);
+    small.left.height = std::min(small.left.height, 32);
+    if (small.right) {
+        small.right->width = small.left.width;
+        small.right->height = small.left.height;
+    }
+    if (const auto text = io::format_opencv_rig(small); text)
         must_explain(io::parse_opencv_rig(*text, "again"));
-    if (const auto texts = io::format_ros_rig(rig); texts)
+    if (const auto texts = io::format_ros_rig(small); texts)
         must_explain(io::parse_ros_rig({texts->left, "l"}, {texts->right, "r"}));
 }
 void must_be_sound(const Result<camera::StereoRig>& rig) {
