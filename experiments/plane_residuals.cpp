@@ -2,7 +2,8 @@
 // How good are disparities on what is locally flat, as a function of the texture there? The same
 // question put to real recordings and to simulated ones closes the reality gap.
 // Usage: plane_residuals SOURCE OUT.csv [MAX_FRAMES [KEY=VALUE...]]
-//   KEY=VALUE: settings of the simulated camera (see sim::SceneOptions), for sim:SCENE sources.
+//   KEY=VALUE: stereo.* = settings of the matcher; for sim:SCENE sources also seed and the settings
+//   of the simulated camera (see sim::SceneOptions).
 //
 // Windows of 32 x 32 px of the rectified left image. For each: horizontal gradient of the grey
 // values (texture), share of matched pixels (density), scatter of the disparity about the robustly
@@ -16,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
@@ -30,6 +32,7 @@ namespace surefoot {
 namespace {
 
 constexpr int kWindow_px = 32;
+constexpr std::string_view kStereo = "stereo.";
 
 struct Window {
     double texture_dn = 0.0;
@@ -104,6 +107,7 @@ Result<std::unique_ptr<camera::FrameSource>> open(const std::string& source,
     options.scene = source.substr(4);
     options.frames = max_frames;
     for (const std::string& setting : settings) {
+        if (setting.starts_with(kStereo)) continue;
         if (setting.starts_with("seed=")) {
             options.seed = std::strtoull(setting.c_str() + 5, nullptr, 10);
             continue;
@@ -116,6 +120,18 @@ Result<std::unique_ptr<camera::FrameSource>> open(const std::string& source,
     return std::unique_ptr<camera::FrameSource>(std::move(scene).value());
 }
 
+Result<stereo::MatcherConfig> matcher_config(const std::vector<std::string>& settings) {
+    stereo::MatcherConfig config;
+    for (const std::string& setting : settings) {
+        if (!setting.starts_with(kStereo)) continue;
+        const std::string own = setting.substr(kStereo.size());
+        if (auto status = io::override_config(own, io::describe_config(config)); !status)
+            return status.error();
+    }
+    if (const auto wrong = config.problem()) return usage_error(*wrong);
+    return config;
+}
+
 int run(const std::string& name,
         const std::string& out,
         int max_frames,
@@ -125,7 +141,9 @@ int run(const std::string& name,
     if (!source) return app::report(source.error());
     const auto rectifier = camera::Rectifier::make((*source)->rig());
     if (!rectifier) return app::report(rectifier.error());
-    const auto matcher = stereo::make_sgbm_matcher({});
+    const auto matching = matcher_config(settings);
+    if (!matching) return app::report(matching.error());
+    const auto matcher = stereo::make_matcher(*matching);
     camera::RectifiedPair pair;
     camera::DepthImage depth;
     auto file = fmt::output_file(out);
