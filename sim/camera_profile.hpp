@@ -13,8 +13,9 @@ enum class CameraProfile : std::uint8_t { ideal, zed, euroc };
 inline constexpr const char* kCameraProfileNames[] = {"ideal", "zed", "euroc"};
 
 /// What a real camera does beyond the ideal one. The figures are frozen: fitted to `zed_office` and
-/// `euroc_still` by `tools/experiments reality_gap`, see docs/experiments/reality_gap.md; the turn
-/// of the ZED's right eye was measured on corners of the same recording.
+/// `euroc_still` by `tools/experiments camera_fit`, see docs/experiments/reality_gap.md; the turn
+/// of the ZED's right eye was measured on corners of the same recording. The ZED's were fitted to
+/// what OpenCV's matcher makes of it; our own agrees with the recording at twice their noise.
 struct ProfileFigures {
     double noise_dn = 0.0;       ///< on top of the camera's own
     double noise_size_px = 0.0;  ///< instead of the camera's own where it has none
