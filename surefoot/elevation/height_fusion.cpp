@@ -16,7 +16,14 @@ FusionResult disagree(const FusionConfig& config,
                       const Height& measured,
                       bool same_scan) noexcept {
     if (same_scan && measured.z_m < cell.z_m) return {cell, FusionOutcome::ignored};
-    const double inflated_m2 = cell.var_m2 + config.multi_height_var_m2;
+    // A cell that is a little off the gate has a tail of the noise to explain, not another surface:
+    // it is widened as far as the measurement asks, and by no more than the step for one
+    // contradiction.
+    const double innovation_m = measured.z_m - cell.z_m;
+    const double explained_m2 =
+        innovation_m * innovation_m / (config.gate_sigma * config.gate_sigma) - measured.var_m2;
+    const double inflated_m2 =
+        std::min(cell.var_m2 + config.multi_height_var_m2, std::max(explained_m2, cell.var_m2));
     if (same_scan || inflated_m2 > config.max_height_var_m2) {
         return {measured, FusionOutcome::replaced};
     }
@@ -42,7 +49,7 @@ void FusionConfig::describe(ConfigVisitor& visitor) {
                    multi_height_var_m2,
                    0.0,
                    100.0,
-                   "added to a cell's variance when a measurement is gated out");
+                   "largest that is added to a cell's variance when a measurement is gated out");
     visitor.number("scan_duration_s",
                    scan_duration_s,
                    0.0,

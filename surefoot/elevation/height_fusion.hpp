@@ -21,8 +21,9 @@ struct FusionConfig {
     double gate_sigma = 2.5;            ///< Mahalanobis gate on the innovation [sigma]
     double min_height_var_m2 = 9e-6;    ///< floor, (3 mm)^2: errors that no averaging removes
     double max_height_var_m2 = 2.5e-3;  ///< (50 mm)^2: a cell contradicted up to here is replaced
-    double multi_height_var_m2 = 1e-4;  ///< added when a measurement is gated out, (10 mm)^2
-    double scan_duration_s = 0.0;       ///< scan-time rule, 0 = off: see `fuse`
+    /// Added when a measurement is gated out, (10 mm)^2; less where less explains it at the gate.
+    double multi_height_var_m2 = 1e-4;
+    double scan_duration_s = 0.0;  ///< scan-time rule, 0 = off: see `fuse`
     GateVariance gate_variance = GateVariance::cell_and_measurement;
 
     void describe(ConfigVisitor& visitor);

@@ -56,6 +56,32 @@ TEST(HeightFusion, DisagreementCostsTrustNotHeight) {
     EXPECT_DOUBLE_EQ(result.cell.var_m2, 1e-5 + config.multi_height_var_m2);
 }
 
+TEST(HeightFusion, ATailOfTheNoiseCostsNoMoreTrustThanItAsksFor) {
+    const FusionConfig config;
+    const Height cell{0.1, 2.5e-5};
+    const double measured_m2 = 4e-5;
+    const double sigma_m = std::sqrt(cell.var_m2 + measured_m2);
+    double last_m2 = cell.var_m2;
+    for (const double sigmas : {2.51, 2.7, 3.0, 3.5, 6.0}) {
+        for (const double sign : {1.0, -1.0}) {
+            const Height measured{cell.z_m + sign * sigmas * sigma_m, measured_m2};
+            const FusionResult result = fuse(config, cell, measured);
+            ASSERT_EQ(result.outcome, FusionOutcome::inflated);
+            EXPECT_EQ(result.cell.z_m, cell.z_m);
+            EXPECT_GE(result.cell.var_m2, last_m2);
+            if (sigmas < 3.5) {  // now the same measurement lies on the gate
+                EXPECT_NEAR(mahalanobis_sq(result.cell, measured),
+                            config.gate_sigma * config.gate_sigma,
+                            1e-9);
+            } else {
+                EXPECT_LE(result.cell.var_m2, cell.var_m2 + config.multi_height_var_m2);
+            }
+            if (sign < 0.0) last_m2 = result.cell.var_m2;
+        }
+    }
+    EXPECT_DOUBLE_EQ(last_m2, cell.var_m2 + config.multi_height_var_m2);
+}
+
 TEST(HeightFusion, AChangedSceneTakesOverAfterSomeCycles) {
     const FusionConfig config;
     // Each contradiction adds (10 mm)^2; beyond (50 mm)^2 the cell is replaced: 25 + 1 frames at

@@ -8,26 +8,6 @@
 
 namespace surefoot::gate {
 
-/// What has to be shown, all of it, before the gate says OK.
-enum class Proof : std::uint8_t {
-    process_ready,    ///< state ready, no fault raised
-    machine_valid,    ///< the machine file passes its own check
-    snapshot_intact,  ///< layout, ranges and checksum
-    numbers_valid,    ///< pose, heights and areas of the query
-    stamps_fresh,     ///< neither old nor from the future
-    gravity_known,    ///< measured, not assumed
-    pose_healthy,     ///< odometry neither lost nor degraded
-    camera_healthy,   ///< its images are new and whole
-    command_known,    ///< the machine file has this movement and its class is enabled
-    stance_known,     ///< ground under the present feet
-    corridors_clear,  ///< nothing in the way of either foot
-    body_clear,       ///< nothing in the way of the body
-    bands_solid,      ///< no drop beyond either landing foot
-    left_supported,   ///< ground under the left landing foot
-    right_supported,  ///< the same for the right one
-    count
-};
-
 /// One broken rule: where, how much, against which limit.
 struct Finding {
     std::int64_t cell_x = 0;  ///< in cells of the snapshot; may lie outside of it
@@ -54,7 +34,11 @@ class Findings {
         if (denials_ == before) proofs_ |= bit(proof);
     }
     [[nodiscard]] ReasonSet reasons() const noexcept { return reasons_; }
-    [[nodiscard]] bool complete() const noexcept { return proofs_ == bit(Proof::count) - 1U; }
+    [[nodiscard]] bool complete() const noexcept { return unproven() == 0; }
+    /// The proofs that do not hold, a bit each, as in Evidence.
+    [[nodiscard]] std::uint32_t unproven() const noexcept {
+        return (bit(Proof::count) - 1U) & ~proofs_;
+    }
     /// The worst finding of a reason, or nullptr when it was denied without a place.
     [[nodiscard]] const Finding* worst(Reason reason) const noexcept;
 

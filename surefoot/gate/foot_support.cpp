@@ -141,38 +141,48 @@ struct Landing {
     }
 };
 
+const StepLimits& step_limits(const Scene& scene) noexcept {
+    return scene.machine.limits.step[static_cast<std::size_t>(scene.movement.movement_class)];
+}
+
+/// `where`: the place whose value is its height over the stance.
+void check_rise(const StepLimits& limits, Finding where, Findings& findings) noexcept {
+    const std::int64_t rise = where.value_tenth_mm;
+    const auto deny = [&](Reason reason, std::int64_t value, std::int64_t limit) {
+        where.value_tenth_mm = where.severity = value;
+        where.limit_tenth_mm = limit;
+        findings.deny(reason, where);
+    };
+    if (!(rise <= limits.up_tenth_mm)) deny(Reason::step_too_high, rise, limits.up_tenth_mm);
+    if (!(-rise <= limits.down_tenth_mm)) deny(Reason::step_too_low, -rise, limits.down_tenth_mm);
+}
+
 void check_step(const Landing& landing) noexcept {
-    const Movement& movement = landing.scene.movement;
-    const StepLimits& limits =
-        landing.scene.machine.limits.step[static_cast<std::size_t>(movement.movement_class)];
     const std::int64_t rise = rounded(landing.plane.at(0.0, 0.0));
     Evidence& evidence = landing.findings.evidence;
     const std::int64_t worst = evidence.height_delta_tenth_mm;
     if ((rise < 0 ? -rise : rise) > (worst < 0 ? -worst : worst))
         evidence.height_delta_tenth_mm = rise;
-    if (!(rise <= limits.up_tenth_mm))
-        landing.findings.deny(Reason::step_too_high,
-                              landing.at(0.0, 0.0, rise, limits.up_tenth_mm));
-    if (!(-rise <= limits.down_tenth_mm))
-        landing.findings.deny(Reason::step_too_low,
-                              landing.at(0.0, 0.0, -rise, limits.down_tenth_mm));
+    check_rise(step_limits(landing.scene), landing.at(0.0, 0.0, rise, 0), landing.findings);
 }
 
-void check_tilt(const Landing& landing) noexcept {
+/// False when it denies, like check_patch().
+bool check_tilt(const Landing& landing) noexcept {
     const double tan_sq = landing.plane.tilt_tan_sq();
     Evidence& evidence = landing.findings.evidence;
     evidence.max_tilt_tan_sq = std::max(evidence.max_tilt_tan_sq, tan_sq);
     // n_z = 1 / sqrt(1 + tan^2) >= limit, without the root.
     const double min_z = landing.scene.machine.limits.min_normal_z;
-    if (!(min_z * min_z * (1.0 + tan_sq) <= 1.0)) {
-        Finding finding = landing.at(0.0, 0.0, 0, 0);
-        finding.severity = rounded(1e6 * std::min(tan_sq, 1e6));
-        landing.findings.deny(Reason::slope, finding);
-    }
+    if (min_z * min_z * (1.0 + tan_sq) <= 1.0) return true;
+    Finding finding = landing.at(0.0, 0.0, 0, 0);
+    finding.severity = rounded(1e6 * std::min(tan_sq, 1e6));
+    landing.findings.deny(Reason::slope, finding);
+    return false;
 }
 
-void check_patch(const Landing& landing, const Sums& patch) noexcept {
-    if (patch.n == 0) return;  // every cell is in some patch; cells larger than patches leave gaps
+bool check_patch(const Landing& landing, const Sums& patch) noexcept {
+    if (patch.n == 0)
+        return true;  // every cell is in some patch; cells larger than patches leave gaps
     const GateLimits& limits = landing.scene.machine.limits;
     const auto n = static_cast<double>(patch.n);
     const double x = static_cast<double>(patch.x) / n;
@@ -196,21 +206,24 @@ void check_patch(const Landing& landing, const Sums& patch) noexcept {
     const double residual = static_cast<double>(patch.z) / n - landing.plane.at(x, y);
     const double size = residual < 0.0 ? -residual : residual;
     const double slack = static_cast<double>(limits.patch_residual_tenth_mm) - size;
-    if (!(slack >= 0.0 && noise_sq <= slack * slack))
+    const bool even = slack >= 0.0 && noise_sq <= slack * slack;  // false for NaN
+    if (!even)
         landing.findings.deny(Reason::roughness,
                               landing.at(x, y, rounded(size), limits.patch_residual_tenth_mm));
+    return resolvable && even;
 }
 
 /// The cells under a landing foot, summed up.
 struct FootCells {
-    Sums all;
+    Sums all{};
     Patches patches;
-    std::int64_t lowest = 0;
-    std::int64_t highest = 0;
+    Finding lowest{};  ///< its value: the height over the stance
+    Finding highest{};
 
-    void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
-        lowest = all.n == 0 ? height : std::min(lowest, height);
-        highest = all.n == 0 ? height : std::max(highest, height);
+    void add(Finding here, FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
+        here.value_tenth_mm = height;
+        if (all.n == 0 || height < lowest.value_tenth_mm) lowest = here;
+        if (all.n == 0 || height > highest.value_tenth_mm) highest = here;
         all.add(p, height, sigma);
         patches.add(p, height, sigma);
     }
@@ -236,7 +249,8 @@ bool gather_cells(const Scene& scene,
             // 3 m above or below is refused by the other rules; the bound keeps the sums exact.
             const std::int64_t height = std::clamp<std::int64_t>(
                 cell.height_tenth_mm - scene.stance_tenth_mm, -30'000, 30'000);
-            cells.add(scene.ground.doubled_center(ix, iy, foot.landing_center),
+            cells.add(here,
+                      scene.ground.doubled_center(ix, iy, foot.landing_center),
                       height,
                       cell.sigma_tenth_mm);
             return true;
@@ -251,7 +265,7 @@ void check_landing(const Scene& scene,
                    const ReachableSurfaces& reachable,
                    Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
-    FootCells cells{{}, Patches(box, scene.sweep.target, limits.patch_side_tenth_mm)};
+    FootCells cells{.patches = Patches(box, scene.sweep.target, limits.patch_side_tenth_mm)};
     if (!gather_cells(scene, foot, reachable, findings, cells)) return;
     const Landing landing{scene, foot, fit_plane(cells.all), findings};
     if (!landing.plane.valid) {
@@ -260,15 +274,19 @@ void check_landing(const Scene& scene,
     }
     // Some cell is then an obstacle or a drop; a plane through both levels would tell a height and
     // a tilt that nothing there has.
-    const std::int64_t spread = cells.highest - cells.lowest;
+    const std::int64_t spread = cells.highest.value_tenth_mm - cells.lowest.value_tenth_mm;
     const std::int64_t spread_limit = limits.swing_clearance_tenth_mm + limits.drop_tenth_mm;
     if (spread > spread_limit) {
         findings.deny(Reason::roughness, landing.at(0.0, 0.0, spread, spread_limit));
         return;
     }
     check_step(landing);
-    check_tilt(landing);
-    for (std::int64_t i = 0; i < cells.patches.count(); ++i) check_patch(landing, cells.patches[i]);
+    bool flat = check_tilt(landing);
+    for (std::int64_t i = 0; i < cells.patches.count(); ++i)
+        flat = check_patch(landing, cells.patches[i]) && flat;
+    if (!flat) return;  // refused, and for a better reason than its highest cell
+    check_rise(step_limits(scene), cells.highest, findings);
+    check_rise(step_limits(scene), cells.lowest, findings);
 }
 
 }  // namespace surefoot::gate

@@ -16,6 +16,8 @@ namespace surefoot::gate {
 ///    neighbouring cells are partly the same error, so averaging is credited for a fixed small
 ///    number of cells only, whatever the cell size. Wanted: sigma <= `patch_sigma`, and |residual
 ///    to the plane| + sigma_factor * sigma <= `patch_residual`.
+/// 5. every cell within those step limits: a toe on the beginning of a ramp is a step, though the
+///    middle of the foot is not.
 /// No mean over the foot decides: each patch does, the worst one is reported.
 void check_landing(const Scene& scene,
                    const FootSweep& foot,

@@ -115,6 +115,10 @@ TEST(Findings, are_complete_only_with_every_proof) {
             if (i != missing) findings.prove(static_cast<Proof>(i), [] {});
         }
         EXPECT_EQ(findings.complete(), missing == kProofs) << "without proof " << missing;
+        Evidence evidence;
+        evidence.unproven = findings.unproven();
+        for (int i = 0; i < kProofs; ++i)
+            EXPECT_EQ(evidence.lacks(static_cast<Proof>(i)), i == missing) << i;
     }
 }
 

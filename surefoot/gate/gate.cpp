@@ -211,6 +211,7 @@ void seal(const Machine& machine,
           const Findings& findings,
           Verdict& verdict) noexcept {
     verdict.evidence = findings.evidence;
+    verdict.evidence.unproven = findings.unproven();
     verdict.reasons = findings.reasons();
     if (verdict.reasons.empty() && !findings.complete()) verdict.reasons.add(Reason::internal);
     verdict.primary = verdict.reasons.primary();

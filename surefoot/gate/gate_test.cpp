@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "surefoot/gate/gate_testing.hpp"
 #include "surefoot/gate/verdict_text.hpp"
@@ -351,7 +353,7 @@ Verdict ridge_under(double y0, double y1, double height_m, double sigma_m) {
 
 TEST(Gate, given_a_ridge_under_either_foot_then_roughness) {
     for (const bool left : {true, false}) {
-        const Verdict verdict = ridge_under(left ? 0.05 : -0.30, left ? 0.30 : -0.05, 0.038, 0.001);
+        const Verdict verdict = ridge_under(left ? 0.05 : -0.30, left ? 0.30 : -0.05, 0.036, 0.001);
         expect_refused(verdict, Reason::roughness);
         EXPECT_EQ(verdict.reasons, ReasonSet(Reason::roughness)) << words(verdict);
         EXPECT_EQ(verdict.evidence.foot, left ? Foot::left : Foot::right);
@@ -359,10 +361,36 @@ TEST(Gate, given_a_ridge_under_either_foot_then_roughness) {
     }
 }
 
+TEST(Gate, a_toe_on_the_beginning_of_a_ramp_is_a_step_though_the_middle_of_the_foot_is_none) {
+    // The landing feet reach from 0.274 to 0.640 m; 1:8 from x on lifts the toes by 14 or 26 mm.
+    for (const auto& [begin_m, allowed] : {std::pair{0.53, true}, std::pair{0.43, false}}) {
+        for (const double sign : {1.0, -1.0}) {
+            Terrain ramp;
+            for (int v = 0; v < 240; ++v) {
+                for (int u = 0; u < 240; ++u) {
+                    const double x_m = ramp.geometry.center_m({u, v}).x();
+                    if (x_m > begin_m)
+                        ramp.height.at(u, v) = static_cast<float>(sign * (x_m - begin_m) / 8.0);
+                }
+            }
+            const Verdict verdict = ask(ramp, kForward);
+            if (allowed) {
+                expect_ok(verdict);
+                continue;
+            }
+            expect_refused(verdict, sign > 0.0 ? Reason::step_too_high : Reason::step_too_low);
+            EXPECT_EQ(verdict.evidence.limit_tenth_mm, 200);
+            EXPECT_NEAR(static_cast<double>(verdict.evidence.value_tenth_mm), 260.0, 16.0);
+            EXPECT_NEAR(static_cast<double>(verdict.evidence.worst_x_tenth_mm), 6375.0, 1.0);
+            EXPECT_NE(verdict.evidence.foot, Foot::none);
+        }
+    }
+}
+
 TEST(Gate, the_noise_of_a_patch_counts_against_its_residual) {
-    // Highest patch of a 25 mm ridge: 17-25 mm over the plane; 3.4 sigma = 1.7 or 9.9 mm on top.
-    expect_ok(ridge_under(0.05, 0.30, 0.025, 0.001));
-    const Verdict noisy = ridge_under(0.05, 0.30, 0.025, 0.0058);
+    // Highest patch of a 20 mm ridge: about 16 mm over the plane; 3.4 sigma = 1.7 or 9.7 mm on top.
+    expect_ok(ridge_under(0.05, 0.30, 0.020, 0.001));
+    const Verdict noisy = ridge_under(0.05, 0.30, 0.020, 0.0057);
     EXPECT_EQ(noisy.reasons, ReasonSet(Reason::roughness)) << words(noisy);
     EXPECT_LE(noisy.evidence.value_tenth_mm, 250);
 }
@@ -398,6 +426,34 @@ TEST(Gate, given_one_unsure_cell_beside_the_feet_then_not_resolvable) {
     expect_refused(verdict, Reason::not_resolvable);
     EXPECT_EQ(verdict.evidence.limit_tenth_mm, 120);
     expect_ok(ask(floor, kBackward));
+}
+
+TEST(Gate, what_is_not_sure_to_stay_below_a_swinging_foot_or_above_a_drop_is_not_resolvable) {
+    // 25 mm up within the margin beside the left foot's way, 30 mm down in the band before its
+    // toes: below the limits of 40 and 50 mm. 3.4 sigma = 13.3 mm keeps both below, 20.4 mm
+    // neither.
+    for (const auto& [x0, y0, y1, height_m] :
+         {std::tuple{0.10, 0.28, 0.30, 0.025}, {0.675, 0.15, 0.20, -0.030}}) {
+        for (const auto& [sigma_m, allowed] : {std::pair{0.0039, true}, std::pair{0.006, false}}) {
+            Terrain floor;
+            floor.box(x0, x0 + 0.025, y0, y1, height_m);
+            for (int v = 0; v < 240; ++v) {
+                for (int u = 0; u < 240; ++u) {
+                    if (floor.height.at(u, v) != 0.0F)
+                        floor.variance.at(u, v) = static_cast<float>(sigma_m * sigma_m);
+                }
+            }
+            const Verdict verdict = ask(floor, kForward);
+            if (allowed) {
+                expect_ok(verdict);
+                continue;
+            }
+            expect_refused(verdict, Reason::not_resolvable);
+            EXPECT_EQ(verdict.reasons, ReasonSet(Reason::not_resolvable)) << words(verdict);
+            EXPECT_NEAR(static_cast<double>(verdict.evidence.value_tenth_mm), 60.0, 1.0);
+            EXPECT_LT(verdict.evidence.limit_tenth_mm, verdict.evidence.value_tenth_mm);
+        }
+    }
 }
 
 TEST(Gate, given_an_island_at_floor_height_then_disconnected) {

@@ -59,4 +59,26 @@ const char* to_string(Decision decision) noexcept {
     return "ERROR";
 }
 
+const char* to_string(Proof proof) noexcept {
+    switch (proof) {
+        case Proof::process_ready: return "process_ready";
+        case Proof::machine_valid: return "machine_valid";
+        case Proof::snapshot_intact: return "snapshot_intact";
+        case Proof::numbers_valid: return "numbers_valid";
+        case Proof::stamps_fresh: return "stamps_fresh";
+        case Proof::gravity_known: return "gravity_known";
+        case Proof::pose_healthy: return "pose_healthy";
+        case Proof::camera_healthy: return "camera_healthy";
+        case Proof::command_known: return "command_known";
+        case Proof::stance_known: return "stance_known";
+        case Proof::corridors_clear: return "corridors_clear";
+        case Proof::body_clear: return "body_clear";
+        case Proof::bands_solid: return "bands_solid";
+        case Proof::left_supported: return "left_supported";
+        case Proof::right_supported: return "right_supported";
+        case Proof::count: break;
+    }
+    return "unknown";
+}
+
 }  // namespace surefoot::gate

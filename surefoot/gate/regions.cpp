@@ -57,6 +57,29 @@ bool check_knowledge(const Place& place, const GateLimits& limits, Findings& fin
     return true;
 }
 
+/// Wanted: `value`, a height or depth that the ground of the place is measured at, below `limit`
+/// by `sigma_factor` sigma. What is measured beyond the limit is refused for `reason`; what is only
+/// not sure to be below is not resolvable.
+void check_below(const Place& place,
+                 std::int64_t value,
+                 std::int64_t limit,
+                 Reason reason,
+                 const GateLimits& limits,
+                 Findings& findings) noexcept {
+    if (value > limit) {
+        deny(findings, reason, place, value, limit);
+        return;
+    }
+    const double slack = static_cast<double>(limit - value);
+    const std::int64_t sigma = place.cell.sigma_tenth_mm;
+    if (!(limits.sigma_factor * static_cast<double>(sigma) <= slack))
+        deny(findings,
+             Reason::not_resolvable,
+             place,
+             sigma,
+             static_cast<std::int64_t>(slack / limits.sigma_factor));
+}
+
 /// Asks every cell of a region; `test(place, rise)` sees the known ones with their height over the
 /// stance, `always(place)` all inside the map. One cell beyond the map ends the region: the rest of
 /// it out there tells nothing new.
@@ -111,20 +134,25 @@ std::optional<std::int64_t> stance_height(const Ground& ground,
 }
 
 void check_stance(const Scene& scene, Findings& findings) noexcept {
-    const std::int64_t limit = scene.machine.limits.drop_tenth_mm;
+    const GateLimits& limits = scene.machine.limits;
     for (const FootSweep& foot : scene.sweep.feet) {
         const auto test = [&](const Place& place, std::int64_t rise) {
-            if (-rise > limit) deny(findings, Reason::drop_off, place, -rise, limit);
+            check_below(place, -rise, limits.drop_tenth_mm, Reason::drop_off, limits, findings);
         };
         check_region(scene, foot.stance, foot.foot, findings, test, kNothing);
     }
 }
 
 void check_corridors(const Scene& scene, Findings& findings) noexcept {
-    const std::int64_t limit = scene.machine.limits.swing_clearance_tenth_mm;
+    const GateLimits& limits = scene.machine.limits;
     for (const FootSweep& foot : scene.sweep.feet) {
         const auto test = [&](const Place& place, std::int64_t rise) {
-            if (rise > limit) deny(findings, Reason::corridor_blocked, place, rise, limit);
+            check_below(place,
+                        rise,
+                        limits.swing_clearance_tenth_mm,
+                        Reason::corridor_blocked,
+                        limits,
+                        findings);
         };
         check_region(scene, foot.corridor, foot.foot, findings, test, kNothing);
     }
@@ -147,8 +175,7 @@ void check_bands(const Scene& scene, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
     for (const FootSweep& foot : scene.sweep.feet) {
         const auto test = [&](const Place& place, std::int64_t rise) {
-            if (-rise > limits.drop_tenth_mm)
-                deny(findings, Reason::drop_off, place, -rise, limits.drop_tenth_mm);
+            check_below(place, -rise, limits.drop_tenth_mm, Reason::drop_off, limits, findings);
         };
         // A drop below a table top beside the foot is no drop for a foot on the floor: evidence on
         // a cell that was measured higher than a foot may stand belongs to somebody up there.

@@ -34,7 +34,8 @@ struct Scene {
                                                         const Sweep& sweep) noexcept;
 
 /// The four regions of safety.md 7 (4). In each every cell must be inside the map, known (or
-/// vouched), surer than `cell_sigma` and not drifted more than `drift`; and:
+/// vouched), surer than `cell_sigma` and not drifted more than `drift`. Where a limit counts in
+/// millimetres, the height must keep it by `sigma_factor` sigma, else NOT_RESOLVABLE:
 /// - under the present feet none is a drop;
 void check_stance(const Scene& scene, Findings& findings) noexcept;
 /// - in the way of a foot nothing stands higher over the stance than `swing_clearance`;

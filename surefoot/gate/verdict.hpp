@@ -13,6 +13,28 @@ enum class Decision : std::uint8_t { error = 0, not_traversable = 1, ok = 2 };
 
 enum class Foot : std::uint8_t { none, left, right };
 
+/// What has to be shown, all of it, before the gate says OK.
+enum class Proof : std::uint8_t {
+    process_ready,    ///< state ready, no fault raised
+    machine_valid,    ///< the machine file passes its own check
+    snapshot_intact,  ///< layout, ranges and checksum
+    numbers_valid,    ///< pose, heights and areas of the query
+    stamps_fresh,     ///< neither old nor from the future
+    gravity_known,    ///< measured, not assumed
+    pose_healthy,     ///< odometry neither lost nor degraded
+    camera_healthy,   ///< its images are new and whole
+    command_known,    ///< the machine file has this movement and its class is enabled
+    stance_known,     ///< ground under the present feet
+    corridors_clear,  ///< nothing in the way of either foot
+    body_clear,       ///< nothing in the way of the body
+    bands_solid,      ///< no drop beyond either landing foot
+    left_supported,   ///< ground under the left landing foot
+    right_supported,  ///< the same for the right one
+    count
+};
+/// "corridors_clear".
+[[nodiscard]] const char* to_string(Proof proof) noexcept;
+
 /// The numbers behind a verdict. Lengths in units of 0.1 mm.
 struct Evidence {
     /// The cell that decided (centre, odom); of the primary reason.
@@ -22,6 +44,9 @@ struct Evidence {
     Foot foot = Foot::none;           ///< the landing foot that the primary reason is about
     std::int64_t value_tenth_mm = 0;  ///< what was found there, in the unit of the limit ...
     std::int64_t limit_tenth_mm = 0;  ///< ... that it broke; both 0 where no length decides
+
+    std::uint32_t unproven = 0;  ///< bit i: Proof i does not hold. Without readiness the ground is
+                                 ///< not looked at, and nothing about it is proven
 
     bool stance_known = false;
     std::int64_t stance_height_tenth_mm = 0;  ///< odom z of the ground under the present feet
@@ -34,6 +59,10 @@ struct Evidence {
     std::int64_t max_drift_tenth_mm = 0;
     std::int64_t min_clearance_tenth_mm =
         0xffff;  ///< free height over the cells asked; 0xffff = open
+
+    [[nodiscard]] constexpr bool lacks(Proof proof) const noexcept {
+        return (unproven >> static_cast<unsigned>(proof) & 1U) != 0;
+    }
 };
 
 /// The gate's answer about one movement. A default Verdict is an ERROR; only decide() makes an OK,
