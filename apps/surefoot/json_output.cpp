@@ -653,6 +653,17 @@ Json suite_steps_json(const std::vector<SuiteStep>& steps) {
     return list;
 }
 
+Json suite_tallies_json(const VerdictTallies& tallies) {
+    Json list = Json::array();
+    for (const VerdictTally& tally : tallies.all()) {
+        list.push_back({{"by", kTallyKeyNames[static_cast<std::size_t>(tally.by)]},
+                        {"name", tally.name},
+                        {"named", tally.named},
+                        {"alone", tally.alone}});
+    }
+    return list;
+}
+
 Json suite_bins_json(const std::vector<NoiseBins>& levels) {
     Json list = Json::array();
     for (const NoiseBins& level : levels) {
@@ -684,7 +695,8 @@ std::string suite_json(std::span<const SuiteResult> results) {
                          {"carrier", result.which.carrier},
                          {"rate_hz", result.which.rate_hz},
                          {"figures", suite_figures_json(result.figures)},
-                         {"steps", suite_steps_json(result.steps)}});
+                         {"steps", suite_steps_json(result.steps)},
+                         {"wrong_answers", suite_tallies_json(result.tallies)}});
     }
     const auto rows_json = [](const std::vector<SuiteRow>& rows, bool by_scene) {
         Json list = Json::array();

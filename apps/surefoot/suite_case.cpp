@@ -68,6 +68,7 @@ std::vector<double> figures_of(const RunRecord& record,
             t.depth.median_abs_error_px,
             depth_auc,
             static_cast<double>(around.safe + around.unsafe),
+            static_cast<double>(around.safe),
             static_cast<double>(around.unsafe_ok),
             static_cast<double>(around.borderline_missed),
             share(around.safe_ok, around.safe),
@@ -106,12 +107,13 @@ class CaseRun {
         if (record.error) return *record.error;
         if (auto status = take_snapshot(); !status) return status.error();
         const Pose T_world_body = source_.truth().trajectory[record.frames.size() - 1].T_world_body;
-        const VerdictCounts around = compare_verdicts(
+        const AroundAnswers around = compare_verdicts(
             source_.truth(), T_world_body, conditions_.machine, *snapshot_, conditions_.reach_m);
         return SuiteResult{which,
-                           figures_of(record, depth_.auc(), around, steps_.steps()),
+                           figures_of(record, depth_.auc(), around.counts, steps_.steps()),
                            bins_of(record.truth->maps),
                            steps_.steps(),
+                           around.tallies,
                            thumbnail_of(record, pipeline_)};
     }
 
@@ -169,6 +171,7 @@ const std::vector<SuiteFigure>& suite_figures() {
         {"disparity_error_px", "Depth", pixels, true, "median |disparity error|"},
         {"depth_auc", "Depth", number, true, "sparsification of sigma (0 = knows, 1 = chance)"},
         {"questions", "Gate", count, false, "clear-cut questions at the end of the way"},
+        {"safe_questions", "Gate", count, false, "of these truly safe"},
         {"missed_hazards", "Gate", count, true, "clearly dangerous, and the gate said OK"},
         {"borderline_missed", "Gate", count, true, "dangerous by less than the margin, and OK"},
         {"allowed", "Gate", share, false, "of the clearly safe movements allowed"},

@@ -47,6 +47,7 @@ struct SuiteResult {
     std::vector<double> figures;   ///< one per suite_figures(); NaN = there was nothing to measure
     std::vector<SuiteBin> bins;    ///< map errors by range and image column
     std::vector<SuiteStep> steps;  ///< of a walking machine
+    VerdictTallies tallies;        ///< the wrong answers to the questions at the end of the way
     std::vector<std::uint8_t> thumbnail;  ///< confusion map as PNG; empty where nothing is known,
                                           ///< and of a case that was read from a file
 

@@ -49,7 +49,12 @@ TEST(SuitePlan, EverySceneOnceByDefaultAndAFewShortOnesWhenQuick) {
     const auto quick = plan_suite(options, {});
     ASSERT_TRUE(quick.ok());
     EXPECT_LT(quick->size(), 12U);
-    for (const PlannedCase& planned : *quick) EXPECT_GT(planned.which.max_frames, 0);
+    std::int64_t walks = 0;
+    for (const PlannedCase& planned : *quick) {
+        EXPECT_GT(planned.which.max_frames, 0);
+        walks += planned.which.carrier == "rex" ? 1 : 0;
+    }
+    EXPECT_GE(walks, 1);
     options.frames = 3;
     const auto short_cases = plan_suite(options, {});
     ASSERT_TRUE(short_cases.ok());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "apps/surefoot/suite_answers.hpp"
 #include "apps/surefoot/suite_rows.hpp"
 #include "apps/surefoot/suite_table.hpp"
 #include "eval/html_report.hpp"
@@ -71,13 +72,6 @@ double sum_of(std::span<const SuiteResult> results, std::string_view name) {
     return sum;
 }
 
-/// NaN where the figure is nowhere measured.
-double largest_of(std::span<const SuiteResult> results, std::string_view name) {
-    double largest = std::nan("");
-    for (const SuiteResult& result : results) largest = std::fmax(largest, result.figure(name));
-    return largest;
-}
-
 void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& content) {
     const double missed = sum_of(results, "missed_hazards");
     content.figures.push_back({"Hazards missed by the gate",
@@ -87,12 +81,13 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
                                            "margin",
                                            sum_of(results, "questions"),
                                            sum_of(results, "borderline_missed"))});
-    const double most_allowed = largest_of(results, "allowed");
+    const double allowed = allowed_share(results);
     content.figures.push_back({"Clearly safe movements allowed",
-                               shown(FigureKind::share, most_allowed),
+                               shown(FigureKind::share, allowed),
                                "",
-                               "in the case where the gate allowed most"});
-    if (most_allowed == 0.0) {
+                               fmt::format("of {:.0f}; below stands why not the others",
+                                           sum_of(results, "safe_questions"))});
+    if (allowed == 0.0) {
         content.reasons.push_back(
             "The gate allowed no movement at all in these runs: that it missed no hazard says "
             "nothing yet. In short runs the ground around the feet was never seen.");
@@ -248,66 +243,6 @@ eval::ReportTable bin_table(std::span<const NoiseBins> levels, const BinView& vi
     return table;
 }
 
-// ---- the steps of walking machines --------------------------------------------------------------
-
-std::string judgement(const SuiteStep& step) {
-    const std::string truth = step.safe ? "safe" : "dangerous";
-    return step.clear_cut ? truth : truth + ", within the margin";
-}
-
-std::string outcome(const SuiteStep& step) {
-    if (step.allowed()) return step.safe ? "allowed" : step.clear_cut ? "MISSED" : "allowed";
-    return step.safe ? "refused: too careful" : "refused";
-}
-
-eval::ReportTable step_table(std::span<const SuiteResult> results) {
-    eval::ReportTable table;
-    table.title = "Each step that a walking user asked for, and what the gate said just before it";
-    table.header = {"case", "step", "s", "command", "truth", "why not", "gate", "its reasons"};
-    table.hint =
-        "Asked with the map and the pose of that moment. An operator has answered for level ground "
-        "around the start.";
-    table.wide = true;
-    for (const SuiteResult& result : results) {
-        for (const SuiteStep& step : result.steps) {
-            table.rows.push_back({result.which.name(),
-                                  std::to_string(step.number),
-                                  fmt::format("{:.1f}", step.time_s),
-                                  std::to_string(step.command),
-                                  judgement(step),
-                                  step.dangers,
-                                  outcome(step),
-                                  step.reasons});
-        }
-    }
-    table.folded = true;
-    return table;
-}
-
-/// Why safe steps were refused: what the perception must still learn.
-eval::ReportBars refusals(std::span<const SuiteResult> results) {
-    std::map<std::string, int> counts;
-    int safe = 0;
-    for (const SuiteResult& result : results) {
-        for (const SuiteStep& step : result.steps) {
-            if (!step.safe || !step.clear_cut) continue;
-            ++safe;
-            ++counts[step.allowed() ? "allowed" : step.reasons.substr(0, step.reasons.find('|'))];
-        }
-    }
-    eval::ReportBars bars;
-    bars.title = "What the gate said to clearly safe steps (first reason)";
-    for (const auto& [reason, count] : counts) {
-        bars.bars.push_back({reason,
-                             static_cast<double>(count),
-                             fmt::format("{} ({:.0f} %)", count, 100.0 * count / safe)});
-    }
-    std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const auto& a, const auto& b) {
-        return a.value > b.value;
-    });
-    return bars;
-}
-
 // ---- scene by scene -----------------------------------------------------------------------------
 
 std::vector<eval::ReportTable> group_tables(std::span<const SuiteRow> rows) {
@@ -406,8 +341,10 @@ std::string suite_html(std::span<const SuiteResult> results, const std::string& 
     content.thumbnails_title = "Safe or not: the worst case of each scene";
     add_thumbnails(results, folder, content);
     content.details_title = "Figures";
-    content.bars.push_back(refusals(results));
+    for (eval::ReportBars& bars : refusal_bars(results)) content.bars.push_back(std::move(bars));
+    content.bars.push_back(step_bars(results));
     content.tables.push_back(carrier_table(results));
+    content.tables.push_back(refusal_table(results));
     for (eval::ReportTable& table : group_tables(rows)) content.tables.push_back(std::move(table));
     for (const BinView& view : kBinViews) content.tables.push_back(bin_table(levels, view));
     content.tables.push_back(step_table(results));

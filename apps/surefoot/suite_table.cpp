@@ -18,6 +18,7 @@ constexpr std::size_t kKeyColumns = 4;
 constexpr std::size_t kCaseColumns = 6;  ///< before the figures
 constexpr std::size_t kBinColumns = kKeyColumns + 8;
 constexpr std::size_t kStepColumns = kKeyColumns + 8;
+constexpr std::size_t kTallyColumns = kKeyColumns + 4;
 
 using Words = std::vector<std::string_view>;
 
@@ -82,6 +83,19 @@ std::string step_lines(const SuiteResult& result) {
     return lines;
 }
 
+std::string verdict_lines(const SuiteResult& result) {
+    std::string lines;
+    for (const VerdictTally& tally : result.tallies.all()) {
+        lines += fmt::format("{},{},{},{},{}\n",
+                             key_of(result.which),
+                             kTallyKeyNames[static_cast<std::size_t>(tally.by)],
+                             tally.name,
+                             tally.named,
+                             tally.alone);
+    }
+    return lines;
+}
+
 /// Nothing for a line that is not whole, as for all below.
 std::optional<SuiteCase> parse_key(const Words& words) {
     const auto seed = io::parse_int64(words[1]);
@@ -140,6 +154,18 @@ std::optional<SuiteStep> parse_step(const Words& words) {
                      from_dash(words[11])};
 }
 
+std::optional<VerdictTally> parse_tally(const Words& words) {
+    if (words.size() != kTallyColumns) return std::nullopt;
+    const auto key = std::find(std::begin(kTallyKeyNames), std::end(kTallyKeyNames), words[4]);
+    const auto named = io::parse_int64(words[6]);
+    const auto alone = io::parse_int64(words[7]);
+    if (key == std::end(kTallyKeyNames) || !named || !alone) return std::nullopt;
+    return VerdictTally{static_cast<TallyKey>(key - std::begin(kTallyKeyNames)),
+                        std::string(words[5]),
+                        static_cast<int>(*named),
+                        static_cast<int>(*alone)};
+}
+
 /// A file that grows by lines, under two lines of head.
 struct LineFile {
     std::string path;
@@ -193,6 +219,8 @@ Result<SuiteTable> SuiteTable::open(const std::string& folder, std::uint64_t con
                                      "reasons\n",
                                      first,
                                      kCaseHead)};
+    const LineFile verdicts{folder + "/verdicts.csv",
+                            fmt::format("{}{},by,name,named,alone\n", first, kCaseHead)};
     auto cases_file = cases.open([&](const Words& words) {
         auto result = parse_case(words);
         return result && table.remember(std::move(*result));
@@ -202,26 +230,33 @@ Result<SuiteTable> SuiteTable::open(const std::string& folder, std::uint64_t con
         const auto which = words.size() > kKeyColumns ? parse_key(words) : std::nullopt;
         return which ? table.find(*which) : nullptr;
     };
-    auto bins_file = bins.open([&](const Words& words) {
-        SuiteResult* owner = owner_of(words);
-        const auto bin = parse_bin(words);
-        if (owner == nullptr || !bin) return false;
-        owner->bins.push_back(*bin);
-        return true;
+    /// Takes the lines of a file that belong to a case that is there.
+    const auto open_details = [&](const LineFile& file, const auto& parse, const auto& keep) {
+        return file.open([&](const Words& words) {
+            SuiteResult* owner = owner_of(words);
+            const auto found = parse(words);
+            if (owner != nullptr && found) keep(*owner, *found);
+            return owner != nullptr && found;
+        });
+    };
+    auto bins_file = open_details(bins, parse_bin, [](SuiteResult& owner, const SuiteBin& bin) {
+        owner.bins.push_back(bin);
     });
     if (!bins_file) return bins_file.error();
-    auto steps_file = steps.open([&](const Words& words) {
-        SuiteResult* owner = owner_of(words);
-        const auto step = parse_step(words);
-        if (owner == nullptr || !step) return false;
-        owner->steps.push_back(*step);
-        return true;
+    auto steps_file = open_details(steps, parse_step, [](SuiteResult& owner, const SuiteStep& s) {
+        owner.steps.push_back(s);
     });
     if (!steps_file) return steps_file.error();
+    auto verdicts_file =
+        open_details(verdicts, parse_tally, [](SuiteResult& owner, const VerdictTally& tally) {
+            owner.tallies.add(tally);
+        });
+    if (!verdicts_file) return verdicts_file.error();
     if (auto status = io::make_folder(folder + "/pictures"); !status) return status.error();
     table.cases_file_.emplace(std::move(*cases_file));
     table.bins_file_.emplace(std::move(*bins_file));
     table.steps_file_.emplace(std::move(*steps_file));
+    table.verdicts_file_.emplace(std::move(*verdicts_file));
     return table;
 }
 
@@ -246,6 +281,7 @@ Status SuiteTable::add(SuiteResult result) {
     if (auto status = keep_thumbnail(result); !status) return status;
     if (auto status = bins_file_->append(bin_lines(result)); !status) return status;
     if (auto status = steps_file_->append(step_lines(result)); !status) return status;
+    if (auto status = verdicts_file_->append(verdict_lines(result)); !status) return status;
     if (auto status = cases_file_->append(case_line(result)); !status) return status;
     result.thumbnail.clear();
     [[maybe_unused]] const bool added = remember(std::move(result));

@@ -11,11 +11,11 @@
 
 namespace surefoot::app {
 
-/// What a suite has measured, in its folder: cases.csv has a line for every finished case, bins.csv
-/// and steps.csv what belongs to it, pictures/ the worst case of each scene. All of it is written
-/// when the case is finished, the line of cases.csv last, so that a suite can be stopped at any
-/// time and goes on where it was: what has no line there is dropped. The first line binds the files
-/// to the conditions. One thread at a time.
+/// What a suite has measured, in its folder: cases.csv has a line for every finished case,
+/// bins.csv, steps.csv and verdicts.csv what belongs to it, pictures/ the worst case of each scene.
+/// All of it is written when the case is finished, the line of cases.csv last, so that a suite can
+/// be stopped at any time and goes on where it was: what has no line there is dropped. The first
+/// line binds the files to the conditions. One thread at a time.
 class SuiteTable {
   public:
     /// Reads what an earlier call has left; files of other conditions or of another version are a
@@ -37,6 +37,7 @@ class SuiteTable {
     std::optional<io::AppendFile> cases_file_;
     std::optional<io::AppendFile> bins_file_;
     std::optional<io::AppendFile> steps_file_;
+    std::optional<io::AppendFile> verdicts_file_;
     std::vector<SuiteResult> results_;
     std::map<std::string, std::size_t> places_;  ///< in `results_`, by the key of the case
 };

@@ -31,6 +31,8 @@ SuiteResult result_of(const std::string& scene, std::uint64_t seed, double noise
     result.bins = {bin_of(0.5, 0.01 * noise), bin_of(1.0, 0.02)};
     result.steps = {{1, 1.5, 9, true, true, "", "OK", ""},
                     {2, 11.5, 17, false, false, "drop_off|tilt", "NOT_TRAVERSABLE", "DROP_OFF"}};
+    result.tallies.add({TallyKey::reason, "UNKNOWN_CELLS", 7, 4});
+    result.tallies.add({TallyKey::danger, "drop_off", 1, 1});
     return result;
 }
 
@@ -79,6 +81,7 @@ TEST_F(SuiteTableTest, GoesOnWhereItStopped) {
     EXPECT_EQ(read.figures, first.figures);
     EXPECT_EQ(read.bins, first.bins);
     EXPECT_EQ(read.steps, first.steps);
+    EXPECT_EQ(read.tallies.all(), first.tallies.all());
     EXPECT_TRUE(std::isnan(again->results()[1].figures[2]));
     // A third one goes behind the two.
     ASSERT_TRUE(again->add(result_of("floor", 4, 2.0, 0.5)).ok());
@@ -99,6 +102,7 @@ TEST_F(SuiteTableTest, WhatWasCutOffIsMeasuredAgainAndNothingIsDoubled) {
         }
         const std::string whole_bins = text_of("bins.csv");
         const std::string whole_steps = text_of("steps.csv");
+        const std::string whole_verdicts = text_of("verdicts.csv");
         cut("cases.csv", bytes);
         auto again = SuiteTable::open(folder_, kConditions);
         ASSERT_TRUE(again.ok());
@@ -107,6 +111,7 @@ TEST_F(SuiteTableTest, WhatWasCutOffIsMeasuredAgainAndNothingIsDoubled) {
         ASSERT_TRUE(again->add(lost).ok());
         EXPECT_EQ(text_of("bins.csv"), whole_bins);
         EXPECT_EQ(text_of("steps.csv"), whole_steps);
+        EXPECT_EQ(text_of("verdicts.csv"), whole_verdicts);
     }
 }
 

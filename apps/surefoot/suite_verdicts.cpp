@@ -2,8 +2,10 @@
 #include "apps/surefoot/suite_verdicts.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "apps/surefoot/offline_map.hpp"
@@ -67,6 +69,13 @@ gate::Verdict ask(const Machine& machine,
     return decide_offline(machine, query, map);
 }
 
+std::vector<std::string_view> names_of(const sim::SafetyAnswer& answer) {
+    std::vector<std::string_view> names;
+    for (const sim::Finding& finding : answer.dangers)
+        names.emplace_back(sim::to_string(finding.danger));
+    return names;
+}
+
 }  // namespace
 
 void VerdictCounts::add(bool truly_safe, bool clear_cut, bool allowed) {
@@ -83,12 +92,47 @@ void VerdictCounts::add(bool truly_safe, bool clear_cut, bool allowed) {
     }
 }
 
-VerdictCounts compare_verdicts(const sim::SceneTruth& truth,
+void VerdictTallies::add(TallyKey by, std::span<const std::string_view> words) {
+    for (const std::string_view word : words)
+        add({by, std::string(word), 1, words.size() == 1 ? 1 : 0});
+}
+
+void VerdictTallies::add(const VerdictTally& tally) {
+    VerdictTally& known = of(tally.by, tally.name);
+    known.named += tally.named;
+    known.alone += tally.alone;
+}
+
+void VerdictTallies::add_refusal(const gate::Verdict& verdict) {
+    std::vector<std::string_view> words;
+    for (int i = 0; i < gate::kReasonCount; ++i) {
+        const auto reason = static_cast<gate::Reason>(i);
+        if (verdict.reasons.contains(reason)) words.emplace_back(gate::to_string(reason));
+    }
+    add(TallyKey::reason, words);
+    words.clear();
+    for (int i = 0; i < static_cast<int>(gate::Proof::count); ++i) {
+        const auto proof = static_cast<gate::Proof>(i);
+        if (verdict.evidence.lacks(proof)) words.emplace_back(gate::to_string(proof));
+    }
+    add(TallyKey::proof, words);
+}
+
+VerdictTally& VerdictTallies::of(TallyKey by, std::string_view name) {
+    const auto at = std::lower_bound(
+        all_.begin(), all_.end(), std::tie(by, name), [](const VerdictTally& a, const auto& b) {
+            return std::tuple<TallyKey, std::string_view>(a.by, a.name) < b;
+        });
+    if (at != all_.end() && at->by == by && at->name == name) return *at;
+    return *all_.insert(at, {by, std::string(name), 0, 0});
+}
+
+AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
                                const Pose& T_world_body_true,
                                const Machine& machine,
                                const grid::MapSnapshot& map,
                                double reach_m) {
-    VerdictCounts counts;
+    AroundAnswers answers;
     for (const Stance& stance : stances_around(T_world_body_true, map, reach_m)) {
         for (int command = 1; command < Machine::kMovementCodes; ++command) {
             if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
@@ -97,11 +141,17 @@ VerdictCounts compare_verdicts(const sim::SceneTruth& truth,
             // Where the machine cannot stand nobody asks.
             if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
                 continue;
-            const bool ok = ask(machine, map, stance, command).decision == gate::Decision::ok;
-            counts.add(answer.safe, answer.clear_cut, ok);
+            const gate::Verdict verdict = ask(machine, map, stance, command);
+            const bool ok = verdict.decision == gate::Decision::ok;
+            answers.counts.add(answer.safe, answer.clear_cut, ok);
+            if (!answer.clear_cut || answer.safe == ok) continue;
+            if (answer.safe)
+                answers.tallies.add_refusal(verdict);
+            else
+                answers.tallies.add(TallyKey::danger, names_of(answer));
         }
     }
-    return counts;
+    return answers;
 }
 
 }  // namespace surefoot::app
