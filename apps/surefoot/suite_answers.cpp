@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <string>
-#include <tuple>
 #include <utility>
 
 namespace surefoot::app {
@@ -94,9 +93,9 @@ std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results)
 
 eval::ReportTable refusal_table(std::span<const SuiteResult> results) {
     std::vector<std::string> reasons;
-    std::map<std::tuple<std::string, std::string, double>, Pool> rows;
+    std::map<std::pair<std::string, double>, Pool> rows;
     for (const SuiteResult& result : results) {
-        rows[{result.which.scene, result.which.carrier, result.which.noise}].add(result);
+        rows[{result.which.scene, result.which.noise}].add(result);
         for (const VerdictTally& tally : result.tallies.all()) {
             if (tally.by != TallyKey::reason) continue;
             if (std::find(reasons.begin(), reasons.end(), tally.name) == reasons.end())
@@ -110,12 +109,11 @@ eval::ReportTable refusal_table(std::span<const SuiteResult> results) {
         "Share of the clearly safe movements at the end of the way whose answer names the reason; "
         "an answer may name several.";
     table.wide = true;
-    table.header = {"scene", "carrier", "noise", "cases", "clearly safe", "allowed"};
+    table.header = {"scene", "noise", "cases", "safe", "allowed"};
     for (const std::string& reason : reasons) table.header.push_back(words_of(reason));
     for (const auto& [key, pool] : rows) {
-        const auto& [scene, carrier, noise] = key;
+        const auto& [scene, noise] = key;
         table.rows.push_back({scene,
-                              carrier,
                               times(noise),
                               std::to_string(pool.cases),
                               fmt::format("{:.0f}", pool.safe),

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "apps/surefoot/suite_answers.hpp"
@@ -82,11 +83,19 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
                                            sum_of(results, "questions"),
                                            sum_of(results, "borderline_missed"))});
     const double allowed = allowed_share(results);
-    content.figures.push_back({"Clearly safe movements allowed",
-                               shown(FigureKind::share, allowed),
-                               "",
-                               fmt::format("of {:.0f}; below stands why not the others",
-                                           sum_of(results, "safe_questions"))});
+    for (const NoiseBins& level : pooled_by_noise(results)) {
+        std::vector<SuiteResult> of_level;
+        std::copy_if(results.begin(),
+                     results.end(),
+                     std::back_inserter(of_level),
+                     [&](const SuiteResult& r) { return r.which.noise == level.noise; });
+        content.figures.push_back(
+            {fmt::format("Clearly safe movements allowed, noise {}", times(level.noise)),
+             shown(FigureKind::share, allowed_share(of_level)),
+             "",
+             fmt::format("of {:.0f}; why not the others: below",
+                         sum_of(of_level, "safe_questions"))});
+    }
     if (allowed == 0.0) {
         content.reasons.push_back(
             "The gate allowed no movement at all in these runs: that it missed no hazard says "

@@ -131,16 +131,29 @@ def solve3(rows):
 class Suite(CliTest):
     # Short and small: three frames, and the gate is asked at the last place only.
     SMALL = ("--scenes", "floor,table", "--frames", 3, "--reach", 0, "--noise", "1,2")
-    FILES = ("cases.csv", "bins.csv", "steps.csv")
+    FILES = ("cases.csv", "bins.csv", "steps.csv", "verdicts.csv")
+    # A gate that always refuses misses no hazard either: least share of the clearly safe movements
+    # that must be allowed, by scene and noise.
+    ALLOWED = {("floor", 1): 0.5, ("floor", 2): 0.1, ("platform_edge", 1): 0.5, ("platform_edge", 2): 0.1,
+               ("walk_floor", 1): 0.05}
 
-    def test_no_hazard_is_missed_with_the_noise_of_a_real_camera(self):
+    def test_no_hazard_is_missed_and_safe_movements_are_allowed_with_the_noise_of_a_real_camera(self):
         answer = self.json_of("eval", "suite", "--quick", "--threads", 2, "--out", self.dir / "suite")
         self.assertEqual(len(answer["cases"]), 16)
+        self.assertIn("rex", {case["carrier"] for case in answer["cases"]})
+        allowed = {(case["scene"], case["noise"]): case["figures"]["allowed"] for case in answer["cases"]}
+        for case, least in self.ALLOWED.items():
+            self.assertGreaterEqual(allowed[case], least, case)
+        # And one that always allows must meet hazards here.
+        questions, safe = (sum(case["figures"][name] for case in answer["cases"])
+                           for name in ("questions", "safe_questions"))
+        self.assertGreater(questions - safe, 200)
         for case in answer["cases"]:
             figures = case["figures"]
             print(f"suite {case['scene']} noise x {case['noise']}: {figures['questions']:.0f} questions, "
-                  f"{figures['missed_hazards']:.0f} missed, {figures['borderline_missed']:.0f} borderline")
-            self.assertGreater(figures["questions"], 500, case)
+                  f"{figures['missed_hazards']:.0f} missed, {figures['borderline_missed']:.0f} borderline, "
+                  f"{100 * (figures['allowed'] or 0):.0f} % of {figures['safe_questions']:.0f} safe ones allowed")
+            self.assertGreater(figures["questions"], 400, case)
             self.assertEqual(figures["missed_hazards"], 0, case)
             if case["carrier"] == "rex":
                 self.assertGreater(figures["steps"], 1, case)
