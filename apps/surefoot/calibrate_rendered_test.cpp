@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "apps/surefoot/rendered_boards.hpp"
+#include "sim/board_renderer.hpp"
+#include "surefoot/calibration/board_print.hpp"
 #include "surefoot/calibration/detect_board.hpp"
 #include "surefoot/calibration/lens_mapping.hpp"
 #include "surefoot/calibration/mono_calibration.hpp"
@@ -37,7 +39,7 @@ std::vector<calibration::BoardView> seen_boards(const calibration::Board& board,
                                                 const camera::Camera& camera) {
     Rng rng(21);
     const BoardEye eye{camera, Pose{}};
-    const auto sheet = sheet_of(board);
+    const auto sheet = calibration::print_of(board);
     sim::BoardLook look;
     look.blur_sigma_px = 0.7;
     look.noise_dn = 2.0;
