@@ -4,6 +4,17 @@
 #include <utility>
 
 namespace surefoot::app {
+namespace {
+
+/// Looks a while whether there is something to do before a thread goes to sleep: to wake it takes
+/// longer than many a piece of work. Whoever else wants the processor gets it meanwhile.
+template <typename Ready>
+void look_a_while(const Ready& ready) {
+    constexpr int kLooks = 100;
+    for (int i = 0; i < kLooks && !ready(); ++i) std::this_thread::yield();
+}
+
+}  // namespace
 
 ThreadPool::ThreadPool(int threads) {
     for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { run_worker(); });
@@ -28,8 +39,14 @@ void ThreadPool::parallel_for(int count, const std::function<void(int)>& work) {
     work_ = &work;
     count_ = count;
     next_ = 0;
-    if (count > 1) wake_.notify_all();
+    if (count > 1) {
+        ++calls_;
+        wake_.notify_all();
+    }
     take_indices(lock);
+    lock.unlock();
+    look_a_while([this] { return running_ == 0; });
+    lock.lock();
     done_.wait(lock, [this] { return running_ == 0; });
     work_ = nullptr;
     if (auto failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
@@ -60,6 +77,10 @@ void ThreadPool::run_worker() {
     std::unique_lock<std::mutex> lock(mutex_);
     while (!stopping_) {
         take_indices(lock);
+        const int seen = calls_;
+        lock.unlock();
+        look_a_while([&] { return calls_ != seen; });
+        lock.lock();
         wake_.wait(lock, [this] { return stopping_ || (work_ != nullptr && next_ < count_); });
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <functional>
@@ -34,7 +35,9 @@ class ThreadPool final : public Executor {
     const std::function<void(int)>* work_ = nullptr;  ///< null when no call is under way
     int count_ = 0;
     int next_ = 0;
-    int running_ = 0;
+    // Changed with the mutex held; looked at without it.
+    std::atomic<int> running_ = 0;
+    std::atomic<int> calls_ = 0;
     bool stopping_ = false;
     std::exception_ptr failure_;
     std::vector<std::thread> workers_;

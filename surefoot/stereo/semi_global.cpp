@@ -159,7 +159,7 @@ class BlockPool {
 };
 
 /// Strips of 64 rows that are worked on together: as many threads have something to do.
-constexpr int kStrips = 4;
+constexpr int kStrips = 6;
 
 }  // namespace
 
