@@ -6,7 +6,11 @@
 
 #include "apps/surefoot/calibration_json.hpp"
 #include "apps/surefoot/calibration_report.hpp"
+#include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/live_board_images.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "io/file.hpp"
@@ -63,13 +67,44 @@ std::string size_problem(const BoardImages& images, bool stereo, calibration::Im
                        size.height);
 }
 
+/// Images of a live camera, with what is still missing after each of them.
+Result<BoardSource> show_live(const CalibrateOptions& options,
+                              const CalibrationRun& run,
+                              const std::function<void(BoardImages)>& use) {
+    auto settings = load_settings(options.common);
+    if (!settings) return settings.error();
+    watch_for_interrupts();
+    log_info(
+        fmt::format("show the board, a new place or tilt every second; {} images, or Ctrl-C "
+                    "when nothing is missing",
+                    kMostVideoViews));
+    LiveBoards session{.address = options.source.substr(kLivePrefix.size()),
+                       .stereo = options.stereo,
+                       .eye = options.eye,
+                       .config = settings->live,
+                       .stop = [] { return interrupted(); }};
+    const Status status =
+        for_live_images(io::kernel_video_device(), session, [&](BoardImages images) {
+            use(std::move(images));
+            std::vector<calibration::BoardView> views;
+            for (const FoundView& view : run.views) views.push_back(view.left);
+            const auto coverage =
+                calibration::coverage_of(run.board, views, run.size.width, run.size.height);
+            log_info(coverage.advice.empty() ? "nothing is missing" : coverage.advice.front());
+        });
+    if (!status) return status.error();
+    return BoardSource{};
+}
+
 Status find_boards(const CalibrateOptions& options, CalibrationRun& run) {
     std::string problem;
-    const auto about = for_board_images(
-        options.source, options.stereo, options.eye, [&](const BoardImages& images) {
-            if (problem.empty()) problem = size_problem(images, options.stereo, run.size);
-            if (problem.empty()) look(images, options.stereo, run);
-        });
+    const auto use = [&](const BoardImages& images) {
+        if (problem.empty()) problem = size_problem(images, options.stereo, run.size);
+        if (problem.empty()) look(images, options.stereo, run);
+    };
+    const auto about = options.source.starts_with(kLivePrefix)
+                           ? show_live(options, run, use)
+                           : for_board_images(options.source, options.stereo, options.eye, use);
     if (!about) return about.error();
     if (!problem.empty()) return input_error(problem);
     run.notes = about->notes;

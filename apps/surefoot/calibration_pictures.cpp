@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "eval/figure.hpp"
 #include "eval/percentile.hpp"
@@ -90,6 +91,68 @@ eval::Picture coverage_picture(const CalibrationRun& run, int camera) {
     }
     eval::draw_rect(plane.figure.picture, plane.figure.plot, 2, palette::kInk);
     return std::move(plane.figure.picture);
+}
+
+eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
+    constexpr int kSide_px = 620;
+    constexpr double kOuter_deg = 60.0;
+    constexpr double kSteepest_deg = 45.0;
+    constexpr double kRadiusPerDegree_px = 0.5 * kSide_px / kOuter_deg;
+    const auto& coverage = run.coverage[static_cast<std::size_t>(camera)];
+    eval::Figure figure =
+        eval::make_figure(kSide_px,
+                          kSide_px,
+                          false,
+                          {},
+                          {fmt::format("How the board was tilted, {}", camera_name(run, camera)),
+                           "degrees; each dot a view, towards its nearer side; stripes: missing"});
+    const PointPx center{figure.plot.left + 0.5 * kSide_px, figure.plot.top + 0.5 * kSide_px};
+    bool seen[std::size(calibration::kNearSideNames)] = {};
+    for (const calibration::ViewShape& view : coverage.views)
+        seen[static_cast<std::size_t>(view.near_side)] |=
+            view.tilt_deg >= calibration::kEnoughTilt_deg;
+    const auto side_of = [](double to_right, double down) {
+        using enum calibration::NearSide;
+        if (std::abs(to_right) > std::abs(down)) return to_right < 0.0 ? left : right;
+        return down < 0.0 ? top : bottom;
+    };
+    for (int v = 0; v < kSide_px; ++v) {
+        for (int u = 0; u < kSide_px; ++u) {
+            const double to_right = u - 0.5 * kSide_px;
+            const double down = v - 0.5 * kSide_px;
+            const double tilt_deg = std::hypot(to_right, down) / kRadiusPerDegree_px;
+            if (tilt_deg < calibration::kEnoughTilt_deg || tilt_deg > kSteepest_deg ||
+                seen[static_cast<std::size_t>(side_of(to_right, down))])
+                continue;
+            figure.picture.at(figure.plot.left + u, figure.plot.top + v) = eval::hatched_grey(u, v);
+        }
+    }
+    for (const double ring_deg : {calibration::kEnoughTilt_deg, kSteepest_deg}) {
+        eval::draw_circle(figure.picture, center, ring_deg * kRadiusPerDegree_px, 1, palette::kInk);
+        eval::draw_text(figure.picture,
+                        {center.u + 4.0, center.v - ring_deg * kRadiusPerDegree_px - 6.0},
+                        fmt::format("{:.0f}", ring_deg),
+                        {});
+    }
+    const std::vector<bool> used = used_views(run);
+    for (std::size_t i = 0; i < coverage.views.size(); ++i) {
+        const calibration::ViewShape& view = coverage.views[i];
+        if (view.spacing_px <= 0.0) continue;
+        constexpr double kDirection_deg[] = {180.0, 0.0, 270.0, 90.0};  // of NearSide, clockwise
+        // Fanned out, so that views of one side do not hide each other.
+        const double fan_deg = 9.0 * (static_cast<double>(i % 7) - 3.0);
+        const double angle_rad =
+            (kDirection_deg[static_cast<std::size_t>(view.near_side)] + fan_deg) *
+            std::numbers::pi / 180.0;
+        const double radius_px = std::min(view.tilt_deg, kOuter_deg) * kRadiusPerDegree_px;
+        eval::fill_circle(figure.picture,
+                          {center.u + radius_px * std::cos(angle_rad),
+                           center.v + radius_px * std::sin(angle_rad)},
+                          5.0,
+                          used[i] ? palette::kSafe : palette::kUnsafe);
+    }
+    eval::draw_rect(figure.picture, figure.plot, 2, palette::kInk);
+    return std::move(figure.picture);
 }
 
 eval::Picture residual_picture(const CalibrationRun& run, const CalibratedEye& eye) {

@@ -9,6 +9,9 @@ namespace surefoot::app {
 /// Where in the image the points of all views lay: used, and left out; parts of the image that no
 /// point reached are striped.
 [[nodiscard]] eval::Picture coverage_picture(const CalibrationRun& run, int camera);
+/// By how much the board was tilted in each view and which of its sides came nearer; sides that no
+/// view tilted enough are striped.
+[[nodiscard]] eval::Picture tilt_picture(const CalibrationRun& run, int camera);
 /// Measured minus predicted place of every point used, enlarged so that the 95th percentile is
 /// clearly visible.
 [[nodiscard]] eval::Picture residual_picture(const CalibrationRun& run, const CalibratedEye& eye);

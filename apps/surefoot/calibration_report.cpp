@@ -28,6 +28,10 @@ void add_pictures(const CalibrationRun& run, eval::ReportContent& content) {
         content.pictures.push_back({"Points of all views on the image plane.",
                                     eval::encode_png(coverage_picture(run, camera))});
     }
+    for (int camera = 0; camera < run.cameras(); ++camera) {
+        content.pictures.push_back(
+            {"Tilt of the board in every view.", eval::encode_png(tilt_picture(run, camera))});
+    }
     for (const CalibratedEye& eye : calibrated_eyes(run)) {
         content.pictures.push_back(
             {"Residual of every point. Good ones point everywhere; a pattern over the image means "

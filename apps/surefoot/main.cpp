@@ -577,12 +577,11 @@ void add_calibrate(CLI::App& app, AllOptions& all, int& exit_code) {
                                    "chessboard:8x5:0.03 --out out/camera --json"),
                           m,
                           calibrate,
-                          exit_code,
-                          Reads::no_settings);
-    mono->add_option("source", m.source, "folder of images, or a video")
+                          exit_code);
+    mono->add_option("source", m.source, "folder of images, a video, or v4l2:DEVICE@WIDTHxHEIGHT")
         ->required()
         ->type_name("SOURCE");
-    mono->add_option("--eye", m.eye, "where the folder holds left* and right*: which")
+    mono->add_option("--eye", m.eye, "where there are two eyes: which")
         ->check(CLI::IsMember({"left", "right"}));
     add_calibration(mono, m);
 
@@ -595,13 +594,12 @@ void add_calibrate(CLI::App& app, AllOptions& all, int& exit_code) {
                                      "chessboard:8x5:0.03 --out out/rig"),
                             s,
                             calibrate,
-                            exit_code,
-                            Reads::no_settings);
+                            exit_code);
     stereo
         ->add_option("source",
                      s.source,
                      "folder with left* and right*, with folders left and right, or side-by-side "
-                     "images; or a side-by-side video")
+                     "images; a side-by-side video; or v4l2:DEVICE@WIDTHxHEIGHT of both eyes")
         ->required()
         ->type_name("SOURCE");
     add_calibration(stereo, s);

@@ -14,11 +14,10 @@
 namespace surefoot::calibration {
 namespace {
 
-// ASSUMPTION, all five: what hand-books of calibration tools ask for (ten views and more, tilts of
-// 20 to 45 deg, the whole image, two distances); how much is really enough is said by the
-// covariance of the result.
+// ASSUMPTION, all four and kEnoughTilt_deg: what hand-books of calibration tools ask for (ten views
+// and more, tilts of 20 to 45 deg, the whole image, two distances); how much is really enough is
+// said by the covariance of the result.
 constexpr int kEnoughViews = 10;
-constexpr double kEnoughTilt_deg = 20.0;
 constexpr double kEnoughDistances = 1.5;  ///< largest over smallest spacing
 constexpr double kFilledShare = 0.5;      ///< of the parts of a region
 constexpr double kNearView = 0.4;         ///< share of the image that a near view fills

@@ -14,6 +14,9 @@ namespace surefoot::calibration {
 enum class NearSide : std::uint8_t { left, right, top, bottom };
 inline constexpr const char* kNearSideNames[] = {"left", "right", "top", "bottom"};
 
+/// A view counts as tilted from here on: see coverage.cpp.
+inline constexpr double kEnoughTilt_deg = 20.0;
+
 /// How a board was held, told from the image alone.
 struct ViewShape {
     double spacing_px = 0.0;  ///< of neighbouring points in the middle of the view, geometric mean
