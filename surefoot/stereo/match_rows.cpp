@@ -120,7 +120,7 @@ void mark_across_holes(const float* d, int width, JumpRule rule, std::uint8_t* m
 void mark_along_row(const float* d, int width, JumpRule rule, std::uint8_t* HWY_RESTRICT mark) {
     const float step = rule.step_px + rule.slope;
     const float ramp = rule.step_px + rule.slope * static_cast<float>(2 * kRampHalf_px);
-    constexpr int r = kRampHalf_px;
+    const int r = kRampHalf_px;
     const int last = width - 1;
     const auto beside_end = [&](int u) {
         const std::uint8_t before = u > 0 ? torn(d[u], d[u - 1], step) : std::uint8_t{0};
