@@ -8,6 +8,7 @@
 #include <memory>
 #include <tuple>
 
+#include "apps/surefoot/log.hpp"
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/suite_depth.hpp"
@@ -109,6 +110,8 @@ class CaseRun {
         const Pose T_world_body = source_.truth().trajectory[record.frames.size() - 1].T_world_body;
         const AroundAnswers around = compare_verdicts(
             source_.truth(), T_world_body, conditions_.machine, *snapshot_, conditions_.reach_m);
+        for (const std::string& sentence : around.missed)
+            log_warning(fmt::format("{}: {}", which.name(), sentence));
         return SuiteResult{which,
                            figures_of(record, depth_.auc(), around.counts, steps_.steps()),
                            bins_of(record.truth->maps),

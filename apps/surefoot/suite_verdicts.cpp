@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/suite_verdicts.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -76,6 +78,22 @@ std::vector<std::string_view> names_of(const sim::SafetyAnswer& answer) {
     return names;
 }
 
+std::string missed_sentence(const Stance& stance, int command, const sim::SafetyAnswer& answer) {
+    const Eigen::Vector3d& at = stance.T_world_body.translation_m;
+    const Eigen::Vector3d& where = answer.dangers.front().where_m;
+    return fmt::format(
+        "movement {} at ({:.2f}, {:.2f}) m, yaw {:.2f} rad, was allowed: {} (at {:.3f}, {:.3f}, "
+        "{:.3f} m)",
+        command,
+        at.x(),
+        at.y(),
+        yaw_of(stance.T_world_body),
+        answer.sentence(),
+        where.x(),
+        where.y(),
+        where.z());
+}
+
 }  // namespace
 
 void VerdictCounts::add(bool truly_safe, bool clear_cut, bool allowed) {
@@ -145,10 +163,12 @@ AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
             const bool ok = verdict.decision == gate::Decision::ok;
             answers.counts.add(answer.safe, answer.clear_cut, ok);
             if (!answer.clear_cut || answer.safe == ok) continue;
-            if (answer.safe)
+            if (answer.safe) {
                 answers.tallies.add_refusal(verdict);
-            else
-                answers.tallies.add(TallyKey::danger, names_of(answer));
+                continue;
+            }
+            answers.tallies.add(TallyKey::danger, names_of(answer));
+            answers.missed.push_back(missed_sentence(stance, command, answer));
         }
     }
     return answers;

@@ -66,6 +66,7 @@ class VerdictTallies {
 struct AroundAnswers {
     VerdictCounts counts;
     VerdictTallies tallies;
+    std::vector<std::string> missed;  ///< a sentence for each hazard that was clear and allowed
 };
 
 /// Asks the gate for every movement of the machine at where it stands, and at places around it
