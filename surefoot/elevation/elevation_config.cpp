@@ -18,6 +18,12 @@ void ElevationConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1.0,
                    "error of the camera's roll and pitch in one frame: mounting, vibration");
+    visitor.number(
+        "min_overhead_m",
+        min_overhead_m,
+        0.05,
+        100.0,
+        "a surface this far above a cell's height hangs over it and bounds its clearance");
     fusion.describe(visitor);
     visitor.group("reduction", reduction);
     visitor.group("sensor", sensor);

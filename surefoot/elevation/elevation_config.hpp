@@ -20,6 +20,8 @@ struct ElevationConfig {
     double length_m = 6.0;
     /// Error of the camera's roll and pitch in one frame: mounting, vibration, rolling shutter.
     double camera_tilt_sigma_rad = 0.001;
+    /// A surface this far above the height of a cell hangs over it: a table top, a lintel.
+    double min_overhead_m = 0.3;
     FusionConfig fusion;
     ReductionConfig reduction;
     SensorConfig sensor;

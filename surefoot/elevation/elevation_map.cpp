@@ -13,11 +13,20 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
+/// Trust in what hangs over a cell: a sighting adds two, seeing the ground below takes one away.
+/// Two sightings are believed, one may be a wrong match; what was the cell's height before the
+/// ground below it was found is believed longest. ASSUMPTION, all three.
+constexpr int kOverheadSeen = 2;
+constexpr int kOverheadSure = 4;
+constexpr int kOverheadMost = 8;
+
 /// Calls `f(layer, value of an unknown cell)` for every layer.
 template <typename F>
 void for_each_layer(ElevationLayers& layers,
                     grid::Layer& settled_var_m2,
                     Image<ViewpointHistory::Id>& viewpoint,
+                    grid::Layer& overhead_m,
+                    Image<std::uint8_t>& overhead_trust,
                     const F& f) {
     f(layers.height_m, kNan);
     f(layers.height_var_m2, kNan);
@@ -26,8 +35,11 @@ void for_each_layer(ElevationLayers& layers,
     f(layers.horizontal_drift_m, kNan);
     f(layers.highest_m, kNan);
     f(layers.lowest_m, kNan);
+    f(layers.clearance_m, kNan);
     f(settled_var_m2, kNan);
     f(viewpoint, ViewpointHistory::kNever);
+    f(overhead_m, kNan);
+    f(overhead_trust, std::uint8_t{0});
 }
 
 }  // namespace
@@ -35,16 +47,24 @@ void for_each_layer(ElevationLayers& layers,
 ElevationMap::ElevationMap(const ElevationConfig& config)
     : config_(config), window_(config.length_m, config.resolution_m), views_(config.viewpoint) {
     SUREFOOT_ASSERT(!config.problem());
-    for_each_layer(layers_, settled_var_m2_, viewpoint_, [&](auto& layer, auto unknown) {
-        layer.resize(geometry().nx, geometry().ny);
-        layer.fill(unknown);
-    });
+    for_each_layer(layers_,
+                   settled_var_m2_,
+                   viewpoint_,
+                   overhead_m_,
+                   overhead_trust_,
+                   [&](auto& layer, auto unknown) {
+                       layer.resize(geometry().nx, geometry().ny);
+                       layer.fill(unknown);
+                   });
 }
 
 void ElevationMap::clear() {
-    for_each_layer(layers_, settled_var_m2_, viewpoint_, [](auto& layer, auto unknown) {
-        layer.fill(unknown);
-    });
+    for_each_layer(layers_,
+                   settled_var_m2_,
+                   viewpoint_,
+                   overhead_m_,
+                   overhead_trust_,
+                   [](auto& layer, auto unknown) { layer.fill(unknown); });
 }
 
 std::int64_t ElevationMap::known_cells() const noexcept {
@@ -66,9 +86,12 @@ void ElevationMap::follow(const Pose& T_odom_body, const Matrix6& relative_covar
 
 void ElevationMap::shift(grid::Shift shift) {
     if (shift.is_zero()) return;
-    for_each_layer(layers_, settled_var_m2_, viewpoint_, [&](auto& layer, auto unknown) {
-        grid::shift_layer(layer, shift, unknown);
-    });
+    for_each_layer(layers_,
+                   settled_var_m2_,
+                   viewpoint_,
+                   overhead_m_,
+                   overhead_trust_,
+                   [&](auto& layer, auto unknown) { grid::shift_layer(layer, shift, unknown); });
 }
 
 void ElevationMap::inflate(const MotionNoise& noise, const Eigen::Vector3d& body_m) {
@@ -155,8 +178,37 @@ void ElevationMap::measure(std::size_t cell,
         return;
     }
     ++counts.cells_inflated;
-    if (result.outcome == FusionOutcome::replaced) start(cell, measured, time_ns);
-    if (result.outcome == FusionOutcome::inflated) var_m2 = static_cast<float>(result.cell.var_m2);
+    const auto hangs = static_cast<float>(config_.min_overhead_m);
+    if (result.outcome == FusionOutcome::replaced) {
+        start(cell, measured, time_ns);
+        if (height_m - measured.z_m > hangs) see_above(cell, height_m, kOverheadMost);
+    }
+    if (result.outcome == FusionOutcome::inflated) {
+        var_m2 = static_cast<float>(result.cell.var_m2);
+        if (measured.z_m - height_m > hangs) see_above(cell, measured.z_m, kOverheadSeen);
+    }
+}
+
+void ElevationMap::see_above(std::size_t cell, float z_m, int trust) {
+    float& overhead_m = overhead_m_.data()[cell];
+    overhead_m = std::isnan(overhead_m) ? z_m : std::min(overhead_m, z_m);
+    std::uint8_t& believed = overhead_trust_.data()[cell];
+    believed = static_cast<std::uint8_t>(std::min(believed + trust, kOverheadMost));
+    set_clearance(cell);
+}
+
+void ElevationMap::see_no_more_above(std::size_t cell) {
+    std::uint8_t& believed = overhead_trust_.data()[cell];
+    if (believed == 0) return;
+    --believed;
+    if (believed == 0) overhead_m_.data()[cell] = kNan;
+    set_clearance(cell);
+}
+
+void ElevationMap::set_clearance(std::size_t cell) {
+    const bool sure = overhead_trust_.data()[cell] >= kOverheadSure;
+    const float free_m = overhead_m_.data()[cell] - layers_.height_m.data()[cell];
+    layers_.clearance_m.data()[cell] = sure ? free_m : kNan;
 }
 
 bool ElevationMap::is_same_scan(std::int64_t since_seen_ns) const {
@@ -173,6 +225,9 @@ void ElevationMap::start(std::size_t cell, const CellMeasurement& measured, std:
     layers_.horizontal_drift_m.data()[cell] = 0.0F;
     layers_.highest_m.data()[cell] = measured.highest_m;
     layers_.lowest_m.data()[cell] = measured.lowest_m;
+    layers_.clearance_m.data()[cell] = kNan;
+    overhead_m_.data()[cell] = kNan;
+    overhead_trust_.data()[cell] = 0;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     viewpoint_.data()[cell] = present_view_;
 }
@@ -196,6 +251,7 @@ void ElevationMap::agree(std::size_t cell,
     float& lowest_m = layers_.lowest_m.data()[cell];
     highest_m = std::max(highest_m, measured.highest_m);
     lowest_m = std::min(lowest_m, measured.lowest_m);
+    see_no_more_above(cell);
 }
 
 void ElevationMap::repeat(std::size_t cell, const CellMeasurement& measured) {

@@ -30,6 +30,7 @@ struct ElevationLayers {
     grid::Layer horizontal_drift_m;  ///< 1 sigma of the body's horizontal drift since then; NaN
     grid::Layer highest_m;           ///< robust extremes of all points in the cell since the height
     grid::Layer lowest_m;            ///<   was first set: a wall or an edge spans more than a floor
+    grid::Layer clearance_m;  ///< from the height to the lowest thing seen above it; NaN = none
 };
 
 /// Robot-centric elevation map in odom (Fankhauser 2014): one height with its variance per cell, in
@@ -82,6 +83,9 @@ class ElevationMap {
                const Height& fused,
                const CellMeasurement& measured,
                std::int64_t time_ns);
+    void see_above(std::size_t cell, float z_m, int trust);
+    void see_no_more_above(std::size_t cell);
+    void set_clearance(std::size_t cell);
 
     ElevationConfig config_;
     grid::MovingWindow window_;
@@ -92,6 +96,9 @@ class ElevationMap {
     /// errors never lower a cell's variance below it.
     grid::Layer settled_var_m2_;
     Image<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
+    /// Lowest surface seen above the height, and how far it is believed: see elevation_map.cpp.
+    grid::Layer overhead_m_;
+    Image<std::uint8_t> overhead_trust_;
     ViewpointHistory views_;
     ViewpointHistory::Id present_view_ = ViewpointHistory::kNever;
     CloudFilter filter_;

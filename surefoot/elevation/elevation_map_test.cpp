@@ -281,5 +281,61 @@ TEST(ElevationMap, ConfigurationDescribesItself) {
         << *config.problem();
 }
 
+/// A machine that moves 0.1 m between its looks, so that each of them counts.
+class Overhead : public ::testing::Test {
+  protected:
+    void look(double z_m) {
+        const Pose T_odom_body = body_at(0.1 * looks_, 0.0);
+        map_.follow(T_odom_body, 1e-9 * Matrix6::Identity());
+        map_.add_points(
+            flat_patch(T_odom_body, 1.0, 0.0, z_m), Pose{}, T_odom_body, (looks_ + 1) * kFrame_ns);
+        ++looks_;
+    }
+    [[nodiscard]] float clearance() const { return at(map_, map_.layers().clearance_m, 1.0, 0.0); }
+
+    ElevationMap map_{exact_config()};
+    int looks_ = 0;
+};
+
+TEST_F(Overhead, TwoSightingsOfATableTopBoundTheClearance) {
+    for (int i = 0; i < 3; ++i) look(0.0);
+    EXPECT_TRUE(std::isnan(clearance()));
+    look(0.7);
+    EXPECT_TRUE(std::isnan(clearance())) << "one may be a wrong match";
+    look(0.72);
+    EXPECT_NEAR(clearance(), 0.7F, 0.005F) << "the lower one counts";
+    EXPECT_NEAR(height_at(map_, 1.0, 0.0), 0.0F, 0.002F);
+}
+
+TEST_F(Overhead, IsForgottenWhenTheGroundIsSeenAgain) {
+    for (int i = 0; i < 3; ++i) look(0.0);
+    look(0.7);
+    look(0.0);
+    look(0.7);
+    EXPECT_TRUE(std::isnan(clearance())) << "3 of 4 points of trust";
+    look(0.7);
+    EXPECT_FALSE(std::isnan(clearance()));
+    look(0.0);
+    look(0.0);
+    EXPECT_TRUE(std::isnan(clearance()));
+}
+
+TEST_F(Overhead, AKerbHangsOverNothing) {
+    for (int i = 0; i < 3; ++i) look(0.0);
+    for (int i = 0; i < 3; ++i) look(0.15);
+    EXPECT_TRUE(std::isnan(clearance()));
+}
+
+TEST_F(Overhead, WhatTheHeightWasStaysAboveTheGroundThatReplacesIt) {
+    look(0.7);
+    while (height_at(map_, 1.0, 0.0) > 0.5F) {
+        ASSERT_LT(looks_, 40);
+        look(0.0);
+    }
+    EXPECT_NEAR(clearance(), 0.7F, 0.005F);
+    for (int i = 0; i < 5; ++i) look(0.0);
+    EXPECT_TRUE(std::isnan(clearance())) << "it has gone away";
+}
+
 }  // namespace
 }  // namespace surefoot::elevation
