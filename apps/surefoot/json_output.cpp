@@ -42,7 +42,8 @@ Json counts_json(const FusionCounts& f) {
             {"cells_measured", f.cells_measured},
             {"cells_new", f.cells_new},
             {"cells_fused", f.cells_fused},
-            {"cells_inflated", f.cells_inflated}};
+            {"cells_inflated", f.cells_inflated},
+            {"cells_cleared", f.cells_cleared}};
 }
 
 Json elevation_json(const eval::ElevationErrors& e) {

@@ -16,6 +16,7 @@
 #include "io/point_cloud.hpp"
 #include "io/snapshot_file.hpp"
 #include "io/trajectory_file.hpp"
+#include "surefoot/elevation/height_bounds.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -64,20 +65,34 @@ void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& map = pipeline.map().layers();
     const auto& rating = pipeline.rating();
-    const std::pair<const char*, const grid::Layer*> layers[] = {
-        {"drift", &map.horizontal_drift_m},
-        {"highest", &map.highest_m},
-        {"lowest", &map.lowest_m},
-        {"normal_x", &rating.normal_x},
-        {"normal_y", &rating.normal_y},
-        {"normal_z", &rating.normal_z},
-        {"slope", &rating.slope},
-        {"step", &rating.step},
-        {"roughness", &rating.roughness},
+    grid::Layer lower_m;
+    grid::Layer upper_m;
+    elevation::HeightBounds().compute({map.height_m.view(),
+                                       map.height_var_m2.view(),
+                                       map.horizontal_drift_m.view(),
+                                       geometry.resolution_m},
+                                      serial(),
+                                      lower_m,
+                                      upper_m);
+    const std::pair<const char*, grid::Layer> layers[] = {
+        {"drift", map.horizontal_drift_m},
+        {"highest", map.highest_m},
+        {"lowest", map.lowest_m},
+        {"clearance", map.clearance_m},
+        {"confidence", map.confidence},
+        {"density_ratio", map.density_ratio},
+        {"lower_bound", lower_m},
+        {"upper_bound", upper_m},
+        {"normal_x", rating.normal_x},
+        {"normal_y", rating.normal_y},
+        {"normal_z", rating.normal_z},
+        {"slope", rating.slope},
+        {"step", rating.step},
+        {"roughness", rating.roughness},
     };
     for (const auto& [name, layer] : layers) {
         writes += io::write_esri_grid(
-            fmt::format("{}/{}.asc", out, name), geometry, or_unknown(*layer, geometry));
+            fmt::format("{}/{}.asc", out, name), geometry, or_unknown(layer, geometry));
     }
 }
 

@@ -118,7 +118,7 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     if (scene_ == nullptr || frames.empty()) return std::nullopt;
     TruthFigures figures;
     const grid::GridGeometry& geometry = pipeline.map().geometry();
-    const grid::Layer& live_m = pipeline.map().layers().height_m;
+    const grid::Layer live_m = pipeline.map().layers().height_m;
     const sim::Lattice lattice = lattice_of(geometry);
     sim::SceneTruth truth = scene_->truth();
     truth.trajectory.resize(std::min(truth.trajectory.size(), frames.size()));

@@ -23,4 +23,10 @@ class Serial final : public Executor {
     }
 };
 
+/// For callers that have none; holds no state.
+[[nodiscard]] inline Executor& serial() noexcept {
+    static Serial executor;
+    return executor;
+}
+
 }  // namespace surefoot

@@ -62,6 +62,7 @@ FusionCounts& FusionCounts::operator+=(const FusionCounts& other) noexcept {
     cells_new += other.cells_new;
     cells_fused += other.cells_fused;
     cells_inflated += other.cells_inflated;
+    cells_cleared += other.cells_cleared;
     return *this;
 }
 

@@ -28,6 +28,7 @@ struct FusionCounts {
     std::int64_t cells_new = 0;         ///< of these, unknown before
     std::int64_t cells_fused = 0;       ///< of these, agreed with the cell (Mahalanobis gate)
     std::int64_t cells_inflated = 0;    ///< of these, disagreed: variance grew instead
+    std::int64_t cells_cleared = 0;     ///< remembered, but lines of sight pass through: forgotten
     FusionCounts& operator+=(const FusionCounts& other) noexcept;
 };
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "surefoot/elevation/height_fusion.hpp"
-#include "surefoot/grid/moving_window.hpp"
 
 namespace surefoot::elevation {
 namespace {
@@ -59,9 +58,9 @@ AncestorMap::AncestorMap(const AncestorConfig& config) : config_(config) {
     geometry_.nx = cells;
     geometry_.ny = cells;
     place({config.start_x_m, config.start_y_m});
-    elevation_m_ = grid::Layer(cells, cells, kNan);
-    variance_m2_ = grid::Layer(cells, cells, kNan);
-    time_s_ = grid::Layer(cells, cells, kNan);
+    elevation_m_ = grid::SlidingLayer<float>(cells, cells, kNan);
+    variance_m2_ = grid::SlidingLayer<float>(cells, cells, kNan);
+    time_s_ = grid::SlidingLayer<float>(cells, cells, kNan);
 }
 
 void AncestorMap::place(const Eigen::Vector2d& position_m) {
@@ -75,8 +74,8 @@ void AncestorMap::move_to(double x_m, double y_m) {
     const grid::Shift shift{whole_cells(x_m - position_m_.x(), geometry_.resolution_m),
                             whole_cells(y_m - position_m_.y(), geometry_.resolution_m)};
     place(position_m_ + geometry_.resolution_m * Eigen::Vector2d(shift.dx, shift.dy));
-    for (grid::Layer* layer : {&elevation_m_, &variance_m2_, &time_s_}) {
-        grid::shift_layer(*layer, shift, kNan);
+    for (grid::SlidingLayer<float>* layer : {&elevation_m_, &variance_m2_, &time_s_}) {
+        layer->shift(shift, kNan);
     }
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "surefoot/core/config.hpp"
-#include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/grid/sliding_layer.hpp"
 
 namespace surefoot::elevation {
 
@@ -55,9 +55,13 @@ class AncestorMap {
     void add(std::span<const AncestorPoint> cloud, double time_s);
 
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return geometry_; }
-    [[nodiscard]] const grid::Layer& elevation_m() const noexcept { return elevation_m_; }
-    [[nodiscard]] const grid::Layer& variance_m2() const noexcept { return variance_m2_; }
-    [[nodiscard]] const grid::Layer& time_s() const noexcept {
+    [[nodiscard]] const grid::SlidingLayer<float>& elevation_m() const noexcept {
+        return elevation_m_;
+    }
+    [[nodiscard]] const grid::SlidingLayer<float>& variance_m2() const noexcept {
+        return variance_m2_;
+    }
+    [[nodiscard]] const grid::SlidingLayer<float>& time_s() const noexcept {
         return time_s_;
     }  ///< since the start
 
@@ -74,9 +78,9 @@ class AncestorMap {
     AncestorConfig config_;
     grid::GridGeometry geometry_;
     Eigen::Vector2d position_m_;  ///< centre of the map
-    grid::Layer elevation_m_;
-    grid::Layer variance_m2_;
-    grid::Layer time_s_;
+    grid::SlidingLayer<float> elevation_m_;
+    grid::SlidingLayer<float> variance_m2_;
+    grid::SlidingLayer<float> time_s_;
 };
 
 /// One line of a steps file: the map moves, then takes a cloud.

@@ -3,80 +3,94 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
+#include <functional>
+#include <vector>
 
 namespace surefoot::elevation {
 namespace {
 
-constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();
-constexpr int kClimbs = 3;    ///< mean shift settles to a few percent of its window in three rounds
-constexpr int kMaxTries = 4;  ///< lower starts before a cell counts as pure scatter
+/// A sum in sixteen columns: sample i goes into column i modulo 16.
+class LaneSum {
+  public:
+    void add(std::size_t index, float value) noexcept { column_[index % 16] += value; }
+    [[nodiscard]] float total() const noexcept { return tree(column_); }
 
-/// Sums over the samples within a window around a height.
-struct Surface {
-    int points = 0;
-    float mean_m = 0.0F;
-    float mean_var_m2 = 0.0F;
-    float scatter_m2 = 0.0F;
+  private:
+    float column_[16] = {};
 };
 
-/// Height with `rank` samples at or above it (rank 1 = the maximum).
-float upper_quantile(std::span<HeightSample> samples, std::size_t rank) {
-    const auto nth = samples.begin() + static_cast<std::ptrdiff_t>(rank - 1);
-    std::nth_element(
-        samples.begin(), nth, samples.end(), [](const HeightSample& a, const HeightSample& b) {
-            return a.z_m > b.z_m;
-        });
-    return nth->z_m;
+/// Height with `rank` samples at or above it (rank 1 = the maximum). Zero has no sign.
+float upper_quantile(std::vector<float> z_m, int rank) {
+    const auto nth = z_m.begin() + (rank - 1);
+    std::nth_element(z_m.begin(), nth, z_m.end(), std::greater<>());
+    return *nth + 0.0F;
 }
 
-Surface surface_around(std::span<const HeightSample> samples, float center_m, float half_width_m) {
-    Surface surface;
-    float sum_m = 0.0F;
-    float sum_sq_m2 = 0.0F;
-    float sum_var_m2 = 0.0F;
-    for (const HeightSample& sample : samples) {
-        const float offset_m = sample.z_m - center_m;
+Surface surface_around(std::span<const float> z_m,
+                       std::span<const float> var_m2,
+                       float center_m,
+                       float half_width_m) {
+    int points = 0;
+    LaneSum sum_m;
+    LaneSum sum_sq_m2;
+    LaneSum sum_var_m2;
+    for (std::size_t i = 0; i < z_m.size(); ++i) {
+        const float offset_m = z_m[i] - center_m;
         if (std::abs(offset_m) > half_width_m) continue;
-        ++surface.points;
-        sum_m += offset_m;
-        sum_sq_m2 += offset_m * offset_m;
-        sum_var_m2 += sample.var_m2;
+        ++points;
+        sum_m.add(i, offset_m);
+        sum_sq_m2.add(i, offset_m * offset_m);
+        sum_var_m2.add(i, var_m2[i]);
     }
-    if (surface.points == 0) return surface;
-    const auto n = static_cast<float>(surface.points);
-    surface.mean_m = center_m + sum_m / n;
-    surface.mean_var_m2 = sum_var_m2 / n;
-    if (surface.points > 1) {
+    if (points == 0) return {};
+    return surface_of(points, center_m, sum_m.total(), sum_sq_m2.total(), sum_var_m2.total());
+}
+
+Surface climb(std::span<const float> z_m,
+              std::span<const float> var_m2,
+              float start_m,
+              float half_width_m) {
+    Surface surface = surface_around(z_m, var_m2, start_m, half_width_m);
+    for (int round = 1; round < kClimbs && surface.points > 0; ++round) {
+        surface = surface_around(z_m, var_m2, surface.mean_m, half_width_m);
+    }
+    return surface;
+}
+
+float mean_variance(std::span<const float> var_m2) {
+    LaneSum sum_m2;
+    for (std::size_t i = 0; i < var_m2.size(); ++i) sum_m2.add(i, var_m2[i]);
+    return sum_m2.total() / static_cast<float>(var_m2.size());
+}
+
+}  // namespace
+
+int support_of(const ReductionConfig& config, int n) noexcept {
+    return std::max({1, static_cast<int>(std::ceil(config.upper_share * n)), config.min_points});
+}
+
+float half_width(const ReductionConfig& config, float mean_var_m2) noexcept {
+    return static_cast<float>(config.window_sigma * std::sqrt(static_cast<double>(mean_var_m2)) +
+                              config.surface_relief_m);
+}
+
+Surface surface_of(
+    int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept {
+    const auto n = static_cast<float>(points);
+    Surface surface{points, center_m + sum_m / n, sum_var_m2 / n, 0.0F};
+    if (points > 1) {
         surface.scatter_m2 = std::max(0.0F, (sum_sq_m2 - sum_m * sum_m / n) / (n - 1.0F));
     }
     return surface;
 }
 
-Surface climb(std::span<const HeightSample> samples, float start_m, float half_width_m) {
-    Surface surface = surface_around(samples, start_m, half_width_m);
-    for (int round = 1; round < kClimbs && surface.points > 0; ++round) {
-        surface = surface_around(samples, surface.mean_m, half_width_m);
-    }
-    return surface;
-}
-
-float mean_variance(std::span<const HeightSample> samples) {
-    float sum_m2 = 0.0F;
-    for (const HeightSample& sample : samples) sum_m2 += sample.var_m2;
-    return sum_m2 / static_cast<float>(samples.size());
-}
-
-float measurement_variance(const ReductionConfig& config, const Surface& surface) {
+float measurement_variance(const ReductionConfig& config, const Surface& surface) noexcept {
     const double independent = std::max(
         1.0, std::min(surface.points / config.points_per_independent, config.max_independent));
     const auto spread_m2 = static_cast<double>(std::max(surface.mean_var_m2, surface.scatter_m2));
     return static_cast<float>(spread_m2 / independent +
                               config.systematic_sigma_m * config.systematic_sigma_m);
 }
-
-}  // namespace
 
 void ReductionConfig::describe(ConfigVisitor& visitor) {
     visitor.integer("min_points",
@@ -117,25 +131,22 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
 }
 
 std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,
-                                           std::span<HeightSample> samples) {
-    const std::size_t n = samples.size();
-    const auto share =
-        static_cast<std::size_t>(std::ceil(config.upper_share * static_cast<double>(n)));
-    const std::size_t support =
-        std::max<std::size_t>({1, share, static_cast<std::size_t>(std::max(0, config.min_points))});
+                                           std::span<const float> z_m,
+                                           std::span<const float> var_m2) {
+    const auto n = static_cast<int>(z_m.size());
+    const int support = support_of(config, n);
     if (n < support) return std::nullopt;
 
+    const std::vector<float> all_m(z_m.begin(), z_m.end());
     CellMeasurement measurement;
-    measurement.lowest_m = upper_quantile(samples, n - support + 1);
-    measurement.highest_m = upper_quantile(samples, support);
-    const auto half_width_m = static_cast<float>(
-        config.window_sigma * std::sqrt(static_cast<double>(mean_variance(samples))) +
-        config.surface_relief_m);
+    measurement.lowest_m = upper_quantile(all_m, n - support + 1);
+    measurement.highest_m = upper_quantile(all_m, support);
+    const float half_width_m = half_width(config, mean_variance(var_m2));
     float start_m = measurement.highest_m;
-    std::size_t rank = support;
+    int rank = support;
     for (int attempt = 0; attempt < kMaxTries; ++attempt) {
-        const Surface surface = climb(samples, start_m, half_width_m);
-        if (surface.points >= static_cast<int>(support)) {
+        const Surface surface = climb(z_m, var_m2, start_m, half_width_m);
+        if (surface.points >= support) {
             measurement.z_m = surface.mean_m;
             measurement.var_m2 = measurement_variance(config, surface);
             measurement.points = surface.points;
@@ -143,46 +154,9 @@ std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,
         }
         rank += support;
         if (rank > n) return std::nullopt;
-        start_m = upper_quantile(samples, rank);
+        start_m = upper_quantile(all_m, rank);
     }
     return std::nullopt;
-}
-
-std::int64_t CellGroups::assign(std::span<const GridPoint> points,
-                                const grid::GridGeometry& geometry) {
-    const auto cells =
-        static_cast<std::size_t>(geometry.nx) * static_cast<std::size_t>(geometry.ny);
-    const auto per_m = static_cast<float>(1.0 / geometry.resolution_m);
-    const auto nx = static_cast<float>(geometry.nx);
-    const auto ny = static_cast<float>(geometry.ny);
-    begin_.assign(cells + 1, 0);
-    cell_of_.resize(points.size());
-    std::int64_t outside = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const float fx = points[i].x_m * per_m;
-        const float fy = points[i].y_m * per_m;
-        if (!(fx >= 0.0F && fy >= 0.0F && fx < nx && fy < ny)) {  // NaN is outside
-            cell_of_[i] = kOutside;
-            ++outside;
-            continue;
-        }
-        const std::uint32_t cell =
-            static_cast<std::uint32_t>(fy) * static_cast<std::uint32_t>(geometry.nx) +
-            static_cast<std::uint32_t>(fx);
-        cell_of_[i] = cell;
-        ++begin_[cell];
-    }
-    std::uint32_t total = 0;
-    for (std::uint32_t& begin : begin_) total += std::exchange(begin, total);
-    samples_.resize(total);
-    // Filling moves each begin to its end, which is the next one's begin: shift back afterwards.
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (cell_of_[i] == kOutside) continue;
-        samples_[begin_[cell_of_[i]]++] = {points[i].z_m, points[i].var_m2};
-    }
-    for (std::size_t cell = cells; cell > 0; --cell) begin_[cell] = begin_[cell - 1];
-    begin_[0] = 0;
-    return outside;
 }
 
 }  // namespace surefoot::elevation

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "surefoot/core/config.hpp"
-#include "surefoot/grid/grid_geometry.hpp"
 
 namespace surefoot::elevation {
 
@@ -26,20 +23,6 @@ struct ReductionConfig {
     void describe(ConfigVisitor& visitor);
 };
 
-/// A measured point in odom axes; x and y count from the corner of the grid, so that floats suffice
-/// anywhere in the world. z is the height in odom.
-struct GridPoint {
-    float x_m = 0.0F;
-    float y_m = 0.0F;
-    float z_m = 0.0F;
-    float var_m2 = 0.0F;  ///< of the height
-};
-
-struct HeightSample {
-    float z_m = 0.0F;
-    float var_m2 = 0.0F;
-};
-
 /// What one frame says about one cell.
 struct CellMeasurement {
     float z_m = 0.0F;  ///< of the highest surface that enough points share
@@ -49,28 +32,50 @@ struct CellMeasurement {
     int points = 0;  ///< on that surface
 };
 
-/// Highest surface among the samples: starts at an upper quantile of the heights, so that single
-/// outliers above do not count, and climbs to the centre of the points around it (mean shift). If
-/// too few points share that height, tries the next lower one. Its variance is the larger of the
-/// mean variance and the scatter of the points, over the number of independent errors, plus the
-/// systematic part. Reorders the samples. Nothing when no surface has enough points.
+/// Highest surface among the samples of a cell: starts at an upper quantile of the heights, so that
+/// single outliers above do not count, and climbs to the centre of the points around it (mean
+/// shift). If too few points share that height, tries the next lower one. Its variance is the
+/// larger of the mean variance and the scatter of the points, over the number of independent
+/// errors, plus the systematic part. Nothing when no surface has enough points. `z_m` and `var_m2`
+/// are finite and equally long.
+///
+/// The plain version: `reduce_cells` gives the same bytes.
 [[nodiscard]] std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,
-                                                         std::span<HeightSample> samples);
+                                                         std::span<const float> z_m,
+                                                         std::span<const float> var_m2);
 
-/// Groups points by cell (counting sort; no allocation once the buffers have grown).
-class CellGroups {
-  public:
-    /// Points outside of the grid are left out and counted in the result.
-    std::int64_t assign(std::span<const GridPoint> points, const grid::GridGeometry& geometry);
-    /// Samples of a cell by index iy * nx + ix, in the order of the points.
-    [[nodiscard]] std::span<HeightSample> samples(std::size_t cell) {
-        return {samples_.data() + begin_[cell], begin_[cell + 1] - begin_[cell]};
-    }
+// What both versions share.
 
-  private:
-    std::vector<std::uint32_t> begin_;    ///< first sample of each cell
-    std::vector<std::uint32_t> cell_of_;  ///< per point
-    std::vector<HeightSample> samples_;
+inline constexpr int kClimbs = 3;    ///< mean shift settles to a few percent of its window in three
+inline constexpr int kMaxTries = 4;  ///< lower starts before a cell counts as pure scatter
+
+/// Points that a surface in a cell of `n` points needs.
+[[nodiscard]] int support_of(const ReductionConfig& config, int n) noexcept;
+/// Half width of the window around a surface.
+[[nodiscard]] float half_width(const ReductionConfig& config, float mean_var_m2) noexcept;
+
+/// The points within a window around a height.
+struct Surface {
+    int points = 0;
+    float mean_m = 0.0F;
+    float mean_var_m2 = 0.0F;
+    float scatter_m2 = 0.0F;
 };
+
+/// From sums over `points` > 0 points of their offset from the centre, its square, and the
+/// variance.
+[[nodiscard]] Surface surface_of(
+    int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept;
+[[nodiscard]] float measurement_variance(const ReductionConfig& config,
+                                         const Surface& surface) noexcept;
+
+/// Adds sixteen columns up, always in the same order.
+[[nodiscard]] constexpr float tree(const float column[16]) noexcept {
+    float four[4] = {};
+    for (int i = 0; i < 4; ++i) {
+        four[i] = (column[i] + column[i + 8]) + (column[i + 4] + column[i + 12]);
+    }
+    return (four[0] + four[2]) + (four[1] + four[3]);
+}
 
 }  // namespace surefoot::elevation

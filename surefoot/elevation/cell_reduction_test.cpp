@@ -4,8 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <map>
+#include <optional>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
@@ -15,6 +14,22 @@ namespace {
 
 constexpr float kVar = 2.5e-5F;  // (5 mm)^2
 
+struct HeightSample {
+    float z_m = 0.0F;
+    float var_m2 = 0.0F;
+};
+
+std::optional<CellMeasurement> reduce(const ReductionConfig& config,
+                                      const std::vector<HeightSample>& samples) {
+    std::vector<float> z_m;
+    std::vector<float> var_m2;
+    for (const HeightSample& sample : samples) {
+        z_m.push_back(sample.z_m);
+        var_m2.push_back(sample.var_m2);
+    }
+    return reduce_cell(config, z_m, var_m2);
+}
+
 void add_surface(std::vector<HeightSample>& samples, Rng& rng, int count, double z_m) {
     for (int i = 0; i < count; ++i) {
         samples.push_back({static_cast<float>(z_m + 0.005 * rng.normal()), kVar});
@@ -23,16 +38,16 @@ void add_surface(std::vector<HeightSample>& samples, Rng& rng, int count, double
 
 TEST(CellReduction, NothingFromFewerPointsThanAsked) {
     std::vector<HeightSample> samples;
-    EXPECT_FALSE(reduce_cell({}, samples));
+    EXPECT_FALSE(reduce({}, samples));
     for (int min_points = 2; min_points <= 4; ++min_points) {
         ReductionConfig config;
         config.min_points = min_points;
         samples.assign(static_cast<std::size_t>(min_points) - 1, {0.1F, kVar});
-        EXPECT_FALSE(reduce_cell(config, samples)) << min_points;
+        EXPECT_FALSE(reduce(config, samples)) << min_points;
         samples.push_back({0.5F, kVar});
-        EXPECT_FALSE(reduce_cell(config, samples)) << "points that disagree, " << min_points;
+        EXPECT_FALSE(reduce(config, samples)) << "points that disagree, " << min_points;
         samples.assign(static_cast<std::size_t>(min_points), {0.1F, kVar});
-        const auto measured = reduce_cell(config, samples);
+        const auto measured = reduce(config, samples);
         ASSERT_TRUE(measured);
         EXPECT_EQ(measured->z_m, 0.1F);
         EXPECT_EQ(measured->points, min_points);
@@ -47,7 +62,7 @@ TEST(CellReduction, FloorIsUnbiasedAndItsVarianceIsNotLowered) {
     for (int cell = 0; cell < kCells; ++cell) {
         std::vector<HeightSample> samples;
         add_surface(samples, rng, 60, 0.0);
-        const auto measured = reduce_cell(config, samples);
+        const auto measured = reduce(config, samples);
         ASSERT_TRUE(measured);
         sum_m += static_cast<double>(measured->z_m);
         EXPECT_GE(measured->var_m2, kVar) << "60 pixels of one frame share their error";
@@ -63,7 +78,7 @@ TEST(CellReduction, UpperOfTwoSurfacesWins) {
         std::vector<HeightSample> samples;
         add_surface(samples, rng, 50 - upper, 0.0);
         add_surface(samples, rng, upper, 0.18);
-        const auto measured = reduce_cell({}, samples);
+        const auto measured = reduce({}, samples);
         ASSERT_TRUE(measured);
         EXPECT_NEAR(measured->z_m, 0.18F, 0.006F) << upper << " of 50 points on the tread";
         EXPECT_NEAR(measured->lowest_m, 0.0F, 0.015F);
@@ -76,7 +91,7 @@ TEST(CellReduction, TreadWinsOverTheRiserBelowIt) {
     add_surface(samples, rng, 20, 0.18);
     for (int i = 0; i < 40; ++i)
         samples.push_back({static_cast<float>(rng.uniform(0.0, 0.18)), kVar});
-    const auto measured = reduce_cell({}, samples);
+    const auto measured = reduce({}, samples);
     ASSERT_TRUE(measured);
     // The top 2 * 22 mm of the riser, 5 points, pull 20 points down by at most 22 mm * 5 / 25.
     EXPECT_NEAR(measured->z_m, 0.18F, 0.006F);
@@ -90,14 +105,14 @@ TEST(CellReduction, SingleOutliersDoNotWin) {
     samples.push_back({0.5F, kVar});
     samples.push_back({0.7F, kVar});
     samples.push_back({0.3F, kVar});
-    const auto measured = reduce_cell({}, samples);
+    const auto measured = reduce({}, samples);
     ASSERT_TRUE(measured);
     EXPECT_NEAR(measured->z_m, 0.0F, 0.005F);
     samples = {{0.0F, kVar}, {0.9F, kVar}, {0.002F, kVar}};
     ReductionConfig pairs;
     pairs.min_points = 2;
-    ASSERT_TRUE(reduce_cell(pairs, samples));
-    EXPECT_NEAR(reduce_cell(pairs, samples)->z_m, 0.001F, 1e-6F);
+    ASSERT_TRUE(reduce(pairs, samples));
+    EXPECT_NEAR(reduce(pairs, samples)->z_m, 0.001F, 1e-6F);
 }
 
 TEST(CellReduction, VarianceFollowsTheIndependentPointsAndTheScatter) {
@@ -106,49 +121,13 @@ TEST(CellReduction, VarianceFollowsTheIndependentPointsAndTheScatter) {
     config.max_independent = 3.0;
     config.systematic_sigma_m = 0.002;
     std::vector<HeightSample> samples(8, {0.0F, kVar});
-    EXPECT_NEAR(reduce_cell(config, samples)->var_m2, 2.5e-5 / 2.0 + 4e-6, 1e-11);
+    EXPECT_NEAR(reduce(config, samples)->var_m2, 2.5e-5 / 2.0 + 4e-6, 1e-11);
     samples.assign(100, {0.0F, kVar});
-    EXPECT_NEAR(reduce_cell(config, samples)->var_m2, 2.5e-5 / 3.0 + 4e-6, 1e-11);
+    EXPECT_NEAR(reduce(config, samples)->var_m2, 2.5e-5 / 3.0 + 4e-6, 1e-11);
     // Points that scatter more than they claim: alternating +-5 mm around 0.
     for (std::size_t i = 0; i < samples.size(); ++i)
         samples[i] = {i % 2 == 0 ? 0.005F : -0.005F, 1e-6F};
-    EXPECT_NEAR(reduce_cell(config, samples)->var_m2, 2.5e-5 * 100.0 / 99.0 / 3.0 + 4e-6, 1e-9);
-}
-
-TEST(CellReduction, GroupsMatchAMapOfCells) {
-    Rng rng(6);
-    grid::GridGeometry geometry;
-    geometry.resolution_m = 0.125;  // exact in binary: both ways of finding the cell agree
-    geometry.nx = 7;
-    geometry.ny = 5;
-    CellGroups groups;
-    for (int round = 0; round < 20; ++round) {
-        std::vector<GridPoint> points;
-        std::map<std::size_t, std::vector<float>> truth;
-        std::int64_t outside = 0;
-        for (int i = 0; i < 300; ++i) {
-            const GridPoint point{static_cast<float>(rng.uniform(-0.2, 1.0)),
-                                  static_cast<float>(rng.uniform(-0.2, 0.8)),
-                                  static_cast<float>(i),
-                                  kVar};
-            points.push_back(point);
-            const auto cell =
-                geometry.cell_at(static_cast<double>(point.x_m), static_cast<double>(point.y_m));
-            if (cell) {
-                truth[static_cast<std::size_t>(cell->iy * geometry.nx + cell->ix)].push_back(
-                    point.z_m);
-            } else {
-                ++outside;
-            }
-        }
-        points.push_back({std::numeric_limits<float>::quiet_NaN(), 0.1F, 0.0F, kVar});
-        EXPECT_EQ(groups.assign(points, geometry), outside + 1);
-        for (std::size_t cell = 0; cell < 35; ++cell) {
-            std::vector<float> heights;
-            for (const HeightSample& sample : groups.samples(cell)) heights.push_back(sample.z_m);
-            EXPECT_EQ(heights, truth[cell]) << "cell " << cell << " round " << round;
-        }
-    }
+    EXPECT_NEAR(reduce(config, samples)->var_m2, 2.5e-5 * 100.0 / 99.0 / 3.0 + 4e-6, 1e-9);
 }
 
 }  // namespace

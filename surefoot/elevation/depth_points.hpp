@@ -7,7 +7,7 @@
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/report.hpp"
-#include "surefoot/elevation/cell_reduction.hpp"
+#include "surefoot/elevation/cell_groups.hpp"
 #include "surefoot/elevation/elevation_config.hpp"
 
 namespace surefoot::elevation {

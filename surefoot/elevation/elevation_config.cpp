@@ -30,6 +30,7 @@ void ElevationConfig::describe(ConfigVisitor& visitor) {
     visitor.group("pixels", pixels);
     visitor.group("prefilter", prefilter);
     visitor.group("viewpoint", viewpoint);
+    visitor.group("visibility", visibility);
 }
 
 std::optional<std::string> ElevationConfig::problem() const {

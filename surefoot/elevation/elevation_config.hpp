@@ -10,6 +10,7 @@
 #include "surefoot/elevation/prefilter.hpp"
 #include "surefoot/elevation/sensor_variance.hpp"
 #include "surefoot/elevation/viewpoint_history.hpp"
+#include "surefoot/elevation/visibility.hpp"
 
 namespace surefoot::elevation {
 
@@ -28,6 +29,7 @@ struct ElevationConfig {
     PixelFilterConfig pixels;
     PrefilterConfig prefilter;
     ViewpointConfig viewpoint;
+    VisibilityConfig visibility;
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this config cannot be used, or nothing.

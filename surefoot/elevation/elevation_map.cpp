@@ -7,68 +7,29 @@
 
 #include "surefoot/core/time.hpp"
 #include "surefoot/elevation/depth_points.hpp"
+#include "surefoot/elevation/reduce_cells.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Trust in what hangs over a cell: a sighting adds two, seeing the ground below takes one away.
-/// Two sightings are believed, one may be a wrong match; what was the cell's height before the
-/// ground below it was found is believed longest. ASSUMPTION, all three.
-constexpr int kOverheadSeen = 2;
-constexpr int kOverheadSure = 4;
-constexpr int kOverheadMost = 8;
-
-/// Calls `f(layer, value of an unknown cell)` for every layer.
-template <typename F>
-void for_each_layer(ElevationLayers& layers,
-                    grid::Layer& settled_var_m2,
-                    Image<ViewpointHistory::Id>& viewpoint,
-                    grid::Layer& overhead_m,
-                    Image<std::uint8_t>& overhead_trust,
-                    const F& f) {
-    f(layers.height_m, kNan);
-    f(layers.height_var_m2, kNan);
-    f(layers.count, std::uint32_t{0});
-    f(layers.seen_ns, std::int64_t{0});
-    f(layers.horizontal_drift_m, kNan);
-    f(layers.highest_m, kNan);
-    f(layers.lowest_m, kNan);
-    f(layers.clearance_m, kNan);
-    f(settled_var_m2, kNan);
-    f(viewpoint, ViewpointHistory::kNever);
-    f(overhead_m, kNan);
-    f(overhead_trust, std::uint8_t{0});
-}
-
 }  // namespace
 
 ElevationMap::ElevationMap(const ElevationConfig& config)
-    : config_(config), window_(config.length_m, config.resolution_m), views_(config.viewpoint) {
+    : config_(config),
+      window_(config.length_m, config.resolution_m),
+      views_(config.viewpoint),
+      cells_(config, geometry().nx, geometry().ny) {
     SUREFOOT_ASSERT(!config.problem());
-    for_each_layer(layers_,
-                   settled_var_m2_,
-                   viewpoint_,
-                   overhead_m_,
-                   overhead_trust_,
-                   [&](auto& layer, auto unknown) {
-                       layer.resize(geometry().nx, geometry().ny);
-                       layer.fill(unknown);
-                   });
 }
 
 void ElevationMap::clear() {
-    for_each_layer(layers_,
-                   settled_var_m2_,
-                   viewpoint_,
-                   overhead_m_,
-                   overhead_trust_,
-                   [](auto& layer, auto unknown) { layer.fill(unknown); });
+    cells_.clear();
 }
 
 std::int64_t ElevationMap::known_cells() const noexcept {
-    const grid::Layer& height_m = layers_.height_m;
+    const auto& height_m = layers().height_m;
     return std::count_if(height_m.data(), height_m.data() + height_m.size(), [](float h_m) {
         return !std::isnan(h_m);
     });
@@ -80,60 +41,62 @@ void ElevationMap::follow(const Pose& T_odom_body, const Matrix6& relative_covar
         clear();
         return;
     }
-    shift(window_.center_on(T_odom_body.translation_m.x(), T_odom_body.translation_m.y()));
+    cells_.shift(window_.center_on(T_odom_body.translation_m.x(), T_odom_body.translation_m.y()));
     if (!noise.is_zero()) inflate(noise, T_odom_body.translation_m);
-}
-
-void ElevationMap::shift(grid::Shift shift) {
-    if (shift.is_zero()) return;
-    for_each_layer(layers_,
-                   settled_var_m2_,
-                   viewpoint_,
-                   overhead_m_,
-                   overhead_trust_,
-                   [&](auto& layer, auto unknown) { grid::shift_layer(layer, shift, unknown); });
 }
 
 void ElevationMap::inflate(const MotionNoise& noise, const Eigen::Vector3d& body_m) {
     for (int iy = 0; iy < geometry().ny; ++iy) {
-        const float* height_m = layers_.height_m.row(iy);
-        float* var_m2 = layers_.height_var_m2.row(iy);
-        float* drift_m = layers_.horizontal_drift_m.row(iy);
-        for (int ix = 0; ix < geometry().nx; ++ix) {
-            if (std::isnan(height_m[ix])) continue;
-            const Eigen::Vector2d r_m = geometry().center_m({ix, iy}) - body_m.head<2>();
-            const double z_m = static_cast<double>(height_m[ix]) - body_m.z();
-            var_m2[ix] += static_cast<float>(noise.height_var_m2(r_m.x(), r_m.y()));
-            const double more_m2 = noise.horizontal_var_m2(r_m.x(), r_m.y(), z_m);
-            drift_m[ix] = std::sqrt(drift_m[ix] * drift_m[ix] + static_cast<float>(more_m2));
-        }
+        const Eigen::Vector2d first_m = geometry().center_m({0, iy}) - body_m.head<2>();
+        const ElevationCells::Memory row = cells_.memory_of_row(iy);
+        noise.blur_row({first_m.x(), first_m.y(), geometry().resolution_m, body_m.z()},
+                       geometry().nx,
+                       row.height_m,
+                       row.height_var_m2,
+                       row.horizontal_drift_m);
     }
 }
 
 FusionCounts ElevationMap::add(const camera::RectifiedRig& rig,
                                const Pose& T_odom_body,
                                const camera::DepthImage& depth,
-                               std::int64_t time_ns) {
+                               std::int64_t time_ns,
+                               Executor& executor) {
     FusionCounts counts;
     if (!T_odom_body.all_finite()) return counts;
-    points_from_depth(config_, rig, T_odom_body, depth, geometry().origin_m, points_, counts);
-    return fuse_points(T_odom_body, time_ns, counts);
+    const Image<float>& disparity_px = depth.disparity_px;
+    SUREFOOT_ASSERT(depth.sigma_px.width() == disparity_px.width() &&
+                    depth.sigma_px.height() == disparity_px.height() &&
+                    depth.outlier_probability.width() == disparity_px.width() &&
+                    depth.outlier_probability.height() == disparity_px.height());
+    if (DepthSampler::can(config_)) {
+        sampler_.sample(config_, rig, T_odom_body, depth, geometry(), executor, samples_, counts);
+    } else {
+        points_from_depth(config_, rig, T_odom_body, depth, geometry().origin_m, points_, counts);
+        sample_points(counts);
+    }
+    const ExpectedPoints expected(rig, T_odom_body, geometry());
+    fuse_samples(T_odom_body, &expected, time_ns, executor, counts);
+    clean_up((T_odom_body * rig.T_body_camera).translation_m, time_ns, executor, counts);
+    return counts;
 }
 
 FusionCounts ElevationMap::add_points(std::span<const MeasuredPoint> points,
                                       const Pose& T_body_sensor,
                                       const Pose& T_odom_body,
-                                      std::int64_t time_ns) {
+                                      std::int64_t time_ns,
+                                      Executor& executor) {
     FusionCounts counts;
     if (!T_odom_body.all_finite() || !T_body_sensor.all_finite()) return counts;
     points_from_cloud(
         config_, points, T_body_sensor, T_odom_body, geometry().origin_m, points_, counts);
-    return fuse_points(T_odom_body, time_ns, counts);
+    sample_points(counts);
+    fuse_samples(T_odom_body, nullptr, time_ns, executor, counts);
+    clean_up((T_odom_body * T_body_sensor).translation_m, time_ns, executor, counts);
+    return counts;
 }
 
-FusionCounts ElevationMap::fuse_points(const Pose& T_odom_body,
-                                       std::int64_t time_ns,
-                                       FusionCounts counts) {
+void ElevationMap::sample_points(FusionCounts& counts) {
     const PrefilterConfig& cut = config_.prefilter;
     std::span<GridPoint> points = points_;
     if (cut.down_sampling) points = points.first(filter_.down_sample(cut.sampling_m, points));
@@ -143,128 +106,102 @@ FusionCounts ElevationMap::fuse_points(const Pose& T_odom_body,
         counts.gated_density += static_cast<std::int64_t>(points.size() - kept);
         points = points.first(kept);
     }
-    counts.outside += groups_.assign(points, geometry());
-    present_view_ = views_.look_from(T_odom_body);
-    for (std::size_t cell = 0; cell < layers_.height_m.size(); ++cell) {
-        const std::span<HeightSample> samples = groups_.samples(cell);
-        if (samples.empty()) continue;
-        if (const auto measured = reduce_cell(config_.reduction, samples)) {
-            measure(cell, *measured, time_ns, counts);
+    counts.outside += samples_from_points(points, geometry(), samples_);
+}
+
+void ElevationMap::fuse_samples(const Pose& T_odom_body,
+                                const ExpectedPoints* expected,
+                                std::int64_t time_ns,
+                                Executor& executor,
+                                FusionCounts& counts) {
+    const int blocks = (geometry().ny + kBlockRows - 1) / kBlockRows;
+    groups_.assign(samples_, layers().height_m.size());
+    measured_.resize(static_cast<std::size_t>(blocks) * static_cast<std::size_t>(geometry().nx));
+    seen_z_m_.resize(layers().height_m.size());
+    block_counts_.assign(static_cast<std::size_t>(blocks), {});
+    struct Job {
+        ElevationMap& map;
+        const ExpectedPoints* expected;
+        Look look;
+    } job{*this, expected, {views_, views_.look_from(T_odom_body), time_ns}};
+    // One reference, so that std::function needs no memory for it.
+    executor.parallel_for(blocks,
+                          [&job](int block) { job.map.fuse_block(block, job.expected, job.look); });
+    for (const FusionCounts& block : block_counts_) counts += block;
+}
+
+void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const Look& look) {
+    const int nx = geometry().nx;
+    const int first = block * kBlockRows;
+    const int last = std::min(first + kBlockRows, geometry().ny);
+    CellMeasurement* measured = measured_.data() + static_cast<std::ptrdiff_t>(block) * nx;
+    FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
+    for (int iy = first; iy < last; ++iy) {
+        const std::uint32_t* begin = groups_.begin() + static_cast<std::ptrdiff_t>(iy) * nx;
+        float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * nx;
+        reduce_cells(config_.reduction, begin, nx, groups_.z_m(), groups_.var_m2(), measured);
+        for (int ix = 0; ix < nx; ++ix) {
+            if (measured[ix].points == 0) {
+                seen_z_m[ix] = kNan;
+                continue;
+            }
+            seen_z_m[ix] = measured[ix].z_m;
+            Seen seen{measured[ix], kNan};
+            if (expected != nullptr) {
+                const auto points = static_cast<float>(begin[ix + 1] - begin[ix]);
+                const float level = expected->at(ix, iy, measured[ix].z_m);
+                if (level > 0.0F) seen.density_ratio = points / level;
+            }
+            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
+                              static_cast<std::size_t>(ix);
+            cells_.update(cell, seen, look, counts);
         }
     }
-    return counts;
 }
 
-void ElevationMap::measure(std::size_t cell,
-                           const CellMeasurement& measured,
-                           std::int64_t time_ns,
-                           FusionCounts& counts) {
-    ++counts.cells_measured;
-    const float height_m = layers_.height_m.data()[cell];
-    if (std::isnan(height_m)) {
-        ++counts.cells_new;
-        start(cell, measured, time_ns);
-        return;
+void ElevationMap::clean_up(const Eigen::Vector3d& camera_m,
+                            std::int64_t time_ns,
+                            Executor& executor,
+                            FusionCounts& counts) {
+    if (!config_.visibility.cleanup) return;
+    lines_.reset(geometry(), camera_m);
+    for (int iy = 0; iy < geometry().ny; ++iy) {
+        const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * geometry().nx;
+        for (int ix = 0; ix < geometry().nx; ++ix) {
+            if (!std::isnan(seen_z_m[ix])) lines_.add({ix, iy}, seen_z_m[ix]);
+        }
     }
-    float& var_m2 = layers_.height_var_m2.data()[cell];
-    const FusionResult result =
-        fuse(config_.fusion,
-             {static_cast<double>(height_m), static_cast<double>(var_m2)},
-             {static_cast<double>(measured.z_m), static_cast<double>(measured.var_m2)},
-             is_same_scan(time_ns - layers_.seen_ns.data()[cell]));
-    if (result.outcome == FusionOutcome::fused) {
-        ++counts.cells_fused;
-        agree(cell, result.cell, measured, time_ns);
-        return;
+    lines_.finish();
+    const auto blocks = static_cast<int>(block_counts_.size());
+    block_counts_.assign(block_counts_.size(), {});
+    struct Job {
+        ElevationMap& map;
+        std::int64_t time_ns;
+    } job{*this, time_ns};
+    executor.parallel_for(blocks,
+                          [&job](int block) { job.map.clean_up_block(block, job.time_ns); });
+    for (const FusionCounts& block : block_counts_) counts += block;
+}
+
+void ElevationMap::clean_up_block(int block, std::int64_t time_ns) {
+    const int nx = geometry().nx;
+    const int first = block * kBlockRows;
+    const int last = std::min(first + kBlockRows, geometry().ny);
+    FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
+    for (int iy = first; iy < last; ++iy) {
+        const float* height_m = layers().height_m.row(iy);
+        const std::int64_t* agreed_ns = layers().seen_ns.row(iy);
+        const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * nx;
+        for (int ix = 0; ix < nx; ++ix) {
+            if (std::isnan(height_m[ix]) || agreed_ns[ix] == time_ns) continue;
+            // A look that ended here, below the height, has passed through it as well.
+            const float line_z_m = lines_.lowest_over({ix, iy});
+            const float lowest_m = seen_z_m[ix] < line_z_m ? seen_z_m[ix] : line_z_m;
+            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
+                              static_cast<std::size_t>(ix);
+            counts.cells_cleared += cells_.see_through(cell, lowest_m) ? 1 : 0;
+        }
     }
-    ++counts.cells_inflated;
-    const auto hangs = static_cast<float>(config_.min_overhead_m);
-    if (result.outcome == FusionOutcome::replaced) {
-        start(cell, measured, time_ns);
-        if (height_m - measured.z_m > hangs) see_above(cell, height_m, kOverheadMost);
-    }
-    if (result.outcome == FusionOutcome::inflated) {
-        var_m2 = static_cast<float>(result.cell.var_m2);
-        if (measured.z_m - height_m > hangs) see_above(cell, measured.z_m, kOverheadSeen);
-    }
-}
-
-void ElevationMap::see_above(std::size_t cell, float z_m, int trust) {
-    float& overhead_m = overhead_m_.data()[cell];
-    overhead_m = std::isnan(overhead_m) ? z_m : std::min(overhead_m, z_m);
-    std::uint8_t& believed = overhead_trust_.data()[cell];
-    believed = static_cast<std::uint8_t>(std::min(believed + trust, kOverheadMost));
-    set_clearance(cell);
-}
-
-void ElevationMap::see_no_more_above(std::size_t cell) {
-    std::uint8_t& believed = overhead_trust_.data()[cell];
-    if (believed == 0) return;
-    --believed;
-    if (believed == 0) overhead_m_.data()[cell] = kNan;
-    set_clearance(cell);
-}
-
-void ElevationMap::set_clearance(std::size_t cell) {
-    const bool sure = overhead_trust_.data()[cell] >= kOverheadSure;
-    const float free_m = overhead_m_.data()[cell] - layers_.height_m.data()[cell];
-    layers_.clearance_m.data()[cell] = sure ? free_m : kNan;
-}
-
-bool ElevationMap::is_same_scan(std::int64_t since_seen_ns) const {
-    const double duration_s = config_.fusion.scan_duration_s;
-    return duration_s > 0.0 && since_seen_ns <= ns_from_seconds(duration_s);
-}
-
-void ElevationMap::start(std::size_t cell, const CellMeasurement& measured, std::int64_t time_ns) {
-    const auto floor_m2 = static_cast<float>(config_.fusion.min_height_var_m2);
-    layers_.height_m.data()[cell] = measured.z_m;
-    layers_.height_var_m2.data()[cell] = std::max(measured.var_m2, floor_m2);
-    layers_.count.data()[cell] = 1;
-    layers_.seen_ns.data()[cell] = time_ns;
-    layers_.horizontal_drift_m.data()[cell] = 0.0F;
-    layers_.highest_m.data()[cell] = measured.highest_m;
-    layers_.lowest_m.data()[cell] = measured.lowest_m;
-    layers_.clearance_m.data()[cell] = kNan;
-    overhead_m_.data()[cell] = kNan;
-    overhead_trust_.data()[cell] = 0;
-    settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
-    viewpoint_.data()[cell] = present_view_;
-}
-
-void ElevationMap::agree(std::size_t cell,
-                         const Height& fused,
-                         const CellMeasurement& measured,
-                         std::int64_t time_ns) {
-    if (views_.is_new_since(viewpoint_.data()[cell])) {
-        layers_.height_m.data()[cell] = static_cast<float>(fused.z_m);
-        layers_.height_var_m2.data()[cell] = static_cast<float>(fused.var_m2);
-        settled_var_m2_.data()[cell] = static_cast<float>(fused.var_m2);
-        viewpoint_.data()[cell] = present_view_;
-    } else {
-        repeat(cell, measured);
-    }
-    ++layers_.count.data()[cell];
-    layers_.seen_ns.data()[cell] = time_ns;
-    layers_.horizontal_drift_m.data()[cell] = 0.0F;
-    float& highest_m = layers_.highest_m.data()[cell];
-    float& lowest_m = layers_.lowest_m.data()[cell];
-    highest_m = std::max(highest_m, measured.highest_m);
-    lowest_m = std::min(lowest_m, measured.lowest_m);
-    see_no_more_above(cell);
-}
-
-void ElevationMap::repeat(std::size_t cell, const CellMeasurement& measured) {
-    // The cell and the measurement share an unknown part of their errors. Covariance intersection
-    // (Julier and Uhlmann 1997) in one dimension: keep whichever is surer, gain nothing.
-    float& var_m2 = layers_.height_var_m2.data()[cell];
-    float& settled_m2 = settled_var_m2_.data()[cell];
-    const float measured_m2 = std::max(measured.var_m2, settled_m2);
-    if (var_m2 <= measured_m2) return;
-    layers_.height_m.data()[cell] = measured.z_m;
-    var_m2 = measured_m2;
-    settled_m2 = measured_m2;
-    viewpoint_.data()[cell] = present_view_;
 }
 
 }  // namespace surefoot::elevation

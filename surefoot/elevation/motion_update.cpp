@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/elevation/motion_rows.hpp"
+
 namespace surefoot::elevation {
 namespace {
 
@@ -47,6 +49,37 @@ double MotionNoise::horizontal_var_m2(double x_m, double y_m, double z_m) const 
     const double larger =
         0.5 * (var_x + var_y) + std::sqrt(half_difference * half_difference + cov_xy * cov_xy);
     return std::max(0.0, larger);
+}
+
+void MotionNoise::blur_row(const Row& row,
+                           int cells,
+                           const float* height_m,
+                           float* height_var_m2,
+                           float* horizontal_drift_m) const {
+    const Matrix6& c = covariance_;
+    const double y = row.y_m;
+    const auto f = [](double value) { return static_cast<float>(value); };
+    const MotionPolynomials p{{f(c(kZ, kZ) + y * y * c(kRoll, kRoll) + 2.0 * y * c(kZ, kRoll)),
+                               f(-2.0 * (c(kZ, kPitch) + y * c(kRoll, kPitch))),
+                               f(c(kPitch, kPitch))},
+                              {f(c(kX, kX) + y * y * c(kYaw, kYaw) - 2.0 * y * c(kX, kYaw)),
+                               f(2.0 * (c(kX, kPitch) - y * c(kPitch, kYaw))),
+                               f(c(kPitch, kPitch))},
+                              {f(c(kY, kY)),
+                               f(2.0 * c(kY, kYaw)),
+                               f(-2.0 * c(kY, kRoll)),
+                               f(c(kYaw, kYaw)),
+                               f(-2.0 * c(kRoll, kYaw)),
+                               f(c(kRoll, kRoll))},
+                              {f(c(kX, kY) - y * c(kY, kYaw)),
+                               f(c(kX, kYaw) - y * c(kYaw, kYaw)),
+                               f(c(kY, kPitch) - c(kX, kRoll) + y * c(kRoll, kYaw)),
+                               f(c(kPitch, kYaw)),
+                               f(-c(kRoll, kPitch))},
+                              f(row.first_x_m),
+                              f(row.step_m),
+                              f(row.body_z_m)};
+    blur_cells(p, cells, height_m, height_var_m2, horizontal_drift_m);
 }
 
 }  // namespace surefoot::elevation

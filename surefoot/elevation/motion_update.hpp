@@ -28,6 +28,21 @@ class MotionNoise {
     /// 2 x 2 covariance of (dx, dy), never negative. Sums of it bound the eigenvalue of the sum.
     [[nodiscard]] double horizontal_var_m2(double x_m, double y_m, double z_m) const noexcept;
 
+    /// Cells of a row along x, from the body in odom axes.
+    struct Row {
+        double first_x_m = 0.0;
+        double y_m = 0.0;
+        double step_m = 0.0;
+        double body_z_m = 0.0;  ///< what heights count from
+    };
+    /// Adds the motion's variances to those of remembered cells, drift being a sigma: in floats,
+    /// the same bytes on every instruction set. NaN stays.
+    void blur_row(const Row& row,
+                  int cells,
+                  const float* height_m,
+                  float* height_var_m2,
+                  float* horizontal_drift_m) const;
+
   private:
     Matrix6 covariance_;  ///< in odom axes, about the body
 };

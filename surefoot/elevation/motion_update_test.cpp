@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <vector>
 
 #include "surefoot/core/rng.hpp"
 
@@ -38,6 +39,41 @@ TEST(MotionUpdate, ClosedFormsMatchThePropagatedCovariance) {
         EXPECT_NEAR(
             noise.horizontal_var_m2(r_m.x(), r_m.y(), r_m.z()), eigen.eigenvalues()(1), 1e-12)
             << "trial " << trial;
+    }
+}
+
+TEST(MotionUpdate, ARowOfCellsIsWhatTheFormsSayCellByCell) {
+    constexpr int kCells = 37;  // no register divides it
+    Rng rng(6);
+    for (int trial = 0; trial < 50; ++trial) {
+        Matrix6 A;
+        for (int i = 0; i < 36; ++i) A.data()[i] = 0.002 * rng.normal();
+        const MotionNoise noise(A * A.transpose(),
+                                exp_so3({rng.normal(), 0.0, 0.3}).toRotationMatrix());
+        const MotionNoise::Row row{-1.9, rng.uniform(-3.0, 3.0), 0.1, 1.5};
+        std::vector<float> height_m(kCells);
+        std::vector<float> var_m2(kCells, 1e-6F);
+        std::vector<float> drift_m(kCells, 0.001F);
+        for (float& h_m : height_m) h_m = static_cast<float>(rng.uniform(-0.5, 2.5));
+        height_m[5] = std::nanf("");
+        drift_m[5] = std::nanf("");
+        noise.blur_row(row, kCells, height_m.data(), var_m2.data(), drift_m.data());
+        for (int i = 0; i < kCells; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            if (i == 5) {
+                EXPECT_TRUE(std::isnan(drift_m[at]));
+                continue;
+            }
+            const double x_m = row.first_x_m + row.step_m * i;
+            const double z_m = static_cast<double>(height_m[at]) - row.body_z_m;
+            const double height_m2 = 1e-6 + noise.height_var_m2(x_m, row.y_m);
+            const double across_m2 = 1e-6 + noise.horizontal_var_m2(x_m, row.y_m, z_m);
+            // Ten roundings of floats on terms that may cancel to a tenth.
+            constexpr double kRelative = 10.0 * 6e-8 * 10.0;
+            EXPECT_NEAR(static_cast<double>(var_m2[at]) / height_m2, 1.0, kRelative) << i;
+            EXPECT_NEAR(static_cast<double>(drift_m[at]) / std::sqrt(across_m2), 1.0, kRelative)
+                << i;
+        }
     }
 }
 

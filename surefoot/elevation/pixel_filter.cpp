@@ -50,16 +50,16 @@ SurfaceCheck::SurfaceCheck(const PixelFilterConfig& config,
                            double fx_px,
                            double fy_px,
                            const Eigen::Vector3d& up_camera)
-    : fx_px_(static_cast<float>(fx_px)),
-      fy_px_(static_cast<float>(fy_px)),
-      per_reach_(1.0F / static_cast<float>(config.reach_px)),
-      jump_px_(static_cast<float>(config.jump_px)),
-      jump_sigma_(static_cast<float>(config.jump_sigma)),
-      up_x_(static_cast<float>(up_camera.x())),
-      up_y_(static_cast<float>(up_camera.y())),
-      up_z_(static_cast<float>(up_camera.z())),
-      min_cosine_sq_(squared_cosine(config.max_incidence_deg)),
-      min_cosine_when_level_sq_(squared_cosine(config.max_incidence_level_deg)),
-      min_level_cosine_sq_(squared_cosine(config.level_deg)) {}
+    : limits_{.fx_px = static_cast<float>(fx_px),
+              .fy_px = static_cast<float>(fy_px),
+              .per_reach = 1.0F / static_cast<float>(config.reach_px),
+              .jump_px = static_cast<float>(config.jump_px),
+              .jump_sigma = static_cast<float>(config.jump_sigma),
+              .up_x = static_cast<float>(up_camera.x()),
+              .up_y = static_cast<float>(up_camera.y()),
+              .up_z = static_cast<float>(up_camera.z()),
+              .min_cosine_sq = squared_cosine(config.max_incidence_deg),
+              .min_cosine_when_level_sq = squared_cosine(config.max_incidence_level_deg),
+              .min_level_cosine_sq = squared_cosine(config.level_deg)} {}
 
 }  // namespace surefoot::elevation

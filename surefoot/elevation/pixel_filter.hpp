@@ -36,6 +36,21 @@ struct Neighbours {
     float below_px = 0.0F;
 };
 
+/// What of the filter's settings a pixel needs.
+struct SurfaceLimits {
+    float fx_px = 0.0F;
+    float fy_px = 0.0F;
+    float per_reach = 0.0F;  ///< 1 / reach_px
+    float jump_px = 0.0F;
+    float jump_sigma = 0.0F;
+    float up_x = 0.0F;  ///< against gravity, in the camera frame
+    float up_y = 0.0F;
+    float up_z = 0.0F;
+    float min_cosine_sq = 0.0F;
+    float min_cosine_when_level_sq = 0.0F;
+    float min_level_cosine_sq = 0.0F;
+};
+
 /// Decides from the disparities around a pixel whether it lies on a surface that a stereo matcher
 /// can see. Holds what is constant in a frame; cheap enough for every pixel.
 ///
@@ -57,18 +72,22 @@ class SurfaceCheck {
                                float sigma_px,
                                float ray_x,
                                float ray_y) const noexcept {
-        const float limit_px = jump_px_ + jump_sigma_ * sigma_px;
-        const float a = gradient(around.left_px, around.right_px, disparity_px, limit_px) * fx_px_;
-        const float b = gradient(around.above_px, around.below_px, disparity_px, limit_px) * fy_px_;
+        const SurfaceLimits& l = limits_;
+        const float limit_px = l.jump_px + l.jump_sigma * sigma_px;
+        const float a = gradient(around.left_px, around.right_px, disparity_px, limit_px) * l.fx_px;
+        const float b =
+            gradient(around.above_px, around.below_px, disparity_px, limit_px) * l.fy_px;
         const float c = disparity_px - a * ray_x - b * ray_y;
         const float normal_sq = a * a + b * b + c * c;
         const float norms_sq = normal_sq * (ray_x * ray_x + ray_y * ray_y + 1.0F);
         const float facing_sq = disparity_px * disparity_px;  // comparisons are false for NaN
-        if (facing_sq >= min_cosine_sq_ * norms_sq) return true;
-        const float upward = a * up_x_ + b * up_y_ + c * up_z_;
-        return upward * upward >= min_level_cosine_sq_ * normal_sq &&
-               facing_sq >= min_cosine_when_level_sq_ * norms_sq && upward != 0.0F;
+        if (facing_sq >= l.min_cosine_sq * norms_sq) return true;
+        const float upward = a * l.up_x + b * l.up_y + c * l.up_z;
+        return upward * upward >= l.min_level_cosine_sq * normal_sq &&
+               facing_sq >= l.min_cosine_when_level_sq * norms_sq && upward != 0.0F;
     }
+
+    [[nodiscard]] const SurfaceLimits& limits() const noexcept { return limits_; }
 
   private:
     /// Per pixel; from one side alone where the other has no match; NaN where neither has one or
@@ -77,23 +96,13 @@ class SurfaceCheck {
                                  float after_px,
                                  float here_px,
                                  float limit_px) const noexcept {
-        if (std::isnan(before_px)) return (after_px - here_px) * per_reach_;
-        if (std::isnan(after_px)) return (here_px - before_px) * per_reach_;
+        if (std::isnan(before_px)) return (after_px - here_px) * limits_.per_reach;
+        if (std::isnan(after_px)) return (here_px - before_px) * limits_.per_reach;
         const float departure_px = std::abs(0.5F * (before_px + after_px) - here_px);
-        return departure_px > limit_px ? NAN : 0.5F * (after_px - before_px) * per_reach_;
+        return departure_px > limit_px ? NAN : 0.5F * (after_px - before_px) * limits_.per_reach;
     }
 
-    float fx_px_;
-    float fy_px_;
-    float per_reach_;
-    float jump_px_;
-    float jump_sigma_;
-    float up_x_;
-    float up_y_;
-    float up_z_;
-    float min_cosine_sq_;
-    float min_cosine_when_level_sq_;
-    float min_level_cosine_sq_;
+    SurfaceLimits limits_;
 };
 
 }  // namespace surefoot::elevation

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "surefoot/core/config.hpp"
-#include "surefoot/elevation/cell_reduction.hpp"
+#include "surefoot/elevation/cell_groups.hpp"
 
 namespace surefoot::elevation {
 

@@ -217,7 +217,8 @@ FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
     if (motion.health == Health::lost) return {};  // where would it go?
     last_fused_ns_ = motion.time_ns;
     ++version_;
-    return map_.add(rectifier_->rig(), motion.T_odom_body, depth_, motion.time_ns);
+    return map_.add(
+        rectifier_->rig(), motion.T_odom_body, depth_, motion.time_ns, *executor_);
 }
 
 void Pipeline::rate() {

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/elevation/elevation_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "surefoot/core/time.hpp"
+
+namespace surefoot::elevation {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Trust in what hangs over a cell: a sighting adds two, seeing the ground below takes one away.
+/// Two sightings are believed, one may be a wrong match; what was the cell's height before the
+/// ground below it was found is believed longest. ASSUMPTION, all three.
+constexpr int kOverheadSeen = 2;
+constexpr int kOverheadSure = 4;
+constexpr int kOverheadMost = 8;
+
+/// Weight of a new look in confidence and density ratio.
+constexpr float kNewLook = 1.0F / 8.0F;
+
+}  // namespace
+
+template <typename F>
+void ElevationCells::for_each_layer(const F& f) {
+    f(layers_.height_m, kNan);
+    f(layers_.height_var_m2, kNan);
+    f(layers_.count, std::uint32_t{0});
+    f(layers_.seen_ns, std::int64_t{0});
+    f(layers_.horizontal_drift_m, kNan);
+    f(layers_.highest_m, kNan);
+    f(layers_.lowest_m, kNan);
+    f(layers_.clearance_m, kNan);
+    f(layers_.confidence, kNan);
+    f(layers_.density_ratio, kNan);
+    f(settled_var_m2_, kNan);
+    f(viewpoint_, ViewpointHistory::kNever);
+    f(overhead_m_, kNan);
+    f(overhead_trust_, std::uint8_t{0});
+    f(seen_through_, std::uint8_t{0});
+}
+
+ElevationCells::ElevationCells(const ElevationConfig& config, int nx, int ny) : config_(config) {
+    for_each_layer([&](auto& layer, auto unknown) {
+        layer = std::remove_reference_t<decltype(layer)>(nx, ny, unknown);
+    });
+}
+
+void ElevationCells::clear() {
+    for_each_layer([](auto& layer, auto unknown) { layer.fill(unknown); });
+}
+
+void ElevationCells::shift(grid::Shift shift) {
+    for_each_layer([&](auto& layer, auto unknown) { layer.shift(shift, unknown); });
+}
+
+ElevationCells::Memory ElevationCells::memory_of_row(int iy) noexcept {
+    return {layers_.height_m.row(iy),
+            layers_.height_var_m2.row(iy),
+            layers_.horizontal_drift_m.row(iy)};
+}
+
+void ElevationCells::update(std::size_t cell,
+                            const Seen& seen,
+                            const Look& look,
+                            FusionCounts& counts) {
+    const CellMeasurement& measured = seen.measured;
+    ++counts.cells_measured;
+    const float height_m = layers_.height_m.data()[cell];
+    if (std::isnan(height_m)) {
+        ++counts.cells_new;
+        start(cell, seen, look);
+        return;
+    }
+    float& var_m2 = layers_.height_var_m2.data()[cell];
+    const FusionResult result =
+        fuse(config_.fusion,
+             {static_cast<double>(height_m), static_cast<double>(var_m2)},
+             {static_cast<double>(measured.z_m), static_cast<double>(measured.var_m2)},
+             is_same_scan(look.time_ns - layers_.seen_ns.data()[cell]));
+    if (result.outcome == FusionOutcome::fused) {
+        ++counts.cells_fused;
+        agree(cell, result.cell, seen, look);
+        return;
+    }
+    ++counts.cells_inflated;
+    layers_.confidence.data()[cell] *= 1.0F - kNewLook;
+    const auto hangs = static_cast<float>(config_.min_overhead_m);
+    if (result.outcome == FusionOutcome::replaced) {
+        start(cell, seen, look);
+        if (height_m - measured.z_m > hangs) see_above(cell, height_m, kOverheadMost);
+    }
+    if (result.outcome == FusionOutcome::inflated) {
+        var_m2 = static_cast<float>(result.cell.var_m2);
+        if (measured.z_m - height_m > hangs) see_above(cell, measured.z_m, kOverheadSeen);
+    }
+}
+
+bool ElevationCells::see_through(std::size_t cell, float line_z_m) {
+    const VisibilityConfig& visibility = config_.visibility;
+    const float height_m = layers_.height_m.data()[cell];
+    const float sigma_m = std::sqrt(layers_.height_var_m2.data()[cell]);
+    const auto margin_m = static_cast<float>(visibility.margin_m);
+    if (!(height_m - line_z_m > margin_m + static_cast<float>(visibility.sigmas) * sigma_m)) {
+        return false;
+    }
+    std::uint8_t& frames = seen_through_.data()[cell];
+    ++frames;
+    if (frames < visibility.frames) return false;
+    forget(cell);
+    // What stood here may have been a thing that one sees under. Until the ground below it has been
+    // seen a few times, it bounds the clearance.
+    see_above(cell, height_m, kOverheadMost);
+    return true;
+}
+
+void ElevationCells::forget(std::size_t cell) {
+    layers_.height_m.data()[cell] = kNan;
+    layers_.height_var_m2.data()[cell] = kNan;
+    layers_.count.data()[cell] = 0;
+    layers_.seen_ns.data()[cell] = 0;
+    layers_.horizontal_drift_m.data()[cell] = kNan;
+    layers_.highest_m.data()[cell] = kNan;
+    layers_.lowest_m.data()[cell] = kNan;
+    layers_.clearance_m.data()[cell] = kNan;
+    layers_.confidence.data()[cell] = kNan;
+    layers_.density_ratio.data()[cell] = kNan;
+    overhead_m_.data()[cell] = kNan;
+    overhead_trust_.data()[cell] = 0;
+    seen_through_.data()[cell] = 0;
+}
+
+void ElevationCells::see_above(std::size_t cell, float z_m, int trust) {
+    float& overhead_m = overhead_m_.data()[cell];
+    overhead_m = std::isnan(overhead_m) ? z_m : std::min(overhead_m, z_m);
+    std::uint8_t& believed = overhead_trust_.data()[cell];
+    believed = static_cast<std::uint8_t>(std::min(believed + trust, kOverheadMost));
+    set_clearance(cell);
+}
+
+void ElevationCells::see_no_more_above(std::size_t cell) {
+    std::uint8_t& believed = overhead_trust_.data()[cell];
+    if (believed == 0) return;
+    --believed;
+    if (believed == 0) overhead_m_.data()[cell] = kNan;
+    set_clearance(cell);
+}
+
+void ElevationCells::set_clearance(std::size_t cell) {
+    const bool sure = overhead_trust_.data()[cell] >= kOverheadSure;
+    const float free_m = overhead_m_.data()[cell] - layers_.height_m.data()[cell];
+    layers_.clearance_m.data()[cell] = sure ? free_m : kNan;
+}
+
+bool ElevationCells::is_same_scan(std::int64_t since_seen_ns) const {
+    const double duration_s = config_.fusion.scan_duration_s;
+    return duration_s > 0.0 && since_seen_ns <= ns_from_seconds(duration_s);
+}
+
+void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look) {
+    const CellMeasurement& measured = seen.measured;
+    const auto floor_m2 = static_cast<float>(config_.fusion.min_height_var_m2);
+    layers_.height_m.data()[cell] = measured.z_m;
+    layers_.height_var_m2.data()[cell] = std::max(measured.var_m2, floor_m2);
+    layers_.count.data()[cell] = 1;
+    layers_.seen_ns.data()[cell] = look.time_ns;
+    layers_.horizontal_drift_m.data()[cell] = 0.0F;
+    layers_.highest_m.data()[cell] = measured.highest_m;
+    layers_.lowest_m.data()[cell] = measured.lowest_m;
+    layers_.confidence.data()[cell] = kNewLook;
+    layers_.density_ratio.data()[cell] = seen.density_ratio;
+    settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
+    viewpoint_.data()[cell] = look.view;
+    seen_through_.data()[cell] = 0;
+    // What hangs over an unknown cell stays there, unless this is it.
+    const auto hangs = static_cast<float>(config_.min_overhead_m);
+    if (!(overhead_m_.data()[cell] - measured.z_m > hangs)) {
+        overhead_m_.data()[cell] = kNan;
+        overhead_trust_.data()[cell] = 0;
+    }
+    set_clearance(cell);
+}
+
+void ElevationCells::agree(std::size_t cell,
+                           const Height& fused,
+                           const Seen& seen,
+                           const Look& look) {
+    const CellMeasurement& measured = seen.measured;
+    if (look.views.is_new_since(viewpoint_.data()[cell])) {
+        layers_.height_m.data()[cell] = static_cast<float>(fused.z_m);
+        layers_.height_var_m2.data()[cell] = static_cast<float>(fused.var_m2);
+        settled_var_m2_.data()[cell] = static_cast<float>(fused.var_m2);
+        viewpoint_.data()[cell] = look.view;
+    } else {
+        repeat(cell, measured, look);
+    }
+    ++layers_.count.data()[cell];
+    layers_.seen_ns.data()[cell] = look.time_ns;
+    layers_.horizontal_drift_m.data()[cell] = 0.0F;
+    float& highest_m = layers_.highest_m.data()[cell];
+    float& lowest_m = layers_.lowest_m.data()[cell];
+    highest_m = std::max(highest_m, measured.highest_m);
+    lowest_m = std::min(lowest_m, measured.lowest_m);
+    float& confidence = layers_.confidence.data()[cell];
+    confidence += kNewLook * (1.0F - confidence);
+    remember_density(cell, seen.density_ratio);
+    seen_through_.data()[cell] = 0;
+    see_no_more_above(cell);
+}
+
+void ElevationCells::remember_density(std::size_t cell, float ratio) {
+    float& remembered = layers_.density_ratio.data()[cell];
+    if (std::isnan(ratio)) return;
+    remembered = std::isnan(remembered) ? ratio : remembered + kNewLook * (ratio - remembered);
+}
+
+void ElevationCells::repeat(std::size_t cell, const CellMeasurement& measured, const Look& look) {
+    // The cell and the measurement share an unknown part of their errors. Covariance intersection
+    // (Julier and Uhlmann 1997) in one dimension: keep whichever is surer, gain nothing.
+    float& var_m2 = layers_.height_var_m2.data()[cell];
+    float& settled_m2 = settled_var_m2_.data()[cell];
+    const float measured_m2 = std::max(measured.var_m2, settled_m2);
+    if (var_m2 <= measured_m2) return;
+    layers_.height_m.data()[cell] = measured.z_m;
+    var_m2 = measured_m2;
+    settled_m2 = measured_m2;
+    viewpoint_.data()[cell] = look.view;
+}
+
+}  // namespace surefoot::elevation

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "surefoot/core/report.hpp"
+#include "surefoot/elevation/cell_reduction.hpp"
+#include "surefoot/elevation/elevation_config.hpp"
+#include "surefoot/elevation/elevation_layers.hpp"
+#include "surefoot/elevation/viewpoint_history.hpp"
+
+namespace surefoot::elevation {
+
+/// What the looks of one frame share.
+struct Look {
+    const ViewpointHistory& views;
+    ViewpointHistory::Id view = ViewpointHistory::kNever;  ///< where it was taken from
+    std::int64_t time_ns = 0;
+};
+
+/// What one frame says about one cell.
+struct Seen {
+    CellMeasurement measured;
+    float density_ratio = 0.0F;  ///< see ElevationLayers; NaN = not known
+};
+
+/// The cells of an elevation map and what a look does to one of them. Cells do not know of each
+/// other: different ones may be updated side by side. A cell is named by iy * nx + ix.
+class ElevationCells {
+  public:
+    ElevationCells(const ElevationConfig& config, int nx, int ny);
+
+    [[nodiscard]] const ElevationLayers& layers() const noexcept { return layers_; }
+    void clear();
+    void shift(grid::Shift shift);
+
+    /// Remembered cells of a row pay for the body's motion, see `MotionNoise`: writes height
+    /// variance and drift.
+    struct Memory {
+        const float* height_m;
+        float* height_var_m2;
+        float* horizontal_drift_m;
+    };
+    [[nodiscard]] Memory memory_of_row(int iy) noexcept;
+
+    /// Fuses a measurement.
+    void update(std::size_t cell, const Seen& seen, const Look& look, FusionCounts& counts);
+    /// A line of sight passes at `line_z_m` over the cell, or the look at it ended there: too often
+    /// below the height without a look that agrees, and the height is forgotten. Returns whether it
+    /// was. For cells that no look agreed with in this frame.
+    bool see_through(std::size_t cell, float line_z_m);
+
+  private:
+    template <typename F>
+    void for_each_layer(const F& f);
+
+    [[nodiscard]] bool is_same_scan(std::int64_t since_seen_ns) const;
+    void start(std::size_t cell, const Seen& seen, const Look& look);
+    void agree(std::size_t cell, const Height& fused, const Seen& seen, const Look& look);
+    void repeat(std::size_t cell, const CellMeasurement& measured, const Look& look);
+    void remember_density(std::size_t cell, float ratio);
+    void see_above(std::size_t cell, float z_m, int trust);
+    void see_no_more_above(std::size_t cell);
+    void set_clearance(std::size_t cell);
+    void forget(std::size_t cell);
+
+    ElevationConfig config_;
+    ElevationLayers layers_;
+    /// Variance after the last fusion that brought new information; repeated views of the same
+    /// errors never lower a cell's variance below it.
+    ElevationLayers::Layer settled_var_m2_;
+    grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
+    /// Lowest surface seen above the height, and how far it is believed.
+    ElevationLayers::Layer overhead_m_;
+    grid::SlidingLayer<std::uint8_t> overhead_trust_;
+    grid::SlidingLayer<std::uint8_t> seen_through_;  ///< frames since a look agreed
+};
+
+}  // namespace surefoot::elevation

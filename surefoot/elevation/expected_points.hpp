@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::elevation {
+
+/// How many pixels of a camera level ground in a cell covers: a cell of area A at the depth z along
+/// the optical axis and h below the camera is seen under the solid angle A h / r^3, a pixel under
+/// (z / r)^3 / (fx fy), so that
+///   n = A fx fy h / z^3.
+/// A vertical surface shows more (Oniga and Nedevschi 2010, who told obstacles from roads by it).
+class ExpectedPoints {
+  public:
+    ExpectedPoints(const camera::RectifiedRig& rig,
+                   const Pose& T_odom_body,
+                   const grid::GridGeometry& geometry);
+
+    /// For ground at `z_m` in odom; 0 behind or above the camera.
+    [[nodiscard]] float at(int ix, int iy, float z_m) const noexcept {
+        const float x = x_m_ + resolution_m_ * static_cast<float>(ix);
+        const float y = y_m_ + resolution_m_ * static_cast<float>(iy);
+        const float below_m = camera_z_m_ - z_m;
+        const float depth_m = axis_x_ * x + axis_y_ * y - axis_z_ * below_m;
+        if (!(below_m > 0.0F && depth_m > 0.0F)) return 0.0F;
+        return scale_m2_ * below_m / (depth_m * depth_m * depth_m);
+    }
+
+  private:
+    float scale_m2_;  ///< A fx fy
+    float x_m_;       ///< of cell (0, 0) from the camera
+    float y_m_;
+    float camera_z_m_;
+    float resolution_m_;
+    float axis_x_;  ///< optical axis in odom
+    float axis_y_;
+    float axis_z_;
+};
+
+}  // namespace surefoot::elevation

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace surefoot::elevation {
+
+/// MotionNoise for a row of cells. Along x its variances are polynomials, y in the coefficients:
+///   height: h0 + h1 x + h2 x^2
+///   dx, dx: xx0 + xx1 z + xx2 z^2
+///   dy, dy: yy0 + yy1 x + yy2 z + yy3 x^2 + yy4 x z + yy5 z^2
+///   dx, dy: xy0 + xy1 x + xy2 z + xy3 x z + xy4 z^2
+struct MotionPolynomials {
+    float h[3];
+    float xx[3];
+    float yy[6];
+    float xy[5];
+    float first_x_m;  ///< of the row's first cell, from the body
+    float step_m;
+    float body_z_m;  ///< what z counts from
+};
+
+/// Adds them to the variances of remembered cells; drift is a sigma. The same bytes on every
+/// instruction set. Unknown cells (NaN) stay unknown.
+void blur_cells(const MotionPolynomials& p,
+                int cells,
+                const float* height_m,
+                float* height_var_m2,
+                float* horizontal_drift_m);
+
+}  // namespace surefoot::elevation

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/elevation/visibility.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace surefoot::elevation {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// What is nearer than this to the camera, |dx| + |dy| in cells, has no direction.
+constexpr float kNearest = 2.0F;
+/// A line says nothing about its own end: the surface there covers a cell or two.
+constexpr int kEndRings = 3;
+
+}  // namespace
+
+void VisibilityConfig::describe(ConfigVisitor& visitor) {
+    visitor.boolean(
+        "cleanup", cleanup, "forget surfaces that lines of sight pass through (keys below)");
+    visitor.number("margin_m",
+                   margin_m,
+                   0.0,
+                   10.0,
+                   "a line of sight this far below a cell's height contradicts it ...");
+    visitor.number("sigmas", sigmas, 0.0, 100.0, "... plus this many sigma of the height");
+    visitor.integer("frames",
+                    frames,
+                    1,
+                    255,
+                    "frames with such a line, without one that agrees, until the height is gone");
+}
+
+void LinesOfSight::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {
+    geometry_ = geometry;
+    const Eigen::Vector2d corner_cells =
+        (camera_m.head<2>() - geometry.origin_m) / geometry.resolution_m;
+    camera_x_ = static_cast<float>(corner_cells.x());
+    camera_y_ = static_cast<float>(corner_cells.y());
+    camera_z_m_ = static_cast<float>(camera_m.z());
+    // As far as the corner that is farthest from the camera. From afar, or from nowhere (NaN), no
+    // line says anything.
+    const auto nx = static_cast<float>(geometry.nx);
+    const auto ny = static_cast<float>(geometry.ny);
+    const float farthest =
+        std::max(camera_x_, nx - camera_x_) + std::max(camera_y_, ny - camera_y_);
+    rings_ = farthest <= 4.0F * (nx + ny) ? static_cast<int>(farthest) + 1 : 0;
+    lowest_.assign(static_cast<std::size_t>(rings_) * kDirections, kInfinity);
+}
+
+LinesOfSight::Place LinesOfSight::place_of(float dx_cells, float dy_cells) const {
+    const float distance = std::abs(dx_cells) + std::abs(dy_cells);
+    // 0 along +x, 1 along +y, 2 along -x, 3 along -y.
+    const float along = dy_cells / distance;
+    float turn = 0.0F;
+    if (dx_cells < 0.0F) {
+        turn = 2.0F - along;
+    } else {
+        turn = dy_cells < 0.0F ? 4.0F + along : along;
+    }
+    return {turn * kQuarter, distance};
+}
+
+void LinesOfSight::add(grid::Cell cell, float z_m) {
+    const float dx = static_cast<float>(cell.ix) + 0.5F - camera_x_;
+    const float dy = static_cast<float>(cell.iy) + 0.5F - camera_y_;
+    const Place place = place_of(dx, dy);
+    if (!(place.distance >= kNearest && place.distance < static_cast<float>(rings_))) return;
+    const int ring = static_cast<int>(place.distance) - kEndRings;
+    if (ring < 0) return;
+    const float slope = (z_m - camera_z_m_) / place.distance;
+    // Ends side by side leave no gap: what they see through, they see through everywhere.
+    const float half_width = 0.5F * kQuarter / place.distance;
+    const int first = static_cast<int>(std::floor(place.direction - half_width));
+    const int last = static_cast<int>(std::floor(place.direction + half_width));
+    float* row = lowest_.data() + static_cast<std::ptrdiff_t>(ring) * kDirections;
+    for (int direction = first; direction <= last; ++direction) {
+        float& lowest = row[direction & (kDirections - 1)];
+        lowest = std::min(lowest, slope);
+    }
+}
+
+void LinesOfSight::finish() {
+    for (int ring = rings_ - 2; ring >= 0; --ring) {
+        float* here = lowest_.data() + static_cast<std::ptrdiff_t>(ring) * kDirections;
+        const float* beyond = here + kDirections;
+        for (int direction = 0; direction < kDirections; ++direction) {
+            here[direction] = std::min(here[direction], beyond[direction]);
+        }
+    }
+}
+
+float LinesOfSight::lowest_over(grid::Cell cell) const {
+    const float dx = static_cast<float>(cell.ix) + 0.5F - camera_x_;
+    const float dy = static_cast<float>(cell.iy) + 0.5F - camera_y_;
+    const Place place = place_of(dx, dy);
+    if (!(place.distance >= kNearest && place.distance < static_cast<float>(rings_ - 1))) {
+        return kInfinity;
+    }
+    const int ring = static_cast<int>(place.distance) + 1;
+    const int direction = static_cast<int>(place.direction) & (kDirections - 1);
+    const float slope =
+        lowest_[static_cast<std::size_t>(ring) * kDirections + static_cast<std::size_t>(direction)];
+    return camera_z_m_ + slope * place.distance;
+}
+
+}  // namespace surefoot::elevation

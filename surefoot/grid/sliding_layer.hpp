@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include "surefoot/core/views.hpp"
+#include "surefoot/grid/moving_window.hpp"
+
+namespace surefoot::grid {
+
+/// A layer of a moving window: dense and in geometric order like an `Image`, and moving it by some
+/// cells writes those cells alone that came into view.
+///
+/// The rows follow each other in a longer piece of memory. Cell (ix + dx, iy + dy) lies dy rows and
+/// dx cells behind cell (ix, iy), so that a shift moves the beginning by dy * nx + dx and nothing
+/// else; what then stands in the cells that came into view is overwritten. At the end of the memory
+/// (after the window has moved by half its length) everything is moved back to the middle.
+template <typename T>
+class SlidingLayer {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+  public:
+    SlidingLayer() = default;
+    SlidingLayer(int nx, int ny, T value)
+        : nx_(nx),
+          ny_(ny),
+          cells_(2 * size() + 1, value),
+          begin_(static_cast<std::ptrdiff_t>(size() / 2)) {}
+
+    [[nodiscard]] int width() const noexcept { return nx_; }
+    [[nodiscard]] int height() const noexcept { return ny_; }
+    [[nodiscard]] std::size_t size() const noexcept {
+        return static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_);
+    }
+    [[nodiscard]] T* data() noexcept { return cells_.data() + begin_; }
+    [[nodiscard]] const T* data() const noexcept { return cells_.data() + begin_; }
+    [[nodiscard]] T* row(int iy) noexcept { return data() + static_cast<std::ptrdiff_t>(iy) * nx_; }
+    [[nodiscard]] const T* row(int iy) const noexcept {
+        return data() + static_cast<std::ptrdiff_t>(iy) * nx_;
+    }
+    [[nodiscard]] T& at(int ix, int iy) { return view().at(ix, iy); }
+    [[nodiscard]] const T& at(int ix, int iy) const { return view().at(ix, iy); }
+    [[nodiscard]] ImageView<T> view() noexcept { return {data(), nx_, ny_, nx_}; }
+    [[nodiscard]] ImageView<const T> view() const noexcept { return {data(), nx_, ny_, nx_}; }
+
+    /// A copy, for files and pictures.
+    operator Image<T>() const {
+        Image<T> image(nx_, ny_);
+        std::memcpy(image.data(), data(), size() * sizeof(T));
+        return image;
+    }
+
+    void fill(T value) { std::fill_n(data(), size(), value); }
+
+    /// Moves the contents along with their window and gives the cells that came into view `value`.
+    void shift(Shift shift, T value) {
+        if (shift.is_zero()) return;
+        if (std::abs(shift.dx) >= nx_ || std::abs(shift.dy) >= ny_) {
+            fill(value);
+            return;
+        }
+        move_begin(static_cast<std::ptrdiff_t>(shift.dy) * nx_ + shift.dx);
+        const int kept_columns = nx_ - std::abs(shift.dx);
+        const int first_new_ix = shift.dx > 0 ? kept_columns : 0;
+        const int kept_rows = ny_ - std::abs(shift.dy);
+        const int first_new_iy = shift.dy > 0 ? kept_rows : 0;
+        std::fill_n(
+            row(first_new_iy), static_cast<std::ptrdiff_t>(std::abs(shift.dy)) * nx_, value);
+        const int first_kept_iy = shift.dy > 0 ? 0 : -shift.dy;
+        for (int iy = first_kept_iy; iy < first_kept_iy + kept_rows; ++iy) {
+            std::fill_n(row(iy) + first_new_ix, std::abs(shift.dx), value);
+        }
+    }
+
+  private:
+    void move_begin(std::ptrdiff_t by) {
+        const auto cells = static_cast<std::ptrdiff_t>(size());
+        const std::ptrdiff_t moved = begin_ + by;
+        if (moved >= 0 && moved + cells <= static_cast<std::ptrdiff_t>(cells_.size())) {
+            begin_ = moved;
+            return;
+        }
+        // Only what stays in view is there to be moved.
+        const std::ptrdiff_t middle = cells / 2;
+        const std::ptrdiff_t kept = cells - std::abs(by);
+        if (kept > 0) {
+            const std::ptrdiff_t from = by > 0 ? moved : begin_;
+            const std::ptrdiff_t to = by > 0 ? middle : middle - by;
+            std::memmove(cells_.data() + to,
+                         cells_.data() + from,
+                         static_cast<std::size_t>(kept) * sizeof(T));
+        }
+        begin_ = middle;
+    }
+
+    int nx_ = 0;
+    int ny_ = 0;
+    std::vector<T> cells_;
+    std::ptrdiff_t begin_ = 0;
+};
+
+}  // namespace surefoot::grid
