@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <functional>
 #include <limits>
@@ -170,34 +169,6 @@ Result<std::vector<BenchResult>> bench_camera(const CommonOptions&, Executor&) {
     return results;
 }
 
-/// A gently waved floor with holes, 240 x 240 cells of 25 mm.
-grid::Layer waved_floor() {
-    constexpr int kSide = 240;
-    grid::Layer height_m(kSide, kSide);
-    for (int iy = 0; iy < kSide; ++iy) {
-        for (int ix = 0; ix < kSide; ++ix) {
-            const bool hole = (ix * 7 + iy * 13) % 41 == 0;
-            height_m.at(ix, iy) =
-                hole ? std::nanf("") : 0.01F * std::sin(0.1F * static_cast<float>(ix + iy));
-        }
-    }
-    return height_m;
-}
-
-Result<std::vector<BenchResult>> bench_traversability(const CommonOptions& common,
-                                                      Executor& executor) {
-    const auto settings = load_settings(common);
-    if (!settings) return settings.error();
-    const grid::Layer height_m = waved_floor();
-    traversability::Traversability rater(settings->pipeline.traversability);
-    traversability::TraversabilityLayers layers;
-    return std::vector<BenchResult>{
-        {"traversability/240x240", timed(20, [&] {
-             rater.rate(
-                 height_m.view(), settings->pipeline.elevation.resolution_m, executor, layers);
-         })}};
-}
-
 Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
     const auto machine = load_machine("rex");
     if (!machine) return machine.error();
@@ -278,7 +249,7 @@ int bench(const BenchOptions& options) {
     const std::pair<const char*, Group> groups[] = {{"chain", bench_chain},
                                                     {"camera", bench_camera},
                                                     {"stereo", bench_stereo},
-                                                    {"traversability", bench_traversability},
+                                                    {"terrain", bench_terrain},
                                                     {"gate", bench_gate},
                                                     {"sim", bench_sim}};
     std::vector<BenchResult> all;
@@ -297,7 +268,7 @@ int bench(const BenchOptions& options) {
                "median ms",
                "p99 ms",
                "least CPU ms",
-               "OpenCV ms",
+               "peer ms",
                "its least CPU ms");
     const auto optional = [](const std::optional<double>& value_ms) {
         return value_ms ? fmt::format("{:.3f}", *value_ms) : "-";

@@ -23,7 +23,8 @@ struct Timing {
 struct BenchResult {
     std::string name;
     Timing ours;
-    std::optional<Timing> peer = {};  ///< the same job by somebody else, measured in the same run
+    /// The same job in the same run by somebody else (OpenCV), or the plain way (terrain).
+    std::optional<Timing> peer = {};
 };
 
 /// Times `work`, after one call that warms up.
@@ -33,5 +34,9 @@ struct BenchResult {
 /// could bring.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common,
                                                             Executor& executor);
+
+/// Traversability of maps of several sizes, settings and instruction sets, beside the plain way.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common,
+                                                             Executor& executor);
 
 }  // namespace surefoot::app

@@ -638,8 +638,8 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
         exit_code);
     bench_verb
         ->add_option(
-            "group", all.bench.group, "chain, camera, traversability, gate, sim; empty = all")
-        ->check(CLI::IsMember({"chain", "camera", "stereo", "traversability", "gate", "sim"}));
+            "group", all.bench.group, "chain, camera, stereo, terrain, gate, sim; empty = all")
+        ->check(CLI::IsMember({"chain", "camera", "stereo", "terrain", "gate", "sim"}));
 
     CLI::App* record_verb =
         bind(add_verb(app,

@@ -8,6 +8,8 @@
 namespace surefoot::traversability {
 namespace {
 
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
 double limit_cells2(double radius_m, double resolution_m) noexcept {
     const double radius_cells = radius_m / resolution_m;
     return radius_cells * radius_cells + 1e-6;
@@ -23,24 +25,39 @@ CellRect CellRect::clipped(int grid_nx, int grid_ny) const noexcept {
     return {x0, y0, std::max(x1 - x0, 0), std::max(y1 - y0, 0)};
 }
 
-void PaddedLayer::reset(int nx, int ny, int margin) {
-    margin_ = margin;
-    cells_.resize(nx + 2 * margin, ny + 2 * margin);
-    cells_.fill(std::numeric_limits<float>::quiet_NaN());
+void PaddedLayer::reset(const CellRect& rect, int margin) {
+    ix0_ = rect.ix0 - margin;
+    iy0_ = rect.iy0 - margin;
+    const int above = margin + rect.ny;
+    cells_.resize(rect.nx + 2 * margin + kSlack, above + margin);
+    const int width = cells_.width();
+    for (int row = 0; row < cells_.height(); ++row) {
+        float* const cells = cells_.row(row);
+        const bool padding = row < margin || row >= above;
+        std::fill_n(cells, padding ? width : margin, kUnknown);
+        std::fill(cells + margin + rect.nx, cells + width, kUnknown);
+    }
 }
 
 void PaddedLayer::load(ImageView<const float> source, const CellRect& rect) {
     for (int iy = rect.iy0; iy < rect.iy0 + rect.ny; ++iy) {
-        const float* from = source.row(iy);
-        float* to = row(iy);
-        for (int ix = rect.ix0; ix < rect.ix0 + rect.nx; ++ix) {
-            to[ix] = std::isfinite(from[ix]) ? from[ix] : std::numeric_limits<float>::quiet_NaN();
+        const float* from = source.row(iy) + rect.ix0;
+        float* to = cell(rect.ix0, iy);
+        for (int i = 0; i < rect.nx; ++i) {
+            to[i] = std::isfinite(from[i]) ? from[i] : kUnknown;
         }
     }
 }
 
 int Disc::reach_of(double radius_m, double resolution_m) noexcept {
     return static_cast<int>(std::sqrt(limit_cells2(radius_m, resolution_m)));
+}
+
+int Disc::half_width_of(double radius_m, double resolution_m, int dy) noexcept {
+    const double limit = limit_cells2(radius_m, resolution_m);
+    int h = 0;
+    while (static_cast<double>(h + 1) * (h + 1) + static_cast<double>(dy) * dy <= limit) ++h;
+    return h;
 }
 
 void Disc::build(double radius_m, double resolution_m, int stride) {

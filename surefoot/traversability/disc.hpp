@@ -25,23 +25,32 @@ struct CellRect {
     friend bool operator==(const CellRect&, const CellRect&) = default;
 };
 
-/// A copy of (part of) a layer with unknown cells all around it, so that a disc can be read at
+/// A copy of a rectangle of a layer with unknown cells all around it, so that a disc can be read at
 /// every cell without asking where the map ends. NaN is the only unknown in it.
 class PaddedLayer {
   public:
-    /// A layer of nx * ny unknown cells with `margin` more on every side; allocates only to grow.
-    void reset(int nx, int ny, int margin);
-    /// Copies the cells of `rect` (within the layer); values that are not finite become NaN.
+    /// Cells to the right of the margin that may be read too, a few registers full of them.
+    static constexpr int kSlack = 32;
+
+    /// Room for the cells of `rect`, which are to be filled, with `margin` unknown ones on every
+    /// side; allocates only to grow.
+    void reset(const CellRect& rect, int margin);
+    /// Copies the cells of `rect` (within the layer and the padding); values that are not finite
+    /// become NaN.
     void load(ImageView<const float> source, const CellRect& rect);
 
     [[nodiscard]] int stride() const noexcept { return cells_.width(); }
-    [[nodiscard]] float* row(int iy) noexcept { return cells_.row(iy + margin_) + margin_; }
-    [[nodiscard]] const float* row(int iy) const noexcept {
-        return cells_.row(iy + margin_) + margin_;
+    /// The cell (ix, iy) of the map, which may lie in the margin.
+    [[nodiscard]] float* cell(int ix, int iy) noexcept {
+        return cells_.row(iy - iy0_) + (ix - ix0_);
+    }
+    [[nodiscard]] const float* cell(int ix, int iy) const noexcept {
+        return cells_.row(iy - iy0_) + (ix - ix0_);
     }
 
   private:
-    int margin_ = 0;
+    int ix0_ = 0;  ///< of the first cell that is stored
+    int iy0_ = 0;
     grid::Layer cells_;
 };
 
@@ -60,6 +69,8 @@ struct Disc {
 
     /// How many cells a disc of that radius reaches.
     [[nodiscard]] static int reach_of(double radius_m, double resolution_m) noexcept;
+    /// Columns -h ... h of its row dy (|dy| <= reach).
+    [[nodiscard]] static int half_width_of(double radius_m, double resolution_m, int dy) noexcept;
     /// Fills the disc for layers of that stride; keeps its memory.
     void build(double radius_m, double resolution_m, int stride);
 };

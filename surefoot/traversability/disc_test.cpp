@@ -60,11 +60,11 @@ TEST(PaddedLayer, IsUnknownAroundAndWhereValuesAreNotFinite) {
     source.at(0, 0) = 1.5F;
     source.at(1, 0) = -infinity;
     PaddedLayer layer;
-    layer.reset(2, 1, 2);
+    layer.reset({0, 0, 2, 1}, 2);
     layer.load(std::as_const(source).view(), {0, 0, 2, 1});
     for (int iy = -2; iy <= 2; ++iy) {
         for (int ix = -2; ix <= 3; ++ix) {
-            const float value = layer.row(iy)[ix];
+            const float value = *layer.cell(ix, iy);
             if (ix == 0 && iy == 0) {
                 EXPECT_EQ(value, 1.5F);
             } else {

@@ -9,8 +9,6 @@
 namespace surefoot::traversability {
 namespace {
 
-/// Second principal variance at or below which the points lie on a line, (0.1 mm)^2.
-constexpr double kMinMiddleVariance_m2 = 1e-8;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Sums over the known cells of a disc, in metres from the centre cell and its height: all terms
@@ -65,6 +63,13 @@ Eigen::Vector3d normal_at(const float* center, const Disc& disc) noexcept {
 
 }  // namespace
 
+Normal plain_normal(const float* center, const Disc& disc) noexcept {
+    const Eigen::Vector3d normal = normal_at(center, disc);
+    return {static_cast<float>(normal.x()),
+            static_cast<float>(normal.y()),
+            static_cast<float>(normal.z())};
+}
+
 void normals(const PaddedLayer& height_m,
              const Disc& disc,
              const CellRect& rect,
@@ -72,12 +77,11 @@ void normals(const PaddedLayer& height_m,
              grid::Layer& normal_y,
              grid::Layer& normal_z) {
     for (int iy = rect.iy0; iy < rect.iy0 + rect.ny; ++iy) {
-        const float* height = height_m.row(iy);
         for (int ix = rect.ix0; ix < rect.ix0 + rect.nx; ++ix) {
-            const Eigen::Vector3d normal = normal_at(height + ix, disc);
-            normal_x.row(iy)[ix] = static_cast<float>(normal.x());
-            normal_y.row(iy)[ix] = static_cast<float>(normal.y());
-            normal_z.row(iy)[ix] = static_cast<float>(normal.z());
+            const Normal normal = plain_normal(height_m.cell(ix, iy), disc);
+            normal_x.row(iy)[ix] = normal.x;
+            normal_y.row(iy)[ix] = normal.y;
+            normal_z.row(iy)[ix] = normal.z;
         }
     }
 }

@@ -42,7 +42,6 @@ void rate_roughness(const TraversabilityConfig::Roughness& config,
                     const CellRect& rect,
                     grid::Layer& roughness) {
     for (int iy = rect.iy0; iy < rect.iy0 + rect.ny; ++iy) {
-        const float* height = height_m.row(iy);
         for (int ix = rect.ix0; ix < rect.ix0 + rect.nx; ++ix) {
             const Normal normal{static_cast<double>(normal_x.row(iy)[ix]),
                                 static_cast<double>(normal_y.row(iy)[ix]),
@@ -51,7 +50,7 @@ void rate_roughness(const TraversabilityConfig::Roughness& config,
                 roughness.row(iy)[ix] = normal_x.row(iy)[ix];
                 continue;
             }
-            const double value_m = roughness_m(height + ix, disc, normal);
+            const double value_m = roughness_m(height_m.cell(ix, iy), disc, normal);
             // False for NaN too: a lone cell is rated 0.
             const bool passable = value_m < config.critical_m;
             roughness.row(iy)[ix] =

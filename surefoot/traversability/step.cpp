@@ -47,10 +47,8 @@ void step_heights(const PaddedLayer& height_m,
                   const CellRect& rect,
                   PaddedLayer& step_height_m) {
     for (int iy = rect.iy0; iy < rect.iy0 + rect.ny; ++iy) {
-        const float* height = height_m.row(iy);
-        float* out = step_height_m.row(iy);
         for (int ix = rect.ix0; ix < rect.ix0 + rect.nx; ++ix) {
-            out[ix] = step_height_at(height + ix, first_disc);
+            *step_height_m.cell(ix, iy) = step_height_at(height_m.cell(ix, iy), first_disc);
         }
     }
 }
@@ -61,9 +59,8 @@ void rate_step(const TraversabilityConfig::Step& config,
                const CellRect& rect,
                grid::Layer& step) {
     for (int iy = rect.iy0; iy < rect.iy0 + rect.ny; ++iy) {
-        const float* step_height = step_height_m.row(iy);
         for (int ix = rect.ix0; ix < rect.ix0 + rect.nx; ++ix) {
-            step.row(iy)[ix] = step_rating(config, step_height + ix, second_disc);
+            step.row(iy)[ix] = step_rating(config, step_height_m.cell(ix, iy), second_disc);
         }
     }
 }

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/surefoot/bench_result.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/traversability/traversability.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using traversability::Traversability;
+using traversability::TraversabilityConfig;
+using traversability::TraversabilityLayers;
+using traversability::Way;
+
+constexpr double kResolution_m = 0.025;
+constexpr int kSide = 240;
+constexpr int kRepeats = 41;
+
+/// Floor with four stairs, a ramp and a box, 2 mm of noise and 3 % of holes: what the ancestors
+/// were timed on (repeated every 6 m on larger maps).
+grid::Layer measured_ground(int side, double resolution_m) {
+    constexpr std::uint64_t kSeed = 11;
+    constexpr double kPeriod_m = 6.0;
+    Rng rng(kSeed);
+    grid::Layer height_m(side, side);
+    for (int iy = 0; iy < side; ++iy) {
+        for (int ix = 0; ix < side; ++ix) {
+            const double x_m = std::fmod(ix * resolution_m, kPeriod_m);
+            const double y_m = std::fmod(iy * resolution_m, kPeriod_m);
+            double z_m = 0.0;
+            if (x_m > 4.0 && y_m > 2.0 && y_m < 4.0)
+                z_m = 0.17 * std::min(4.0, std::floor((x_m - 4.0) / 0.29) + 1.0);
+            if (x_m < 2.0 && y_m > 4.0) z_m = 0.3 * (2.0 - x_m);
+            if (x_m > 1.4 && x_m < 2.0 && y_m > 1.5 && y_m < 2.0) z_m = 0.4;
+            const bool hole = rng.uniform() < 0.03;
+            height_m.at(ix, iy) = hole ? std::numeric_limits<float>::quiet_NaN()
+                                       : static_cast<float>(z_m + 0.002 * rng.normal());
+        }
+    }
+    return height_m;
+}
+
+Timing time_rating(const TraversabilityConfig& config,
+                   const grid::Layer& height_m,
+                   double resolution_m,
+                   Executor& executor,
+                   Way way = Way::fast) {
+    Traversability rater(config.widened_to(resolution_m), way);
+    TraversabilityLayers layers;
+    // A second for the largest maps, not minutes.
+    const int repeats = std::clamp(kRepeats * kSide / height_m.width(), 5, kRepeats);
+    return timed(repeats, [&] { rater.rate(height_m.view(), resolution_m, executor, layers); });
+}
+
+/// The cells that 60 x 60 changed ones can affect, in the middle of a rated map.
+Timing time_change(const TraversabilityConfig& config,
+                   const grid::Layer& height_m,
+                   Executor& executor) {
+    Traversability rater(config);
+    TraversabilityLayers layers;
+    rater.rate(height_m.view(), kResolution_m, executor, layers);
+    const auto affected = rater.affected_by({90, 90, 60, 60}, kResolution_m);
+    return timed(kRepeats,
+                 [&] { rater.rate(height_m.view(), kResolution_m, affected, executor, layers); });
+}
+
+}  // namespace
+
+Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common, Executor& executor) {
+    const TraversabilityConfig thesis = *traversability::preset("rex_zed");
+    const grid::Layer ground = measured_ground(kSide, kResolution_m);
+    std::vector<BenchResult> results;
+    for (const auto& [name, config] : {std::pair{"rex_zed", thesis},
+                                       std::pair{"default", TraversabilityConfig{}},
+                                       std::pair{"laser", *traversability::preset("laser")}}) {
+        results.push_back({fmt::format("terrain/rate_{}_240x240", name),
+                           time_rating(config, ground, kResolution_m, executor),
+                           time_rating(config, ground, kResolution_m, executor, Way::plain)});
+    }
+    if (common.threads == 1) {
+        hwy::SetSupportedTargetsForTest(HWY_AVX2 | HWY_SSE4 | HWY_SSSE3 | HWY_SCALAR);
+        results.push_back({"terrain/rate_rex_zed_avx2_240x240",
+                           time_rating(thesis, ground, kResolution_m, executor)});
+        hwy::SetSupportedTargetsForTest(0);
+    }
+    for (const int side : {120, 480, 960, 1920}) {
+        results.push_back(
+            {fmt::format("terrain/rate_rex_zed_{0}x{0}", side),
+             time_rating(thesis, measured_ground(side, kResolution_m), kResolution_m, executor)});
+    }
+    constexpr double kFine_m = 0.01;
+    results.push_back({"terrain/rate_rex_zed_600x600_1cm",
+                       time_rating(thesis, measured_ground(600, kFine_m), kFine_m, executor)});
+    results.push_back(
+        {"terrain/rate_rex_zed_changed_60x60", time_change(thesis, ground, executor)});
+    return results;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/traversability/disc.hpp"
+#include "surefoot/traversability/disc_runs.hpp"
+#include "surefoot/traversability/traversability_config.hpp"
+
+/// Normals, slope and roughness over a block of rows, compiled once for every instruction set and
+/// chosen at run time; all give the same bytes. What they compute is written plainly in
+/// normals.hpp, slope.hpp and roughness.hpp.
+namespace surefoot::traversability::rows {
+
+/// Columns that are worked on at a time: few enough that the runs of a disc's rows stay in the
+/// nearest memory.
+inline constexpr int kStrip = 32;
+
+/// Sums over the known cells of runs of one half width around kStrip neighbouring columns; x in
+/// cells from the centre of the run, z in metres. z^2 is held in two parts, see surface_rows.cpp.
+struct alignas(64) RunSums {
+    double z[kStrip];
+    double xz[kStrip];
+    double zz_high[kStrip];
+    double zz_low[kStrip];
+    float n[kStrip];
+    float x[kStrip];
+    float xx[kStrip];
+};
+
+/// What is the same for all blocks.
+struct Surface {
+    const PaddedLayer& height_m;
+    double resolution_m;
+    const RunsOfDiscs& widths;  ///< of both discs
+    const DiscRuns& normals;
+    const DiscRuns& roughness;
+    const Disc& plain_normals;  ///< for the cells whose plane is poorly determined
+    TraversabilityConfig::Slope slope_config;
+    TraversabilityConfig::Roughness roughness_config;
+};
+
+struct SurfaceLayers {
+    grid::Layer& normal_x;
+    grid::Layer& normal_y;
+    grid::Layer& normal_z;
+    grid::Layer& slope;
+    grid::Layer& roughness;
+};
+
+/// `ring` holds RunsOfDiscs::kept_runs() elements. The normals agree with the plain ones to 1e-9
+/// rad before they are rounded to float; slopes to 1e-6 rad and roughness to 1e-6 of the rating.
+void rate_surface(const Surface& surface,
+                  const CellRect& rect,
+                  RunSums* ring,
+                  const SurfaceLayers& out);
+
+}  // namespace surefoot::traversability::rows
