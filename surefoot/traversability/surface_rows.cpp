@@ -293,7 +293,7 @@ struct Axis {
 /// geometry::smallest_axis for the plain way.
 HWY_INLINE Axis smallest_axis(const Scatter& s, double min_middle) {
     constexpr int kMaxSteps = 6;
-    constexpr double kSmallStep = 1e-4;  // the error of the next root is its cube
+    constexpr double kSmallStep = 1e-3;  // its cube is the turn that the next root leaves
     constexpr double kMinLength = 1e-4;  // rounding 1e-16 over it turns the axis by 1e-12 rad
     constexpr double kMaxTurn = 1e-10;
     const auto mul = [](Doubles a, Doubles b) { return hn::Mul(a, b); };
@@ -485,7 +485,11 @@ void rate_strip(const Surface& surface,
     const bool same_disc = surface.normals.width == surface.roughness.width;
     RunSums* row[2 * DiscRuns::kMaxReach + 1];  // [dy + reach] around the present centre
     for (int k = 0; k < kept; ++k) row[k] = ring + static_cast<std::size_t>(k) * half_widths.size();
-    RowCells cells;
+    RowCells cells[2];
+    const auto load = [&](int iy) {
+        load_row(surface.height_m.cell(strip.ix0 - reach, iy), columns + 2 * reach, cells[iy & 1]);
+    };
+    load(strip.iy0 - reach);
     DiscSums sums;
     // A strip that is narrower than whole registers is rated beside the layers and copied.
     const bool whole = columns == strip.nx;
@@ -494,9 +498,10 @@ void rate_strip(const Surface& surface,
         &out.normal_x, &out.normal_y, &out.normal_z, &out.slope, &out.roughness};
     for (int iy = strip.iy0 - reach; iy < strip.iy0 + strip.ny + reach; ++iy) {
         std::rotate(row, row + 1, row + kept);
-        load_row(surface.height_m.cell(strip.ix0 - reach, iy), columns + 2 * reach, cells);
-        reduce_heights(cells, reach, columns, half_widths, row[kept - 1]);
-        reduce_counts(cells, reach, columns, half_widths, row[kept - 1]);
+        // One row ahead: what has just been written cannot be read at once at another offset.
+        if (iy + 1 < strip.iy0 + strip.ny + reach) load(iy + 1);
+        reduce_heights(cells[iy & 1], reach, columns, half_widths, row[kept - 1]);
+        reduce_counts(cells[iy & 1], reach, columns, half_widths, row[kept - 1]);
         const int center = iy - reach;
         if (center < strip.iy0) continue;
         const float* const height_m = surface.height_m.cell(strip.ix0, center);
