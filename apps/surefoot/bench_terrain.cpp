@@ -57,7 +57,7 @@ Timing time_rating(const TraversabilityConfig& config,
                    Way way = Way::fast) {
     Traversability rater(config.widened_to(resolution_m), way);
     TraversabilityLayers layers;
-    // A second for the largest maps, not minutes.
+    // Fewer for large maps: a second or two, not minutes.
     const int repeats = std::clamp(kRepeats * kSide / height_m.width(), 5, kRepeats);
     return timed(repeats, [&] { rater.rate(height_m.view(), resolution_m, executor, layers); });
 }
