@@ -12,6 +12,7 @@
 #include "io/file.hpp"
 #include "io/text.hpp"
 #include "io/yaml_tree.hpp"
+#include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::io {
 namespace {

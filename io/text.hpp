@@ -35,14 +35,6 @@ namespace surefoot::io {
 /// A value as it may appear in an error message: one line, printable, at most 40 characters.
 [[nodiscard]] std::string quoted(std::string_view value);
 
-/// Names in order of their likeness to `name` (edit distance), at most `count`, only plausible
-/// ones.
-[[nodiscard]] std::vector<std::string> nearest_names(std::string_view name,
-                                                     std::span<const std::string> names,
-                                                     std::size_t count = 3);
-/// "; did you mean 'a' or 'b'?" from nearest_names, or an empty string.
-[[nodiscard]] std::string did_you_mean(std::string_view name, std::span<const std::string> names);
-
 /// Sorts "frame2" before "frame10": runs of digits compare as numbers.
 [[nodiscard]] bool natural_less(std::string_view a, std::string_view b) noexcept;
 

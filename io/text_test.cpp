@@ -76,14 +76,6 @@ TEST(Text, NaturalOrderCountsNumbers) {
     EXPECT_NE(natural_less("a01", "a1"), natural_less("a1", "a01"));
 }
 
-TEST(Text, NearestNamesFindTypingErrors) {
-    const std::vector<std::string> names{"baseline_m", "focal_px", "rate_hz", "left"};
-    EXPECT_EQ(nearest_names("basline_m", names).at(0), "baseline_m");
-    EXPECT_EQ(nearest_names("foacl_px", names).at(0), "focal_px");
-    EXPECT_TRUE(nearest_names("zzzzzzzz", names).empty());
-    EXPECT_TRUE(nearest_names("", names).empty());
-}
-
 TEST(Text, LinesCountAndLoseTheirEnds) {
     LineReader lines("a\r\n\nb");
     EXPECT_EQ(lines.next(), "a");

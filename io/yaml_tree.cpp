@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "io/text.hpp"
+#include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::io {
 namespace {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/core/nearest_names.hpp"
+
 namespace surefoot::sim {
 namespace {
 
@@ -112,11 +114,14 @@ Result<camera::StereoRig> rig_preset(const std::string& name) {
         if (name == std::string(mode.name) + kRolling) return zed(mode, true);
     }
     if (name == "duo_mlx") return duo_mlx();
+    const std::vector<std::string> names = rig_presets();
+    const std::string likely = did_you_mean(name, names);
     return usage_error(
-        fmt::format("simulator: no rig is named '{}'; there are: {}. Another rig can be "
-                    "given as a file",
+        fmt::format("simulator: no file and no rig is named '{}'{} There are: {}; another "
+                    "rig can be given as a file",
                     name,
-                    fmt::join(rig_presets(), ", ")));
+                    likely.empty() ? "." : likely,
+                    fmt::join(names, ", ")));
 }
 
 }  // namespace surefoot::sim

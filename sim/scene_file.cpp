@@ -11,6 +11,7 @@
 #include "sim/scene_motion.hpp"
 #include "sim/scene_node.hpp"
 #include "sim/scene_reader.hpp"
+#include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -147,13 +148,14 @@ const Entry* choose(SceneReader& reader,
         if (entry.info.name == name) return &entry;
         names.push_back(entry.info.name);
     }
-    reader.fail(
-        1,
-        name.empty()
-            ? fmt::format("holds {} scenes; add '#NAME' with one of: {}",
-                          names.size(),
-                          fmt::join(names, ", "))
-            : fmt::format("no scene is named '{}'; there are: {}", name, fmt::join(names, ", ")));
+    reader.fail(1,
+                name.empty() ? fmt::format("holds {} scenes; add '#NAME' with one of: {}",
+                                           names.size(),
+                                           fmt::join(names, ", "))
+                             : fmt::format("no scene is named '{}'{}; there are: {}",
+                                           name,
+                                           did_you_mean(name, names),
+                                           fmt::join(names, ", ")));
     return nullptr;
 }
 

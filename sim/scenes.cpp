@@ -2,7 +2,6 @@
 #include "sim/scenes.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <fstream>
 #include <iterator>
@@ -10,6 +9,7 @@
 #include "sim/embedded_scenes.hpp"
 #include "sim/scene_file.hpp"
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -59,13 +59,19 @@ Result<ScriptedScene> make_scene(const std::string& name, std::uint64_t seed) {
     if (path.ends_with(kExtension)) {
         return scene_of_file(path, hash == name.npos ? "" : name.substr(hash + 1), seed);
     }
-    std::vector<std::string_view> names;
+    std::vector<std::string> names;
     for (const Entry& entry : index()) {
         if (entry.info.name == name) return read_scene(*entry.file, name, seed);
         names.push_back(entry.info.name);
     }
-    return usage_error(fmt::format(
-        "simulator: no scene is named '{}'; there are: {}", name, fmt::join(names, ", ")));
+    // A hundred names would bury the likely one.
+    const std::string likely = did_you_mean(name, names);
+    return usage_error(
+        fmt::format("simulator: no scene is named '{}'{} 'surefoot sim --list' "
+                    "shows all {}",
+                    name,
+                    likely.empty() ? ";" : likely,
+                    names.size()));
 }
 
 }  // namespace surefoot::sim

@@ -79,18 +79,21 @@ TEST(ScenesTest, EveryListedSceneCanBeMadeAndIsClosed) {
     }
 }
 
-TEST(ScenesTest, UnknownNamesListWhatThereIs) {
-    const auto scene = make_scene("moon", 1);
+TEST(ScenesTest, UnknownNamesSayWhatIsLikelyAndWhereTheListIs) {
+    const auto scene = make_scene("demo_stair", 1);
     ASSERT_FALSE(scene);
     EXPECT_EQ(scene.error().code, ErrorCode::usage);
-    EXPECT_EQ(scene.error().message.find("simulator: no scene is named 'moon'; there are: "), 0U);
-    for (const SceneInfo& info : list_scenes()) {
-        EXPECT_NE(scene.error().message.find(info.name), std::string::npos) << info.name;
-    }
-    const auto rig = rig_preset("pinhole");
+    EXPECT_EQ(
+        scene.error().message,
+        "simulator: no scene is named 'demo_stair'; did you mean 'demo_stairs'? 'surefoot sim "
+        "--list' shows all " +
+            std::to_string(list_scenes().size()));
+    EXPECT_EQ(make_scene("qqqqqqqqqqq", 1).error().message.find("did you mean"), std::string::npos);
+    const auto rig = rig_preset("zed_vag");
     ASSERT_FALSE(rig);
     EXPECT_EQ(rig.error().code, ErrorCode::usage);
-    EXPECT_NE(rig.error().message.find("zed_vga"), std::string::npos);
+    EXPECT_NE(rig.error().message.find("did you mean 'zed_vga'"), std::string::npos);
+    EXPECT_NE(rig.error().message.find("duo_mlx"), std::string::npos);
 }
 
 TEST(ScenesTest, TheSeedMovesThePathByCentimetresAndNothingElse) {

@@ -1,22 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "apps/surefoot/resources.hpp"
+#include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::app {
 
 Result<std::string> find_resource(std::string_view folder, std::string_view name) {
     const std::string wanted = fmt::format("{}/{}.yaml", folder, name);
-    std::string known;
+    std::vector<std::string> known;
     for (const Resource& resource : resources()) {
         if (resource.name == wanted) return std::string(resource.text);
         if (resource.name.starts_with(fmt::format("{}/", folder))) {
-            const auto stem =
-                resource.name.substr(folder.size() + 1, resource.name.size() - folder.size() - 6);
-            known += fmt::format("{}{}", known.empty() ? "" : ", ", stem);
+            known.emplace_back(
+                resource.name.substr(folder.size() + 1, resource.name.size() - folder.size() - 6));
         }
     }
-    return usage_error(fmt::format("there is no '{}' among the {}: {}", name, folder, known));
+    const std::string likely = did_you_mean(name, known);
+    return usage_error(
+        fmt::format("no file is named '{0}', and there is no '{0}' among the {1}{2} "
+                    "There is: {3}",
+                    name,
+                    folder,
+                    likely.empty() ? "." : likely,
+                    fmt::join(known, ", ")));
 }
 
 }  // namespace surefoot::app

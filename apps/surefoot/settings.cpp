@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "apps/surefoot/thread_pool.hpp"
+#include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::app {
 
@@ -29,9 +30,13 @@ Result<Settings> load_settings(const CommonOptions& options) {
     if (!options.preset.empty()) {
         const auto preset = traversability::preset(options.preset);
         if (!preset) {
-            return usage_error(fmt::format("--preset {}: there is no such preset; there are {}",
+            const std::vector<std::string> names(std::begin(traversability::kPresetNames),
+                                                 std::end(traversability::kPresetNames));
+            const std::string likely = did_you_mean(options.preset, names);
+            return usage_error(fmt::format("--preset {}: there is no such preset{} There are: {}",
                                            options.preset,
-                                           fmt::join(traversability::kPresetNames, ", ")));
+                                           likely.empty() ? "." : likely,
+                                           fmt::join(names, ", ")));
         }
         settings.pipeline.traversability = *preset;
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/scenes.hpp"
+#include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -61,8 +62,13 @@ Status check_name(const std::string& name) {
         return scene.name == name;
     });
     if (listed || is_scene_file(name)) return {};
+    std::vector<std::string> names;
+    for (const sim::SceneInfo& scene : known) names.push_back(scene.name);
+    const std::string likely = did_you_mean(name, names);
     return usage_error(
-        fmt::format("--scenes {}: there is no such scene; 'surefoot sim --list' shows them", name));
+        fmt::format("--scenes {}: there is no such scene{} 'surefoot sim --list' shows them",
+                    name,
+                    likely.empty() ? ";" : likely));
 }
 
 Result<std::vector<SuiteScene>> open_scenes(const EvalSuiteOptions& options) {
