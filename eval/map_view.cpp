@@ -48,18 +48,6 @@ void draw_body(Picture& picture, const MapView& view, const Pose& T_odom_body) {
                      std::max(kSmallestBody_px, kBodyLength_m * view.px_per_m));
 }
 
-void draw_mark(Picture& picture, const MapView& view, const Mark& mark) {
-    const PointPx center = view.to_px(mark.point_m);
-    draw_mark_symbol(picture, center);
-    TextStyle style = label_style(TextAnchor::left);
-    style.halo = true;
-    style.bold = true;
-    const double width = text_width_px(mark.label, style);
-    const bool fits_right = center.u + 20.0 + width < view.plot.right() - 8.0;
-    if (!fits_right) style.anchor = TextAnchor::right;
-    draw_text(picture, {center.u + (fits_right ? 20.0 : -20.0), center.v}, mark.label, style);
-}
-
 }  // namespace
 
 void draw_axes(Picture& picture, const MapView& view) {
@@ -138,7 +126,7 @@ void draw_overlays(Picture& picture, const MapView& view, const Overlays& overla
     if (overlays.T_odom_body && overlays.T_odom_body->all_finite())
         draw_body(part, inside, *overlays.T_odom_body);
     for (const Mark& mark : overlays.marks) {
-        if (mark.point_m.allFinite()) draw_mark(part, inside, mark);
+        if (mark.point_m.allFinite()) draw_mark_symbol(part, inside.to_px(mark.point_m));
     }
     paste(picture, part, view.plot.left, view.plot.top);
 }
@@ -154,6 +142,8 @@ std::vector<KeyEntry> key_of(const Overlays& overlays) {
         if (outline.label.empty() || std::any_of(entries.begin(), entries.end(), same)) continue;
         entries.push_back({Symbol::outline, outline.color, outline.label, {}});
     }
+    for (const Mark& mark : overlays.marks)
+        entries.push_back({Symbol::mark, palette::kInk, mark.label, {}});
     return entries;
 }
 

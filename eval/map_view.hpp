@@ -39,7 +39,7 @@ struct Outline {
 };
 struct Mark {
     Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
-    std::string label;  ///< beside the mark
+    std::string label;  ///< in the key: words over the map hide what they are about
 };
 struct Overlays {
     std::optional<Pose> T_odom_body;

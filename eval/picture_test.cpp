@@ -186,6 +186,29 @@ TEST(Picture, ConfusionThumbnailIsCutToWhatIsKnown) {
     EXPECT_EQ(render_confusion_thumbnail(geometry, calls, overlays).height(), 200 * kCell_px);
 }
 
+TEST(Picture, MarksAreNamedInTheKeyAndHideLittleOfTheMap) {
+    const grid::GridGeometry geometry{0.025, 240, 240, {-3.0, -3.0}};
+    const grid::Layer layer(240, 240, 0.0F);
+    Overlays overlays = without_scale_bar();
+    overlays.marks = {{{0.0, 0.0}, "this decided"}};
+    const auto key = key_of(overlays);
+    ASSERT_EQ(key.size(), 1U);
+    EXPECT_EQ(key[0].symbol, Symbol::mark);
+    EXPECT_EQ(key[0].label, "this decided");
+    const Picture drawn = render_layer(geometry, layer, plain(), overlays);
+    overlays.marks.clear();
+    const Picture bare = render_layer(geometry, layer, plain(), overlays);
+    constexpr int kSide = 960;
+    constexpr int kSymbol_px = 20;  // from its centre, white edge included
+    for (int v = kTop; v < kTop + kSide; ++v) {
+        for (int u = kLeft; u < kLeft + kSide; ++u) {
+            const int far =
+                std::max(std::abs(u - kLeft - kSide / 2), std::abs(v - kTop - kSide / 2));
+            if (far > kSymbol_px) ASSERT_EQ(bare.at(u, v), drawn.at(u, v)) << u << ", " << v;
+        }
+    }
+}
+
 TEST(Picture, OverlaysStayInsideTheMap) {
     const grid::GridGeometry geometry{0.025, 240, 240, {-3.0, -3.0}};
     const grid::Layer layer(240, 240, 0.0F);
