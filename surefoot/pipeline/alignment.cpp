@@ -29,6 +29,17 @@ Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {
     return Eigen::Quaterniond(R_odom_body).normalized();
 }
 
+/// Why there is no plane, and what helps.
+std::string without_plane(ground::CalibrationReason reason) {
+    const char* const advice =
+        reason == ground::CalibrationReason::disagreement
+            ? "hold the camera still over one level floor while the first frames are taken"
+            : "let more level floor be in view of the first frames; where the camera looks steeply "
+              "down, give a machine file with the height and pitch of its mount, or set "
+              "mount.pitch_deg (and ground.expected_height_m, of base_link)";
+    return fmt::format("ground plane: {}: {}", to_string(reason), advice);
+}
+
 }  // namespace
 
 void AlignmentConfig::describe(ConfigVisitor& visitor) {
@@ -102,21 +113,20 @@ Alignment place_odom(const AlignmentConfig& config,
     } else if (up_imu_body) {
         up_body = *up_imu_body;
         alignment.gravity_source = grid::GravitySource::imu;
-        alignment.reason = ground.accepted
-                               ? fmt::format(
-                                     "tilt from the accelerometer: the ground leans {:.1f} deg "
-                                     "(limit {:.1f}), a ramp",
-                                     ramp_deg,
-                                     config.plane_imu_limit_deg)
-                               : fmt::format("tilt from the accelerometer; ground plane: {}",
-                                             to_string(ground.reason));
+        alignment.reason =
+            ground.accepted
+                ? fmt::format(
+                      "tilt from the accelerometer: the ground leans {:.1f} deg "
+                      "(limit {:.1f}), a ramp",
+                      ramp_deg,
+                      config.plane_imu_limit_deg)
+                : fmt::format("tilt from the accelerometer; {}", without_plane(ground.reason));
     } else {
         alignment.reason = fmt::format(
-            "tilt assumed from mount.pitch_deg = {:.1f}; ground plane: {}; no accelerometer at "
-            "rest. The gate "
-            "answers ERROR on such a map",
+            "tilt assumed from mount.pitch_deg = {:.1f}, and the gate answers ERROR on such a map: "
+            "no accelerometer at rest; {}",
             config.pitch_deg,
-            to_string(ground.reason));
+            without_plane(ground.reason));
     }
     alignment.T_odom_body.rotation = level(up_body);
     if (ground.accepted) {

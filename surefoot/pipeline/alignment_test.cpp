@@ -58,11 +58,14 @@ TEST(Alignment, without_a_plane_stays_at_base_link_and_says_what_it_used) {
     EXPECT_EQ(by_imu.T_odom_body.translation_m.norm(), 0.0);
     EXPECT_NE(by_imu.reason.find(to_string(ground::CalibrationReason::no_observation)),
               std::string::npos);
+    EXPECT_NE(by_imu.reason.find("more level floor"), std::string::npos) << "what to do";
 
     AlignmentConfig config;
     config.pitch_deg = 30.0;
     const Alignment assumed = place_odom(config, {}, std::nullopt);
     EXPECT_EQ(assumed.gravity_source, grid::GravitySource::assumed);
+    for (const char* advice : {"machine file", "mount.pitch_deg", "more level floor"})
+        EXPECT_NE(assumed.reason.find(advice), std::string::npos) << assumed.reason;
     // base_link looks 30 deg down: its x axis points below the horizon by that.
     const Eigen::Vector3d forward = assumed.T_odom_body.rotation * Eigen::Vector3d::UnitX();
     EXPECT_NEAR(std::asin(-forward.z()), 30 * kRadPerDeg, kRounding);
