@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -60,7 +61,26 @@ void keep_smaller(float& kept_px, float candidate_px) {
     if (std::isnan(kept_px) || candidate_px < kept_px) kept_px = candidate_px;
 }
 
+double median(std::vector<float>& values) {
+    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return static_cast<double>(*middle);
+}
+
 }  // namespace
+
+std::optional<double> suspected_factor(double truth_over_estimate) noexcept {
+    // Middlebury: 2, 3, 4, 8; OpenCV: 16; KITTI: 256; the others between two of these.
+    constexpr double kFactors[] = {2.0, 3.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0};
+    constexpr double kTolerance = 0.125;  // of the factor: even a poor matcher's median is better
+    for (const double factor : kFactors) {
+        for (const double candidate : {factor, 1.0 / factor}) {
+            if (std::abs(truth_over_estimate / candidate - 1.0) <= kTolerance) return candidate;
+        }
+    }
+    return std::nullopt;
+}
 
 Image<float> filled(ImageView<const float> disparity_px) {
     Image<float> result(disparity_px.width, disparity_px.height, kUnknown);
@@ -91,6 +111,7 @@ Result<DepthErrors> depth_errors(const DepthPair& pair) {
     BadCounter known;
     std::vector<float> errors_px;
     std::vector<float> sigmas_px;
+    std::vector<float> ratios;
     DepthErrors result;
     for (int v = 0; v < pair.truth_px.height; ++v) {
         for (int u = 0; u < pair.truth_px.width; ++u) {
@@ -103,6 +124,8 @@ Result<DepthErrors> depth_errors(const DepthPair& pair) {
             if (std::isnan(estimate_px)) continue;
             known.add(estimate_px - truth_px);
             errors_px.push_back(static_cast<float>(estimate_px - truth_px));
+            if (truth_px > 0.0 && estimate_px > 0.0)
+                ratios.push_back(static_cast<float>(truth_px / estimate_px));
             if (!pair.sigma_px.empty()) sigmas_px.push_back(pair.sigma_px.at(u, v));
         }
     }
@@ -112,6 +135,7 @@ Result<DepthErrors> depth_errors(const DepthPair& pair) {
     result.density_percent = result.counted == 0 ? std::numeric_limits<double>::quiet_NaN()
                                                  : 100.0 * static_cast<double>(errors_px.size()) /
                                                        static_cast<double>(result.counted);
+    result.truth_over_estimate = median(ratios);
     result.known = error_figures(errors_px);
     result.coverage = sigma_coverage(errors_px, sigmas_px);
     result.sparsification = sparsification(errors_px, sigmas_px);

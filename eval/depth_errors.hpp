@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "eval/error_bins.hpp"
 #include "eval/sparsification.hpp"
@@ -37,12 +38,20 @@ struct DepthErrors {
     SigmaCoverage coverage;        ///< of the known ones; empty without sigma
     Sparsification sparsification;
     std::int64_t counted = 0;
+    /// Median of truth / estimate where both are known and positive; about 1 when both are in
+    /// pixels, NaN without such pixels.
+    double truth_over_estimate = 0.0;
 };
 
 /// Unknown pixels take the smaller of the nearest known disparities to their left and right in the
 /// row (the background of an occlusion), as Middlebury fills sparse results. A row without any
 /// known pixel stays unknown.
 [[nodiscard]] Image<float> filled(ImageView<const float> disparity_px);
+
+/// By how much the truth is too large (4) or too small (1/16) to be in pixels: the factor, of those
+/// with which data sets store disparities, that explains the ratio. Nothing when truth and estimate
+/// agree within what a matcher may get wrong, or differ by no such factor.
+[[nodiscard]] std::optional<double> suspected_factor(double truth_over_estimate) noexcept;
 
 /// Errors: images of different sizes.
 [[nodiscard]] Result<DepthErrors> depth_errors(const DepthPair& pair);

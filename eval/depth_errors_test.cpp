@@ -138,5 +138,21 @@ TEST(DepthErrors, ImagesOfDifferentSizesAreNamed) {
     says({large.view(), large.view(), {}, small.view()}, "the sigma has 2 x 1");
 }
 
+TEST(DepthErrors, NoticeATruthThatIsNotInPixels) {
+    const auto estimate = row({10.0F, 20.5F, 29.0F, kNan, 41.0F});
+    const auto truth_times = [&](float factor) {
+        Image<float> truth = row({10.0F, 20.0F, 30.0F, 35.0F, 40.0F});
+        for (std::size_t i = 0; i < truth.size(); ++i) truth.data()[i] *= factor;
+        return errors_of(estimate, truth).truth_over_estimate;
+    };
+    EXPECT_FALSE(suspected_factor(truth_times(1.0F)).has_value());
+    for (const float factor : {3.0F, 4.0F, 16.0F, 256.0F, 1.0F / 16.0F})
+        EXPECT_EQ(suspected_factor(truth_times(factor)),
+                  std::optional<double>(factor == 1.0F / 16.0F ? 1.0 / 16.0 : factor));
+    // A bad estimate is no proof: nothing stores 1.4 times the disparity.
+    EXPECT_FALSE(suspected_factor(truth_times(1.4F)).has_value());
+    EXPECT_FALSE(suspected_factor(std::nan("")).has_value());
+}
+
 }  // namespace
 }  // namespace surefoot::eval

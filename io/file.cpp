@@ -150,6 +150,13 @@ Result<std::vector<std::string>> list_files(const std::string& folder,
     return names;
 }
 
+std::optional<std::uint64_t> free_bytes(const std::string& folder) noexcept {
+    std::error_code error;
+    const fs::space_info space = fs::space(folder, error);
+    if (error || space.available == static_cast<std::uintmax_t>(-1)) return std::nullopt;
+    return space.available;
+}
+
 bool is_folder(const std::string& path) noexcept {
     std::error_code ignored;
     return fs::is_directory(path, ignored);

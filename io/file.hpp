@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,8 @@ inline constexpr std::uint64_t kMaxFileBytes = 4ULL << 30;
 [[nodiscard]] Result<std::vector<std::string>> list_files(
     const std::string& folder, const std::vector<std::string>& extensions);
 
+/// What the file system of a folder still takes; nothing where it does not tell.
+[[nodiscard]] std::optional<std::uint64_t> free_bytes(const std::string& folder) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 [[nodiscard]] bool is_file(const std::string& path) noexcept;
 /// "a/b" from "a" and "b"; `b` alone when it is absolute.

@@ -260,7 +260,7 @@ int bench(const BenchOptions& options) {
         all.insert(all.end(), results->begin(), results->end());
     }
     if (options.common.json) {
-        fmt::print("{}\n", bench_json(all));
+        print_answer(bench_json(all));
         return kExitOk;
     }
     fmt::print("{:<40}{:>12}{:>10}{:>14}{:>14}{:>18}\n",

@@ -232,7 +232,7 @@ int calibrate(const CalibrateOptions& options) {
     if (const Status status = solve(chosen, run); !status) return report(status.error());
     if (const Status status = write_results(options, run); !status) return report(status.error());
     if (options.common.json) {
-        fmt::print("{}\n", calibration_json(run));
+        print_answer(calibration_json(run));
     } else {
         print_result(run, options.out_dir);
     }

@@ -14,13 +14,13 @@ namespace surefoot::app {
 int config(const ConfigOptions& options) {
     const auto settings = load_settings(options.common);
     if (options.check_only && options.common.json) {
-        fmt::print("{}\n", check_json(settings ? "" : settings.error().message));
+        print_answer(check_json(settings ? "" : settings.error().message));
     }
     if (!settings) return report(settings.error());
     if (options.check_only) {
         if (!options.common.json) fmt::print("the settings are valid\n");
     } else if (options.common.json) {
-        fmt::print("{}\n", settings_json(io::list_config_of(*settings)));
+        print_answer(settings_json(io::list_config_of(*settings)));
     } else {
         fmt::print("{}", io::format_config_of(*settings));
     }

@@ -42,7 +42,7 @@ int dem(const DemOptions& options) {
     for (std::size_t i = 0; i < heights_m.size(); ++i)
         known += std::isnan(heights_m.data()[i]) ? 0 : 1;
     if (options.common.json) {
-        fmt::print("{}\n", dem_json(grid->geometry, known, bounds, options.out_file));
+        print_answer(dem_json(grid->geometry, known, bounds, options.out_file));
     } else {
         fmt::print("{} points on {} x {} cells of {:g} m, {} of them known, in {}\n",
                    bounds.points(),

@@ -111,7 +111,7 @@ int depth(const DepthOptions& options) {
     if (auto status = write_depth(*measured, options.out_dir); !status)
         return report(status.error());
     if (options.common.json) {
-        fmt::print("{}\n", measured_depth_json(*measured, options.out_dir));
+        print_answer(measured_depth_json(*measured, options.out_dir));
     } else {
         print_depth(*measured, options.out_dir);
     }

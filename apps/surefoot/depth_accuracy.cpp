@@ -171,7 +171,7 @@ int measure_board(const DepthAccuracyOptions& options, const Settings& settings)
         return report(written.error());
     }
     if (options.common.json) {
-        fmt::print("{}\n", depth_accuracy_json(name, *rows, options.out_dir));
+        print_answer(depth_accuracy_json(name, *rows, options.out_dir));
     } else {
         print_table(content.tables[0].header, content.tables[0].rows);
     }
@@ -289,7 +289,7 @@ int show_design(const DepthAccuracyOptions& options, const Settings& settings) {
         return report(written.error());
     }
     if (options.common.json) {
-        fmt::print("{}\n", depth_design_json(*design, rows, options.out_dir));
+        print_answer(depth_design_json(*design, rows, options.out_dir));
     } else {
         for (const std::string& line : content.summary) fmt::print("{}\n", line);
         print_table(content.tables[0].header, content.tables[0].rows);

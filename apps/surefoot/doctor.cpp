@@ -16,6 +16,7 @@
 #include "io/rig_file.hpp"
 #include "sim/rigs.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/stereo/confidence.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -32,8 +33,9 @@ FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
     return {floor_x_m(rig.height - 1.0), floor_x_m(0.0)};
 }
 
-/// What semi-global matching reaches on textured ground; the depth sigmas below are for it.
-constexpr double kDisparitySigma_px = 0.25;
+/// The least that the matcher claims, on well textured ground: what the depth sigmas below and
+/// those of `depth-accuracy --design` are for. A scene's typical pixel is worse by half.
+constexpr double kDisparitySigma_px = stereo::kSigmaFloor_px;
 
 RigView view_of(const camera::StereoRig& rig,
                 const camera::RectifiedRig& r,
@@ -68,7 +70,7 @@ void print(const RigView& view) {
                view.height,
                view.focal_px,
                1e3 * view.baseline_m);
-    fmt::print("depth sigma at {:.2f} px:", view.disparity_sigma_px);
+    fmt::print("depth sigma on well textured ground ({:g} px):", view.disparity_sigma_px);
     for (const auto& depth : view.depths)
         fmt::print("  {:.1f} mm at {:.1f} m", 1e3 * depth.sigma_m, depth.z_m);
     fmt::print(
@@ -111,8 +113,7 @@ int doctor(const DoctorOptions& options) {
     const auto threads = static_cast<int>(std::thread::hardware_concurrency());
     const std::vector<CameraNode> cameras = camera_nodes();
     if (options.common.json) {
-        fmt::print("{}\n",
-                   doctor_json(SUREFOOT_VERSION, threads, machine->value().name, view, cameras));
+        print_answer(doctor_json(SUREFOOT_VERSION, threads, machine->value().name, view, cameras));
         return kExitOk;
     }
     fmt::print("surefoot {}: {} threads, no GPU needed\nsettings: valid\nmachine {}: valid\n",

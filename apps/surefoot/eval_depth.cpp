@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
@@ -34,14 +35,21 @@ Image<float> disparity_of(const Image<Code>& codes, double scale) {
     return disparity_px;
 }
 
-Result<Image<float>> read_truth(const std::string& path, double scale) {
+/// The truth [px], and what its codes were divided by.
+struct Truth {
+    Image<float> disparity_px;
+    double scale = 1.0;
+};
+
+Result<Truth> read_truth(const std::string& path, double scale) {
     if (io::extension_of(path) == ".pfm") {
         auto truth_px = io::read_pfm(path);
-        if (!truth_px || scale <= 0.0) return truth_px;
+        if (!truth_px) return truth_px.error();
+        if (scale <= 0.0) return Truth{std::move(truth_px).value(), 1.0};
         for (std::size_t i = 0; i < truth_px->size(); ++i)
             truth_px->data()[i] =
                 static_cast<float>(static_cast<double>(truth_px->data()[i]) / scale);
-        return truth_px;
+        return Truth{std::move(truth_px).value(), scale};
     }
     const auto bytes = io::read_file(path);
     if (!bytes) return bytes.error();
@@ -50,11 +58,13 @@ Result<Image<float>> read_truth(const std::string& path, double scale) {
     if (header->bits == 16) {
         const auto codes = io::parse_depth_codes(*bytes, path);
         if (!codes) return codes.error();
-        return disparity_of(*codes, scale > 0.0 ? scale : kScale16);
+        const double used = scale > 0.0 ? scale : kScale16;
+        return Truth{disparity_of(*codes, used), used};
     }
     const auto codes = io::parse_grey_image(*bytes, path);
     if (!codes) return codes.error();
-    return disparity_of(*codes, scale > 0.0 ? scale : kScale8);
+    const double used = scale > 0.0 ? scale : kScale8;
+    return Truth{disparity_of(*codes, used), used};
 }
 
 Result<GreyImage> read_mask(const std::string& path) {
@@ -91,19 +101,41 @@ void print_errors(const eval::DepthErrors& errors) {
         errors.sparsification.auc);
 }
 
+/// The --scale that would bring truth and estimate together, where they differ by a known factor.
+std::optional<double> suspected_scale(const eval::DepthErrors& errors, double used) {
+    const auto factor = eval::suspected_factor(errors.truth_over_estimate);
+    return factor ? std::optional<double>(used * *factor) : std::nullopt;
+}
+
+/// All figures are wrong when the truth is not in pixels; nothing is changed without being asked.
+void warn_of_scale(const EvalDepthOptions& options,
+                   const Truth& truth,
+                   double ratio,
+                   double scale) {
+    log_warning(fmt::format(
+        "{}: divided by {:g}, its disparities are {:.3g} times those of {} (median): the figures "
+        "below mean nothing if it holds {:g} times the disparity; then use --scale {:g}",
+        options.truth,
+        truth.scale,
+        ratio,
+        options.estimate,
+        scale,
+        scale));
+}
+
 }  // namespace
 
 int eval_depth(const EvalDepthOptions& options) {
     const auto estimate_px = io::read_pfm(options.estimate);
     if (!estimate_px) return report(estimate_px.error());
-    const auto truth_px = read_truth(options.truth, options.scale);
-    if (!truth_px) return report(truth_px.error());
+    const auto truth = read_truth(options.truth, options.scale);
+    if (!truth) return report(truth.error());
     const auto mask = read_mask(options.mask);
     if (!mask) return report(mask.error());
     const auto sigma_px = options.sigma.empty() ? Image<float>{} : io::read_pfm(options.sigma);
     if (!sigma_px) return report(sigma_px.error());
-    const auto errors =
-        eval::depth_errors({estimate_px->view(), truth_px->view(), mask->view(), sigma_px->view()});
+    const auto errors = eval::depth_errors(
+        {estimate_px->view(), truth->disparity_px.view(), mask->view(), sigma_px->view()});
     if (!errors) return report(errors.error());
     if (errors->counted == 0) {
         return report(
@@ -111,8 +143,10 @@ int eval_depth(const EvalDepthOptions& options) {
                                     options.truth,
                                     options.mask.empty() ? "" : " that the mask lets through")));
     }
+    const auto suspected = suspected_scale(*errors, truth->scale);
+    if (suspected) warn_of_scale(options, *truth, errors->truth_over_estimate, *suspected);
     if (options.common.json) {
-        fmt::print("{}\n", depth_json(*errors));
+        print_answer(depth_json(*errors, {truth->scale, suspected}));
     } else {
         print_errors(*errors);
     }

@@ -172,7 +172,7 @@ int eval_maps(const EvalMapsOptions& options) {
                         options.truth_dir)));
     }
     if (options.common.json) {
-        fmt::print("{}\n", maps_json(result));
+        print_answer(maps_json(result));
     } else {
         print_figures(result);
     }

@@ -170,7 +170,7 @@ int eval_suite(const EvalSuiteOptions& options) {
     writes += io::write_file(options.out_dir + "/suite.json", suite_json(results) + "\n");
     writes += io::write_file(options.out_dir + "/suite.html", suite_html(results, options.out_dir));
     if (options.common.json) {
-        fmt::print("{}\n", suite_json(results));
+        print_answer(suite_json(results));
     } else {
         print_summary(summarise(results));
         fmt::print("{} cases in {}/suite.html\n", results.size(), options.out_dir);

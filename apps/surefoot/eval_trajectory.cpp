@@ -101,7 +101,7 @@ int eval_trajectory(const EvalTrajectoryOptions& options) {
         errors->pairs,
         options.lengths_m.empty() ? eval::kPathLengths_m : options.lengths_m);
     if (options.common.json) {
-        fmt::print("{}\n", trajectory_json(*errors, by_length));
+        print_answer(trajectory_json(*errors, by_length));
     } else {
         print_errors(options, *errors, by_length);
     }

@@ -119,7 +119,7 @@ int fuse(const FuseOptions& options) {
         }
     }
     if (options.common.json) {
-        fmt::print("{}\n", fuse_json(results.size(), options.out_dir));
+        print_answer(fuse_json(results.size(), options.out_dir));
     } else {
         fmt::print("{} steps fused, layers of each in {}/\n", results.size(), options.out_dir);
     }

@@ -12,6 +12,7 @@
 #include "apps/surefoot/offline_map.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "io/text.hpp"
 #include "surefoot/gate/verdict_text.hpp"
 
 namespace surefoot::app {
@@ -27,10 +28,33 @@ int exit_code_of(gate::Decision decision) {
 }
 
 /// No map is no permission: the default verdict, an ERROR, with the reason in words.
-int refuse(const GateOptions& options, const Error& error) {
+int refuse(const GateOptions& options, std::uint8_t command, const Error& error) {
     log_error(error.message);
-    if (options.common.json) fmt::print("{}\n", verdict_json(gate::Verdict{}, error.message, {}));
+    gate::Verdict verdict;
+    verdict.command = command;
+    if (options.common.json) print_answer(verdict_json(verdict, error.message, {}));
     return kExitGateError;
+}
+
+/// The movements of a machine, for people: "9 N, 25 left".
+std::string movements_of(const Machine& machine) {
+    std::string text;
+    for (std::size_t code = 0; code < machine.movements.size(); ++code) {
+        const Movement& movement = machine.movements[code];
+        if (!movement.configured) continue;
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", code, movement.name.data());
+    }
+    return text;
+}
+
+Result<std::uint8_t> parse_command(const std::string& text, const Machine& machine) {
+    const auto code = io::parse_int64(text);
+    if (code && *code >= 0 && *code <= 255) return static_cast<std::uint8_t>(*code);
+    return usage_error(
+        fmt::format("--command '{}': a whole number from 0 to 255 is needed, the code of a "
+                    "joystick sector (1-24) or turn; this machine has {}",
+                    text,
+                    movements_of(machine)));
 }
 
 }  // namespace
@@ -38,21 +62,16 @@ int refuse(const GateOptions& options, const Error& error) {
 int gate(const GateOptions& options) {
     const auto pose = parse_three_numbers("--pose", options.pose, "x,y,yaw (m, m, rad)");
     if (!pose) return report(pose.error());
-    if (options.command < 0 || options.command > 255) {
-        return report(usage_error(
-            fmt::format("--command {}: a code from 0 to 255 is needed", options.command)));
-    }
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
     if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));
+    const auto command = parse_command(options.command, machine->value().machine);
+    if (!command) return report(command.error());
     auto map = load_offline_map(options.map_dir);
-    if (!map) return refuse(options, map.error());
+    if (!map) return refuse(options, *command, map.error());
 
-    gate::Query query = gate::make_query(static_cast<std::uint8_t>(options.command),
-                                         (*pose)[0],
-                                         (*pose)[1],
-                                         std::cos((*pose)[2]),
-                                         std::sin((*pose)[2]));
+    gate::Query query = gate::make_query(
+        *command, (*pose)[0], (*pose)[1], std::cos((*pose)[2]), std::sin((*pose)[2]));
     std::vector<std::string> assumed = map->assumed;
     assumed.push_back("frame and pose are as fresh as when the map was written");
     assumed.push_back("perception was ready");
@@ -67,7 +86,7 @@ int gate(const GateOptions& options) {
     const std::string text = gate::text_of(verdict, query, m);
 
     if (options.common.json) {
-        fmt::print("{}\n", verdict_json(verdict, text, assumed));
+        print_answer(verdict_json(verdict, text, assumed));
     } else {
         fmt::print("{}: {}\n", to_string(verdict.decision), text);
     }

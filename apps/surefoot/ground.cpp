@@ -34,7 +34,7 @@ int ground(const GroundOptions& options) {
                              Eigen::Vector3d((*origin)[0], (*origin)[1], (*origin)[2]),
                              options.common.seed);
     if (options.common.json) {
-        fmt::print("{}\n", ground_json(sighting));
+        print_answer(ground_json(sighting));
     } else if (sighting.observation.accepted) {
         fmt::print("tilt {:.2f} deg, height {:.3f} m, {:.0f} % inliers, rms {:.1f} mm\n",
                    sighting.tilt_rad * 180.0 / M_PI,
@@ -43,8 +43,17 @@ int ground(const GroundOptions& options) {
                    1e3 * sighting.observation.rms_m);
     }
     if (!sighting.observation.accepted) {
-        return report(input_error(
-            fmt::format("{}: no ground plane: {}", options.cloud, to_string(sighting.reason))));
+        return report(input_error(fmt::format(
+            "{}: no ground plane: {}; is --origin ({}) where the sensor was, and is the cloud in "
+            "{} axes as taken (--frame)? ground.max_tilt_deg = {:g}, ground.max_range_m = {:g} and "
+            "ground.tolerance_m = {:g} can be set wider",
+            options.cloud,
+            to_string(sighting.reason),
+            options.origin,
+            optical ? "optical" : "body",
+            config.max_tilt_deg,
+            config.max_range_m,
+            config.tolerance_m)));
     }
     return kExitOk;
 }

@@ -18,7 +18,7 @@ int info_of_camera(const InfoOptions& options) {
     const auto view = camera_view(address->device);
     if (!view) return report(view.error());
     if (options.common.json) {
-        fmt::print("{}\n", camera_view_json(*view));
+        print_answer(camera_view_json(*view));
         return kExitOk;
     }
     fmt::print("{}: {} (driver {})\n", view->device, view->card, view->driver);
@@ -45,7 +45,7 @@ int info(const InfoOptions& options) {
     const auto found = io::inspect(options.source, open);
     if (!found) return report(found.error());
     if (options.common.json) {
-        fmt::print("{}\n", recording_json(*found));
+        print_answer(recording_json(*found));
         return kExitOk;
     }
     const io::RecordingInfo& i = *found;

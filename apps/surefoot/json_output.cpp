@@ -262,6 +262,10 @@ std::string run_json(const RunRecord& record, const pipeline::Pipeline& pipeline
     return run_object(record, pipeline).dump(kIndent);
 }
 
+std::string failure_json(const std::string& error, int exit_code) {
+    return Json{{"error", error}, {"exit_code", exit_code}}.dump(kIndent);
+}
+
 std::string verdict_json(const gate::Verdict& verdict,
                          const std::string& text,
                          const std::vector<std::string>& assumed) {
@@ -347,23 +351,28 @@ std::string maps_json(const eval::MapComparison& result) {
     return maps_object(result).dump(kIndent);
 }
 
-std::string depth_json(const eval::DepthErrors& errors) {
-    const Json object = {{"bad_0_5_percent", number(errors.bad.over_0_5_percent)},
-                         {"bad_1_percent", number(errors.bad.over_1_percent)},
-                         {"bad_2_percent", number(errors.bad.over_2_percent)},
-                         {"density_percent", number(errors.density_percent)},
-                         {"auc", number(errors.sparsification.auc)},
-                         {"known_bad_0_5_percent", number(errors.known_bad.over_0_5_percent)},
-                         {"known_bad_1_percent", number(errors.known_bad.over_1_percent)},
-                         {"known_bad_2_percent", number(errors.known_bad.over_2_percent)},
-                         {"pixels", errors.counted},
-                         {"error", figures_json(errors.known, "px")},
-                         {"sigma", sigma_json(errors.coverage)},
-                         {"sparsification",
-                          {{"area_px", number(errors.sparsification.area)},
-                           {"oracle_area_px", number(errors.sparsification.oracle_area)},
-                           {"random_area_px", number(errors.sparsification.random_area)},
-                           {"count", errors.sparsification.count}}}};
+std::string depth_json(const eval::DepthErrors& errors, const TruthScale& scale) {
+    const Json object = {
+        {"bad_0_5_percent", number(errors.bad.over_0_5_percent)},
+        {"bad_1_percent", number(errors.bad.over_1_percent)},
+        {"bad_2_percent", number(errors.bad.over_2_percent)},
+        {"density_percent", number(errors.density_percent)},
+        {"auc", number(errors.sparsification.auc)},
+        {"known_bad_0_5_percent", number(errors.known_bad.over_0_5_percent)},
+        {"known_bad_1_percent", number(errors.known_bad.over_1_percent)},
+        {"known_bad_2_percent", number(errors.known_bad.over_2_percent)},
+        {"pixels", errors.counted},
+        {"error", figures_json(errors.known, "px")},
+        {"sigma", sigma_json(errors.coverage)},
+        {"sparsification",
+         {{"area_px", number(errors.sparsification.area)},
+          {"oracle_area_px", number(errors.sparsification.oracle_area)},
+          {"random_area_px", number(errors.sparsification.random_area)},
+          {"count", errors.sparsification.count}}},
+        {"scale",
+         {{"used", scale.used},
+          {"truth_over_estimate", number(errors.truth_over_estimate)},
+          {"suspected", scale.suspected ? Json(*scale.suspected) : Json(nullptr)}}}};
     return object.dump(kIndent);
 }
 

@@ -48,13 +48,20 @@ struct ReportCamera {
 [[nodiscard]] std::string rendered_boards_json(std::size_t views, const std::string& folder);
 /// The same without the list of frames, for stdout.
 [[nodiscard]] std::string run_json(const RunRecord& record, const pipeline::Pipeline& pipeline);
+/// A verb that failed before it had anything to tell.
+[[nodiscard]] std::string failure_json(const std::string& error, int exit_code);
 [[nodiscard]] std::string verdict_json(const gate::Verdict& verdict,
                                        const std::string& text,
                                        const std::vector<std::string>& assumed);
 [[nodiscard]] std::string trajectory_json(const eval::TrajectoryErrors& errors,
                                           const std::vector<eval::PathError>& by_length);
 [[nodiscard]] std::string maps_json(const eval::MapComparison& result);
-[[nodiscard]] std::string depth_json(const eval::DepthErrors& errors);
+/// What a truth was divided by, and what it probably should have been.
+struct TruthScale {
+    double used = 1.0;
+    std::optional<double> suspected;
+};
+[[nodiscard]] std::string depth_json(const eval::DepthErrors& errors, const TruthScale& scale);
 [[nodiscard]] std::string measured_depth_json(const MeasuredPair& measured,
                                               const std::string& folder);
 [[nodiscard]] std::string depth_accuracy_json(const std::string& rig,

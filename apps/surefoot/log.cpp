@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/log.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -22,7 +23,19 @@ spdlog::logger& logger() {
     return *instance;
 }
 
+// What the call has said so far: main answers for a verb that failed without an object.
+bool has_answered = false;
+std::string first_error_sentence;
+
 }  // namespace
+
+void print_answer(const std::string& json_object) {
+    has_answered = true;
+    fmt::print("{}\n", json_object);
+}
+bool answered() noexcept {
+    return has_answered;
+}
 
 void log_info(const std::string& message) {
     logger().info(message);
@@ -31,7 +44,12 @@ void log_warning(const std::string& message) {
     logger().warn(message);
 }
 void log_error(const std::string& message) {
+    if (first_error_sentence.empty()) first_error_sentence = message;
     logger().error(message);
+}
+
+const std::string& first_error() noexcept {
+    return first_error_sentence;
 }
 
 int report(const Error& error) {

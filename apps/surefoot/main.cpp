@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command line: only here is CLI11 included (it costs ten seconds a translation unit).
-#include <CLI/CLI.hpp>
-#include <opencv2/core/utility.hpp>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <opencv2/core/utility.hpp>
+#include <string_view>
+
+#include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -231,15 +237,16 @@ void add_ground(CLI::App& app, GroundOptions& o, int& exit_code) {
 }
 
 void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
-    CLI::App* verb =
-        bind(add_verb(app,
-                      "gate",
-                      "one verdict: may this step be taken? exit 0 OK, 3 NOT_TRAVERSABLE, 4 ERROR",
-                      "surefoot gate --map out/floor --pose 0,0,0 --command 9"),
-             o,
-             gate,
-             exit_code,
-             Reads::no_settings);
+    CLI::App* verb = bind(
+        add_verb(app,
+                 "gate",
+                 "one verdict: may this step be taken? exit 0 OK, 3 NOT_TRAVERSABLE, 4 ERROR; 2 "
+                 "wrong call, 1 internal error: no permission either",
+                 "surefoot gate --map out/floor --pose 0,0,0 --command 9"),
+        o,
+        gate,
+        exit_code,
+        Reads::no_settings);
     verb->add_option("--map", o.map_dir, "folder of a run")->required()->type_name("DIR");
     verb->add_option("--pose", o.pose, "base_link in odom: metres and radians")
         ->required()
@@ -695,6 +702,59 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     info_verb->add_option("--rig", all.info.rig_file, "calibration")->type_name("FILE");
 }
 
+/// The verb of this call that was understood last: `eval maps`, not `eval`.
+const CLI::App& verb_of_call(const CLI::App& app) {
+    const auto verbs = app.get_subcommands();
+    return verbs.empty() ? app : verb_of_call(*verbs.front());
+}
+
+/// A wrong call in one sentence: what nobody took is a mistyped verb, or an option of the verb
+/// before it; all else CLI11 names well enough.
+std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
+    const CLI::App& verb = verb_of_call(app);
+    std::vector<std::string> words = app.remaining(true);
+    std::erase(words, "--json");  // is no mistake: `eval --json` lacks its verb
+    if (words.empty()) return error.what();
+    const std::string word = words.front().substr(0, words.front().find('='));
+    std::vector<std::string> names;
+    if (word.starts_with('-')) {
+        for (const CLI::Option* option : verb.get_options()) {
+            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        }
+        return fmt::format("there is no option {}{}", word, did_you_mean(word, names));
+    }
+    for (const CLI::App* sub : verb.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(sub->get_name());
+    if (names.empty()) return error.what();
+    return fmt::format("there is no verb '{}'{}", word, did_you_mean(word, names));
+}
+
+/// --help and --version are successes; everything else is a wrong call, told in one sentence. A
+/// wrong call of `gate` must not look like permission, and 2 does not.
+int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    const std::string name = verb_of_call(app).get_name();
+    const std::string verb = name.empty() ? "" : name + ": ";
+    log_error(verb + sentence_of(app, error));
+    fmt::print(stderr, "Run with --help for what there is.\n");
+    return kExitUsage;
+}
+
+/// With --json every call prints one object: where the verb had nothing to tell, its error. That of
+/// the gate is a verdict, so that nobody reads a missing one as permission.
+int answer_failure(const CLI::App& app, bool json, int exit_code) {
+    if (!json || exit_code == kExitOk || answered()) return exit_code;
+    const bool asks_gate = app.got_subcommand("gate");
+    print_answer(asks_gate ? verdict_json(gate::Verdict{}, first_error(), {})
+                           : failure_json(first_error(), exit_code));
+    return exit_code;
+}
+
+bool wants_json(int argc, char** argv) {
+    return std::any_of(
+        argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
+}
+
 }  // namespace
 
 int main_with_arguments(int argc, char** argv) {
@@ -720,14 +780,16 @@ int main_with_arguments(int argc, char** argv) {
     add_rig(app, all.rig, exit_code);
     add_calibrate(app, all, exit_code);
     add_rest(app, all, exit_code);
+    const bool json = wants_json(argc, argv);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        // --help and --version are successes; everything else is a wrong call. A wrong call of
-        // `gate` must not look like permission, and 2 does not.
-        return app.exit(error) == 0 ? kExitOk : kExitUsage;
+        exit_code = end_of_parsing(app, error);
+    } catch (const std::exception& error) {
+        log_error(std::string("internal error: ") + error.what());
+        exit_code = kExitFailed;
     }
-    return exit_code;
+    return answer_failure(app, json, exit_code);
 }
 
 }  // namespace surefoot::app

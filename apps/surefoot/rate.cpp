@@ -73,7 +73,7 @@ int rate(const RateOptions& options) {
     }
     if (!writes.first()) return report(writes.first().error());
     if (options.common.json) {
-        fmt::print("{}\n", rate_json(dem->geometry, options.out_dir));
+        print_answer(rate_json(dem->geometry, options.out_dir));
     } else {
         fmt::print("{} x {} cells of {:g} m rated, layers in {}/\n",
                    dem->geometry.nx,

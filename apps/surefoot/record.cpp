@@ -28,7 +28,7 @@ int record(const RecordOptions& options) {
     if (!recorder) return report(recorder.error());
     const Copied copied = copy_frames("record", **source, *recorder);
     if (options.common.json) {
-        fmt::print("{}\n", copied_json(copied, options.out_dir));
+        print_answer(copied_json(copied, options.out_dir));
     } else {
         fmt::print("{} frames recorded in {}/\n", copied.frames, options.out_dir);
     }

@@ -70,7 +70,7 @@ int render_boards(const BoardImagesOptions& options) {
     }
     if (!writes.first()) return report(writes.first().error());
     if (options.common.json)
-        fmt::print("{}\n", rendered_boards_json(poses.size(), options.out_dir));
+        print_answer(rendered_boards_json(poses.size(), options.out_dir));
     else
         fmt::print("{} views of {} in {}\n", poses.size(), options.board, options.out_dir);
     return kExitOk;

@@ -110,7 +110,7 @@ int replay(const ReplayOptions& options) {
         return frame.work == Work::odometry && frame.arrival.is_new_and_whole();
     });
     if (options.common.json) {
-        fmt::print("{}\n", replay_json(seen, options.speed, late));
+        print_answer(replay_json(seen, options.speed, late));
     } else {
         fmt::print("{} frames at {:g} times real time, {} late (odometry only)\n",
                    seen.size(),

@@ -123,7 +123,7 @@ int rig(const RigOptions& options) {
         }
     }
     if (options.common.json) {
-        fmt::print("{}\n", rig_json(*file, written));
+        print_answer(rig_json(*file, written));
         return kExitOk;
     }
     print_summary(options, *file);

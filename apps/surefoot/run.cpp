@@ -64,7 +64,7 @@ int run(const RunOptions& options) {
 
     const Status written = write_results(options, *settings, *machine, *pipeline, record);
     if (options.common.json) {
-        fmt::print("{}\n", run_json(record, *pipeline));
+        print_answer(run_json(record, *pipeline));
     } else {
         fmt::print("{}", run_summary(record, *pipeline));
         if (written) fmt::print("results in {0}/, start with {0}/report.html\n", options.out_dir);

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/run_report.hpp"
@@ -16,6 +18,7 @@
 #include "io/point_cloud.hpp"
 #include "io/snapshot_file.hpp"
 #include "io/trajectory_file.hpp"
+#include "surefoot/camera/reproject.hpp"
 #include "surefoot/elevation/height_bounds.hpp"
 
 namespace surefoot::app {
@@ -96,6 +99,51 @@ void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline
     }
 }
 
+/// How far from base_link, along the ground, what the last frame with depth saw begins [m]: the
+/// nearest percent of its trusted pixels is left to chance. Nothing without such a frame.
+std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pipeline& pipeline) {
+    constexpr double kChance = 0.01;
+    const camera::DepthImage& depth = pipeline.depth();
+    const auto full =
+        std::find_if(record.frames.rbegin(), record.frames.rend(), [](const FrameReport& frame) {
+            return frame.work == Work::full;
+        });
+    if (full == record.frames.rend() || depth.disparity_px.empty()) return std::nullopt;
+    Image<Eigen::Vector3f> points_m;
+    camera::Reprojector(pipeline.rig()).points(depth.disparity_px.view(), points_m);
+    const Pose& T_odom_body = full->motion.T_odom_body;
+    const Pose T_odom_camera = T_odom_body * pipeline.rig().T_body_camera;
+    std::vector<double> distances_m;
+    for (std::size_t i = 0; i < points_m.size(); ++i) {
+        const Eigen::Vector3f& p_camera_m = points_m.data()[i];
+        if (!p_camera_m.allFinite() || depth.outlier_probability.data()[i] > 0.5F) continue;
+        const Eigen::Vector3d p_odom_m = T_odom_camera * p_camera_m.cast<double>();
+        distances_m.push_back((p_odom_m - T_odom_body.translation_m).head<2>().norm());
+    }
+    if (distances_m.empty()) return std::nullopt;
+    const auto nearest =
+        distances_m.begin() +
+        static_cast<std::ptrdiff_t>(kChance * static_cast<double>(distances_m.size()));
+    std::nth_element(distances_m.begin(), nearest, distances_m.end());
+    return *nearest;
+}
+
+/// Where everything lies beyond the map: how far, and which map would reach it.
+std::optional<std::string> beyond_the_map(const RunRecord& record,
+                                          const pipeline::Pipeline& pipeline) {
+    const double length_m = pipeline.config().elevation.length_m;
+    const auto nearest_m = nearest_seen_m(record, pipeline);
+    // A window moves with the machine by whole cells, so its half is what lies ahead.
+    if (!nearest_m || *nearest_m < 0.5 * length_m) return std::nullopt;
+    return fmt::format(
+        "what is seen begins {:.1f} m from base_link, the map ends at {:.1f} m: no pixel falls "
+        "into it; raise elevation.length_m ({:g}) above {:.0f}",
+        *nearest_m,
+        0.5 * length_m,
+        length_m,
+        std::ceil(2.0 * *nearest_m));
+}
+
 }  // namespace
 
 grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry) {
@@ -149,6 +197,7 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
                            record.frames.size());
     }
     if (f.points == 0) return "no frame had any depth: see the counts of each frame";
+    if (const auto reason = beyond_the_map(record, pipeline)) return *reason;
     const std::pair<std::int64_t, std::string> causes[] = {
         {f.outside,
          fmt::format("lie beyond the map (elevation.length_m = {:g}, centred on base_link)",

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/json_output.hpp"
@@ -12,6 +14,7 @@
 #include "apps/surefoot/progress.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "io/file.hpp"
 #include "io/ply_stream.hpp"
 #include "sim/laser_scanner.hpp"
 #include "sim/scenes.hpp"
@@ -98,7 +101,53 @@ void scan_all(const sim::LaserScanner& scanner,
     }
 }
 
+/// What a beam leaves in the file: x y z station mixed, as floats.
+constexpr std::int64_t kBytesPerPoint = 5 * sizeof(float);
+
+/// Points to expect: the share of beams that come back, looked at on a coarse fan from each
+/// station.
+Result<ScanSize> expected_size(const sim::Scene& scene,
+                               sim::LaserScannerConfig config,
+                               const sim::LaserScanner& scanner,
+                               const std::vector<Vector3d>& stations_m,
+                               Executor& executor) {
+    constexpr double kCoarse_deg = 2.0;
+    config.step_deg = std::max(config.step_deg, kCoarse_deg);
+    const auto coarse = sim::LaserScanner::make(scene, config, 0);
+    if (!coarse) return coarse.error();
+    std::int64_t beams = 0;
+    std::int64_t returns = 0;
+    for (const Vector3d& station_m : stations_m) {
+        Pose T_world_scanner;
+        T_world_scanner.translation_m = station_m;
+        coarse->scan(T_world_scanner, 0, executor, [&](const sim::ScanColumn& column) {
+            beams += std::ssize(column.points);
+            returns += std::count_if(
+                column.points.begin(), column.points.end(), [](const sim::ScanPoint& point) {
+                    return !std::isnan(point.point_scanner_m.x());
+                });
+            return !interrupted();
+        });
+    }
+    const double share =
+        beams > 0 ? static_cast<double>(returns) / static_cast<double>(beams) : 1.0;
+    const double all = static_cast<double>(std::ssize(stations_m)) * scanner.columns() *
+                       static_cast<double>(scanner.rows());
+    return ScanSize{all * share, all * share * kBytesPerPoint};
+}
+
 }  // namespace
+
+Status check_room(const std::string& file, const ScanSize& size, double free_bytes) {
+    if (size.bytes <= free_bytes) return {};
+    return input_error(fmt::format(
+        "{}: the scan needs about {:.1f} GB ({:.3g} points), the disk has {:.1f} GB; "
+        "scan coarser (--set sim.laser.step_deg=...), from fewer stations, or elsewhere",
+        file,
+        1e-9 * size.bytes,
+        size.points,
+        1e-9 * free_bytes));
+}
 
 int scan(const SimOptions& options) {
     const auto settings = load_settings(options.common);
@@ -110,17 +159,31 @@ int scan(const SimOptions& options) {
     const auto scanner =
         sim::LaserScanner::make(script->scene, settings->laser, options.common.seed);
     if (!scanner) return report(scanner.error());
-    auto file = io::PlyStream::create(options.scan_file, {"station", "mixed"});
-    if (!file) return report(file.error());
 
     watch_for_interrupts();
     const auto executor = make_executor(options.common);
+    const auto size =
+        expected_size(script->scene, settings->laser, *scanner, *stations_m, *executor);
+    if (!size) return report(size.error());
+    log_info(fmt::format("{}: about {:.3g} points, {:.0f} MB",
+                         options.scan_file,
+                         size->points,
+                         std::ceil(1e-6 * size->bytes)));
+    const auto free_bytes = io::free_bytes(io::folder_of(options.scan_file));
+    if (free_bytes) {  // unknown on some file systems: then writing tells
+        if (auto status = check_room(options.scan_file, *size, static_cast<double>(*free_bytes));
+            !status)
+            return report(status.error());
+    }
+    auto file = io::PlyStream::create(options.scan_file, {"station", "mixed"});
+    if (!file) return report(file.error());
+
     Scanned scanned{.file = options.scan_file, .error = std::nullopt};
     scan_all(*scanner, *stations_m, *executor, *file, scanned);
     if (auto status = file->close(); !status && !scanned.error) scanned.error = status.error();
     scanned.points = file->points();
     if (options.common.json) {
-        fmt::print("{}\n", scan_json(scanned));
+        print_answer(scan_json(scanned));
     } else {
         fmt::print("{} points of {} from {} station{} in {}\n",
                    scanned.points,

@@ -9,6 +9,15 @@
 
 namespace surefoot::app {
 
+/// What a scan is expected to write.
+struct ScanSize {
+    double points = 0.0;
+    double bytes = 0.0;
+};
+
+/// Refuses a scan that the disk has no room for.
+[[nodiscard]] Status check_room(const std::string& file, const ScanSize& size, double free_bytes);
+
 /// How far scanning a scene got, and why it ended early.
 struct Scanned {
     std::string file;

@@ -28,7 +28,7 @@ namespace {
 int list(const SimOptions& options) {
     const auto scenes = sim::list_scenes();
     if (options.common.json) {
-        fmt::print("{}\n", scenes_json(scenes));
+        print_answer(scenes_json(scenes));
     } else {
         for (const auto& scene : scenes) fmt::print("{:<26}{}\n", scene.name, scene.description);
     }
@@ -161,7 +161,7 @@ int simulate(const SimOptions& options) {
         if (!writes.first() && !copied.error) copied.error = writes.first().error();
     }
     if (options.common.json) {
-        fmt::print("{}\n", copied_json(copied, options.out_dir));
+        print_answer(copied_json(copied, options.out_dir));
     } else {
         fmt::print("{} frames of {} with ground truth in {}/\n",
                    copied.frames,

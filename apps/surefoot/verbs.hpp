@@ -84,8 +84,8 @@ int ground(const GroundOptions& options);
 struct GateOptions {
     CommonOptions common;
     std::string map_dir;
-    std::string pose;  ///< x,y,yaw
-    int command = 0;
+    std::string pose;     ///< x,y,yaw
+    std::string command;  ///< a joystick code
     std::string machine = "rex";
     std::string explain_file;
     double vouch_radius_m = -1.0;  ///< < 0: just the ground under the present feet
