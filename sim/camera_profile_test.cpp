@@ -41,5 +41,15 @@ TEST(CameraProfileTest, NoiseScalesAmplitudes) {
     EXPECT_EQ(twice.imaging.noise_size_px, 0.7) << "what the user chose stays";
 }
 
+TEST(CameraProfileTest, TheZedAloneIsTheSameCameraWithLessNoise) {
+    const ProfileFigures alone = figures_of(CameraProfile::zed_alone);
+    const ProfileFigures zed = figures_of(CameraProfile::zed);
+    EXPECT_GT(alone.noise_dn, 0.0);
+    EXPECT_LT(alone.noise_dn, zed.noise_dn) << "zed stands for cluttered scenes, too";
+    EXPECT_EQ(alone.calibration.right_roll_rad, zed.calibration.right_roll_rad);
+    EXPECT_EQ(alone.calibration.right_pitch_rad, zed.calibration.right_pitch_rad);
+    EXPECT_EQ(alone.calibration.right_focal_share, zed.calibration.right_focal_share);
+}
+
 }  // namespace
 }  // namespace surefoot::sim
