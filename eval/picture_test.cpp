@@ -204,7 +204,9 @@ TEST(Picture, MarksAreNamedInTheKeyAndHideLittleOfTheMap) {
         for (int u = kLeft; u < kLeft + kSide; ++u) {
             const int far =
                 std::max(std::abs(u - kLeft - kSide / 2), std::abs(v - kTop - kSide / 2));
-            if (far > kSymbol_px) ASSERT_EQ(bare.at(u, v), drawn.at(u, v)) << u << ", " << v;
+            if (far > kSymbol_px) {
+                ASSERT_EQ(bare.at(u, v), drawn.at(u, v)) << u << ", " << v;
+            }
         }
     }
 }

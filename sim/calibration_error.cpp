@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/calibration_error.hpp"
 
-#include <Eigen/Geometry>
-#include <variant>
+#include "surefoot/camera/right_eye.hpp"
 
 namespace surefoot::sim {
 
@@ -14,22 +13,11 @@ void CalibrationError::describe(ConfigVisitor& visitor) {
 }
 
 camera::StereoRig with_error(const camera::StereoRig& nominal, const CalibrationError& error) {
-    camera::StereoRig rig = nominal;
-    if (!rig.right) return rig;
-    const Eigen::Quaterniond turn =
-        Eigen::AngleAxisd(error.right_roll_rad, Eigen::Vector3d::UnitZ()) *
-        Eigen::AngleAxisd(error.right_yaw_rad, Eigen::Vector3d::UnitY()) *
-        Eigen::AngleAxisd(error.right_pitch_rad, Eigen::Vector3d::UnitX());
-    rig.T_left_right.rotation = (turn * rig.T_left_right.rotation).normalized();
-    const double longer = 1.0 + error.right_focal_share;
-    std::visit(
-        [&](auto& lens) {
-            lens.fx_px *= longer;
-            lens.fy_px *= longer;
-        },
-        rig.right->model);
-    rig.rectified = false;  // its rows are no longer those of the left eye
-    return rig;
+    return camera::with_right_eye(nominal,
+                                  {error.right_roll_rad,
+                                   error.right_pitch_rad,
+                                   error.right_yaw_rad,
+                                   error.right_focal_share});
 }
 
 }  // namespace surefoot::sim

@@ -193,6 +193,17 @@ Json arrivals_json(const ArrivalCounts& counts) {
             {"reconnections", counts.reconnections}};
 }
 
+Json trim_json(const std::optional<stereo::PairTrim>& trim) {
+    if (!trim) return nullptr;
+    return {{"roll_rad", number(trim->eye.roll_rad)},
+            {"pitch_rad", number(trim->eye.pitch_rad)},
+            {"focal_share", number(trim->eye.focal_share)},
+            {"sigma", {number(trim->sigma[0]), number(trim->sigma[1]), number(trim->sigma[2])}},
+            {"corners", trim->corners},
+            {"row_error_px", number(trim->row_error_px)},
+            {"row_error_left_px", number(trim->row_error_left_px)}};
+}
+
 Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const pipeline::Alignment& alignment = pipeline.alignment();
     const auto& geometry = pipeline.map().geometry();
@@ -208,6 +219,7 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
         {"gravity_reason", alignment.reason},
         {"ground_height_m",
          alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
+        {"trim", trim_json(pipeline.trim())},
         {"health", health_json(record)},
         {"counts", counts_json(record.fusion)},
         {"arrivals", arrivals_json(record.arrivals)},

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <optional>
 
 #include "apps/surefoot/json_output.hpp"
@@ -264,6 +265,17 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
                     frame.median,
                     pipeline.map().known_cells(),
                     pipeline.alignment().reason);
+    if (const auto& trim = pipeline.trim()) {
+        text += fmt::format(
+            "the right eye is corrected by {:+.3f} deg about the line of sight, {:+.3f} deg up and "
+            "down and {:+.3f} % of the focal length: rows differed by {:.2f} px, now {:.2f} "
+            "(median); trim.enabled=false leaves the calibration alone\n",
+            trim->eye.roll_rad * 180.0 / std::numbers::pi,
+            trim->eye.pitch_rad * 180.0 / std::numbers::pi,
+            100.0 * trim->eye.focal_share,
+            trim->row_error_px,
+            trim->row_error_left_px);
+    }
     if (record.source.modelled) text += kModelled + std::string("\n");
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         text += fmt::format("the map is empty: {}\n", reason);

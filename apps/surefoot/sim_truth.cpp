@@ -43,6 +43,32 @@ eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Traject
     return track;
 }
 
+/// The exact depth of a raw left image without distortion as the rectified camera sees it, which is
+/// turned a little when the rig is no longer the scene's: along its own axis, from the nearest raw
+/// pixel. Empty for another lens.
+Image<float> seen_by(const camera::RectifiedRig& rig,
+                     const camera::StereoRig& raw_rig,
+                     const Image<float>& raw_m) {
+    const auto* lens = std::get_if<camera::PinholeRadTan>(&raw_rig.left.model);
+    if (lens == nullptr || rig.width != raw_m.width() || rig.height != raw_m.height()) return {};
+    const Eigen::Matrix3d R_raw_rectified =
+        (raw_rig.body_from_left().inverse() * rig.T_body_camera).R();
+    Image<float> seen_m(rig.width, rig.height, std::nanf(""));
+    for (int v = 0; v < rig.height; ++v) {
+        for (int u = 0; u < rig.width; ++u) {
+            const Eigen::Vector3d ray =
+                R_raw_rectified *
+                Eigen::Vector3d((u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
+            const long raw_u = std::lround(lens->fx_px * ray.x() / ray.z() + lens->cx_px);
+            const long raw_v = std::lround(lens->fy_px * ray.y() / ray.z() + lens->cy_px);
+            if (!raw_m.contains(static_cast<int>(raw_u), static_cast<int>(raw_v))) continue;
+            const float z_m = raw_m.at(static_cast<int>(raw_u), static_cast<int>(raw_v));
+            seen_m.at(u, v) = z_m / static_cast<float>(ray.z());
+        }
+    }
+    return seen_m;
+}
+
 /// Height of odom's origin in the world. Odom begins on the ground, which is the world's z = 0, if
 /// the ground was found; else at the first body, and then the truth is told from there.
 double odom_height_m(const pipeline::Pipeline& pipeline,
@@ -79,10 +105,8 @@ void SimTruth::remember_depth(const StereoFrame& frame) {
 void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline) {
     while (!depths_.empty() && depths_.front().first < frame.index) depths_.pop_front();
     if (depths_.empty() || depths_.front().first != frame.index) return;
-    // The exact depth is that of the raw image: another virtual pinhole shows other pixels.
-    const auto* lens = std::get_if<camera::PinholeRadTan>(&scene_->rig().left.model);
-    if (lens == nullptr || lens->fx_px != pipeline.rig().fx_px) return;
-    const Image<float>& truth_m = depths_.front().second;
+    const Image<float> truth_m = seen_by(pipeline.rig(), scene_->rig(), depths_.front().second);
+    if (truth_m.empty()) return;
     const camera::DepthImage& depth = pipeline.depth();
     const double fb_px_m = pipeline.rig().depth_to_disparity_px_m();
     for (std::size_t i = 0; i < truth_m.size(); ++i) {

@@ -108,6 +108,7 @@ Odometry::Odometry(const OdometryConfig& config, const camera::Rectifier& rectif
     : impl_(std::make_unique<Impl>(config, rectifier)) {}
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
+Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 
 void Odometry::start_at(const Pose& T_odom_body) {
     impl_->T_odom_camera = T_odom_body * impl_->rectifier.rig().T_body_camera;

@@ -45,6 +45,7 @@ class Odometry {
     Odometry(const OdometryConfig& config, const camera::Rectifier& rectifier);
     ~Odometry();
     Odometry(Odometry&&) noexcept;
+    Odometry& operator=(Odometry&&) noexcept;
 
     /// Pose of base_link at the first frame (gravity aligned); call before the first update.
     void start_at(const Pose& T_odom_body);

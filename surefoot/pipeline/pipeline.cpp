@@ -14,6 +14,9 @@
 namespace surefoot::pipeline {
 namespace {
 
+/// The second round takes away what interpolated rows hide from the first.
+constexpr int kTrimRounds = 2;
+constexpr int kTrimRows_px = 6;           ///< farthest that rows are looked for
 constexpr std::uint64_t kGroundSeed = 1;  ///< the same points always give the same plane
 
 /// Measures the stages of one frame; without a clock all times are zero.
@@ -88,6 +91,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
     : config_(config),
       executor_(&executor),
       clock_(clock),
+      nominal_rig_(rig),
       rectifier_(std::move(rectifier)),
       odometry_(config.odometry, *rectifier_),
       matcher_(stereo::make_matcher(config.stereo)),
@@ -97,6 +101,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
 
 const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
     first_frames = first_frames.first(std::min(first_frames.size(), kAlignmentFrames));
+    trim_right_eye(first_frames);
     const Pose T_body_imu = imu_mount_ ? imu_mount_->T_body_imu : Pose{};
     const auto up_imu_body = up_from_imu(config_.mount, T_body_imu, first_frames);
     const Eigen::Vector3d up_hint_body = up_imu_body.value_or(assumed_up(config_.mount));
@@ -119,6 +124,41 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
     return alignment_;
+}
+
+std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFrame> frames) {
+    std::vector<stereo::CornerShift> corners;
+    // First, middle and last one: neighbours show the same.
+    const std::size_t step = std::max<std::size_t>(1, frames.size() / 2);
+    for (std::size_t i = 0; i < frames.size(); i += step) {
+        const StereoFrame& frame = frames[std::min(i, frames.size() - 1)];
+        if (frame.ready || frame.right.empty() || !frame.arrival.is_new_and_whole()) continue;
+        rectify(frame);
+        const auto found = stereo::match_corners(
+            pair_.left.view(), pair_.right.view(), {config_.stereo.disparities, kTrimRows_px});
+        corners.insert(corners.end(), found.matched.begin(), found.matched.end());
+    }
+    return corners;
+}
+
+void Pipeline::trim_right_eye(std::span<const StereoFrame> frames) {
+    if (!config_.trim.enabled || !nominal_rig_.right) return;
+    for (int round = 0; round < kTrimRounds; ++round) {
+        auto found = stereo::estimate_trim(config_.trim, rig(), corners_of(frames));
+        if (!found || !found->significant()) return;
+        if (trim_) {
+            found->eye.roll_rad += trim_->eye.roll_rad;
+            found->eye.pitch_rad += trim_->eye.pitch_rad;
+            found->eye.focal_share += trim_->eye.focal_share;
+            found->row_error_px = trim_->row_error_px;
+        }
+        auto better =
+            camera::Rectifier::make(with_right_eye(nominal_rig_, found->eye), config_.camera);
+        if (!better) return;
+        trim_ = found;
+        rectifier_ = std::make_unique<camera::Rectifier>(std::move(better).value());
+        odometry_ = odometry::Odometry(config_.odometry, *rectifier_);
+    }
 }
 
 FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
@@ -217,8 +257,7 @@ FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
     if (motion.health == Health::lost) return {};  // where would it go?
     last_fused_ns_ = motion.time_ns;
     ++version_;
-    return map_.add(
-        rectifier_->rig(), motion.T_odom_body, depth_, motion.time_ns, *executor_);
+    return map_.add(rectifier_->rig(), motion.T_odom_body, depth_, motion.time_ns, *executor_);
 }
 
 void Pipeline::rate() {

@@ -19,6 +19,7 @@
 #include "surefoot/pipeline/camera_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
 #include "surefoot/stereo/matcher.hpp"
+#include "surefoot/stereo/pair_trim.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::pipeline {
@@ -46,7 +47,8 @@ class Pipeline {
     /// Most frames that `align` looks at; callers buffer no more.
     static constexpr std::size_t kAlignmentFrames = 10;
 
-    /// Finds gravity and the ground in the first frames and places odom; see alignment.hpp.
+    /// Corrects the right eye's calibration by the rows of the first frames (pair_trim.hpp), finds
+    /// gravity and the ground in them and places odom (alignment.hpp). `rig()` is final afterwards.
     const Alignment& align(std::span<const StereoFrame> first_frames);
 
     /// The whole frame: motion, and with Work::full depth, map and rating.
@@ -55,6 +57,8 @@ class Pipeline {
     [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rectifier_->rig(); }
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
+    /// What was corrected; nothing where the calibration fits or nothing could be said.
+    [[nodiscard]] const std::optional<stereo::PairTrim>& trim() const noexcept { return trim_; }
     [[nodiscard]] const elevation::ElevationMap& map() const noexcept { return map_; }
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return rating_;
@@ -73,6 +77,8 @@ class Pipeline {
              Executor& executor,
              Clock clock);
 
+    void trim_right_eye(std::span<const StereoFrame> frames);
+    [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
     /// The last pose, with the motion that may have happened unseen since then.
     [[nodiscard]] MotionEstimate unseen(const StereoFrame& frame) const;
     /// The frame's own motion, or what the odometry says; `T_odom_first`: the first base_link.
@@ -90,6 +96,8 @@ class Pipeline {
     PipelineConfig config_;
     Executor* executor_;
     Clock clock_;
+    camera::StereoRig nominal_rig_;
+    std::optional<stereo::PairTrim> trim_;
     std::unique_ptr<camera::Rectifier> rectifier_;  // the odometry refers to it: address must stay
     odometry::Odometry odometry_;
     std::unique_ptr<stereo::Matcher> matcher_;

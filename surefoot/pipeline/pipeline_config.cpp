@@ -11,6 +11,7 @@ void PipelineConfig::describe(ConfigVisitor& visitor) {
     visitor.group("mount", mount);
     visitor.group("camera", camera);
     visitor.group("stereo", stereo);
+    visitor.group("trim", trim);
     visitor.group("odometry", odometry);
     visitor.group("ground", ground);
     visitor.group("elevation", elevation);

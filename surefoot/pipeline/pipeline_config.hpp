@@ -11,6 +11,7 @@
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/stereo/matcher.hpp"
+#include "surefoot/stereo/pair_trim.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::pipeline {
@@ -20,6 +21,7 @@ struct PipelineConfig {
     AlignmentConfig mount;
     camera::RectificationConfig camera;
     stereo::MatcherConfig stereo;
+    stereo::TrimConfig trim;
     odometry::OdometryConfig odometry;
     ground::GroundConfig ground;
     elevation::ElevationConfig elevation;

@@ -71,30 +71,46 @@ std::optional<Shift> shift_of(const cv::Mat& left,
 
 }  // namespace
 
+Corners match_corners(ImageView<const std::uint8_t> left,
+                      ImageView<const std::uint8_t> right,
+                      const PairSearch& search) {
+    SUREFOOT_ASSERT(left.width == right.width && left.height == right.height);
+    Corners corners;
+    if (left.width <= 2 * kHalf_px + 2 || left.height <= 2 * kHalf_px + 2) return corners;
+    const cv::Mat left_mat = as_mat(left);
+    const cv::Mat right_mat = as_mat(right);
+    std::vector<cv::Point2f> places;
+    // Spread over the image, whatever its size.
+    const double distance_px = std::max(6.0, std::sqrt(left.width * (left.height / 1200.0)));
+    cv::goodFeaturesToTrack(left_mat, places, kMaxCorners, kCornerQuality, distance_px);
+    corners.found = static_cast<int>(places.size());
+    for (const cv::Point2f& place : places) {
+        const cv::Point corner(place);
+        if (const auto shift = shift_of(left_mat, right_mat, corner, search)) {
+            corners.matched.push_back({static_cast<double>(corner.x),
+                                       static_cast<double>(corner.y),
+                                       shift->columns_px,
+                                       shift->rows_px});
+        }
+    }
+    return corners;
+}
+
 PairCheck check_pair(ImageView<const std::uint8_t> left,
                      ImageView<const std::uint8_t> right,
                      const PairSearch& search) {
-    SUREFOOT_ASSERT(left.width == right.width && left.height == right.height);
+    const Corners corners = match_corners(left, right, search);
     PairCheck check;
-    if (left.width <= 2 * kHalf_px + 2 || left.height <= 2 * kHalf_px + 2) return check;
-    const cv::Mat left_mat = as_mat(left);
-    const cv::Mat right_mat = as_mat(right);
-    std::vector<cv::Point2f> corners;
-    // Spread over the image, whatever its size.
-    const double distance_px = std::max(6.0, std::sqrt(left.width * (left.height / 1200.0)));
-    cv::goodFeaturesToTrack(left_mat, corners, kMaxCorners, kCornerQuality, distance_px);
-    check.corners = static_cast<int>(corners.size());
+    check.corners = corners.found;
+    check.matched = static_cast<int>(corners.matched.size());
+    if (corners.matched.empty()) return check;
     std::vector<double> rows_px;
     std::vector<double> absolute_px;
-    for (const cv::Point2f& corner : corners) {
-        const auto shift = shift_of(left_mat, right_mat, corner, search);
-        if (!shift) continue;
-        rows_px.push_back(shift->rows_px);
-        absolute_px.push_back(std::abs(shift->rows_px));
-        check.backward += shift->columns_px > 1.0 ? 1 : 0;
+    for (const CornerShift& corner : corners.matched) {
+        rows_px.push_back(corner.rows_px);
+        absolute_px.push_back(std::abs(corner.rows_px));
+        check.backward += corner.columns_px > 1.0 ? 1 : 0;
     }
-    check.matched = static_cast<int>(rows_px.size());
-    if (rows_px.empty()) return check;
     check.row_offset_px = median(std::move(rows_px));
     check.row_error_px = median(std::move(absolute_px));
     return check;

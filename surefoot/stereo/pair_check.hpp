@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "surefoot/core/views.hpp"
 
@@ -29,6 +30,24 @@ struct PairSearch {
     int disparity_px = 128;
     int rows_px = 8;
 };
+
+/// A corner of the left image that was found again without doubt.
+struct CornerShift {
+    double u_px = 0.0;  ///< in the left image
+    double v_px = 0.0;
+    double columns_px = 0.0;  ///< right minus left
+    double rows_px = 0.0;
+};
+
+struct Corners {
+    int found = 0;  ///< in the left image
+    std::vector<CornerShift> matched;
+};
+
+/// Images of equal size.
+[[nodiscard]] Corners match_corners(ImageView<const std::uint8_t> left,
+                                    ImageView<const std::uint8_t> right,
+                                    const PairSearch& search = {});
 
 /// Images of equal size. Those without corners give none, not an error.
 [[nodiscard]] PairCheck check_pair(ImageView<const std::uint8_t> left,

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who walks through the picture must leave the map; what stands there must not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/elevation/elevation_map.hpp"
+
+namespace surefoot::elevation {
+namespace {
+
+constexpr std::int64_t kFrame_ns = 66'666'667;  ///< 15 Hz
+constexpr int kSecond = 15;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+struct Box {
+    Eigen::Vector3d low_m;
+    Eigen::Vector3d high_m;
+};
+
+const Box kPerson{{1.4, -0.25, 0.0}, {1.7, 0.25, 0.95}};  // what of it is below the height cut
+const Box kCrate{{1.2, 0.6, 0.0}, {1.6, 1.0, 0.3}};
+const Box kTableTop{{1.3, -1.4, 0.68}, {2.0, -0.6, 0.71}};
+
+camera::RectifiedRig rig() {
+    camera::RectifiedRig rig;
+    rig.width = 336;
+    rig.height = 188;
+    rig.fx_px = 171.0;
+    rig.fy_px = 171.0;
+    rig.cx_px = 167.5;
+    rig.cy_px = 93.5;
+    rig.baseline_m = 0.12;
+    rig.T_body_camera =
+        Pose{exp_so3({0.0, 32.0 * std::numbers::pi / 180.0, 0.0}), Eigen::Vector3d::Zero()} *
+        T_body_optical();
+    return rig;
+}
+
+Pose body_at(double x_m) {
+    return {Eigen::Quaterniond::Identity(), {x_m, 0.0, 1.05}};
+}
+
+/// How far along a ray a box is met; infinite if it is missed (slabs).
+double meet(const Box& box, const Eigen::Vector3d& from_m, const Eigen::Vector3d& ray) {
+    double enter = 0.0;
+    double leave = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double a = (box.low_m[axis] - from_m[axis]) / ray[axis];
+        const double b = (box.high_m[axis] - from_m[axis]) / ray[axis];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    return enter < leave ? enter : std::numeric_limits<double>::infinity();
+}
+
+camera::DepthImage look(const std::vector<Box>& boxes, const Pose& T_odom_body, Rng& rng) {
+    constexpr double kSigma_px = 0.1;
+    const camera::RectifiedRig eye = rig();
+    const Pose T_odom_camera = T_odom_body * eye.T_body_camera;
+    const Eigen::Vector3d from_m = T_odom_camera.translation_m;
+    camera::DepthImage depth;
+    depth.resize(eye.width, eye.height);
+    depth.sigma_px.fill(static_cast<float>(kSigma_px));
+    depth.outlier_probability.fill(0.05F);
+    for (int v = 0; v < eye.height; ++v) {
+        for (int u = 0; u < eye.width; ++u) {
+            const Eigen::Vector3d ray =
+                T_odom_camera.R() *
+                Eigen::Vector3d((u - eye.cx_px) / eye.fx_px, (v - eye.cy_px) / eye.fy_px, 1.0);
+            double depth_m =
+                ray.z() < 0.0 ? -from_m.z() / ray.z() : std::numeric_limits<double>::infinity();
+            for (const Box& box : boxes) depth_m = std::min(depth_m, meet(box, from_m, ray));
+            depth.disparity_px.at(u, v) =
+                std::isfinite(depth_m)
+                    ? static_cast<float>(eye.depth_to_disparity_px_m() / depth_m +
+                                         kSigma_px * rng.normal())
+                    : kNan;
+        }
+    }
+    return depth;
+}
+
+struct Found {
+    int floor = 0;
+    int higher = 0;
+    int unknown = 0;
+    int blocked = 0;  ///< something is believed to hang over the cell
+};
+
+Found over(const ElevationMap& map, const Box& box) {
+    Found found;
+    const auto first = map.geometry().cell_at(box.low_m.x(), box.low_m.y());
+    const auto last = map.geometry().cell_at(box.high_m.x(), box.high_m.y());
+    for (int iy = first->iy; iy <= last->iy; ++iy) {
+        for (int ix = first->ix; ix <= last->ix; ++ix) {
+            const float height_m = map.layers().height_m.at(ix, iy);
+            found.unknown += std::isnan(height_m) ? 1 : 0;
+            found.floor += std::abs(height_m) < 0.05F ? 1 : 0;
+            found.higher += height_m > 0.05F ? 1 : 0;
+            found.blocked += std::isnan(map.layers().clearance_m.at(ix, iy)) ? 0 : 1;
+        }
+    }
+    return found;
+}
+
+class CleanUp : public ::testing::Test {
+  protected:
+    FusionCounts frames(const std::vector<Box>& boxes, int count, double step_m = 0.0) {
+        FusionCounts sum;
+        for (int i = 0; i < count; ++i) {
+            x_m_ += step_m;
+            map_.follow(body_at(x_m_), Matrix6::Zero());
+            sum += map_.add(rig(), body_at(x_m_), look(boxes, body_at(x_m_), rng_), time_ns_);
+            time_ns_ += kFrame_ns;
+        }
+        return sum;
+    }
+
+    ElevationMap map_{[] {
+        ElevationConfig config;
+        config.length_m = 5.0;
+        return config;
+    }()};
+    Rng rng_{1};
+    double x_m_ = 0.0;
+    std::int64_t time_ns_ = 1;
+};
+
+TEST_F(CleanUp, WhoWalkedThroughIsGoneWithinASecond) {
+    frames({kCrate, kTableTop}, 3);
+    frames({kCrate, kTableTop, kPerson}, kSecond);
+    const Found there = over(map_, kPerson);
+    ASSERT_GT(there.higher + there.blocked, 100) << "the map has seen the person";
+    const FusionCounts sum = frames({kCrate, kTableTop}, kSecond);
+    const Found left = over(map_, kPerson);
+    EXPECT_EQ(left.higher, 0);
+    EXPECT_EQ(left.blocked, 0);
+    EXPECT_GT(left.floor, 10 * left.unknown) << "and the floor is seen again";
+    EXPECT_GT(sum.cells_cleared, 0);
+}
+
+TEST_F(CleanUp, WhatStandsThereStays) {
+    frames({kCrate, kTableTop}, 5);
+    const Found crate = over(map_, kCrate);
+    const Found table = over(map_, kTableTop);
+    ASSERT_GT(crate.higher, 150);
+    ASSERT_GT(table.higher + table.blocked, 100);
+    // Standing for two seconds, then walking on until both leave the picture.
+    frames({kCrate, kTableTop}, 2 * kSecond);
+    frames({kCrate, kTableTop}, 4 * kSecond, 0.01);
+    EXPECT_GE(over(map_, kCrate).higher, crate.higher);
+    const Found later = over(map_, kTableTop);
+    EXPECT_GE(later.higher + later.blocked, table.higher + table.blocked);
+    EXPECT_EQ(later.unknown, 0);
+}
+
+TEST_F(CleanUp, CanBeSwitchedOff) {
+    ElevationConfig config;
+    config.visibility.cleanup = false;
+    ElevationMap map(config);
+    std::int64_t time_ns = 1;
+    std::int64_t cleared = 0;
+    for (int i = 0; i < 12; ++i) {
+        const std::vector<Box> boxes = i < 3 ? std::vector<Box>{kPerson} : std::vector<Box>{};
+        cleared +=
+            map.add(rig(), body_at(0), look(boxes, body_at(0), rng_), ++time_ns).cells_cleared;
+    }
+    EXPECT_EQ(cleared, 0);
+}
+
+}  // namespace
+}  // namespace surefoot::elevation

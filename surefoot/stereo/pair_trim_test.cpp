@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stereo/pair_trim.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/rng.hpp"
+
+namespace surefoot::stereo {
+namespace {
+
+constexpr double kNoise_px = 0.1;
+
+camera::StereoRig nominal_rig() {
+    camera::PinholeRadTan lens;
+    lens.fx_px = 341.9;
+    lens.fy_px = 342.3;
+    lens.cx_px = 335.0;
+    lens.cy_px = 187.0;
+    camera::StereoRig rig;
+    rig.left = {lens, 672, 376};
+    rig.right = rig.left;
+    rig.T_left_right.translation_m = {0.12, 0.0, 0.0};
+    return rig;
+}
+
+/// Where the rig `real` sees points that somebody rectifies by the rig `believed`.
+std::vector<CornerShift> corners_of(const camera::StereoRig& real,
+                                    const camera::StereoRig& believed,
+                                    int count,
+                                    Rng& rng) {
+    const auto eyes = camera::Rectifier::make(real);
+    const auto rectifier = camera::Rectifier::make(believed);
+    std::vector<CornerShift> corners;
+    while (static_cast<int>(corners.size()) < count) {
+        const double z_m = rng.uniform(0.8, 6.0);
+        const Eigen::Vector3d p_m(rng.uniform(-0.9, 0.9) * z_m, rng.uniform(-0.5, 0.5) * z_m, z_m);
+        const auto left_raw = eyes.value().raw_from_point(camera::Side::left, p_m);
+        const auto right_raw = eyes.value().raw_from_point(camera::Side::right, p_m);
+        if (!left_raw || !right_raw) continue;
+        const auto left = rectifier.value().rectified_from_raw(camera::Side::left, *left_raw);
+        const auto right = rectifier.value().rectified_from_raw(camera::Side::right, *right_raw);
+        if (!left || !right) continue;
+        corners.push_back({left->x(),
+                           left->y(),
+                           right->x() - left->x(),
+                           right->y() - left->y() + kNoise_px * rng.normal()});
+    }
+    return corners;
+}
+
+camera::RectifiedRig rectified(const camera::StereoRig& rig) {
+    return camera::Rectifier::make(rig).value().rig();
+}
+
+TEST(PairTrim, FindsHowTheRightEyeIsTurned) {
+    const camera::StereoRig nominal = nominal_rig();
+    Rng rng(3);
+    for (const camera::RightEye& eye : {camera::RightEye{0.0009, 0.0, 0.0, 0.0006},
+                                        camera::RightEye{-0.002, 0.003, 0.0, -0.001},
+                                        camera::RightEye{0.0, -0.004, 0.0, 0.004}}) {
+        const auto corners = corners_of(with_right_eye(nominal, eye), nominal, 600, rng);
+        const auto trim = estimate_trim({}, rectified(nominal), corners);
+        ASSERT_TRUE(trim);
+        EXPECT_TRUE(trim->significant());
+        // Half of the second order: products of the angles and the rig's half rotations.
+        constexpr double kSecondOrder = 3e-5;
+        EXPECT_NEAR(trim->eye.roll_rad, eye.roll_rad, 4.0 * trim->sigma[0] + kSecondOrder);
+        EXPECT_NEAR(trim->eye.pitch_rad, eye.pitch_rad, 4.0 * trim->sigma[1] + kSecondOrder);
+        EXPECT_NEAR(trim->eye.focal_share, eye.focal_share, 4.0 * trim->sigma[2] + kSecondOrder);
+        EXPECT_LT(trim->row_error_left_px, 0.08);
+        EXPECT_GT(trim->row_error_px, trim->row_error_left_px);
+    }
+}
+
+TEST(PairTrim, AGoodRigIsLeftAlone) {
+    const camera::StereoRig nominal = nominal_rig();
+    int significant = 0;
+    for (int seed = 0; seed < 40; ++seed) {
+        Rng rng(mix_seed(4, static_cast<std::uint64_t>(seed)));
+        const auto trim =
+            estimate_trim({}, rectified(nominal), corners_of(nominal, nominal, 400, rng));
+        ASSERT_TRUE(trim);
+        significant += trim->significant() ? 1 : 0;
+        EXPECT_LT(std::abs(trim->eye.focal_share), 4.0 * trim->sigma[2]);
+    }
+    EXPECT_EQ(significant, 0);
+}
+
+TEST(PairTrim, WrongMatchesDoNotDecide) {
+    const camera::StereoRig nominal = nominal_rig();
+    const camera::RightEye eye{0.001, -0.001, 0.0, 0.0008};
+    Rng rng(5);
+    auto corners = corners_of(with_right_eye(nominal, eye), nominal, 500, rng);
+    for (std::size_t i = 0; i < corners.size(); i += 8) corners[i].rows_px = rng.uniform(2.0, 8.0);
+    const auto trim = estimate_trim({}, rectified(nominal), corners);
+    ASSERT_TRUE(trim);
+    // An eighth of one-sided outliers pulls Huber's mean by 1/7 of 1.5 sigma, 0.02 px, 7e-5 of f.
+    EXPECT_NEAR(trim->eye.pitch_rad, eye.pitch_rad, 1.5e-4);
+    EXPECT_NEAR(trim->eye.focal_share, eye.focal_share, 4.0 * trim->sigma[2] + 3e-5);
+}
+
+TEST(PairTrim, SaysNothingFromFewCornersOrFarAway) {
+    const camera::StereoRig nominal = nominal_rig();
+    Rng rng(6);
+    EXPECT_FALSE(estimate_trim({}, rectified(nominal), {}));
+    EXPECT_FALSE(estimate_trim({}, rectified(nominal), corners_of(nominal, nominal, 149, rng)));
+    const camera::RightEye knocked{0.0, 0.02, 0.0, 0.0};
+    EXPECT_FALSE(estimate_trim(
+        {}, rectified(nominal), corners_of(with_right_eye(nominal, knocked), nominal, 400, rng)));
+}
+
+}  // namespace
+}  // namespace surefoot::stereo
