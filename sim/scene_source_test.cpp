@@ -287,7 +287,8 @@ TEST(SceneSourceTest, WrongOptionsGetASentence) {
         return source.error().message;
     };
     SceneOptions unknown_scene = small("stairs_of_penrose");
-    EXPECT_NE(message(unknown_scene).find("demo_stairs"), std::string::npos);
+    EXPECT_NE(message(unknown_scene).find("sim --list"), std::string::npos);
+    EXPECT_NE(message(small("demo_stair")).find("demo_stairs"), std::string::npos);
     SceneOptions rate = small("floor");
     rate.rate_hz = std::numeric_limits<double>::quiet_NaN();
     EXPECT_NE(message(rate).find("rate_hz"), std::string::npos);

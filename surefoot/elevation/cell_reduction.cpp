@@ -84,6 +84,18 @@ Surface surface_of(
     return surface;
 }
 
+CellMeasurement face_of(const ReductionConfig& config,
+                        const CellMeasurement& seen,
+                        int points,
+                        float half_width_m) noexcept {
+    if (points < config.min_face_points) return {};
+    CellMeasurement face = seen;
+    face.z_m = seen.highest_m;
+    face.var_m2 = half_width_m * half_width_m;
+    face.points = points;
+    return face;
+}
+
 float measurement_variance(const ReductionConfig& config, const Surface& surface) noexcept {
     const double independent = std::max(
         1.0, std::min(surface.points / config.points_per_independent, config.max_independent));
@@ -123,6 +135,11 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                    1.0,
                    1e6,
                    "largest number of independent errors in a cell and frame");
+    visitor.integer("min_face_points",
+                    min_face_points,
+                    1,
+                    1000000,
+                    "so many points of a cell without a common height are a vertical face");
     visitor.number("systematic_sigma_m",
                    systematic_sigma_m,
                    0.0,
@@ -153,10 +170,11 @@ std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,
             return measurement;
         }
         rank += support;
-        if (rank > n) return std::nullopt;
+        if (rank > n) break;
         start_m = upper_quantile(all_m, rank);
     }
-    return std::nullopt;
+    const CellMeasurement face = face_of(config, measurement, n, half_width_m);
+    return face.points > 0 ? std::optional(face) : std::nullopt;
 }
 
 }  // namespace surefoot::elevation

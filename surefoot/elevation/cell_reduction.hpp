@@ -18,6 +18,8 @@ struct ReductionConfig {
     /// is measured otherwise, a cell and frame hold one independent error.
     double points_per_independent = 30.0;
     double max_independent = 1.0;
+    /// So many points without a common height are a vertical face, seen from the side.
+    int min_face_points = 60;
     double systematic_sigma_m = 0.002;  ///< calibration and lattice errors, in every measurement
 
     void describe(ConfigVisitor& visitor);
@@ -34,10 +36,11 @@ struct CellMeasurement {
 
 /// Highest surface among the samples of a cell: starts at an upper quantile of the heights, so that
 /// single outliers above do not count, and climbs to the centre of the points around it (mean
-/// shift). If too few points share that height, tries the next lower one. Its variance is the
-/// larger of the mean variance and the scatter of the points, over the number of independent
-/// errors, plus the systematic part. Nothing when no surface has enough points. `z_m` and `var_m2`
-/// are finite and equally long.
+/// shift). If too few points share that height, tries the next lower one. Its variance is the larger
+/// of the mean variance and the scatter of the points, over the number of independent errors, plus
+/// the systematic part. Many points that share no height are a vertical face (a wall, a person) and
+/// have the height of the upper quantile; few are nothing. `z_m` and `var_m2` are finite and equally
+/// long.
 ///
 /// The plain version: `reduce_cells` gives the same bytes.
 [[nodiscard]] std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,
@@ -68,6 +71,13 @@ struct Surface {
     int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept;
 [[nodiscard]] float measurement_variance(const ReductionConfig& config,
                                          const Surface& surface) noexcept;
+
+/// What stands for a cell in which no surface has enough points: a face, or nothing (0 points).
+/// `seen` holds the extremes.
+[[nodiscard]] CellMeasurement face_of(const ReductionConfig& config,
+                                      const CellMeasurement& seen,
+                                      int points,
+                                      float half_width_m) noexcept;
 
 /// Adds sixteen columns up, always in the same order.
 [[nodiscard]] constexpr float tree(const float column[16]) noexcept {

@@ -115,6 +115,23 @@ TEST(CellReduction, SingleOutliersDoNotWin) {
     EXPECT_NEAR(reduce(pairs, samples)->z_m, 0.001F, 1e-6F);
 }
 
+TEST(CellReduction, AFaceSeenFromTheSideHasTheHeightOfItsTop) {
+    Rng rng(5);
+    std::vector<HeightSample> samples;
+    for (int i = 0; i < 400; ++i)
+        samples.push_back({static_cast<float>(rng.uniform(0.0, 0.9)), kVar});
+    const auto measured = reduce({}, samples);
+    ASSERT_TRUE(measured) << "a wall is no floor";
+    // A tenth of the points, 40 of 400, lies above.
+    EXPECT_NEAR(measured->z_m, 0.81F, 0.05F);
+    EXPECT_GT(std::sqrt(measured->var_m2), 0.01F);
+    EXPECT_EQ(measured->points, 400);
+    // A handful of scattered points is noise.
+    samples.resize(20);
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i].z_m = 0.05F * static_cast<float>(i);
+    EXPECT_FALSE(reduce({}, samples));
+}
+
 TEST(CellReduction, VarianceFollowsTheIndependentPointsAndTheScatter) {
     ReductionConfig config;
     config.points_per_independent = 4.0;

@@ -19,8 +19,11 @@ constexpr int kOverheadSeen = 2;
 constexpr int kOverheadSure = 4;
 constexpr int kOverheadMost = 8;
 
-/// Weight of a new look in confidence and density ratio.
-constexpr float kNewLook = 1.0F / 8.0F;
+/// Weight of a new look in confidence and density ratio, and the confidence in a first look.
+constexpr float kNewLook = 0.25F;
+constexpr float kFirstLook = 0.5F;
+/// Evidence that a surface is gone, per frame, for one that every look showed.
+constexpr int kGone = 16;
 
 }  // namespace
 
@@ -40,7 +43,8 @@ void ElevationCells::for_each_layer(const F& f) {
     f(viewpoint_, ViewpointHistory::kNever);
     f(overhead_m_, kNan);
     f(overhead_trust_, std::uint8_t{0});
-    f(seen_through_, std::uint8_t{0});
+    f(steady_, std::uint8_t{0});
+    f(seen_through_, std::uint16_t{0});
 }
 
 ElevationCells::ElevationCells(const ElevationConfig& config, int nx, int ny) : config_(config) {
@@ -107,9 +111,9 @@ bool ElevationCells::see_through(std::size_t cell, float line_z_m) {
     if (!(height_m - line_z_m > margin_m + static_cast<float>(visibility.sigmas) * sigma_m)) {
         return false;
     }
-    std::uint8_t& frames = seen_through_.data()[cell];
-    ++frames;
-    if (frames < visibility.frames) return false;
+    std::uint16_t& evidence = seen_through_.data()[cell];
+    evidence = static_cast<std::uint16_t>(evidence + steady_.data()[cell]);
+    if (evidence < visibility.frames * kGone) return false;
     forget(cell);
     // What stood here may have been a thing that one sees under. Until the ground below it has been
     // seen a few times, it bounds the clearance.
@@ -170,7 +174,7 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
     layers_.horizontal_drift_m.data()[cell] = 0.0F;
     layers_.highest_m.data()[cell] = measured.highest_m;
     layers_.lowest_m.data()[cell] = measured.lowest_m;
-    layers_.confidence.data()[cell] = kNewLook;
+    set_confidence(cell, kFirstLook);
     layers_.density_ratio.data()[cell] = seen.density_ratio;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     viewpoint_.data()[cell] = look.view;
@@ -204,11 +208,16 @@ void ElevationCells::agree(std::size_t cell,
     float& lowest_m = layers_.lowest_m.data()[cell];
     highest_m = std::max(highest_m, measured.highest_m);
     lowest_m = std::min(lowest_m, measured.lowest_m);
-    float& confidence = layers_.confidence.data()[cell];
-    confidence += kNewLook * (1.0F - confidence);
+    const float confidence = layers_.confidence.data()[cell];
+    set_confidence(cell, confidence + kNewLook * (1.0F - confidence));
     remember_density(cell, seen.density_ratio);
     seen_through_.data()[cell] = 0;
     see_no_more_above(cell);
+}
+
+void ElevationCells::set_confidence(std::size_t cell, float confidence) {
+    layers_.confidence.data()[cell] = confidence;
+    steady_.data()[cell] = static_cast<std::uint8_t>(kGone * confidence + 0.5F);
 }
 
 void ElevationCells::remember_density(std::size_t cell, float ratio) {

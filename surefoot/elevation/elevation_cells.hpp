@@ -59,6 +59,7 @@ class ElevationCells {
     void start(std::size_t cell, const Seen& seen, const Look& look);
     void agree(std::size_t cell, const Height& fused, const Seen& seen, const Look& look);
     void repeat(std::size_t cell, const CellMeasurement& measured, const Look& look);
+    void set_confidence(std::size_t cell, float confidence);
     void remember_density(std::size_t cell, float ratio);
     void see_above(std::size_t cell, float z_m, int trust);
     void see_no_more_above(std::size_t cell);
@@ -74,7 +75,10 @@ class ElevationCells {
     /// Lowest surface seen above the height, and how far it is believed.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;
-    grid::SlidingLayer<std::uint8_t> seen_through_;  ///< frames since a look agreed
+    /// A surface seen in a share s of the looks is missed in n of them by chance with (1 - s)^n: so
+    /// that 1/s times as many frames are asked of it before it counts as gone.
+    grid::SlidingLayer<std::uint8_t> steady_;         ///< s at the last look that agreed, in 1/16
+    grid::SlidingLayer<std::uint16_t> seen_through_;  ///< its sum over frames since then
 };
 
 }  // namespace surefoot::elevation

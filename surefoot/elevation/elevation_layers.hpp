@@ -22,8 +22,8 @@ struct ElevationLayers {
     Layer highest_m;           ///< robust extremes of all points in the cell since the height
     Layer lowest_m;            ///<   was first set: a wall or an edge spans more than a floor
     Layer clearance_m;         ///< from the height to the lowest thing seen above it; NaN = none
-    /// Share of the looks at the cell that agreed with its height, the last eight or so; a height
-    /// that was just set has 1/8.
+    /// Share of the looks at the cell that agreed with its height, the last four or so; a height
+    /// that was just set has 1/2.
     Layer confidence;
     /// Points seen over points that level ground would show there (Oniga and Nedevschi 2010), over
     /// the same looks: a wall shows many times more. NaN = measured without a camera.

@@ -183,6 +183,20 @@ void ElevationMap::clean_up(const Eigen::Vector3d& camera_m,
     for (const FusionCounts& block : block_counts_) counts += block;
 }
 
+bool ElevationMap::stands_beside(grid::Cell cell, float height_m) const {
+    // Cells on an edge are often missed: the pixels there are not trusted. What they belong to is
+    // not.
+    const auto margin_m = static_cast<float>(config_.visibility.margin_m);
+    for (int iy = std::max(cell.iy - 1, 0); iy <= std::min(cell.iy + 1, geometry().ny - 1); ++iy) {
+        const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * geometry().nx;
+        for (int ix = std::max(cell.ix - 1, 0); ix <= std::min(cell.ix + 1, geometry().nx - 1);
+             ++ix) {
+            if (std::abs(seen_z_m[ix] - height_m) < margin_m) return true;
+        }
+    }
+    return false;
+}
+
 void ElevationMap::clean_up_block(int block, std::int64_t time_ns) {
     const int nx = geometry().nx;
     const int first = block * kBlockRows;
@@ -194,6 +208,7 @@ void ElevationMap::clean_up_block(int block, std::int64_t time_ns) {
         const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * nx;
         for (int ix = 0; ix < nx; ++ix) {
             if (std::isnan(height_m[ix]) || agreed_ns[ix] == time_ns) continue;
+            if (stands_beside({ix, iy}, height_m[ix])) continue;
             // A look that ended here, below the height, has passed through it as well.
             const float line_z_m = lines_.lowest_over({ix, iy});
             const float lowest_m = seen_z_m[ix] < line_z_m ? seen_z_m[ix] : line_z_m;

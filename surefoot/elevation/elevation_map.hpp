@@ -80,6 +80,8 @@ class ElevationMap {
                   std::int64_t time_ns,
                   Executor& executor,
                   FusionCounts& counts);
+    /// The frame has measured this height in the cell or beside it.
+    [[nodiscard]] bool stands_beside(grid::Cell cell, float height_m) const;
     void clean_up_block(int block, std::int64_t time_ns);
 
     ElevationConfig config_;

@@ -178,10 +178,10 @@ HWY_INLINE CellMeasurement reduce(const ReductionConfig& config, const Samples& 
             return measured;
         }
         rank += support;
-        if (rank > samples.n) return {};
+        if (rank > samples.n) break;
         start_m = ranked(samples, false, rank);
     }
-    return {};
+    return face_of(config, measured, samples.n, half_width_m);
 }
 
 void reduce_all(const ReductionConfig& config,

@@ -29,7 +29,7 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
                     frames,
                     1,
                     255,
-                    "frames with such a line, without one that agrees, until the height is gone");
+                    "frames with such a line until a height that every look had shown is gone");
 }
 
 void LinesOfSight::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {

@@ -16,7 +16,9 @@ struct VisibilityConfig {
     bool cleanup = true;
     double margin_m = 0.05;  ///< lines this far below a height contradict it ...
     double sigmas = 3.0;     ///< ... plus this many sigma of the height
-    int frames = 4;          ///< without one that agrees in between
+    /// Frames with such a line, and without a look that agrees in between, until a surface that
+    /// every look had shown is gone; a surface seen in every third look gets three times as many.
+    int frames = 3;
 
     void describe(ConfigVisitor& visitor);
 };
