@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From pictures of a board to the rational lens: the truth lies within three sigma, measured in the
-// image, because its coefficients can stand in for each other.
+// From pictures of a board to the lens: the truth lies within three sigma, measured in the image,
+// because coefficients can stand in for each other.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -31,6 +31,20 @@ camera::Camera rational_camera() {
                                     .k4 = 0.8,
                                     .k5 = -0.6,
                                     .k6 = 0.35},
+            kSize.width,
+            kSize.height};
+}
+
+/// Of nearly 180 deg.
+camera::Camera fisheye_camera() {
+    return {camera::KannalaBrandt{.fx_px = 120.0,
+                                  .fy_px = 120.3,
+                                  .cx_px = 158.0,
+                                  .cy_px = 122.0,
+                                  .k1 = 0.0121,
+                                  .k2 = 0.0056,
+                                  .k3 = -0.0061,
+                                  .k4 = 0.0005},
             kSize.width,
             kSize.height};
 }
@@ -77,16 +91,27 @@ std::vector<double> squares(const camera::Camera& truth,
     return result;
 }
 
-class CalibrateRendered : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Boards,
-                         CalibrateRendered,
-                         ::testing::Values("chessboard:8x5:0.03", "circles:8x5:0.03"));
+struct Case {
+    const char* board;
+    calibration::LensKind lens;
+};
 
-TEST_P(CalibrateRendered, TheRationalLensIsTrueWithinThreeSigmaAllOverTheImage) {
-    const calibration::Board board = calibration::parse_board(GetParam()).value();
-    const camera::Camera truth = rational_camera();
-    const auto estimate = calibration::calibrate_mono(
-        board, seen_boards(board, truth), kSize, calibration::LensKind::rational);
+class CalibrateRendered : public ::testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(
+    Boards,
+    CalibrateRendered,
+    ::testing::Values(Case{"chessboard:8x5:0.03", calibration::LensKind::rational},
+                      Case{"circles:8x5:0.03", calibration::LensKind::rational},
+                      Case{"chessboard:8x5:0.03", calibration::LensKind::fisheye},
+                      Case{"circles:8x5:0.03", calibration::LensKind::fisheye},
+                      Case{"asymmetric_circles:4x9:0.05", calibration::LensKind::fisheye}));
+
+TEST_P(CalibrateRendered, TheLensIsTrueWithinThreeSigmaAllOverTheImage) {
+    const calibration::Board board = calibration::parse_board(GetParam().board).value();
+    const camera::Camera truth =
+        GetParam().lens == calibration::LensKind::fisheye ? fisheye_camera() : rational_camera();
+    const auto estimate =
+        calibration::calibrate_mono(board, seen_boards(board, truth), kSize, GetParam().lens);
     ASSERT_TRUE(estimate) << estimate.error().message;
     EXPECT_LT(estimate->sigma_px, 0.1);
     const std::vector<double> all = squares(truth, *estimate);
@@ -98,7 +123,7 @@ TEST_P(CalibrateRendered, TheRationalLensIsTrueWithinThreeSigmaAllOverTheImage) 
     const auto sigmas = calibration::mapping_sigmas_px(
         estimate->kind, estimate->parameters, estimate->covariance, kSize);
     fmt::print("{}: noise {:.3f} px, image +- {:.3f} px (median), mean square {:.1f} of 2\n",
-               GetParam(),
+               GetParam().board,
                estimate->sigma_px,
                sigmas.median_px,
                sum / static_cast<double>(all.size()));

@@ -41,6 +41,9 @@ struct Board {
 struct BoardView {
     std::vector<int> ids;                 ///< index into Board::points_m, ascending
     std::vector<Eigen::Vector2d> pixels;  ///< one per id; (0, 0) is the centre of the first pixel
+    /// 0: the pixels are images of points. Otherwise the points are discs of this radius, and the
+    /// pixels are the centres of gravity of their images, beside the images of their centres.
+    double disc_radius_m = 0.0;
     friend bool operator==(const BoardView&, const BoardView&) = default;
 };
 

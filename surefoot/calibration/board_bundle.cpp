@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/calibration/disc_image.hpp"
 #include "surefoot/calibration/lens_projection.hpp"
 
 namespace surefoot::calibration {
@@ -50,18 +51,21 @@ void transform_inverse(const T* pose, const T* p, T* result) {
     ceres::AngleAxisRotatePoint(back, shifted, result);
 }
 
-/// Reprojection of one sight, left or right.
+/// Reprojection of one sight, left or right: of a point, or of a disc with a radius.
 template <bool kIsFisheye>
 struct Reprojection {
     Eigen::Vector3d point;
     Eigen::Vector2d pixel;
+    double disc_radius_m = 0.0;
 
     template <typename T>
     bool operator()(const T* lens, const T* T_left_board, T* residual) const {
-        const T p_board[3] = {T(point.x()), T(point.y()), T(point.z())};
-        T p[3];
-        transform(T_left_board, p_board, p);
-        return project(lens, p, residual);
+        const auto seen = [&](const T* p_board, T* predicted) {
+            T p[3];
+            transform(T_left_board, p_board, p);
+            return project(lens, p, predicted);
+        };
+        return compare(seen, residual);
     }
 
     template <typename T>
@@ -69,22 +73,36 @@ struct Reprojection {
                     const T* T_left_right,
                     const T* T_left_board,
                     T* residual) const {
-        const T p_board[3] = {T(point.x()), T(point.y()), T(point.z())};
-        T p_left[3];
-        T p[3];
-        transform(T_left_board, p_board, p_left);
-        transform_inverse(T_left_right, p_left, p);
-        return project(lens, p, residual);
+        const auto seen = [&](const T* p_board, T* predicted) {
+            T p_left[3];
+            T p[3];
+            transform(T_left_board, p_board, p_left);
+            transform_inverse(T_left_right, p_left, p);
+            return project(lens, p, predicted);
+        };
+        return compare(seen, residual);
+    }
+
+    /// `seen` maps a place on the board into the image.
+    template <typename T, typename Seen>
+    bool compare(const Seen& seen, T* residual) const {
+        const auto beside = [&](double x, double y, T* predicted) {
+            const T p_board[3] = {
+                T(point.x() + disc_radius_m * x), T(point.y() + disc_radius_m * y), T(point.z())};
+            return seen(p_board, predicted);
+        };
+        T predicted[2];
+        if (!(disc_radius_m > 0.0 ? disc_image<T>(beside, predicted) : beside(0.0, 0.0, predicted)))
+            return false;
+        residual[0] = pixel.x() - predicted[0];
+        residual[1] = pixel.y() - predicted[1];
+        return true;
     }
 
     template <typename T>
-    bool project(const T* lens, const T* p, T* residual) const {
-        T predicted[2];
-        const bool visible =
-            kIsFisheye ? project_fisheye(lens, p, predicted) : project_pinhole(lens, p, predicted);
-        residual[0] = pixel.x() - predicted[0];
-        residual[1] = pixel.y() - predicted[1];
-        return visible;
+    static bool project(const T* lens, const T* p, T* predicted) {
+        return kIsFisheye ? project_fisheye(lens, p, predicted)
+                          : project_pinhole(lens, p, predicted);
     }
 };
 
@@ -97,10 +115,11 @@ struct Prior {
 };
 
 template <bool kIsFisheye>
-ceres::CostFunction* cost_of(const Sight& sight) {
+ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     constexpr int kLens = kIsFisheye ? kFisheye : kPinhole;
     using Functor = Reprojection<kIsFisheye>;
-    auto* functor = new Functor{sight.point_board_m, sight.pixel};  // the cost function owns it
+    // The cost function owns it.
+    auto* functor = new Functor{sight.point_board_m, sight.pixel, disc_radius_m};
     if (sight.eye == 0) return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6>(functor);
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
 }
@@ -128,7 +147,8 @@ class Graph {
         T_left_right_ = block_of(bundle.T_left_right);
         for (const Pose& T : bundle.T_left_board) poses_.push_back(block_of(T));
         for (const Sight& sight : bundle.sights) {
-            auto* cost = fisheye ? cost_of<true>(sight) : cost_of<false>(sight);
+            auto* cost = fisheye ? cost_of<true>(sight, bundle.disc_radius_m)
+                                 : cost_of<false>(sight, bundle.disc_radius_m);
             auto* loss = options.huber_px > 0.0 ? new ceres::HuberLoss(options.huber_px) : nullptr;
             double* lens = lenses_[static_cast<std::size_t>(sight.eye)].data();
             double* pose = poses_[static_cast<std::size_t>(sight.view)].data();
@@ -235,25 +255,39 @@ std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
     return cost;
 }
 
-std::vector<Eigen::Vector2d> residuals_px(const BoardBundle& bundle) {
-    const bool fisheye = bundle.kind == LensKind::fisheye;
+namespace {
+
+template <bool kIsFisheye>
+std::vector<Eigen::Vector2d> residuals_of(const BoardBundle& bundle) {
     std::vector<std::array<double, kPinhole>> lenses(bundle.lenses.size());
     for (std::size_t i = 0; i < lenses.size(); ++i)
         std::copy(bundle.lenses[i].begin(), bundle.lenses[i].end(), lenses[i].begin());
     const Pose T_right_left = bundle.T_left_right.inverse();
     std::vector<Eigen::Vector2d> residuals;
     for (const Sight& sight : bundle.sights) {
-        Eigen::Vector3d p =
-            bundle.T_left_board[static_cast<std::size_t>(sight.view)] * sight.point_board_m;
-        if (sight.eye == 1) p = T_right_left * p;
+        const Pose& T_left_board = bundle.T_left_board[static_cast<std::size_t>(sight.view)];
+        const Pose T_eye_board = sight.eye == 1 ? T_right_left * T_left_board : T_left_board;
         const double* lens = lenses[static_cast<std::size_t>(sight.eye)].data();
-        Eigen::Vector2d predicted;
-        const bool visible = fisheye ? project_fisheye(lens, p.data(), predicted.data())
-                                     : project_pinhole(lens, p.data(), predicted.data());
-        if (!visible) predicted.setConstant(std::numeric_limits<double>::quiet_NaN());
-        residuals.emplace_back(sight.pixel - predicted);
+        const Reprojection<kIsFisheye> sighting{
+            sight.point_board_m, sight.pixel, bundle.disc_radius_m};
+        const auto seen = [&](const double* p_board, double* predicted) {
+            const Eigen::Vector3d p =
+                T_eye_board * Eigen::Vector3d(p_board[0], p_board[1], p_board[2]);
+            return sighting.project(lens, p.data(), predicted);
+        };
+        Eigen::Vector2d residual;
+        if (!sighting.compare(seen, residual.data()))
+            residual.setConstant(std::numeric_limits<double>::quiet_NaN());
+        residuals.push_back(residual);
     }
     return residuals;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> residuals_px(const BoardBundle& bundle) {
+    return bundle.kind == LensKind::fisheye ? residuals_of<true>(bundle)
+                                            : residuals_of<false>(bundle);
 }
 
 std::optional<Eigen::MatrixXd> covariance(const BoardBundle& bundle, double sigma_px) {

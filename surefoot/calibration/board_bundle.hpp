@@ -27,6 +27,8 @@ struct BoardBundle {
     Pose T_left_right;                    ///< with two lenses
     std::vector<Pose> T_left_board;       ///< one per view
     std::vector<Sight> sights;
+    /// 0: sights are images of points; otherwise centres of gravity of images of discs.
+    double disc_radius_m = 0.0;
 };
 
 /// What of a lens may move; board poses and T_left_right always do.

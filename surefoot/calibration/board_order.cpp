@@ -203,6 +203,7 @@ BoardView turned_like(const Board& board, const BoardView& reference, const Boar
             return a.first < b.first;
         });
         BoardView turned;
+        turned.disc_radius_m = view.disc_radius_m;
         for (const auto& [id, pixel] : points) {
             turned.ids.push_back(id);
             turned.pixels.push_back(pixel);

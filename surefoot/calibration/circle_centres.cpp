@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/calibration/circle_centres.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -14,16 +15,18 @@
 namespace surefoot::calibration {
 namespace {
 
-/// Neighbours that a local map is fitted to: two rings of a grid, half of them at its corner.
-constexpr std::size_t kNeighbours = 12;
-/// Darker than this share of the contrast counts for the centre of gravity; below is noise.
-constexpr double kFaintInk = 0.15;
+/// Circles that a local map is fitted to: one with the ring around it. A second ring would make the
+/// map flatter than it is, and the radius too large by 0.4 % instead of 0.27 with a fisheye lens.
+constexpr std::size_t kNeighbours = 9;
+/// Ink is looked for this far beyond the rim: three sigma of a blur of 0.8 px. What is further away
+/// is noise, which weighs the more the further away it is.
+constexpr double kSoftRim_px = 2.5;
 constexpr double kLeastContrast_dn = 20.0;
 
-/// Perspective first, since a parabola follows it badly on a tilted board; what the lens adds is
-/// what it leaves.
-std::optional<LocalMap> local_map(const std::vector<Eigen::Vector2d>& places_m,
-                                  const std::vector<Eigen::Vector2d>& pixels) {
+/// Derivative of the board's map into the image in the middle of some pairs. Perspective first,
+/// since a parabola follows it badly on a tilted board; what the lens adds is what it leaves.
+std::optional<Eigen::Matrix2d> local_slope(const std::vector<Eigen::Vector2d>& places_m,
+                                           const std::vector<Eigen::Vector2d>& pixels) {
     std::vector<cv::Point2d> from;
     std::vector<cv::Point2d> to;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -36,33 +39,26 @@ std::optional<LocalMap> local_map(const std::vector<Eigen::Vector2d>& places_m,
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) H(row, column) = h.at<double>(row, column);
     }
+    H /= H(2, 2);
     std::vector<Eigen::Vector2d> rest;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         const Eigen::Vector3d seen = H * places_m[i].homogeneous();
         rest.push_back(pixels[i] - seen.hnormalized());
     }
-    auto map = fit_local_map(places_m, rest);
+    const auto map = fit_local_map(places_m, rest);
     if (!map) return std::nullopt;
-    // pixel = (p + A x) / (1 + c x): J = A - p c', H_k = -(J_k c' + c J_k').
-    H /= H(2, 2);
+    // pixel = (p + A x) / (1 + c x) + rest: J = A - p c' + that of the rest.
     const Eigen::Vector2d p = H.topRightCorner<2, 1>();
     const Eigen::RowVector2d c = H.bottomLeftCorner<1, 2>();
-    const Eigen::Matrix2d J = H.topLeftCorner<2, 2>() - p * c;
-    const auto bend = [&](Eigen::Index k) -> Eigen::Matrix2d {
-        const Eigen::Matrix2d outer = J.row(k).transpose() * c;
-        return -(outer + outer.transpose());
-    };
-    map->pixel += p;
-    map->J_px_m += J;
-    map->H_u += bend(0);
-    map->H_v += bend(1);
-    return map;
+    const Eigen::Matrix2d J_px_m = H.topLeftCorner<2, 2>() - p * c + map->J_px_m;
+    if (!(std::abs(J_px_m.determinant()) > 0.0)) return std::nullopt;
+    return J_px_m;
 }
 
-/// The board's map into the image around each of its points.
-std::vector<std::optional<LocalMap>> local_maps(const std::vector<Eigen::Vector3d>& board_m,
-                                                const std::vector<Eigen::Vector2d>& pixels) {
-    std::vector<std::optional<LocalMap>> maps;
+/// The same around each point of the board.
+std::vector<std::optional<Eigen::Matrix2d>> local_slopes(
+    const std::vector<Eigen::Vector3d>& board_m, const std::vector<Eigen::Vector2d>& pixels) {
+    std::vector<std::optional<Eigen::Matrix2d>> slopes;
     for (const Eigen::Vector3d& here_m : board_m) {
         std::vector<std::size_t> nearest(board_m.size());
         for (std::size_t i = 0; i < nearest.size(); ++i) nearest[i] = i;
@@ -77,9 +73,9 @@ std::vector<std::optional<LocalMap>> local_maps(const std::vector<Eigen::Vector3
             near_m.emplace_back((board_m[i] - here_m).head<2>());
             near_px.push_back(pixels[i]);
         }
-        maps.push_back(local_map(near_m, near_px));
+        slopes.push_back(local_slope(near_m, near_px));
     }
-    return maps;
+    return slopes;
 }
 
 struct Blob {
@@ -113,10 +109,12 @@ void for_pixels_around(const Eigen::Vector2d& centre,
     }
 }
 
-/// Ink within `reach_m` of a rough centre: its centre of gravity and how much of it there is.
+/// Ink around a rough centre: its centre of gravity within `ink_m`, and how much of it there is
+/// within `reach_m`, where the paper is.
 std::optional<Blob> blob_at(const Eigen::Vector2d& centre,
                             const Eigen::Matrix2d& J_px_m,
                             double reach_m,
+                            double ink_m,
                             ImageView<const std::uint8_t> image) {
     constexpr double kRing = 0.9;    // beyond is paper
     constexpr double kHeart = 0.25;  // within is ink
@@ -132,63 +130,54 @@ std::optional<Blob> blob_at(const Eigen::Vector2d& centre,
     if (contrast_dn < kLeastContrast_dn) return std::nullopt;
     Blob blob{Eigen::Vector2d::Zero(), 0.0};
     double weights = 0.0;
-    for_pixels_around(centre, J_px_m, reach_m, image, [&](const auto& pixel, double, double dn) {
-        const double ink = (white_dn - dn) / contrast_dn;
-        blob.area_px2 += ink;
-        if (ink < kFaintInk) return;
-        weights += ink;
-        blob.centre += ink * pixel;
-    });
+    const double limit = ink_m / reach_m;
+    for_pixels_around(
+        centre, J_px_m, reach_m, image, [&](const auto& pixel, double distance, double dn) {
+            const double ink = (white_dn - dn) / contrast_dn;
+            blob.area_px2 += ink;
+            if (distance > limit) return;
+            weights += ink;
+            blob.centre += ink * pixel;
+        });
+    if (!(weights > 0.0)) return std::nullopt;
     blob.centre /= weights;
     return blob;
 }
 
-/// From the image of a circle's centre to the centre of gravity of its image, to second order in
-/// the radius: mean of pixel(x) det J(x) over the disc, by det J, with E[x x'] = r^2/4.
-Eigen::Vector2d offset_of_centroid(const LocalMap& map, double radius_sq_m2) {
-    const Eigen::Matrix2d inverse = map.J_px_m.inverse();
-    Eigen::Vector2d gradient;  // of log det J
-    for (Eigen::Index k = 0; k < 2; ++k) {
-        Eigen::Matrix2d slope;
-        slope.row(0) = map.H_u.row(k);
-        slope.row(1) = map.H_v.row(k);
-        gradient[k] = (inverse * slope).trace();
-    }
-    const Eigen::Vector2d curvature(map.H_u.trace(), map.H_v.trace());
-    return 0.25 * radius_sq_m2 * (0.5 * curvature + map.J_px_m * gradient);
+/// `kSoftRim_px` on the board, where it is seen shortest.
+double soft_rim_m(const Eigen::Matrix2d& J_px_m) {
+    return kSoftRim_px * J_px_m.inverse().operatorNorm();
 }
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> refined_circle_centres(const Board& board,
-                                                    const std::vector<Eigen::Vector2d>& rough,
-                                                    ImageView<const std::uint8_t> image) {
+DiscImages measured_discs(const Board& board,
+                          const std::vector<Eigen::Vector2d>& rough,
+                          ImageView<const std::uint8_t> image) {
     const std::vector<Eigen::Vector3d> board_m = board.points_m();
     const bool staggered = board.kind == BoardKind::asymmetric_circles;
     const double nearest_m = staggered ? board.spacing_m / std::numbers::sqrt2 : board.spacing_m;
     const double reach_m = 0.48 * nearest_m;
-    std::vector<Eigen::Vector2d> centres = rough;
+    DiscImages discs{rough, 0.0};
     std::vector<double> radii_sq_m2;
-    constexpr int kRounds = 2;  // the second one looks around the centre of the first
+    constexpr int kRounds = 3;  // each looks around the centres, and as far as the radius, before
     for (int round = 0; round < kRounds; ++round) {
-        const auto maps = local_maps(board_m, centres);
+        const auto slopes = local_slopes(board_m, discs.centroids);
         radii_sq_m2.clear();
-        for (std::size_t i = 0; i < centres.size(); ++i) {
-            if (!maps[i] || std::abs(maps[i]->J_px_m.determinant()) <= 0.0) continue;
-            const auto blob = blob_at(centres[i], maps[i]->J_px_m, reach_m, image);
+        for (std::size_t i = 0; i < rough.size(); ++i) {
+            if (!slopes[i]) continue;
+            const double ink_m =
+                round == 0 ? reach_m : std::min(reach_m, discs.radius_m + soft_rim_m(*slopes[i]));
+            const auto blob = blob_at(discs.centroids[i], *slopes[i], reach_m, ink_m, image);
             if (!blob) continue;
-            centres[i] = blob->centre;
-            radii_sq_m2.push_back(blob->area_px2 / std::abs(maps[i]->J_px_m.determinant()) /
+            discs.centroids[i] = blob->centre;
+            radii_sq_m2.push_back(blob->area_px2 / std::abs(slopes[i]->determinant()) /
                                   std::numbers::pi);
         }
+        if (radii_sq_m2.empty()) return {rough, 0.0};
+        discs.radius_m = std::sqrt(std::max(0.0, median_of(radii_sq_m2)));
     }
-    if (radii_sq_m2.empty()) return rough;
-    const double radius_sq_m2 = median_of(std::move(radii_sq_m2));
-    const auto maps = local_maps(board_m, centres);
-    for (std::size_t i = 0; i < centres.size(); ++i) {
-        if (maps[i]) centres[i] -= offset_of_centroid(*maps[i], radius_sq_m2);
-    }
-    return centres;
+    return discs;
 }
 
 }  // namespace surefoot::calibration

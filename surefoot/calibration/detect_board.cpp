@@ -173,7 +173,12 @@ BoardSighting find_circles(const Board& board,
         cv::resize(image, large, cv::Size(), kEnlarged, kEnlarged, cv::INTER_CUBIC);
         points = find_grid(board, large, kEnlarged, view);
     }
-    if (points) return whole_board(refined_circle_centres(board, *points, view));
+    if (points) {
+        const DiscImages discs = measured_discs(board, *points, view);
+        BoardSighting sighting = whole_board(discs.centroids);
+        sighting.view.disc_radius_m = discs.radius_m;
+        return sighting;
+    }
     return not_found(fmt::format("no {} of {} x {} dark circles on white, seen whole",
                                  board.kind == BoardKind::circles ? "grid" : "staggered grid",
                                  board.columns,

@@ -28,8 +28,9 @@ struct BoardSighting {
 /// after a turn (see `turns_of`) come in the order whose rows run most to the right in the image;
 /// `turned_like` makes the second eye of a pair agree with the first.
 ///
-/// Circles: centre of gravity of the ink, moved from the centre of the seen ellipse to the image of
-/// the circle's centre (half a pixel apart on a tilted board close by).
+/// Circles: centre of gravity of the ink, with the radius that its area shows. The image of a
+/// circle's centre lies up to half a pixel beside it on a tilted board close by; only who knows the
+/// lens can say where.
 inline constexpr int kFewestCharucoPoints = 6;
 [[nodiscard]] BoardSighting detect_board(const Board& board, ImageView<const std::uint8_t> image);
 

@@ -42,6 +42,7 @@ BoardBundle bundle_of(const Board& board,
     BoardBundle bundle;
     bundle.kind = kind;
     bundle.size = size;
+    bundle.disc_radius_m = disc_radius_m(views);
     bundle.T_left_board.resize(kept.size());
     for (std::size_t v = 0; v < kept.size(); ++v) {
         const BoardView& view = views[kept[v]];
@@ -182,6 +183,7 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
     }
     result.rms_px = rms_px(bundle);
     result.sigma_px = fit->sigma_px;
+    result.disc_radius_m = bundle.disc_radius_m;
     result.views = view_fits(bundle, kept, all, *fit);
     return result;
 }

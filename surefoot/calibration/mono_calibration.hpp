@@ -44,6 +44,7 @@ struct MonoCalibration {
     Eigen::MatrixXd covariance;
     double rms_px = 0.0;    ///< root of the mean squared distance of the points used, as in OpenCV
     double sigma_px = 0.0;  ///< noise of a coordinate, degrees of freedom counted
+    double disc_radius_m = 0.0;          ///< of the board's circles, as the views show it, or 0
     std::vector<ViewFit> views;          ///< used, ascending
     std::vector<RejectedView> rejected;  ///< ascending
 };

@@ -170,6 +170,7 @@ BoardBundle bundle_of(const Board& board,
         add_sights(points, right_views[pair.index], 1, view, bundle.sights);
     }
     bundle.T_left_right = median_pose(relative);
+    bundle.disc_radius_m = 0.5 * (left.disc_radius_m + right.disc_radius_m);
     return bundle;
 }
 
@@ -221,28 +222,51 @@ void describe(const BoardBundle& bundle,
     }
     result.rms_px = rms_px(bundle);
     result.sigma_px = fit.sigma_px;
+    result.disc_radius_m = bundle.disc_radius_m;
 }
 
-/// The points of a view that the estimate used.
-BoardView used_points(const BoardView& view, const EyeFit& fit) {
+/// The points of a view that the estimate used. Of discs the images of their centres: where the
+/// solution sees them, and as far beside it as their centres of gravity were found.
+BoardView used_points(const Board& board,
+                      const BoardView& view,
+                      const EyeFit& fit,
+                      const camera::Camera& camera,
+                      const Pose& T_camera_board) {
+    const std::vector<Eigen::Vector3d> points = board.points_m();
     BoardView used;
     for (std::size_t i = 0; i < view.ids.size(); ++i) {
         const auto& out = fit.outliers;
         if (std::find(out.begin(), out.end(), view.ids[i]) != out.end()) continue;
+        Eigen::Vector2d pixel = view.pixels[i];
+        if (view.disc_radius_m > 0.0) {
+            const auto centre = camera::project(
+                camera.model, T_camera_board * points[static_cast<std::size_t>(view.ids[i])]);
+            if (!centre) continue;
+            pixel = *centre + fit.residuals_px[i];
+        }
         used.ids.push_back(view.ids[i]);
-        used.pixels.push_back(view.pixels[i]);
+        used.pixels.push_back(pixel);
     }
     return used;
 }
 
-void describe_rectified(std::span<const BoardView> left_views,
+void describe_rectified(const Board& board,
+                        std::span<const BoardView> left_views,
                         std::span<const BoardView> right_views,
                         const StereoParameters& parameters,
                         StereoCalibration& result) {
     std::vector<std::pair<BoardView, BoardView>> used;
+    const camera::StereoRig& rig = result.rig;
+    const Pose T_right_left = rig.T_left_right.inverse();
     for (const PairFit& pair : result.pairs) {
-        used.emplace_back(used_points(left_views[pair.index], pair.left),
-                          used_points(right_views[pair.index], pair.right));
+        const Pose& T_left_board = pair.T_left_board;
+        used.emplace_back(
+            used_points(board, left_views[pair.index], pair.left, rig.left, T_left_board),
+            used_points(board,
+                        right_views[pair.index],
+                        pair.right,
+                        *rig.right,
+                        T_right_left * T_left_board));
     }
     const camera::Rectification plan = camera::plan_rectification(
         result.rig, camera::RectificationConfig{}, camera::Rectifier::kVirtualBaseline_m);
@@ -322,7 +346,7 @@ Result<StereoCalibration> calibrate_stereo(const Board& board,
         return input_error("stereo calibration: the pairs do not determine the cameras");
     result.covariance = *uncertainty;
     describe(bundle, all, *pairs, *fit, result);
-    describe_rectified(left_views, right_views, parameters, result);
+    describe_rectified(board, left_views, right_views, parameters, result);
     return result;
 }
 

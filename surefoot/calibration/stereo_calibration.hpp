@@ -43,6 +43,7 @@ struct StereoCalibration {
     double sigma_px = 0.0;            ///< noise of a coordinate, degrees of freedom counted
     double row_rms_px = 0.0;          ///< row difference of the corners in the rectified images
     double rectified_focal_px = 0.0;  ///< of those images
+    double disc_radius_m = 0.0;       ///< of the board's circles, as the views show it, or 0
     /// Of a point straight ahead of the rectified left camera at 0.5, 1 and 2 m.
     std::array<DepthError, 3> depth_errors;
     std::vector<PairFit> pairs;          ///< used, ascending

@@ -47,6 +47,9 @@ std::optional<std::string> view_problem(const Board& board,
     if (view.ids.size() != view.pixels.size()) {
         return fmt::format("{} ids for {} pixels", view.ids.size(), view.pixels.size());
     }
+    if (!(view.disc_radius_m >= 0.0 && view.disc_radius_m <= board.spacing_m))
+        return fmt::format(
+            "circles of radius {} m, {} m apart", view.disc_radius_m, board.spacing_m);
     if (view.ids.empty()) return "the board was not found";
     const std::vector<Eigen::Vector3d> all = board.points_m();
     std::vector<Eigen::Vector3d> points;
@@ -83,6 +86,13 @@ double motion_px(const BoardView& a, const BoardView& b) {
     if (shared == 0 || 2 * shared < std::max(a.ids.size(), b.ids.size()))
         return std::numeric_limits<double>::infinity();
     return std::sqrt(square / static_cast<double>(shared));
+}
+
+double disc_radius_m(std::span<const BoardView> views) {
+    std::vector<double> radii_m;
+    for (const BoardView& view : views)
+        if (view.disc_radius_m > 0.0) radii_m.push_back(view.disc_radius_m);
+    return median(std::move(radii_m));
 }
 
 std::string summary_of(std::span<const RejectedView> rejected, std::size_t views) {

@@ -34,6 +34,9 @@ void reject(std::vector<RejectedView>& rejected, std::size_t index, const std::s
 /// of one are shared.
 [[nodiscard]] double motion_px(const BoardView& a, const BoardView& b);
 
+/// Median of what the views say of their discs' radius; 0 where they show points.
+[[nodiscard]] double disc_radius_m(std::span<const BoardView> views);
+
 /// "6 of 8 views left out: view 2 ...; view 5 ...": the first three reasons.
 [[nodiscard]] std::string summary_of(std::span<const RejectedView> rejected, std::size_t views);
 
