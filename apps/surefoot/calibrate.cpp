@@ -21,6 +21,8 @@ namespace surefoot::app {
 namespace {
 
 constexpr double kMillimetres = 1e3;
+/// A direction that is known no better than this is worth a word (one sigma).
+constexpr double kMostWorst_px = 1.0;
 
 std::string found_words(const calibration::BoardView& view, const std::string& problem) {
     return problem.empty() ? fmt::format("{} points", view.ids.size()) : problem;
@@ -74,15 +76,17 @@ Result<BoardSource> show_live(const CalibrateOptions& options,
     auto settings = load_settings(options.common);
     if (!settings) return settings.error();
     watch_for_interrupts();
-    log_info(
-        fmt::format("show the board, a new place or tilt every second; {} images, or Ctrl-C "
-                    "when nothing is missing",
-                    kMostVideoViews));
     LiveBoards session{.address = options.source.substr(kLivePrefix.size()),
                        .stereo = options.stereo,
                        .eye = options.eye,
                        .config = settings->live,
                        .stop = [] { return interrupted(); }};
+    session.opened = [] {
+        log_info(
+            fmt::format("show the board, a new place or tilt every second; {} images, or Ctrl-C "
+                        "when nothing is missing",
+                        kMostVideoViews));
+    };
     const Status status =
         for_live_images(io::kernel_video_device(), session, [&](BoardImages images) {
             use(std::move(images));
@@ -116,6 +120,23 @@ Status find_boards(const CalibrateOptions& options, CalibrationRun& run) {
             calibration::coverage_of(run.board, views, run.size.width, run.size.height));
     }
     return {};
+}
+
+/// A board that no image shows is mostly one that was described wrongly.
+Status check_found(const CalibrationRun& run) {
+    const bool found = std::any_of(run.views.begin(), run.views.end(), [](const FoundView& view) {
+        return !view.left.ids.empty() || !view.right.ids.empty();
+    });
+    if (found || run.views.empty()) return {};
+    const bool squares = run.board.kind == calibration::BoardKind::chessboard ||
+                         run.board.kind == calibration::BoardKind::charuco;
+    return input_error(fmt::format(
+        "calibration: none of {} images shows the board '{}'; --board counts COLUMNSxROWS of {}, "
+        "and the board must be seen {}",
+        run.views.size(),
+        run.board_text,
+        squares ? "inner corners, one less than squares each way" : "circles",
+        run.board.kind == calibration::BoardKind::charuco ? "in focus" : "whole"));
 }
 
 Status solve(calibration::LensKind kind, CalibrationRun& run) {
@@ -162,6 +183,13 @@ std::string depth_words(const calibration::DepthError& error) {
     return fmt::format("{:.2f} mm at {:g} m;", kMillimetres * error.sigma_m, error.distance_m);
 }
 
+/// Whether the worst known place of the image matters, and what to do.
+std::string worst_words(const calibration::MappingSigmas& mapping) {
+    if (!(mapping.largest_px > kMostWorst_px)) return "";
+    return ": a corner that no board came near; it matters only if you use the image there (then "
+           "show the board in that corner)";
+}
+
 void print_result(const CalibrationRun& run, const std::string& folder) {
     for (const calibration::RejectedView& rejected : rejected_views(run)) {
         fmt::print(
@@ -171,7 +199,7 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
         fmt::print(
             "{}: f {:.2f} +- {:.2f}, {:.2f} +- {:.2f} px; centre {:.2f} +- {:.2f}, {:.2f} "
             "+- {:.2f} px; "
-            "directions +- {:.3f} px in the image, {:.2f} in its worst corner\n",
+            "directions +- {:.3f} px in the image, {:.2f} where it is known worst{}\n",
             eye.name,
             eye.parameters[0],
             eye.sigmas[0],
@@ -182,8 +210,12 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
             eye.parameters[3],
             eye.sigmas[3],
             eye.mapping.median_px,
-            eye.mapping.largest_px);
+            eye.mapping.largest_px,
+            worst_words(eye.mapping));
     }
+    const double radius_m = run.stereo ? run.stereo->disc_radius_m : run.mono->disc_radius_m;
+    if (radius_m > 0.0)
+        fmt::print("circles: diameter {:.2f} mm, as measured\n", 2.0 * kMillimetres * radius_m);
     const std::size_t used = calibrated_eyes(run).front().views.size();
     fmt::print("{} of {} views used, rms {:.3f} px",
                used,
@@ -228,6 +260,7 @@ int calibrate(const CalibrateOptions& options) {
     run.board_text = options.board;
     run.board = *board;
     if (const Status status = find_boards(options, run); !status) return report(status.error());
+    if (const Status status = check_found(run); !status) return report(status.error());
     advise(run);
     if (const Status status = solve(chosen, run); !status) return report(status.error());
     if (const Status status = write_results(options, run); !status) return report(status.error());

@@ -16,7 +16,8 @@ struct LiveBoards {
     bool stereo = true;
     std::string eye = {};  ///< of one camera: left or right
     io::CameraConfig config = {};
-    std::function<bool()> stop = {};  ///< asked while waiting; true ends the session
+    std::function<bool()> stop = {};    ///< asked while waiting; true ends the session
+    std::function<void()> opened = {};  ///< called once when the camera answers
     /// Between two images that are used: time to move the board.
     double pause_s = 1.0;
     int most = kMostVideoViews;

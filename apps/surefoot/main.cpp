@@ -537,8 +537,9 @@ void add_rig(CLI::App& app, RigOptions& o, int& exit_code) {
 void add_calibration(CLI::App* verb, CalibrateOptions& o) {
     verb->add_option("--board",
                      o.board,
-                     "chessboard:9x6:0.025 (inner corners, metres), circles:6x6:0.02, "
-                     "asymmetric_circles:4x11:0.04, charuco:8x5:0.03:0.022[:DICT_5X5_100]")
+                     "KIND:COLUMNSxROWS:SPACING in metres: chessboard:9x6:0.025 (inner corners), "
+                     "circles:6x6:0.02, asymmetric_circles:4x11:0.04 (their diameter is measured), "
+                     "charuco:8x5:0.03:0.022[:DICT_5X5_100]")
         ->required()
         ->type_name("TEXT");
     verb->add_option("--model",
