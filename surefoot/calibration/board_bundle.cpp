@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "surefoot/calibration/disc_image.hpp"
+#include "surefoot/calibration/growing_image.hpp"
 #include "surefoot/calibration/lens_projection.hpp"
 
 namespace surefoot::calibration {
@@ -24,6 +25,13 @@ constexpr int kFisheye = 8;
 /// 0.5 -2.6 1.5 / 0.4 -2.5 1.4).
 constexpr double kPriorWeight_px = 0.05;
 constexpr double kRationalBound = 20.0;
+/// For an image that should grow and does not, by how much in units of its centre: a limit of 0.01
+/// beside errors of 0.05 px.
+constexpr double kGrowthWeight_px = 5.0;
+constexpr int kGrowthRounds = 4;
+/// What holding an image may cost, in variances of a coordinate: two sigma. Boards that object more
+/// than that were there.
+constexpr double kMostObjection = 4.0;
 constexpr std::array<int, 6> kRadial{4, 5, 8, 9, 10, 11};  ///< k1 k2 k3 k4 k5 k6
 
 using PoseBlock = std::array<double, 6>;  ///< rotation vector, translation
@@ -114,6 +122,23 @@ struct Prior {
     }
 };
 
+/// What an image lacks in growth until it reaches its corners.
+struct Growth {
+    int places = 0;
+
+    template <typename T>
+    bool operator()(const T* lens, T* residual) const {
+        std::fill(residual, residual + kGrowthPlaces, T(0.0));
+        for (int i = 0; i < places; ++i) {
+            const double least = least_growth(growth_place(i));
+            T growth = T(0.0);
+            (void)growth_at(lens, growth_place(i), &growth);
+            if (growth < T(least)) residual[i] = kGrowthWeight_px * (T(least) - growth);
+        }
+        return true;
+    }
+};
+
 template <bool kIsFisheye>
 ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     constexpr int kLens = kIsFisheye ? kFisheye : kPinhole;
@@ -158,6 +183,22 @@ class Graph {
                 problem_.AddResidualBlock(cost, loss, lens, T_left_right_.data(), pose);
         }
         for (Lens& lens : lenses_) set_freedom(lens.data(), options.freedom);
+    }
+
+    /// The images of rational lenses shall reach their corners. False where they do.
+    bool hold_growth() {
+        bool turns_back = false;
+        for (Lens& lens : lenses_) {
+            const GrowthCheck check = check_growth(lens.data(), bundle_.size);
+            turns_back = turns_back || check.turns_back;
+            if (!check.turns_back) continue;
+            problem_.AddResidualBlock(
+                new ceres::AutoDiffCostFunction<Growth, kGrowthPlaces, kPinhole>(
+                    new Growth{check.places}),
+                nullptr,
+                lens.data());
+        }
+        return turns_back;
     }
 
     std::optional<double> run(const BundleOptions& options) {
@@ -251,8 +292,19 @@ Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
 std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
     Graph graph(bundle, options);
     const std::optional<double> cost = graph.run(options);
-    if (cost) graph.store(bundle);
-    return cost;
+    if (!cost) return cost;
+    graph.store(bundle);
+    if (!options.hold_growth || bundle.kind != LensKind::rational) return cost;
+    // Half of two residuals a sight, each of a variance.
+    const double variance_px2 = *cost / static_cast<double>(bundle.sights.size());
+    std::optional<double> held;
+    for (int round = 0; round < kGrowthRounds && graph.hold_growth(); ++round) {
+        held = graph.run(options);
+        if (!held) return cost;
+    }
+    if (!held || *held - *cost > 0.5 * kMostObjection * variance_px2) return cost;
+    graph.store(bundle);
+    return held;
 }
 
 namespace {

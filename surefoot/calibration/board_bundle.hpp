@@ -44,6 +44,9 @@ struct BundleOptions {
     int max_iterations = 100;
     /// Relative change of the cost that ends it; on the way to other decisions less will do.
     double tolerance = 1e-12;
+    /// A rational lens whose image would turn back before the corners is held to growing
+    /// (growing_image.hpp), unless the sights object.
+    bool hold_growth = false;
 };
 
 /// Minimises the reprojection error with Ceres, one thread, fixed order of summation: the same
@@ -56,7 +59,8 @@ struct BundleOptions {
 
 /// Covariance of all lens parameters (one lens after the other) and, with two lenses, of
 /// T_left_right (translation, rotation; right perturbation) for pixel noise of `sigma_px` per
-/// coordinate; board poses are marginalised. Nothing when the views do not determine them.
+/// coordinate; board poses are marginalised. That an image grows does not count: a limit says on
+/// which side of it the truth lies, not how far. Nothing when the views do not determine them.
 [[nodiscard]] std::optional<Eigen::MatrixXd> covariance(const BoardBundle& bundle, double sigma_px);
 
 }  // namespace surefoot::calibration

@@ -128,7 +128,7 @@ std::optional<RobustFit> solve_robustly(BoardBundle& bundle, const RobustLimits&
         fit.dropped.push_back(worst);
     }
     fit.outliers = take_outliers(bundle, limits.point_sigmas * sigma_px);
-    if (!solve(bundle, {})) return std::nullopt;
+    if (!solve(bundle, {.hold_growth = true})) return std::nullopt;
     fit.sigma_px = unbiased_sigma_px(bundle);
     return fit;
 }
