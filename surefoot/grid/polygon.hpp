@@ -34,7 +34,7 @@ class Polygon {
 
 /// Calls `visit` for each cell of the grid whose centre the polygon contains, rows from the
 /// smallest y, and returns how many more such cells would lie outside the grid. Cost: rows times
-/// edges plus the cells inside.
+/// edges plus the cells inside. For the cells that a convex shape overlaps: convex_area.hpp.
 std::int64_t cells_in(const Polygon& polygon,
                       const GridGeometry& geometry,
                       const std::function<void(Cell)>& visit);

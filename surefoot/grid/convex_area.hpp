@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "surefoot/grid/cell_run.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::grid {
+
+/// The convex hull of a few points, grown by a radius on all sides, laid over a grid: a point makes
+/// a circle, two make what a circle sweeps, more make a polygon. Answers which cells it overlaps,
+/// row by row; the cells of a row are one run, because the area is convex.
+///
+/// A cell counts from `kSliver_cells` of overlap on in x and in y: less is rounding, which would
+/// let a foot that ends on a border of cells take another row or not. Works in doubles, for what
+/// describes; the gate decides with fixed_polygon.hpp.
+class ConvexArea {
+  public:
+    static constexpr int kMaxPoints = 32;
+    static constexpr double kSliver_cells = 1e-5;
+    /// Farthest from the grid's origin, so that cells can be counted without rounding.
+    static constexpr double kMaxReach_cells = 1 << 20;
+
+    /// Empty (no rows) if there is no point or more than kMaxPoints, if anything is not finite or
+    /// the radius negative, or if it lies beyond kMaxReach_cells.
+    ConvexArea(std::span<const Eigen::Vector2d> points_m,
+               double radius_m,
+               const GridGeometry& geometry) noexcept;
+
+    [[nodiscard]] bool empty() const noexcept { return first_row_ >= end_row_; }
+    [[nodiscard]] std::int64_t first_row() const noexcept { return first_row_; }
+    [[nodiscard]] std::int64_t end_row() const noexcept { return end_row_; }
+    /// The cells that it overlaps in a row of [first_row, end_row), wherever the grid ends; at
+    /// least one. Cost: proportional to the points.
+    [[nodiscard]] CellRun row(std::int64_t iy) const noexcept;
+
+  private:
+    /// One straight piece of the rim, moved outward by the radius; x over y, both in cells.
+    struct Edge {
+        double low = 0.0;
+        double high = 0.0;
+        double x_at_low = 0.0;
+        double x_per_y = 0.0;
+    };
+
+    using Points = std::array<Eigen::Vector2d, 2 * kMaxPoints>;
+
+    void take_hull(Points& points, int count) noexcept;
+    void take_edges() noexcept;
+    void take_rows() noexcept;
+    [[nodiscard]] double rim_x(const Edge* edges, int count, double side, double y) const noexcept;
+
+    std::array<Eigen::Vector2d, kMaxPoints> hull_;  ///< counter-clockwise [cells]
+    std::array<Edge, kMaxPoints> right_;            ///< edges that go up
+    std::array<Edge, kMaxPoints> left_;             ///< edges that go down
+    int hull_count_ = 0;
+    int right_count_ = 0;
+    int left_count_ = 0;
+    double radius_ = 0.0;       ///< [cells]
+    double rightmost_y_ = 0.0;  ///< where the area reaches farthest to the right
+    double leftmost_y_ = 0.0;
+    std::int64_t first_row_ = 0;
+    std::int64_t end_row_ = 0;
+};
+
+}  // namespace surefoot::grid
