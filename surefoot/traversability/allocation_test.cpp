@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts every allocation of this test program, to prove that rating a map needs none after the
-// first.
+// first, nor asking for what lies under a footprint.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <new>
 
+#include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace {
@@ -52,6 +54,25 @@ TEST(TraversabilityAllocation, NoneAfterTheFirstMap) {
     rater.rate(map.view(), 0.025, CellRect{10, 10, 30, 30}, serial, layers);
     EXPECT_EQ(allocations - before, 0);
     EXPECT_GT(before, 0) << "the counter works";
+}
+
+TEST(TraversabilityAllocation, NoneInFootprintQueriesAfterTheFirstPath) {
+    const grid::Layer map(120, 100, 0.25F);
+    const FootprintLayers layers{{0.025, 120, 100, {-1.5, -1.25}}, map.view(), map.view()};
+    const auto foot =
+        Footprint::polygon(std::array<Eigen::Vector2d, 3>{{{-0.2, -0.1}, {0.2, -0.1}, {0.0, 0.2}}});
+    const auto disc = Footprint::circle(0.3);
+    ASSERT_TRUE(foot.ok() && disc.ok());
+    const std::array<FootprintPose, 3> way{{{-0.5, 0.0, 0.0}, {0.5, 0.0, 0.5}, {0.5, 0.0, 3.0}}};
+    PathScratch scratch;
+    const long before_first = allocations;
+    const std::int64_t cells = query_path(*foot, way, layers, scratch).cells;
+    const long before = allocations;
+    EXPECT_GT(before, before_first) << "the counter works";
+    EXPECT_EQ(query_path(*foot, way, layers, scratch).cells, cells);
+    EXPECT_GT(query(*foot, way[0], layers).cells, 0);
+    EXPECT_GT(query(*disc, way[2], layers).cells, 0);
+    EXPECT_EQ(allocations - before, 0);
 }
 
 }  // namespace

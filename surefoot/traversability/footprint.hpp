@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+#include "surefoot/core/views.hpp"
+#include "surefoot/grid/cell_run.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::traversability {
+
+/// The outline of a foot, a robot or a path's cross-section on the ground, in its own frame: a
+/// circle around the origin or a convex polygon around wherever it is given.
+class Footprint {
+  public:
+    static constexpr int kMaxVertices = 16;
+    /// Larger ones are taken for a mistake of units.
+    static constexpr double kMaxReach_m = 100.0;
+
+    /// Needs 0 < radius_m <= kMaxReach_m.
+    [[nodiscard]] static Result<Footprint> circle(double radius_m);
+    /// Needs 3 to kMaxVertices finite vertices of a convex polygon with an area, in either
+    /// direction of travel; vertices on a straight edge are allowed.
+    [[nodiscard]] static Result<Footprint> polygon(std::span<const Eigen::Vector2d> vertices_m);
+
+    /// A circle is one point with a radius, a polygon has none.
+    [[nodiscard]] std::span<const Eigen::Vector2d> points_m() const noexcept {
+        return {points_m_.data(), static_cast<std::size_t>(count_)};
+    }
+    [[nodiscard]] double radius_m() const noexcept { return radius_m_; }
+    /// Largest distance of a point of the outline's corners from the origin of its frame.
+    [[nodiscard]] double reach_m() const noexcept { return reach_m_; }
+
+  private:
+    Footprint() = default;
+    std::array<Eigen::Vector2d, kMaxVertices> points_m_;
+    int count_ = 0;
+    double radius_m_ = 0.0;
+    double reach_m_ = 0.0;
+};
+
+/// Where a footprint stands, in the frame of the map (odom); yaw from x towards y.
+struct FootprintPose {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double yaw_rad = 0.0;
+};
+
+/// The layers that a query reads; NaN = unknown.
+struct FootprintLayers {
+    grid::GridGeometry geometry;
+    ImageView<const float> rating;    ///< traversability, 1 to 0 (or any other rating)
+    ImageView<const float> height_m;  ///< may be empty: then no heights are told or missed
+};
+
+enum class FootprintOutcome : std::uint8_t {
+    invalid_pose,  ///< no pose, one that is not finite, or one beyond 2^20 cells away: no cells
+                   ///< were read
+    invalid_map,   ///< no cell size, or layers of another size than the grid: no cells were read
+    outside_map,   ///< cells were counted, none of them in the map
+    rated,         ///< at least one cell lies in the map; it may be unknown
+};
+
+/// What lies under a footprint. As default-constructed it is traversable under no policy.
+struct FootprintReport {
+    FootprintOutcome outcome = FootprintOutcome::invalid_pose;
+    std::int64_t cells = 0;           ///< that the shape overlaps, each once
+    std::int64_t outside = 0;         ///< of these, beyond the map
+    std::int64_t unknown = 0;         ///< of these, without a rating (those outside included)
+    std::int64_t without_height = 0;  ///< of these, without a height (those outside included); 0
+                                      ///< when no height layer was given
+    float worst_rating = std::numeric_limits<float>::quiet_NaN();   ///< of the rated cells
+    std::optional<grid::Cell> worst_cell;                           ///< first one, by rows
+    double mean_rating = std::numeric_limits<double>::quiet_NaN();  ///< of the rated cells
+    float lowest_m = std::numeric_limits<float>::quiet_NaN();       ///< of the known heights
+    float highest_m = std::numeric_limits<float>::quiet_NaN();
+
+    /// 1 where nothing is known, also where there are no cells.
+    [[nodiscard]] double unknown_share() const noexcept {
+        return cells > 0 ? static_cast<double>(unknown) / static_cast<double>(cells) : 1.0;
+    }
+    /// NaN without a known height.
+    [[nodiscard]] float height_range_m() const noexcept { return highest_m - lowest_m; }
+};
+
+/// What unknown cells under a footprint mean.
+enum class UnknownPolicy : std::uint8_t {
+    unsafe,   ///< one cell without a rating, without a height or outside the map refuses
+    ignored,  ///< the rated cells alone decide: for planning far ahead, never for a step
+};
+
+/// Whether every rated cell has a rating above 0 of at least `threshold`, and the policy accepts
+/// the others. False under every policy without a single rated cell. A rating, not a verdict: the
+/// step gate decides about steps.
+[[nodiscard]] bool is_traversable(const FootprintReport& report,
+                                  double threshold,
+                                  UnknownPolicy policy = UnknownPolicy::unsafe) noexcept;
+
+/// What lies under every cell that the footprint at that pose overlaps, found in one pass. Not only
+/// the cells whose centre is inside: a foot on half a cell stands on what is in it.
+///
+/// Reads only, keeps nothing: the same question has the same answer, from any thread. Allocates
+/// nothing. Cost: proportional to the cells.
+[[nodiscard]] FootprintReport query(const Footprint& footprint,
+                                    const FootprintPose& pose,
+                                    const FootprintLayers& layers) noexcept;
+
+/// Working memory of path queries; one for each thread. Kept, it saves their allocations.
+struct PathScratch {
+    std::vector<grid::CellRun> runs;
+};
+
+/// The same for all that the footprint overlaps on its way from pose to pose, each cell once:
+/// straight between neighbours while it turns the short way at an even rate (also on the spot).
+///
+/// A turn is cut into pieces of at most kMaxTurn_rad; each is the convex hull of its two ends,
+/// grown by what the arcs bulge out of it. So no cell on the way is missed; beside a turn, what
+/// lies within turn / 2 of the footprint's reach (6 mm for 0.25 m) may count too.
+[[nodiscard]] FootprintReport query_path(const Footprint& footprint,
+                                         std::span<const FootprintPose> poses,
+                                         const FootprintLayers& layers,
+                                         PathScratch& scratch);
+
+/// Largest turn within one piece of a path.
+inline constexpr double kMaxTurn_rad = 0.05;
+
+}  // namespace surefoot::traversability
