@@ -270,18 +270,20 @@ int bench(const BenchOptions& options) {
                "least CPU ms",
                "peer ms",
                "its least CPU ms");
-    const auto optional = [](const std::optional<double>& value_ms) {
-        return value_ms ? fmt::format("{:.3f}", *value_ms) : "-";
+    // What takes less than 10 us is told to the nanosecond.
+    const auto in_ms = [](const std::optional<double>& value_ms) {
+        if (!value_ms) return std::string("-");
+        return fmt::format("{:.{}f}", *value_ms, *value_ms < 0.01 ? 6 : 3);
     };
     for (const BenchResult& r : all) {
         const Timing peer = r.peer.value_or(Timing{});
-        fmt::print("{:<40}{:>12.3f}{:>10.3f}{:>14}{:>14}{:>18}\n",
+        fmt::print("{:<40}{:>12}{:>10}{:>14}{:>14}{:>18}\n",
                    r.name,
-                   r.ours.median_ms,
-                   r.ours.p99_ms,
-                   optional(r.ours.least_cpu_ms),
-                   optional(r.peer ? std::optional(peer.median_ms) : std::nullopt),
-                   optional(peer.least_cpu_ms));
+                   in_ms(r.ours.median_ms),
+                   in_ms(r.ours.p99_ms),
+                   in_ms(r.ours.least_cpu_ms),
+                   in_ms(r.peer ? std::optional(peer.median_ms) : std::nullopt),
+                   in_ms(peer.least_cpu_ms));
     }
     return kExitOk;
 }

@@ -3,6 +3,7 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -12,6 +13,7 @@
 
 #include "apps/surefoot/bench_result.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {
@@ -74,6 +76,59 @@ Timing time_change(const TraversabilityConfig& config,
                  [&] { rater.rate(height_m.view(), kResolution_m, affected, executor, layers); });
 }
 
+/// A query alone is shorter than the clock resolves.
+template <typename Query>
+Timing time_query(const Query& query) {
+    constexpr int kQueries = 1000;
+    Timing timing = timed(kRepeats, [&] {
+        for (int i = 0; i < kQueries; ++i) query(i);
+    });
+    timing.median_ms /= kQueries;
+    timing.p99_ms /= kQueries;
+    if (timing.least_cpu_ms) *timing.least_cpu_ms /= kQueries;
+    return timing;
+}
+
+/// What lies under footprints that stand, at many places and yaws, on known floor.
+Result<std::vector<BenchResult>> bench_footprints() {
+    using namespace traversability;
+    const grid::Layer floor_m(kSide, kSide, 0.0F);
+    const grid::Layer rating(kSide, kSide, 0.95F);
+    const FootprintLayers layers{
+        {kResolution_m, kSide, kSide, {-3.0, -3.0}}, rating.view(), floor_m.view()};
+    const auto circle = Footprint::circle(0.3);
+    if (!circle) return circle.error();
+    const auto polygon = Footprint::polygon(
+        std::vector<Eigen::Vector2d>{{-0.2, -0.1}, {0.2, -0.1}, {0.2, 0.1}, {-0.2, 0.1}});
+    if (!polygon) return polygon.error();
+    const auto pose = [](int i) {
+        return FootprintPose{0.0017 * (i % 1000) - 1.0, 0.0013 * (i % 700) - 0.5, 0.0063 * i};
+    };
+    std::int64_t refused = 0;
+    const auto count = [&](const FootprintReport& report) {
+        if (!is_traversable(report, 0.8)) ++refused;
+    };
+    PathScratch scratch;
+    const auto path = [&](int i) {
+        constexpr int kPoses = 11;  // one every 0.1 m
+        std::array<FootprintPose, kPoses> poses;
+        for (int k = 0; k < kPoses; ++k) {
+            const FootprintPose start = pose(i);
+            poses[static_cast<std::size_t>(k)] = {start.x_m + 0.1 * k, start.y_m, 0.01 * (i % 40)};
+        }
+        count(query_path(*polygon, poses, layers, scratch));
+    };
+    std::vector<BenchResult> results{
+        {"terrain/circle_0.3", time_query([&](int i) { count(query(*circle, pose(i), layers)); })},
+        {"terrain/polygon_0.2x0.4",
+         time_query([&](int i) { count(query(*polygon, pose(i), layers)); })},
+        {"terrain/path_1m_polygon", time_query(path)}};
+    if (refused > 0) {
+        return input_error("bench terrain: the flat floor was refused; the timing means nothing");
+    }
+    return results;
+}
+
 }  // namespace
 
 Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common, Executor& executor) {
@@ -103,6 +158,9 @@ Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common, Exec
                        time_rating(thesis, measured_ground(600, kFine_m), kFine_m, executor)});
     results.push_back(
         {"terrain/rate_rex_zed_changed_60x60", time_change(thesis, ground, executor)});
+    const auto footprints = bench_footprints();
+    if (!footprints) return footprints.error();
+    results.insert(results.end(), footprints->begin(), footprints->end());
     return results;
 }
 
