@@ -134,7 +134,7 @@ Result<std::vector<BenchResult>> bench_footprints() {
 Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common, Executor& executor) {
     const TraversabilityConfig thesis = *traversability::preset("rex_zed");
     const grid::Layer ground = measured_ground(kSide, kResolution_m);
-    std::vector<BenchResult> results;
+    std::vector<BenchResult> results = bench_elevation(executor);
     for (const auto& [name, config] : {std::pair{"rex_zed", thesis},
                                        std::pair{"default", TraversabilityConfig{}},
                                        std::pair{"laser", *traversability::preset("laser")}}) {
