@@ -121,6 +121,32 @@ bool ElevationCells::see_through(std::size_t cell, float line_z_m) {
     return true;
 }
 
+void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std::size_t from) {
+    const float height_m = region.height_m.data()[from];
+    const auto floor_m2 = static_cast<float>(config_.fusion.min_height_var_m2);
+    layers_.height_m.data()[cell] = height_m;
+    layers_.height_var_m2.data()[cell] = std::max(region.height_var_m2.data()[from], floor_m2);
+    layers_.count.data()[cell] = region.count.data()[from];
+    layers_.seen_ns.data()[cell] = 0;
+    layers_.horizontal_drift_m.data()[cell] = region.horizontal_drift_m.data()[from];
+    layers_.highest_m.data()[cell] = region.highest_m.data()[from];
+    layers_.lowest_m.data()[cell] = region.lowest_m.data()[from];
+    layers_.confidence.data()[cell] = region.confidence.data()[from];
+    layers_.density_ratio.data()[cell] = region.density_ratio.data()[from];
+    settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
+    viewpoint_.data()[cell] = ViewpointHistory::kNever;
+    seen_through_.data()[cell] = 0;
+    // As when a height is first measured: what this run saw hang here stays, unless this is it.
+    const auto hangs = static_cast<float>(config_.min_overhead_m);
+    if (!(overhead_m_.data()[cell] - height_m > hangs)) {
+        overhead_m_.data()[cell] = kNan;
+        overhead_trust_.data()[cell] = 0;
+    }
+    const float clearance_m = region.clearance_m.data()[from];
+    if (!std::isnan(clearance_m)) see_above(cell, height_m + clearance_m, kOverheadMost);
+    set_clearance(cell);
+}
+
 void ElevationCells::forget(std::size_t cell) {
     layers_.height_m.data()[cell] = kNan;
     layers_.height_var_m2.data()[cell] = kNan;

@@ -9,6 +9,7 @@
 #include "surefoot/elevation/elevation_config.hpp"
 #include "surefoot/elevation/elevation_layers.hpp"
 #include "surefoot/elevation/viewpoint_history.hpp"
+#include "surefoot/grid/map_region.hpp"
 
 namespace surefoot::elevation {
 
@@ -50,6 +51,10 @@ class ElevationCells {
     /// below the height without a look that agrees, and the height is forgotten. Returns whether it
     /// was. For cells that no look agreed with in this frame.
     bool see_through(std::size_t cell, float line_z_m);
+
+    /// An unknown cell takes what cell `from` of a region knew: as never seen in this run, so that
+    /// the first look at it is new information.
+    void recall(std::size_t cell, const grid::MapRegion& region, std::size_t from);
 
   private:
     template <typename F>

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/elevation/elevation_map.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "surefoot/core/time.hpp"
 #include "surefoot/elevation/depth_points.hpp"
+#include "surefoot/elevation/map_region.hpp"
 #include "surefoot/elevation/reduce_cells.hpp"
 
 namespace surefoot::elevation {
@@ -94,6 +97,37 @@ FusionCounts ElevationMap::add_points(std::span<const MeasuredPoint> points,
     fuse_samples(T_odom_body, nullptr, time_ns, executor, counts);
     clean_up((T_odom_body * T_body_sensor).translation_m, time_ns, executor, counts);
     return counts;
+}
+
+Result<std::int64_t> ElevationMap::insert(const grid::MapRegion& region,
+                                          const Pose& T_odom_body,
+                                          const Matrix6& placement_covariance) {
+    if (const auto problem = region.problem()) {
+        return input_error("no cell of the remembered map is used: " + *problem);
+    }
+    if (region.resolution_m != geometry().resolution_m) {
+        return input_error(
+            fmt::format("a remembered map of {} m cells cannot fill cells of {} m: set "
+                        "elevation.resolution_m to that of the map",
+                        region.resolution_m,
+                        geometry().resolution_m));
+    }
+    grid::MapRegion placed = grid::cut(region, grid::box_of(geometry()));
+    const double cell_var_m2 = geometry().resolution_m * geometry().resolution_m / 12.0;
+    const Eigen::Vector3d least_m2(cell_var_m2, cell_var_m2, config_.fusion.min_height_var_m2);
+    const Eigen::Matrix3d R_body_odom = T_odom_body.R().transpose();
+    Matrix6 covariance = placement_covariance;
+    covariance.topLeftCorner<3, 3>() +=
+        R_body_odom * least_m2.asDiagonal() * R_body_odom.transpose();
+    if (Status paid = pay_for_motion(placed, T_odom_body, covariance); !paid) return paid.error();
+    std::int64_t filled = 0;
+    for (std::size_t cell = 0; cell < placed.height_m.size(); ++cell) {
+        if (std::isnan(placed.height_m.data()[cell])) continue;
+        if (!std::isnan(layers().height_m.data()[cell])) continue;
+        cells_.recall(cell, placed, cell);
+        ++filled;
+    }
+    return filled;
 }
 
 void ElevationMap::sample_points(FusionCounts& counts) {

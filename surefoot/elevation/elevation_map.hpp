@@ -10,6 +10,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/report.hpp"
+#include "surefoot/core/result.hpp"
 #include "surefoot/elevation/cell_groups.hpp"
 #include "surefoot/elevation/cell_reduction.hpp"
 #include "surefoot/elevation/cloud_points.hpp"
@@ -21,6 +22,7 @@
 #include "surefoot/elevation/prefilter.hpp"
 #include "surefoot/elevation/viewpoint_history.hpp"
 #include "surefoot/elevation/visibility.hpp"
+#include "surefoot/grid/map_region.hpp"
 #include "surefoot/grid/moving_window.hpp"
 
 namespace surefoot::elevation {
@@ -55,6 +57,17 @@ class ElevationMap {
                             const Pose& T_odom_body,
                             std::int64_t time_ns,
                             Executor& executor = serial());
+    /// Fills unknown cells, and them alone, from an earlier map that lies in this odom; how many.
+    ///
+    /// A remembered map is as good as the pose that places it: `placement_covariance` is that of
+    /// the body at `T_odom_body` in the region's frame (right perturbation, see pose.hpp), and
+    /// every cell pays for it as for a motion. To it are added, whatever the caller states, the
+    /// floor of the height variance and the horizontal variance of rounding to a cell
+    /// (resolution^2 / 12 along each axis). `seen_ns` of the cells is 0: other clocks mean
+    /// nothing here. Allocates; not for every frame.
+    [[nodiscard]] Result<std::int64_t> insert(const grid::MapRegion& region,
+                                              const Pose& T_odom_body,
+                                              const Matrix6& placement_covariance);
     /// Forgets every cell; the window stays.
     void clear();
 
