@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes must end in a region without a problem or in an error with a sentence; what was read is
+// written to bytes that read back, and merges with itself without becoming surer.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "io/bytes.hpp"
+#include "io/map_file.hpp"
+#include "surefoot/elevation/region_merge.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+void must(bool holds) {
+    if (!holds) std::abort();
+}
+
+void check(std::string_view bytes) {
+    const auto read = io::parse_map(bytes, "f");
+    if (!read) {
+        must(!read.error().message.empty());
+        return;
+    }
+    must(!read->region.problem());
+    const auto again = io::format_map(read->region);
+    must(again.ok());
+    const auto back = io::parse_map(*again, "again");
+    must(back.ok() && *io::format_map(back->region) == *again);
+    grid::MapRegion merged = read->region;
+    must(elevation::merge(merged, read->region, {}).ok() && !merged.problem());
+    for (std::size_t i = 0; i < merged.height_m.size(); ++i) {
+        const float before_m2 = read->region.height_var_m2.data()[i];
+        must(!(merged.height_var_m2.data()[i] < before_m2));
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    check(bytes);
+    // Almost no input has the right checksum, so what lies behind it is tried as well.
+    std::string sealed(bytes.substr(0, size < 8 ? 0 : size - 8));
+    io::store_le(sealed, io::map_checksum(sealed));
+    check(sealed);
+    return 0;
+}
