@@ -77,6 +77,21 @@ TEST(RegionOfMap, HoldsEveryLayerOfEveryCell) {
               map.layers().height_var_m2.data()[remembered]);
 }
 
+TEST(RegionOfMap, ACellOfFewPointsIsOneToo) {
+    ElevationMap map(exact_config());
+    std::vector<MeasuredPoint> points;
+    for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector3d p_m(0.01, 0.01, 0.004 * i);
+        points.push_back({(body_at(0, 0).inverse() * p_m).cast<float>(), 2.5e-5F, 2.5e-5F});
+    }
+    map.add_points(points, {}, body_at(0, 0), kFrame_ns);
+    const grid::MapRegion region = region_of(map);
+    ASSERT_EQ(region.known_cells(), 1);
+    const std::size_t i = index_at(region.geometry(), 0.01, 0.01);
+    EXPECT_GT(region.lowest_m.data()[i], region.highest_m.data()[i]);
+    EXPECT_EQ(region.problem(), std::nullopt);
+}
+
 TEST(RegionOfMap, AWindowMayLieBeyondTheMap) {
     const ElevationMap map = walked_map();
     const grid::LatticeBox window{30, 10, 300, 25};  // holds the patch around (1.0, 0.5) m

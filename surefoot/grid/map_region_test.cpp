@@ -110,7 +110,7 @@ TEST(MapRegion, EveryNumberThatCannotBeIsNamed) {
         {"(0, 1) has drift nan", [](MapRegion& r) { r.horizontal_drift_m.at(0, 1) = kNan; }},
         {"(0, 1) has drift -1", [](MapRegion& r) { r.horizontal_drift_m.at(0, 1) = -1.0F; }},
         {"(0, 0) has highest nan", [](MapRegion& r) { r.highest_m.at(0, 0) = kNan; }},
-        {"(0, 0) has lowest 0.2", [](MapRegion& r) { r.lowest_m.at(0, 0) = 0.2F; }},
+        {"(0, 0) has lowest -inf", [](MapRegion& r) { r.lowest_m.at(0, 0) = -kInf; }},
         {"(0, 0) has clearance inf", [](MapRegion& r) { r.clearance_m.at(0, 0) = kInf; }},
         {"(0, 0) has confidence 1.5", [](MapRegion& r) { r.confidence.at(0, 0) = 1.5F; }},
         {"(0, 0) has density_ratio -1", [](MapRegion& r) { r.density_ratio.at(0, 0) = -1.0F; }},
