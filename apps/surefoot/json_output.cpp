@@ -579,6 +579,60 @@ std::string rate_json(const grid::GridGeometry& geometry, const std::string& fol
     return object.dump(kIndent);
 }
 
+namespace {
+
+Json region_json(const grid::MapRegion& region) {
+    const Eigen::Vector2d origin_m = region.geometry().origin_m;
+    return {{"width", region.box.nx},
+            {"height", region.box.ny},
+            {"resolution_m", region.resolution_m},
+            {"origin_m", {origin_m.x(), origin_m.y()}},
+            {"known_cells", region.known_cells()}};
+}
+
+}  // namespace
+
+std::string map_info_json(const io::MapFile& map, const std::string& file) {
+    const grid::MapRegion& r = map.region;
+    Json object = region_json(r);
+    object["version"] = fmt::format("{}.{}", io::kMapFileMajor, map.minor);
+    object["frame"] = r.frame;
+    object["frame_since_ns"] = r.frame_since_ns;
+    object["stamp_ns"] = r.stamp_ns;
+    const Eigen::Vector3d& t = r.T_frame_body.translation_m;
+    const Eigen::Quaterniond& q = r.T_frame_body.rotation;
+    object["T_frame_body"] = {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+    object["config_hash"] = fmt::format("{:016x}", r.config_hash);
+    Json layers = Json::array();
+    grid::for_each_layer([&](const grid::RegionLayer& layer, auto, auto) {
+        layers.push_back({{"name", layer.name}, {"unit", layer.unit}});
+    });
+    object["layers"] = layers;
+    object["skipped_layers"] = map.skipped_layers;
+    object["file"] = file;
+    return object.dump(kIndent);
+}
+
+std::string map_merge_json(const grid::MapRegion& merged,
+                           const elevation::MergeCounts& counts,
+                           const std::string& file) {
+    Json object = region_json(merged);
+    object["taken"] = counts.taken;
+    object["agreed"] = counts.agreed;
+    object["disagreed"] = counts.disagreed;
+    object["file"] = file;
+    return object.dump(kIndent);
+}
+
+std::string map_export_json(const grid::MapRegion& region,
+                            const std::vector<std::string>& files,
+                            const std::string& folder) {
+    Json object = region_json(region);
+    object["files"] = files;
+    object["folder"] = folder;
+    return object.dump(kIndent);
+}
+
 std::string fuse_json(std::size_t steps, const std::string& folder) {
     return Json{{"steps", steps}, {"folder", folder}}.dump(kIndent);
 }

@@ -24,10 +24,12 @@
 #include "eval/sightings.hpp"
 #include "eval/trajectory.hpp"
 #include "io/config_yaml.hpp"
+#include "io/map_file.hpp"
 #include "io/recorder.hpp"
 #include "io/rig_formats.hpp"
 #include "sim/scenes.hpp"
 #include "surefoot/core/machine.hpp"
+#include "surefoot/elevation/region_merge.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/ground/ground_observation.hpp"
 
@@ -86,6 +88,13 @@ struct TruthScale {
                                       double speed,
                                       std::int64_t late);
 [[nodiscard]] std::string rate_json(const grid::GridGeometry& geometry, const std::string& folder);
+[[nodiscard]] std::string map_info_json(const io::MapFile& map, const std::string& file);
+[[nodiscard]] std::string map_merge_json(const grid::MapRegion& merged,
+                                         const elevation::MergeCounts& counts,
+                                         const std::string& file);
+[[nodiscard]] std::string map_export_json(const grid::MapRegion& region,
+                                          const std::vector<std::string>& files,
+                                          const std::string& folder);
 [[nodiscard]] std::string fuse_json(std::size_t steps, const std::string& folder);
 [[nodiscard]] std::string doctor_json(const std::string& version,
                                       int threads,

@@ -93,6 +93,9 @@ struct AllOptions {
     RecordOptions record;
     ReplayOptions replay;
     InfoOptions info;
+    MapInfoOptions map_info;
+    MapMergeOptions map_merge;
+    MapExportOptions map_export;
     RigOptions rig;
 };
 
@@ -102,7 +105,8 @@ void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
                                    "the whole chain over a recording, video or simulated scene",
                                    "surefoot run sim:floor --max-frames 8 --out out/floor\n"
                                    "  surefoot run sim:floor --max-frames 8 --set "
-                                   "sim.sensor=analytic --out out/modelled"),
+                                   "sim.sensor=analytic --out out/modelled --save-map "
+                                   "out/modelled/floor.region"),
                           o,
                           run,
                           exit_code);
@@ -132,6 +136,10 @@ void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
                      "depth and map on every n-th frame; odometry runs on all")
         ->check(CLI::Range(1, 1000));
     verb->add_flag("--layers", o.all_layers, "write every layer of the map");
+    verb->add_option("--save-map",
+                     o.save_map,
+                     "file for the map as it is at the end, to merge and export with 'map'")
+        ->type_name("F.region");
 }
 
 void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
@@ -613,6 +621,61 @@ void add_calibrate(CLI::App& app, AllOptions& all, int& exit_code) {
     add_calibration(stereo, s);
 }
 
+void add_map(CLI::App& app, AllOptions& all, int& exit_code) {
+    CLI::App* verb = app.add_subcommand("map", "saved elevation maps: look, merge, export");
+    verb->require_subcommand(1);
+    verb->footer("Example:\n  surefoot map info out/modelled/floor.region");
+    auto& i = all.map_info;
+    CLI::App* look = bind(add_verb(*verb,
+                                   "info",
+                                   "what a saved map holds, and of which run",
+                                   "surefoot map info out/modelled/floor.region --json"),
+                          i,
+                          map_info,
+                          exit_code,
+                          Reads::no_settings);
+    look->add_option("file", i.file, "of run --save-map")->required()->type_name("FILE");
+
+    auto& g = all.map_merge;
+    CLI::App* both = bind(add_verb(*verb,
+                                   "merge",
+                                   "two maps of one run, or of one frame, as one map",
+                                   "surefoot map merge out/modelled/floor.region "
+                                   "out/modelled/floor.region --out out/modelled/both.region"),
+                          g,
+                          map_merge,
+                          exit_code);
+    both->add_option("first", g.first, "a saved map")->required()->type_name("A");
+    both->add_option("second", g.second, "another; which comes first does not matter")
+        ->required()
+        ->type_name("B");
+    both->add_option("--out", g.out_file, "the merged map")->required()->type_name("C");
+    both->add_option("--motion-sigma",
+                     g.motion_sigma,
+                     "one sigma of the way from the older map's pose to the younger's, for which "
+                     "the older one's cells pay: horizontal and vertical in metres, angle in "
+                     "degrees")
+        ->type_name("H,V,DEG");
+    both->add_flag("--independent",
+                   g.independent,
+                   "the maps are of two runs, and you know that their odom is the same place: "
+                   "heights that agree are averaged");
+
+    auto& e = all.map_export;
+    CLI::App* files = bind(add_verb(*verb,
+                                    "export",
+                                    "every layer as .asc, the cells as a cloud, pictures of "
+                                    "elevation and sigma",
+                                    "surefoot map export out/modelled/floor.region --out "
+                                    "out/floor_map"),
+                           e,
+                           map_export,
+                           exit_code,
+                           Reads::no_settings);
+    files->add_option("file", e.file, "of run --save-map")->required()->type_name("FILE");
+    files->add_option("--out", e.out_dir, "folder for the files")->required()->type_name("DIR");
+}
+
 void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     CLI::App* config_verb =
         bind(add_verb(app,
@@ -780,6 +843,7 @@ int main_with_arguments(int argc, char** argv) {
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);
     add_rig(app, all.rig, exit_code);
     add_calibrate(app, all, exit_code);
+    add_map(app, all, exit_code);
     add_rest(app, all, exit_code);
     const bool json = wants_json(argc, argv);
     try {

@@ -58,6 +58,9 @@ int run(const RunOptions& options) {
             return report(status.error());
         }
     }
+    if (io::is_file(options.save_map)) {
+        if (auto status = io::remove_file(options.save_map); !status) return report(status.error());
+    }
     RunSession session(*pipeline, **source, rig, options.depth_every, settings->maps);
     session.drive();
     const RunRecord& record = session.record();

@@ -16,11 +16,13 @@
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
+#include "io/map_file.hpp"
 #include "io/point_cloud.hpp"
 #include "io/snapshot_file.hpp"
 #include "io/trajectory_file.hpp"
 #include "surefoot/camera/reproject.hpp"
 #include "surefoot/elevation/height_bounds.hpp"
+#include "surefoot/elevation/map_region.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -145,6 +147,22 @@ std::optional<std::string> beyond_the_map(const RunRecord& record,
         std::ceil(2.0 * *nearest_m));
 }
 
+/// The map as it is after the last frame. Its odom is that of this run alone, told from others by
+/// the run's first stamp.
+Status save_map(const std::string& path,
+                std::uint64_t config_hash,
+                const pipeline::Pipeline& pipeline,
+                const RunRecord& record) {
+    if (record.frames.empty())
+        return output_error(path + ": not written, because no frame was processed");
+    grid::MapRegion region = elevation::region_of(pipeline.map());
+    region.frame_since_ns = record.frames.front().time_ns;
+    region.stamp_ns = record.frames.back().time_ns;
+    region.T_frame_body = record.frames.back().motion.T_odom_body;
+    region.config_hash = config_hash;
+    return io::write_map(path, region);
+}
+
 }  // namespace
 
 grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry) {
@@ -178,6 +196,8 @@ Status write_results(const RunOptions& options,
     writes +=
         sealed.ok() ? io::write_snapshot(out + "/map.snapshot", *snapshot) : std::move(sealed);
 
+    if (!options.save_map.empty())
+        writes += save_map(options.save_map, hash_of(settings), pipeline, record);
     writes += write_pictures_and_report(options, settings, machine, pipeline, record);
     writes +=
         io::write_file(out + "/report.json", report_json(record, pipeline, writes.first()) + "\n");

@@ -37,6 +37,7 @@ struct RunOptions {
     int max_frames = 0;
     int depth_every = 1;
     bool all_layers = false;
+    std::string save_map;  ///< file for the whole map; empty = none
 };
 int run(const RunOptions& options);
 
@@ -240,6 +241,29 @@ struct RigOptions {
     std::string out;                  ///< empty = only look
 };
 int rig(const RigOptions& options);
+
+struct MapInfoOptions {
+    CommonOptions common;
+    std::string file;
+};
+int map_info(const MapInfoOptions& options);
+
+struct MapMergeOptions {
+    CommonOptions common;
+    std::string first;
+    std::string second;
+    std::string out_file;
+    std::string motion_sigma = "0,0,0";  ///< horizontal m, vertical m, angle deg
+    bool independent = false;
+};
+int map_merge(const MapMergeOptions& options);
+
+struct MapExportOptions {
+    CommonOptions common;
+    std::string file;
+    std::string out_dir;
+};
+int map_export(const MapExportOptions& options);
 
 struct InfoOptions {
     CommonOptions common;

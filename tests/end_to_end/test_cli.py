@@ -13,7 +13,7 @@ from surefoot_cli import ROOT, CliTest, grey_png, read_asc, surefoot
 VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"],
          ["eval", "trajectory"], ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["calibrate"],
          ["calibrate", "render"], ["calibrate", "mono"], ["calibrate", "stereo"], ["config"], ["doctor"], ["bench"],
-         ["record"], ["replay"], ["info"], ["rig"]]
+         ["record"], ["replay"], ["info"], ["rig"], ["map"], ["map", "info"], ["map", "merge"], ["map", "export"]]
 GATE_EXIT_CODES = (0, 3, 4)
 
 
@@ -63,7 +63,7 @@ class Verbs(CliTest):
         self.assertIn("length_m: 8", again)
 
     def test_json_is_one_object_with_the_promised_names(self):
-        recording, run = self.dir / "recording", self.dir / "run"
+        recording, run, region = self.dir / "recording", self.dir / "run", self.dir / "floor.region"
         grid = "ncols 40\nnrows 40\nxllcorner 0\nyllcorner 0\ncellsize 0.05\nNODATA_value -9999\n" + "0 " * 1600
         (self.dir / "flat.asc").write_text(grid + "\n")
         steps = ROOT / "tests" / "conformance" / "elevation" / "steps.txt"
@@ -71,7 +71,7 @@ class Verbs(CliTest):
         eye = lambda camera: recording / "mav0" / camera / "data" / "1000000000.png"
         promised = (  # in an order in which each finds what it needs
             (["sim", "floor", "--frames", 3, "--out", recording], "frames complete error folder"),
-            (["run", recording, "--out", run, "--machine", "rex"], "source frames complete gravity_source map timing"),
+            (["run", recording, "--out", run, "--machine", "rex", "--save-map", region], "source frames complete gravity_source map timing"),
             (["depth", eye("cam0"), eye("cam1"), "--rig", "zed_vga", "--out", self.dir / "depth"],
              "width height density_percent trusted_percent median_sigma_px row_error camera folder"),
             (["depth-accuracy", "--distances", 1, "--repeats", 1, "--out", self.dir / "accuracy"],
@@ -86,6 +86,12 @@ class Verbs(CliTest):
             (["eval", "depth", depth / "disparity.pfm", depth / "truth.pfm"],
              "bad_1_percent bad_2_percent density_percent auc bad_0_5_percent error sigma sparsification"),
             (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases scenes carriers bins"),
+            (["map", "info", region], "width height resolution_m origin_m known_cells version frame frame_since_ns "
+             "stamp_ns T_frame_body config_hash layers skipped_layers file"),
+            (["map", "merge", region, region, "--out", self.dir / "both.region"],
+             "width height resolution_m origin_m known_cells taken agreed disagreed file"),
+            (["map", "export", region, "--out", self.dir / "exported"],
+             "width height resolution_m origin_m known_cells files folder"),
             (["dem", run / "map.ply", "--resolution", 0.1, "--out", self.dir / "dem.asc"],
              "width height resolution_m origin_m known_cells points skipped file"),
             (["calibrate", "render", "--board", "chessboard:8x5:0.03", "--rig", "zed_vga", "--views", 12, "--out",
@@ -104,8 +110,8 @@ class Verbs(CliTest):
             (["info", recording], "kind frames rate_hz gaps imu_samples has_truth"),
             (["rig", recording], "format width height focal_left_px focal_right_px baseline_m rectified notes written"),
         )
-        self.assertEqual({tuple(v) for v in VERBS} - {("gate",), ("eval",), ("calibrate",)},
-                         {tuple(call[:2]) if call[0] in ("eval", "calibrate") else (call[0],) for call, _ in promised})
+        self.assertEqual({tuple(v) for v in VERBS} - {("gate",), ("eval",), ("calibrate",), ("map",)},
+                         {tuple(call[:2]) if call[0] in ("eval", "calibrate", "map") else (call[0],) for call, _ in promised})
         answers = {}
         for call, names in promised:
             with self.subTest(" ".join(map(str, call[:2]))):

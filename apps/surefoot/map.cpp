@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/numbers.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "io/map_file.hpp"
+#include "surefoot/core/time.hpp"
+#include "surefoot/elevation/map_region.hpp"
+#include "surefoot/elevation/region_merge.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr double kRadPerDeg = M_PI / 180.0;
+
+void warn_of_skipped(const io::MapFile& map, const std::string& file) {
+    for (const std::string& layer : map.skipped_layers) {
+        log_warning(fmt::format("{}: layer {} is of version {}.{} and is left out",
+                                file,
+                                layer,
+                                io::kMapFileMajor,
+                                map.minor));
+    }
+}
+
+/// Horizontal [m], vertical [m] and angular [deg] sigma as a covariance.
+Result<Matrix6> motion_covariance(const std::string& text) {
+    const auto sigma = parse_three_numbers(
+        "--motion-sigma", text, "horizontal and vertical in metres, angle in degrees");
+    if (!sigma) return sigma.error();
+    const auto [horizontal_m, vertical_m, angle_deg] = *sigma;
+    if (horizontal_m < 0.0 || vertical_m < 0.0 || angle_deg < 0.0)
+        return usage_error(fmt::format("--motion-sigma {}: no sigma is negative", text));
+    const double angle_rad = angle_deg * kRadPerDeg;
+    Vector6 sigmas;
+    sigmas << horizontal_m, horizontal_m, vertical_m, angle_rad, angle_rad, angle_rad;
+    return Matrix6(sigmas.cwiseAbs2().asDiagonal());
+}
+
+/// The older map pays for the way to the younger one's pose.
+Status pay_for_the_way(const Matrix6& covariance,
+                       const MapMergeOptions& options,
+                       grid::MapRegion& first,
+                       grid::MapRegion& second) {
+    if (first.stamp_ns == second.stamp_ns) return {};
+    const bool first_is_older = first.stamp_ns < second.stamp_ns;
+    grid::MapRegion& older = first_is_older ? first : second;
+    const grid::MapRegion& younger = first_is_older ? second : first;
+    if (covariance.isZero(0.0)) {
+        log_warning(fmt::format(
+            "{}: its variances are as seen {:.3f} s before those of the other map, and nothing is "
+            "added for the way between; say how well that is known with --motion-sigma",
+            first_is_older ? options.first : options.second,
+            seconds_from_ns(younger.stamp_ns - older.stamp_ns)));
+        return {};
+    }
+    return elevation::pay_for_motion(older, younger.T_frame_body, covariance);
+}
+
+}  // namespace
+
+int map_info(const MapInfoOptions& options) {
+    const auto map = io::read_map(options.file);
+    if (!map) return report(map.error());
+    if (options.common.json) {
+        print_answer(map_info_json(*map, options.file));
+        return kExitOk;
+    }
+    const grid::MapRegion& r = map->region;
+    const Eigen::Vector2d origin_m = r.geometry().origin_m;
+    const Eigen::Vector3d& body_m = r.T_frame_body.translation_m;
+    fmt::print("map region of version {}.{}: {} x {} cells of {:g} m, {} of them known\n",
+               io::kMapFileMajor,
+               map->minor,
+               r.box.nx,
+               r.box.ny,
+               r.resolution_m,
+               r.known_cells());
+    fmt::print("in frame {} of the run that began at {:.3f} s, from ({:.3f}, {:.3f}) m on\n",
+               r.frame,
+               seconds_from_ns(r.frame_since_ns),
+               origin_m.x(),
+               origin_m.y());
+    fmt::print(
+        "as known at {:.3f} s with base_link at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg; "
+        "settings {:016x}\n",
+        seconds_from_ns(r.stamp_ns),
+        body_m.x(),
+        body_m.y(),
+        body_m.z(),
+        yaw_rad(r.T_frame_body) / kRadPerDeg,
+        r.config_hash);
+    warn_of_skipped(*map, options.file);
+    return kExitOk;
+}
+
+int map_merge(const MapMergeOptions& options) {
+    const auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
+    const auto covariance = motion_covariance(options.motion_sigma);
+    if (!covariance) return report(covariance.error());
+    auto first = io::read_map(options.first);
+    if (!first) return report(first.error());
+    auto second = io::read_map(options.second);
+    if (!second) return report(second.error());
+    warn_of_skipped(*first, options.first);
+    warn_of_skipped(*second, options.second);
+    grid::MapRegion& merged = first->region;
+    if (Status paid = pay_for_the_way(*covariance, options, merged, second->region); !paid)
+        return report(paid.error());
+    const auto counts = elevation::merge(merged,
+                                         second->region,
+                                         settings->pipeline.elevation.fusion,
+                                         options.independent ? elevation::RegionErrors::independent
+                                                             : elevation::RegionErrors::shared);
+    if (!counts) {
+        const Error& error = counts.error();
+        return report({error.code,
+                       fmt::format("{} and {}: {}", options.first, options.second, error.message)});
+    }
+    if (Status written = io::write_map(options.out_file, merged); !written)
+        return report(written.error());
+    if (options.common.json) {
+        print_answer(map_merge_json(merged, *counts, options.out_file));
+    } else {
+        fmt::print("{} cells known in {}: {} of the second map alone, {} agreed, {} disagreed\n",
+                   merged.known_cells(),
+                   options.out_file,
+                   counts->taken,
+                   counts->agreed,
+                   counts->disagreed);
+    }
+    return kExitOk;
+}
+
+}  // namespace surefoot::app
