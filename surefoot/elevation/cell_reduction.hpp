@@ -36,11 +36,11 @@ struct CellMeasurement {
 
 /// Highest surface among the samples of a cell: starts at an upper quantile of the heights, so that
 /// single outliers above do not count, and climbs to the centre of the points around it (mean
-/// shift). If too few points share that height, tries the next lower one. Its variance is the larger
-/// of the mean variance and the scatter of the points, over the number of independent errors, plus
-/// the systematic part. Many points that share no height are a vertical face (a wall, a person) and
-/// have the height of the upper quantile; few are nothing. `z_m` and `var_m2` are finite and equally
-/// long.
+/// shift). If too few points share that height, tries the next lower one. Its variance is the
+/// larger of the mean variance and the scatter of the points, over the number of independent
+/// errors, plus the systematic part. Many points that share no height are a vertical face (a wall,
+/// a person) and have the height of the upper quantile; few are nothing. `z_m` and `var_m2` are
+/// finite and equally long.
 ///
 /// The plain version: `reduce_cells` gives the same bytes.
 [[nodiscard]] std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,

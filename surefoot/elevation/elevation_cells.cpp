@@ -114,10 +114,7 @@ bool ElevationCells::see_through(std::size_t cell, float line_z_m) {
     std::uint16_t& evidence = seen_through_.data()[cell];
     evidence = static_cast<std::uint16_t>(evidence + steady_.data()[cell]);
     if (evidence < visibility.frames * kGone) return false;
-    forget(cell);
-    // What stood here may have been a thing that one sees under. Until the ground below it has been
-    // seen a few times, it bounds the clearance.
-    see_above(cell, height_m, kOverheadMost);
+    evidence = static_cast<std::uint16_t>(visibility.frames * kGone);  // never overflows
     return true;
 }
 
@@ -131,7 +128,8 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     layers_.horizontal_drift_m.data()[cell] = region.horizontal_drift_m.data()[from];
     layers_.highest_m.data()[cell] = region.highest_m.data()[from];
     layers_.lowest_m.data()[cell] = region.lowest_m.data()[from];
-    layers_.confidence.data()[cell] = region.confidence.data()[from];
+    const float confidence = region.confidence.data()[from];
+    set_confidence(cell, confidence >= 0.0F && confidence <= 1.0F ? confidence : kFirstLook);
     layers_.density_ratio.data()[cell] = region.density_ratio.data()[from];
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
@@ -148,6 +146,7 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
 }
 
 void ElevationCells::forget(std::size_t cell) {
+    const float height_m = layers_.height_m.data()[cell];
     layers_.height_m.data()[cell] = kNan;
     layers_.height_var_m2.data()[cell] = kNan;
     layers_.count.data()[cell] = 0;
@@ -161,6 +160,9 @@ void ElevationCells::forget(std::size_t cell) {
     overhead_m_.data()[cell] = kNan;
     overhead_trust_.data()[cell] = 0;
     seen_through_.data()[cell] = 0;
+    // What stood here may have been a thing that one sees under. Until the ground below it has been
+    // seen a few times, it bounds the clearance.
+    see_above(cell, height_m, kOverheadMost);
 }
 
 void ElevationCells::see_above(std::size_t cell, float z_m, int trust) {

@@ -47,10 +47,12 @@ class ElevationCells {
 
     /// Fuses a measurement.
     void update(std::size_t cell, const Seen& seen, const Look& look, FusionCounts& counts);
-    /// A line of sight passes at `line_z_m` over the cell, or the look at it ended there: too often
-    /// below the height without a look that agrees, and the height is forgotten. Returns whether it
-    /// was. For cells that no look agreed with in this frame.
+    /// A line of sight passes at `line_z_m` over the cell, or the look at it ended there: often
+    /// enough below the height, without a look that agrees, and it is gone. Returns whether it is.
+    /// For cells that no look agreed with in this frame.
     bool see_through(std::size_t cell, float line_z_m);
+    /// The cell is unknown; what its height was may still hang over it.
+    void forget(std::size_t cell);
 
     /// An unknown cell takes what cell `from` of a region knew: as never seen in this run, so that
     /// the first look at it is new information.
@@ -69,7 +71,6 @@ class ElevationCells {
     void see_above(std::size_t cell, float z_m, int trust);
     void see_no_more_above(std::size_t cell);
     void set_clearance(std::size_t cell);
-    void forget(std::size_t cell);
 
     ElevationConfig config_;
     ElevationLayers layers_;

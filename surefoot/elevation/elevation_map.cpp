@@ -16,6 +16,7 @@ namespace surefoot::elevation {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr int kBeside = 2;  ///< cells that vouch for one that was not seen lie this near
 
 }  // namespace
 
@@ -208,6 +209,7 @@ void ElevationMap::clean_up(const Eigen::Vector3d& camera_m,
     lines_.finish();
     const auto blocks = static_cast<int>(block_counts_.size());
     block_counts_.assign(block_counts_.size(), {});
+    gone_.assign(seen_z_m_.size(), 0);
     struct Job {
         ElevationMap& map;
         std::int64_t time_ns;
@@ -215,17 +217,26 @@ void ElevationMap::clean_up(const Eigen::Vector3d& camera_m,
     executor.parallel_for(blocks,
                           [&job](int block) { job.map.clean_up_block(block, job.time_ns); });
     for (const FusionCounts& block : block_counts_) counts += block;
+    // Not before all have been asked: neighbours vouch for each other.
+    for (std::size_t cell = 0; cell < gone_.size(); ++cell) {
+        if (gone_[cell] != 0) cells_.forget(cell);
+    }
 }
 
-bool ElevationMap::stands_beside(grid::Cell cell, float height_m) const {
-    // Cells on an edge are often missed: the pixels there are not trusted. What they belong to is
-    // not.
+bool ElevationMap::stands_beside(grid::Cell cell, std::int64_t time_ns) const {
+    // Cells on an edge, or seen edge-on, are often missed. What they belong to is not.
     const auto margin_m = static_cast<float>(config_.visibility.margin_m);
-    for (int iy = std::max(cell.iy - 1, 0); iy <= std::min(cell.iy + 1, geometry().ny - 1); ++iy) {
-        const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * geometry().nx;
-        for (int ix = std::max(cell.ix - 1, 0); ix <= std::min(cell.ix + 1, geometry().nx - 1);
-             ++ix) {
-            if (std::abs(seen_z_m[ix] - height_m) < margin_m) return true;
+    const std::int64_t since_ns = time_ns - ns_from_seconds(config_.visibility.neighbour_s);
+    const float height_m = layers().height_m.row(cell.iy)[cell.ix];
+    const int last_iy = std::min(cell.iy + kBeside, geometry().ny - 1);
+    const int last_ix = std::min(cell.ix + kBeside, geometry().nx - 1);
+    for (int iy = std::max(cell.iy - kBeside, 0); iy <= last_iy; ++iy) {
+        const float* other_m = layers().height_m.row(iy);
+        const std::int64_t* agreed_ns = layers().seen_ns.row(iy);
+        for (int ix = std::max(cell.ix - kBeside, 0); ix <= last_ix; ++ix) {
+            if (agreed_ns[ix] >= since_ns && std::abs(other_m[ix] - height_m) < margin_m) {
+                return true;
+            }
         }
     }
     return false;
@@ -242,13 +253,15 @@ void ElevationMap::clean_up_block(int block, std::int64_t time_ns) {
         const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * nx;
         for (int ix = 0; ix < nx; ++ix) {
             if (std::isnan(height_m[ix]) || agreed_ns[ix] == time_ns) continue;
-            if (stands_beside({ix, iy}, height_m[ix])) continue;
             // A look that ended here, below the height, has passed through it as well.
             const float line_z_m = lines_.lowest_over({ix, iy});
             const float lowest_m = seen_z_m[ix] < line_z_m ? seen_z_m[ix] : line_z_m;
             const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
                               static_cast<std::size_t>(ix);
-            counts.cells_cleared += cells_.see_through(cell, lowest_m) ? 1 : 0;
+            if (cells_.see_through(cell, lowest_m) && !stands_beside({ix, iy}, time_ns)) {
+                gone_[cell] = 1;
+                ++counts.cells_cleared;
+            }
         }
     }
 }

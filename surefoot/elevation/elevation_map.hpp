@@ -93,8 +93,8 @@ class ElevationMap {
                   std::int64_t time_ns,
                   Executor& executor,
                   FusionCounts& counts);
-    /// The frame has measured this height in the cell or beside it.
-    [[nodiscard]] bool stands_beside(grid::Cell cell, float height_m) const;
+    /// A look agreed with the height of the cell, or of one beside it that is as high, just now.
+    [[nodiscard]] bool stands_beside(grid::Cell cell, std::int64_t time_ns) const;
     void clean_up_block(int block, std::int64_t time_ns);
 
     ElevationConfig config_;
@@ -110,6 +110,7 @@ class ElevationMap {
     std::vector<float> seen_z_m_;             ///< per cell: what the frame measured; NaN = nothing
     std::vector<FusionCounts> block_counts_;  ///< per block
     LinesOfSight lines_;
+    std::vector<std::uint8_t> gone_;  ///< per cell: the frame's lines of sight say so
 };
 
 }  // namespace surefoot::elevation

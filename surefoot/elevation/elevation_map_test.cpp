@@ -329,7 +329,7 @@ TEST_F(Overhead, AKerbHangsOverNothing) {
 TEST_F(Overhead, WhatTheHeightWasStaysAboveTheGroundThatReplacesIt) {
     look(0.7);
     while (!(height_at(map_, 1.0, 0.0) < 0.5F)) {  // also while it is unknown
-        ASSERT_LT(looks_, 10);
+        ASSERT_LT(looks_, 40);
         look(0.0);
     }
     EXPECT_NEAR(clearance(), 0.7F, 0.005F);

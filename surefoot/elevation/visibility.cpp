@@ -25,6 +25,11 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
                    10.0,
                    "a line of sight this far below a cell's height contradicts it ...");
     visitor.number("sigmas", sigmas, 0.0, 100.0, "... plus this many sigma of the height");
+    visitor.number("neighbour_s",
+                   neighbour_s,
+                   0.0,
+                   60.0,
+                   "a cell beside it, as high, that was seen this lately vouches for a cell");
     visitor.integer("frames",
                     frames,
                     1,

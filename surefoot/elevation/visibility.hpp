@@ -13,12 +13,16 @@ namespace surefoot::elevation {
 /// When a remembered surface that lines of sight pass through is gone. ASSUMPTION, all of them;
 /// what they lead to: docs/accuracy.md.
 struct VisibilityConfig {
-    bool cleanup = true;
+    /// Off: a table top seen edge-on over floor that is seen under it is still taken for gone too
+    /// often (docs/safety.md, known gaps).
+    bool cleanup = false;
     double margin_m = 0.05;  ///< lines this far below a height contradict it ...
     double sigmas = 3.0;     ///< ... plus this many sigma of the height
     /// Frames with such a line, and without a look that agrees in between, until a surface that
     /// every look had shown is gone; a surface seen in every third look gets three times as many.
     int frames = 3;
+    /// A cell is vouched for by one beside it, as high, that a look agreed with this lately.
+    double neighbour_s = 0.4;
 
     void describe(ConfigVisitor& visitor);
 };

@@ -41,7 +41,7 @@ class RealRecordings(CliTest):
         report = json.loads((self.dir / "city" / "report.json").read_text())
         self.assertTrue(report["complete"])
         self.assertEqual(report["map"]["known_cells"], 0)
-        self.assertIn("depth points", report["map"]["reason"])
+        self.assertIn("no pixel falls into it", report["map"]["reason"])
         self.assertGreater(report["counts"]["outside"], 0)
 
     def test_kitti_city_road_ahead(self):
