@@ -103,7 +103,7 @@ int measure(const std::string& path, std::uint64_t first_seed, std::uint64_t see
 }  // namespace
 }  // namespace surefoot
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     if (argc < 2) {
         fmt::print(stderr, "usage: calibration_truth OUT.csv [FIRST_SEED [SEEDS]]\n");
         return 2;

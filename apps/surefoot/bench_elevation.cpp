@@ -96,6 +96,7 @@ std::vector<BenchResult> bench_elevation(Executor& executor) {
     const camera::RectifiedRig rig = zed();
     Rng rng(1);
     std::vector<camera::DepthImage> views;
+    views.reserve(kViews);
     for (int i = 0; i < kViews; ++i) views.push_back(look(rig, body_at(0.02 * i), rng));
     elevation::ElevationMap map({});
     int frame = 0;

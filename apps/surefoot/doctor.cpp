@@ -35,7 +35,7 @@ FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
 
 /// The least that the matcher claims, on well textured ground: what the depth sigmas below and
 /// those of `depth-accuracy --design` are for. A scene's typical pixel is worse by half.
-constexpr double kDisparitySigma_px = stereo::kSigmaFloor_px;
+constexpr double kDisparitySigma_px = static_cast<double>(stereo::kSigmaFloor_px);
 
 RigView view_of(const camera::StereoRig& rig,
                 const camera::RectifiedRig& r,

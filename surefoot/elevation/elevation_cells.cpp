@@ -245,7 +245,7 @@ void ElevationCells::agree(std::size_t cell,
 
 void ElevationCells::set_confidence(std::size_t cell, float confidence) {
     layers_.confidence.data()[cell] = confidence;
-    steady_.data()[cell] = static_cast<std::uint8_t>(kGone * confidence + 0.5F);
+    steady_.data()[cell] = static_cast<std::uint8_t>(std::lround(kGone * confidence));
 }
 
 void ElevationCells::remember_density(std::size_t cell, float ratio) {

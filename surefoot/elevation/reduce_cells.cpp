@@ -96,7 +96,7 @@ HWY_INLINE float by_extremes(const Samples& samples, V flip, int rank) {
 HWY_INLINE float by_bits(const Samples& samples, bool from_below, int rank) {
     const auto float_of = [](std::uint32_t key) {
         const std::uint32_t bits = key & 0x80000000U ? key ^ 0x80000000U : ~key;
-        float value;
+        float value = 0.0F;
         std::memcpy(&value, &bits, sizeof value);
         return value;
     };

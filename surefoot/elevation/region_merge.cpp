@@ -28,7 +28,9 @@ struct KnownCell {
     float confidence;
     float density_ratio;
 
-    [[nodiscard]] Height height() const { return {double{height_m}, double{height_var_m2}}; }
+    [[nodiscard]] Height height() const {
+        return {static_cast<double>(height_m), double{height_var_m2}};
+    }
 };
 
 KnownCell load(const MapRegion& r, std::size_t i) {
@@ -108,7 +110,8 @@ KnownCell agreed(const FusionConfig& fusion,
 /// Two surfaces, or one that moved: the later one stays, and is trusted less.
 KnownCell disagreed(const KnownCell& later, const KnownCell& earlier) {
     KnownCell cell = later;
-    const double apart_m = double{later.height_m} - double{earlier.height_m};
+    const double apart_m =
+        static_cast<double>(later.height_m) - static_cast<double>(earlier.height_m);
     cell.height_var_m2 = static_cast<float>(double{later.height_var_m2} + apart_m * apart_m);
     return cell;
 }
@@ -176,7 +179,8 @@ Result<MergeCounts> merge(MapRegion& into,
                           RegionErrors errors) {
     if (const auto problem = problem_of(into, from, errors)) return input_error(*problem);
     MergeCounts counts;
-    into = grid::cut(std::move(into), grid::united(into.box, from.box));
+    const auto whole = grid::united(into.box, from.box);
+    into = grid::cut(std::move(into), whole);
     take_later_head(into, from);
     const auto index = [](const MapRegion& r, std::int64_t ix, std::int64_t iy) {
         return static_cast<std::size_t>(iy * r.box.nx + ix);

@@ -44,8 +44,6 @@ using Mask = decltype(hn::Eq(Doubles(), Doubles()));
 using Halves = hn::VFromD<decltype(kHalf)>;
 using Floats = hn::VFromD<decltype(kFloats)>;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
 HWY_INLINE Doubles set(double value) {
     return hn::Set(kDoubles, value);
 }
@@ -464,7 +462,7 @@ void roughness_of(const Surface& surface,
 
 /// Finds the runs of a disc in rows of runs, [dy + reach] around the centre.
 HWY_INLINE DiscOfRuns disc_of(const DiscRuns& runs, const RunSums* const* center) {
-    DiscOfRuns disc;
+    DiscOfRuns disc;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled as far as read
     disc.reach = runs.reach;
     for (int dy = 0; dy <= runs.reach; ++dy) {
         const int width = runs.width[static_cast<std::size_t>(dy)];
@@ -490,7 +488,7 @@ void rate_strip(const Surface& surface,
         load_row(surface.height_m.cell(strip.ix0 - reach, iy), columns + 2 * reach, cells[iy & 1]);
     };
     load(strip.iy0 - reach);
-    DiscSums sums;
+    DiscSums sums;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled before read
     // A strip that is narrower than whole registers is rated beside the layers and copied.
     const bool whole = columns == strip.nx;
     HWY_ALIGN float beside[5][kStrip];
