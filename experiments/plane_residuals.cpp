@@ -128,6 +128,7 @@ double eye_difference_of(const camera::RectifiedPair& pair, const Window& window
         }
     }
     const Eigen::Vector2d gain = A.ldlt().solve(b);
+    differences.reserve(differences.size() + greys.size());
     for (const Eigen::Vector2d& grey : greys)
         differences.push_back(std::abs(grey.y() - gain.x() * grey.x() - gain.y()));
     const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);

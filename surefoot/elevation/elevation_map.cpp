@@ -156,7 +156,7 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
     block_counts_.assign(static_cast<std::size_t>(blocks), {});
     struct Job {
         ElevationMap& map;
-        const ExpectedPoints* expected;
+        const ExpectedPoints* expected = nullptr;
         Look look;
     } job{*this, expected, {views_, views_.look_from(T_odom_body), time_ns}};
     // One reference, so that std::function needs no memory for it.
