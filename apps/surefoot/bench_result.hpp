@@ -38,7 +38,8 @@ struct BenchResult {
 /// Depth images into the map, moves, lines of sight, bounds.
 [[nodiscard]] std::vector<BenchResult> bench_elevation(Executor& executor);
 
-/// The above, and traversability of maps of several sizes, settings and instruction sets, beside the plain way.
+/// The above, and traversability of maps of several sizes, settings and instruction sets, beside
+/// the plain way.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common,
                                                              Executor& executor);
 

@@ -45,15 +45,21 @@ bool is_scene_file(const std::string& name) {
     return file.ends_with(".yaml");
 }
 
+std::vector<std::string> names_of(const std::vector<sim::SceneInfo>& scenes) {
+    std::vector<std::string> names;
+    names.reserve(scenes.size());
+    for (const sim::SceneInfo& scene : scenes) names.push_back(scene.name);
+    return names;
+}
+
 std::vector<std::string> chosen_names(const EvalSuiteOptions& options) {
     if (!options.scenes.empty()) return options.scenes;
-    std::vector<std::string> names;
     if (options.quick) {
+        std::vector<std::string> names;
         for (const QuickScene& scene : kQuickScenes) names.emplace_back(scene.name);
         return names;
     }
-    for (const auto& scene : sim::list_scenes()) names.push_back(scene.name);
-    return names;
+    return names_of(sim::list_scenes());
 }
 
 Status check_name(const std::string& name) {
@@ -62,9 +68,7 @@ Status check_name(const std::string& name) {
         return scene.name == name;
     });
     if (listed || is_scene_file(name)) return {};
-    std::vector<std::string> names;
-    for (const sim::SceneInfo& scene : known) names.push_back(scene.name);
-    const std::string likely = did_you_mean(name, names);
+    const std::string likely = did_you_mean(name, names_of(known));
     return usage_error(
         fmt::format("--scenes {}: there is no such scene{} 'surefoot sim --list' shows them",
                     name,

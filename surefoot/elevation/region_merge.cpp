@@ -29,7 +29,7 @@ struct KnownCell {
     float density_ratio;
 
     [[nodiscard]] Height height() const {
-        return {static_cast<double>(height_m), double{height_var_m2}};
+        return {static_cast<double>(height_m), static_cast<double>(height_var_m2)};
     }
 };
 
@@ -112,7 +112,8 @@ KnownCell disagreed(const KnownCell& later, const KnownCell& earlier) {
     KnownCell cell = later;
     const double apart_m =
         static_cast<double>(later.height_m) - static_cast<double>(earlier.height_m);
-    cell.height_var_m2 = static_cast<float>(double{later.height_var_m2} + apart_m * apart_m);
+    cell.height_var_m2 =
+        static_cast<float>(static_cast<double>(later.height_var_m2) + apart_m * apart_m);
     return cell;
 }
 
