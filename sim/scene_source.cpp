@@ -110,6 +110,9 @@ bool needs_images(const ImageFaultConfig& faults) {
 
 void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.enumeration("sensor", sensor, kSensorNames, "what looks; analytic makes no images");
+    visitor.boolean("known_motion",
+                    known_motion,
+                    "the start, and the motion but for analytic.drift, are known");
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
     const ImuKind imu_before = imu;
@@ -157,6 +160,11 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
     source->truth_.steps = std::move(script->steps);
     source->truth_.start_ns = kStart_ns;
     if (auto made = source->make_sensor(options, *rig); !made) return made.error();
+    if (options.known_motion || source->analytic_) {
+        source->odometry_.emplace(options.drift,
+                                  source->truth_.rig.body_from_left(),
+                                  mix_seed(options.seed, kDriftStream));
+    }
     if (rig->imu) {
         source->imu_.emplace(source->motion_,
                              *rig->imu,
@@ -180,7 +188,11 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
                      options.scene,
                      frames - static_cast<int>(dropped),
                      source->imu_.has_value(),
-                     source->analytic_.has_value()};
+                     source->analytic_.has_value(),
+                     source->odometry_.has_value()};
+    if (options.known_motion) {
+        source->info_.T_odom_first_body = source->truth_.trajectory.front().T_world_body;
+    }
     return source;
 }
 
@@ -244,8 +256,6 @@ Status SceneSource::make_analytic(const SceneOptions& options, const camera::Ste
     if (!stereo) return stereo.error();
     analytic_.emplace(std::move(stereo).value());
     truth_.rig = rectified_rig(rig, analytic_->rig());
-    odometry_.emplace(
-        options.drift, analytic_->rig().T_body_camera, mix_seed(options.seed, kDriftStream));
     return {};
 }
 
@@ -285,16 +295,15 @@ void SceneSource::damage(const InjectedFault* fault) {
 }
 
 /// What the chain would have made of images that nobody renders.
-DepthAndMotion SceneSource::model(const StampedPose& now) {
+DepthImage SceneSource::model_depth(const StampedPose& now) {
+    DepthImage depth;
     const int frame = static_cast<int>(next_pose_);
-    DepthAndMotion ready;
-    analytic_->measure(now.T_world_body, frame, *executor_, view_, ready.depth);
-    ready.motion = odometry_->follow(now.time_ns, frame, now.T_world_body);
+    analytic_->measure(now.T_world_body, frame, *executor_, view_, depth);
     const auto factor_px_m = static_cast<float>(analytic_->rig().depth_to_disparity_px_m());
     exact_depth_m_.resize(truth_.rig.left.width, truth_.rig.left.height);
     for (std::size_t i = 0; i < exact_depth_m_.size(); ++i)
         exact_depth_m_.data()[i] = factor_px_m / view_.disparity_px.data()[i];
-    return ready;
+    return depth;
 }
 
 Result<std::optional<StereoFrame>> SceneSource::next() {
@@ -314,7 +323,11 @@ Result<std::optional<StereoFrame>> SceneSource::next() {
             frame.right = shown_right_;
             frame.depth_m = shown_depth_m_;
         } else if (arrives) {
-            frame.ready = model(now);
+            frame.known_depth = model_depth(now);
+        }
+        if (odometry_ && arrives) {
+            frame.known_motion =
+                odometry_->follow(now.time_ns, static_cast<int>(next_pose_), now.T_world_body);
         }
         ++next_pose_;
         if (!arrives) continue;

@@ -50,7 +50,11 @@ struct SceneOptions {
     DepthCameraKind depth_camera = DepthCameraKind::kinect_v1;
     DepthCameraConfig depth_errors = depth_camera_preset(depth_camera).config;
     AnalyticStereoConfig analytic;
-    DriftConfig drift;  ///< of the analytic sensor
+    /// The source tells where it starts, and frames bring their motion along: the true one with
+    /// `drift`. It keeps odometry and ground alignment out of what is measured. The analytic sensor
+    /// always brings motion.
+    bool known_motion = false;
+    DriftConfig drift;
 
     /// The numbers that a configuration file may set. Choosing another IMU or depth camera replaces
     /// its figures; what is set later, or with it, stays on top.
@@ -92,7 +96,7 @@ class SceneSource final : public camera::FrameSource {
     [[nodiscard]] Status make_analytic(const SceneOptions& options, const camera::StereoRig& rig);
     void take_pictures(const StampedPose& now);
     void damage(const InjectedFault* fault);
-    [[nodiscard]] DepthAndMotion model(const StampedPose& now);
+    [[nodiscard]] DepthImage model_depth(const StampedPose& now);
 
     camera::SourceInfo info_;
     SceneTruth truth_;

@@ -206,7 +206,8 @@ TEST(SceneSourceTest, ADepthCameraBringsItsImageAndItsDepth) {
         whole.push_back(std::move(*frame));
         const StereoFrame& now = whole.back();
         EXPECT_TRUE(now.right.empty());
-        EXPECT_FALSE(now.ready);
+        EXPECT_FALSE(now.known_depth);
+        EXPECT_FALSE(now.known_motion);
         ASSERT_EQ(now.depth_m.width(), now.left.width());
         // Up to 1.5 m the model has a sigma of 4 mm; six of them.
         int known = 0;
@@ -238,7 +239,8 @@ TEST(SceneSourceTest, TheAnalyticSensorBringsDepthAndMotionAndNoImage) {
     test::Backwards backwards;
     auto source = open_scene(options).value();
     auto other = open_scene(options, &backwards).value();
-    EXPECT_TRUE(source->info().modelled);
+    EXPECT_TRUE(source->info().modelled_depth);
+    EXPECT_TRUE(source->info().modelled_motion);
     const camera::StereoRig& rig = source->rig();
     ASSERT_FALSE(rig.problem());
     EXPECT_EQ(rig.left.width, 84);
@@ -247,13 +249,14 @@ TEST(SceneSourceTest, TheAnalyticSensorBringsDepthAndMotionAndNoImage) {
     while (auto frame = source->next().value()) {
         const auto same = other->next().value();
         EXPECT_TRUE(frame->left.empty());
-        ASSERT_TRUE(frame->ready);
-        const DepthImage& depth = frame->ready->depth;
+        ASSERT_TRUE(frame->known_depth);
+        ASSERT_TRUE(frame->known_motion);
+        const DepthImage& depth = *frame->known_depth;
         ASSERT_EQ(depth.disparity_px.width(), rig.left.width);
-        EXPECT_TRUE(test::same_bytes(depth.disparity_px, same->ready->depth.disparity_px));
+        EXPECT_TRUE(test::same_bytes(depth.disparity_px, same->known_depth->disparity_px));
         EXPECT_EQ(source->last_depth_m().height(), rig.left.height);
         EXPECT_FALSE(frame->imu.empty());
-        T_odom_last = frame->ready->motion.T_odom_body;
+        T_odom_last = frame->known_motion->T_odom_body;
         ++frames;
     }
     EXPECT_EQ(frames, 29);
@@ -265,6 +268,30 @@ TEST(SceneSourceTest, TheAnalyticSensorBringsDepthAndMotionAndNoImage) {
     EXPECT_LT(error, 0.021);
 }
 
+TEST(SceneSourceTest, ImagesMayComeWithTheirTrueMotion) {
+    SceneOptions options = small("floor");
+    options.frames = 3;
+    options.rate_hz = 0.5;  // it moves
+    options.known_motion = true;
+    options.drift = {0.0, 0.0};
+    auto source = open_scene(options).value();
+    EXPECT_TRUE(source->info().modelled_motion);
+    EXPECT_FALSE(source->info().modelled_depth);
+    const auto& poses = source->truth().trajectory;
+    ASSERT_TRUE(source->info().T_odom_first_body);
+    EXPECT_EQ(source->info().T_odom_first_body->translation_m, poses[0].T_world_body.translation_m);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto frame = source->next().value();
+        EXPECT_FALSE(frame->left.empty());
+        EXPECT_FALSE(frame->known_depth);
+        const Pose truth = poses.front().T_world_body.inverse() * poses[i].T_world_body;
+        EXPECT_LT(difference(truth, frame->known_motion->T_odom_body).norm(), 1e-12);
+        EXPECT_TRUE(frame->known_motion->relative_covariance.isZero());
+    }
+    EXPECT_GT((poses[2].T_world_body.translation_m - poses[0].T_world_body.translation_m).norm(),
+              0.01);
+}
+
 TEST(SceneSourceTest, NoiseIsAFactorOnModelledDepthsToo) {
     SceneOptions options = small("floor");
     options.sensor = Sensor::analytic;
@@ -272,7 +299,7 @@ TEST(SceneSourceTest, NoiseIsAFactorOnModelledDepthsToo) {
     options.analytic.locking_px = 0.0;
     const auto sigma_px = [&] {
         const auto frame = open_scene(options).value()->next().value();
-        return frame->ready->depth.sigma_px.at(84, 80);
+        return frame->known_depth->sigma_px.at(84, 80);
     };
     const float nominal_px = sigma_px();
     options.noise = 2.0;

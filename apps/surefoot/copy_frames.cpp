@@ -30,7 +30,7 @@ Result<bool> copy_one(camera::FrameSource& source,
 }  // namespace
 
 Result<io::Recorder> start_recording(const std::string& folder, const camera::FrameSource& source) {
-    if (source.info().modelled) {
+    if (source.info().modelled_depth) {
         return usage_error(
             fmt::format("{}: sim.sensor = analytic makes no images that could be recorded in {}; "
                         "'surefoot run sim:{}' uses it directly",

@@ -208,7 +208,8 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const pipeline::Alignment& alignment = pipeline.alignment();
     const auto& geometry = pipeline.map().geometry();
     Json modelled = Json::array();
-    if (record.source.modelled) modelled = {"odometry", "depth"};
+    if (record.source.modelled_motion) modelled.push_back("odometry");
+    if (record.source.modelled_depth) modelled.push_back("depth");
     Json object = {
         {"source",
          {{"kind", record.source.kind}, {"path", record.source.path}, {"modelled", modelled}}},

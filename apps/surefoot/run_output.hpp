@@ -25,9 +25,8 @@ namespace surefoot::app {
 /// A few lines for the terminal.
 [[nodiscard]] std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline);
 
-/// What must be said of results without images.
-inline constexpr const char* kModelled =
-    "Odometry and depth were modelled from the truth; no image was rendered, matched or tracked.";
+/// What must be said of results that were not all measured; empty when they were.
+[[nodiscard]] std::string modelled_note(const camera::SourceInfo& source);
 
 /// Why the map holds no cell, in one sentence; empty when it holds some.
 [[nodiscard]] std::string empty_map_reason(const RunRecord& record,

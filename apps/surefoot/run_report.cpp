@@ -144,7 +144,7 @@ std::vector<std::string> summary_lines(const RunRecord& record,
                     record.source.kind,
                     pipeline.map().known_cells()),
         fmt::format("Gravity and ground: {}.", pipeline.alignment().reason)};
-    if (record.source.modelled) lines.emplace_back(kModelled);
+    if (std::string note = modelled_note(record.source); !note.empty()) lines.push_back(note);
     lines.push_back(record.complete()
                         ? "The run is complete."
                         : fmt::format("The run ended early: {}", record.error->message));

@@ -55,7 +55,7 @@ void RunSession::drive(const std::string& label, const AfterFrame& after_frame) 
 void RunSession::process_all(const std::string& label, const AfterFrame& after_frame) {
     Progress progress(label, record_.source.frames);
     const std::vector<StereoFrame> buffered = first_frames();
-    if (!buffered.empty()) pipeline_.align(buffered);
+    if (!buffered.empty()) pipeline_.align(buffered, record_.source.T_odom_first_body);
     for (const StereoFrame& frame : buffered) {
         process(frame, after_frame);
         progress.advance(static_cast<int>(record_.frames.size()));

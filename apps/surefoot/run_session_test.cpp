@@ -62,7 +62,7 @@ TEST(RunSession, MapsDepthAndMotionThatComeReady) {
     session.drive();
     const RunRecord& record = session.record();
     EXPECT_TRUE(record.complete());
-    EXPECT_TRUE(record.source.modelled);
+    EXPECT_TRUE(record.source.modelled_motion);
     EXPECT_TRUE(pipeline->pair().left.empty());
     ASSERT_EQ(record.frames.size(), 40U);
     // Odom begins where the alignment put the first body, and moves as the source says.

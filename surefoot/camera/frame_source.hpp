@@ -7,6 +7,7 @@
 
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/frame.hpp"
+#include "surefoot/core/pose.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::camera {
@@ -16,7 +17,10 @@ struct SourceInfo {
     std::string path;
     std::optional<int> frames;  ///< how many there are, where that is known beforehand
     bool has_imu = false;
-    bool modelled = false;  ///< frames come with depth and motion that nobody measured
+    bool modelled_depth = false;   ///< frames come with depth that nobody measured
+    bool modelled_motion = false;  ///< frames come with motion that nobody measured
+    /// base_link of the first frame in odom (z up, the ground at 0), where the source knows.
+    std::optional<Pose> T_odom_first_body = {};
     std::vector<std::string> notes = {};  ///< what a user should know about how it was opened
 };
 

@@ -50,12 +50,6 @@ struct MotionEstimate {
     double residual_px = 0.0;  ///< rms reprojection error of the inliers
 };
 
-/// Depth and motion of one instant, where nobody has to compute them from images.
-struct DepthAndMotion {
-    DepthImage depth;       ///< of the rig, whose images are rectified
-    MotionEstimate motion;  ///< its odom begins at the source's first base_link
-};
-
 /// How a frame came in, apart from what it shows: the evidence for a stopped, frozen or torn camera
 /// (hazards H1 and H2 of the gate). Counts are since the previous frame of the source.
 struct FrameArrival {
@@ -72,15 +66,18 @@ struct FrameArrival {
 };
 
 /// What a source delivers at one instant: a raw stereo pair, or (RGB-D) one image with its depth,
-/// or no image at all, but what the chain would have made of it.
+/// or no image at all, but what the chain would have made of it. What is known already is not
+/// computed.
 struct StereoFrame {
     std::int64_t time_ns = 0;
     int index = 0;               ///< position in the source, from 0
-    GreyImage left;              ///< raw (not rectified) 8-bit grey; empty with `ready`
+    GreyImage left;              ///< raw (not rectified) 8-bit grey; empty with `known_depth`
     GreyImage right;             ///< empty for RGB-D
     Image<float> depth_m;        ///< RGB-D only: depth along z of the left camera, NaN = unknown
     std::vector<ImuSample> imu;  ///< samples since the previous frame, in time order
-    std::optional<DepthAndMotion> ready;
+    std::optional<DepthImage> known_depth;  ///< of the rig, whose images are rectified
+    /// Its odom begins at the source's first base_link.
+    std::optional<MotionEstimate> known_motion;
     FrameArrival arrival;
 };
 

@@ -26,15 +26,17 @@ StereoFrame moving_frame(int index, double step_m) {
     StereoFrame frame;
     frame.index = index;
     frame.time_ns = 1'000'000'000 + index * kPeriod_ns;
-    DepthAndMotion ready;
-    ready.depth.disparity_px = Image<float>(kWidth, kHeight, 12.0F);
-    ready.depth.sigma_px = Image<float>(kWidth, kHeight, 0.2F);
-    ready.depth.outlier_probability = Image<float>(kWidth, kHeight, 0.0F);
-    ready.motion.time_ns = frame.time_ns;
-    ready.motion.T_odom_body.translation_m.x() = index * step_m;
-    ready.motion.health = Health::ok;
-    ready.motion.reason = HealthReason::none;
-    frame.ready = ready;
+    DepthImage depth;
+    MotionEstimate motion;
+    depth.disparity_px = Image<float>(kWidth, kHeight, 12.0F);
+    depth.sigma_px = Image<float>(kWidth, kHeight, 0.2F);
+    depth.outlier_probability = Image<float>(kWidth, kHeight, 0.0F);
+    motion.time_ns = frame.time_ns;
+    motion.T_odom_body.translation_m.x() = index * step_m;
+    motion.health = Health::ok;
+    motion.reason = HealthReason::none;
+    frame.known_depth = depth;
+    frame.known_motion = motion;
     return frame;
 }
 

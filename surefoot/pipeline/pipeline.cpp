@@ -52,6 +52,16 @@ GroundObservation in_first_body(GroundObservation ground, const Pose& T_first_bo
     return ground;
 }
 
+Alignment told(const Pose& T_odom_body) {
+    Alignment alignment;
+    alignment.T_odom_body = T_odom_body;
+    alignment.gravity_source = grid::GravitySource::plane;
+    alignment.has_ground = true;
+    alignment.ground_height_m = T_odom_body.translation_m.z();
+    alignment.reason = "told by the source, not measured";
+    return alignment;
+}
+
 grid::SnapshotHealth snapshot_health(Health health) {
     switch (health) {
         case Health::ok: return grid::SnapshotHealth::ok;
@@ -99,9 +109,18 @@ Pipeline::Pipeline(const PipelineConfig& config,
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
       imu_mount_(rig.imu) {}
 
-const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
+const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
+                                 const std::optional<Pose>& T_odom_first_body) {
     first_frames = first_frames.first(std::min(first_frames.size(), kAlignmentFrames));
     trim_right_eye(first_frames);
+    alignment_ = T_odom_first_body ? told(*T_odom_first_body) : measure_alignment(first_frames);
+    odometry_.start_at(alignment_.T_odom_body);
+    last_motion_.T_odom_body = alignment_.T_odom_body;
+    if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
+    return alignment_;
+}
+
+Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames) {
     const Pose T_body_imu = imu_mount_ ? imu_mount_->T_body_imu : Pose{};
     const auto up_imu_body = up_from_imu(config_.mount, T_body_imu, first_frames);
     const Eigen::Vector3d up_hint_body = up_imu_body.value_or(assumed_up(config_.mount));
@@ -119,11 +138,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames) {
         calibration.add(
             in_first_body(observe_ground(motion.T_odom_body, up_hint_body), motion.T_odom_body));
     }
-    alignment_ = place_odom(config_.mount, calibration.alignment(), up_imu_body);
-    odometry_.start_at(alignment_.T_odom_body);
-    last_motion_.T_odom_body = alignment_.T_odom_body;
-    if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
-    return alignment_;
+    return place_odom(config_.mount, calibration.alignment(), up_imu_body);
 }
 
 std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFrame> frames) {
@@ -132,7 +147,7 @@ std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFram
     const std::size_t step = std::max<std::size_t>(1, frames.size() / 2);
     for (std::size_t i = 0; i < frames.size(); i += step) {
         const StereoFrame& frame = frames[std::min(i, frames.size() - 1)];
-        if (frame.ready || frame.right.empty() || !frame.arrival.is_new_and_whole()) continue;
+        if (frame.known_depth || frame.right.empty() || !frame.arrival.is_new_and_whole()) continue;
         rectify(frame);
         const auto found = stereo::match_corners(
             pair_.left.view(), pair_.right.view(), {config_.stereo.disparities, kTrimRows_px});
@@ -213,14 +228,14 @@ MotionEstimate Pipeline::unseen(const StereoFrame& frame) const {
 MotionEstimate Pipeline::track(const StereoFrame& frame,
                                odometry::Odometry& odometry,
                                const Pose& T_odom_first) {
-    if (!frame.ready) return odometry.update(frame, *executor_);
-    MotionEstimate motion = frame.ready->motion;
+    if (!frame.known_motion) return odometry.update(frame, *executor_);
+    MotionEstimate motion = *frame.known_motion;
     motion.T_odom_body = T_odom_first * motion.T_odom_body;
     return motion;
 }
 
 void Pipeline::rectify(const StereoFrame& frame) {
-    if (frame.ready) {
+    if (frame.known_depth) {
         pair_ = {};
     } else {
         rectifier_->rectify(frame, pair_);
@@ -228,10 +243,10 @@ void Pipeline::rectify(const StereoFrame& frame) {
 }
 
 void Pipeline::measure_depth(const StereoFrame& frame) {
-    if (frame.ready) {
-        SUREFOOT_ASSERT(frame.ready->depth.disparity_px.width() == rig().width &&
-                        frame.ready->depth.disparity_px.height() == rig().height);
-        depth_ = frame.ready->depth;
+    if (frame.known_depth) {
+        SUREFOOT_ASSERT(frame.known_depth->disparity_px.width() == rig().width &&
+                        frame.known_depth->disparity_px.height() == rig().height);
+        depth_ = *frame.known_depth;
     } else if (pair_.right.empty()) {
         depth_from_rgbd(*rectifier_, config_.elevation.sensor, frame.depth_m, depth_);
     } else {

@@ -28,7 +28,7 @@ namespace surefoot::pipeline {
 using Clock = std::int64_t (*)();
 
 /// Stereo frames in, rated map of the ground out: one frame is one call of `process`. Frames that
-/// bring depth and motion with them (`StereoFrame::ready`, on a rectified rig) are only mapped.
+/// bring depth or motion with them (`known_depth`, on a rectified rig, `known_motion`) keep them.
 /// Frames with a repeated or torn image (`StereoFrame::arrival`) are reported, and nothing else:
 /// the odometry would take a frozen picture for a machine that stands still. The snapshot keeps the
 /// stamps of the last good frame, so that the gate sees it grow old, and says what is wrong with
@@ -49,7 +49,10 @@ class Pipeline {
 
     /// Corrects the right eye's calibration by the rows of the first frames (pair_trim.hpp), finds
     /// gravity and the ground in them and places odom (alignment.hpp). `rig()` is final afterwards.
-    const Alignment& align(std::span<const StereoFrame> first_frames);
+    /// `T_odom_first_body`: where the first frame was taken, for a source that knows; odom is then
+    /// placed by it alone.
+    const Alignment& align(std::span<const StereoFrame> first_frames,
+                           const std::optional<Pose>& T_odom_first_body = {});
 
     /// The whole frame: motion, and with Work::full depth, map and rating.
     FrameReport process(const StereoFrame& frame, Work work);
@@ -77,6 +80,7 @@ class Pipeline {
              Executor& executor,
              Clock clock);
 
+    [[nodiscard]] Alignment measure_alignment(std::span<const StereoFrame> first_frames);
     void trim_right_eye(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
     /// The last pose, with the motion that may have happened unseen since then.
