@@ -67,6 +67,21 @@ std::string command_line(const RunOptions& options) {
     return line + fmt::format(" --seed {}\n", options.common.seed);
 }
 
+/// 1 = safe, 0 = shown to be unsafe, 0.5 = cannot be told, NaN = unknown.
+grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
+    const auto holds = pipeline.footholds();
+    grid::Layer layer(holds.width(), holds.height());
+    for (std::size_t i = 0; i < holds.size(); ++i) {
+        switch (holds.data()[i]) {
+            case traversability::Foothold::unknown: layer.data()[i] = NAN; break;
+            case traversability::Foothold::safe: layer.data()[i] = 1.0F; break;
+            case traversability::Foothold::unsure: layer.data()[i] = 0.5F; break;
+            default: layer.data()[i] = 0.0F;
+        }
+    }
+    return layer;
+}
+
 void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline, Writes& writes) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& map = pipeline.map().layers();
@@ -85,6 +100,8 @@ void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline
         {"highest", map.highest_m},
         {"lowest", map.lowest_m},
         {"clearance", map.clearance_m},
+        {"free_above", map.free_above_m},
+        {"foothold", foothold_layer(pipeline)},
         {"confidence", map.confidence},
         {"density_ratio", map.density_ratio},
         {"lower_bound", lower_m},

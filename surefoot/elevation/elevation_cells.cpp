@@ -37,6 +37,7 @@ void ElevationCells::for_each_layer(const F& f) {
     f(layers_.highest_m, kNan);
     f(layers_.lowest_m, kNan);
     f(layers_.clearance_m, kNan);
+    f(layers_.free_above_m, kNan);
     f(layers_.confidence, kNan);
     f(layers_.density_ratio, kNan);
     f(settled_var_m2_, kNan);
@@ -118,6 +119,11 @@ bool ElevationCells::see_through(std::size_t cell, float line_z_m) {
     return true;
 }
 
+void ElevationCells::see_over(std::size_t cell, float line_z_m) {
+    float& lowest_m = layers_.free_above_m.data()[cell];
+    lowest_m = lowest_m < line_z_m ? lowest_m : line_z_m;
+}
+
 void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std::size_t from) {
     const float height_m = region.height_m.data()[from];
     const auto floor_m2 = static_cast<float>(config_.fusion.min_height_var_m2);
@@ -131,6 +137,7 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     const float confidence = region.confidence.data()[from];
     set_confidence(cell, confidence >= 0.0F && confidence <= 1.0F ? confidence : kFirstLook);
     layers_.density_ratio.data()[cell] = region.density_ratio.data()[from];
+    layers_.free_above_m.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
     seen_through_.data()[cell] = 0;
@@ -204,6 +211,7 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
     layers_.lowest_m.data()[cell] = measured.lowest_m;
     set_confidence(cell, kFirstLook);
     layers_.density_ratio.data()[cell] = seen.density_ratio;
+    layers_.free_above_m.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     viewpoint_.data()[cell] = look.view;
     seen_through_.data()[cell] = 0;

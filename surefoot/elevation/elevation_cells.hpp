@@ -51,6 +51,8 @@ class ElevationCells {
     /// enough below the height, without a look that agrees, and it is gone. Returns whether it is.
     /// For cells that no look agreed with in this frame.
     bool see_through(std::size_t cell, float line_z_m);
+    /// The same over an unknown cell: whatever is there is lower.
+    void see_over(std::size_t cell, float line_z_m);
     /// The cell is unknown; what its height was may still hang over it.
     void forget(std::size_t cell);
 

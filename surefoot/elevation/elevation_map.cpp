@@ -81,7 +81,7 @@ FusionCounts ElevationMap::add(const camera::RectifiedRig& rig,
     }
     const ExpectedPoints expected(rig, T_odom_body, geometry());
     fuse_samples(T_odom_body, &expected, time_ns, executor, counts);
-    clean_up((T_odom_body * rig.T_body_camera).translation_m, time_ns, executor, counts);
+    look_along_lines((T_odom_body * rig.T_body_camera).translation_m, time_ns, executor, counts);
     return counts;
 }
 
@@ -96,7 +96,7 @@ FusionCounts ElevationMap::add_points(std::span<const MeasuredPoint> points,
         config_, points, T_body_sensor, T_odom_body, geometry().origin_m, points_, counts);
     sample_points(counts);
     fuse_samples(T_odom_body, nullptr, time_ns, executor, counts);
-    clean_up((T_odom_body * T_body_sensor).translation_m, time_ns, executor, counts);
+    look_along_lines((T_odom_body * T_body_sensor).translation_m, time_ns, executor, counts);
     return counts;
 }
 
@@ -194,11 +194,10 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
     }
 }
 
-void ElevationMap::clean_up(const Eigen::Vector3d& camera_m,
-                            std::int64_t time_ns,
-                            Executor& executor,
-                            FusionCounts& counts) {
-    if (!config_.visibility.cleanup) return;
+void ElevationMap::look_along_lines(const Eigen::Vector3d& camera_m,
+                                    std::int64_t time_ns,
+                                    Executor& executor,
+                                    FusionCounts& counts) {
     lines_.reset(geometry(), camera_m);
     for (int iy = 0; iy < geometry().ny; ++iy) {
         const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * geometry().nx;
@@ -214,12 +213,30 @@ void ElevationMap::clean_up(const Eigen::Vector3d& camera_m,
         ElevationMap& map;
         std::int64_t time_ns;
     } job{*this, time_ns};
-    executor.parallel_for(blocks,
-                          [&job](int block) { job.map.clean_up_block(block, job.time_ns); });
+    executor.parallel_for(blocks, [&job](int block) {
+        job.map.look_over_block(block);
+        if (job.map.config_.visibility.cleanup) job.map.clean_up_block(block, job.time_ns);
+    });
     for (const FusionCounts& block : block_counts_) counts += block;
     // Not before all have been asked: neighbours vouch for each other.
     for (std::size_t cell = 0; cell < gone_.size(); ++cell) {
         if (gone_[cell] != 0) cells_.forget(cell);
+    }
+}
+
+void ElevationMap::look_over_block(int block) {
+    const int nx = geometry().nx;
+    const int first = block * kBlockRows;
+    const int last = std::min(first + kBlockRows, geometry().ny);
+    for (int iy = first; iy < last; ++iy) {
+        const float* height_m = layers().height_m.row(iy);
+        for (int ix = 0; ix < nx; ++ix) {
+            if (!std::isnan(height_m[ix])) continue;
+            const float line_z_m = lines_.lowest_over({ix, iy});
+            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
+                              static_cast<std::size_t>(ix);
+            if (line_z_m < std::numeric_limits<float>::infinity()) cells_.see_over(cell, line_z_m);
+        }
     }
 }
 

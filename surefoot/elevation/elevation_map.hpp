@@ -88,13 +88,15 @@ class ElevationMap {
                       Executor& executor,
                       FusionCounts& counts);
     void fuse_block(int block, const ExpectedPoints* expected, const Look& look);
-    /// Forgets what the frame's lines of sight pass through.
-    void clean_up(const Eigen::Vector3d& camera_m,
-                  std::int64_t time_ns,
-                  Executor& executor,
-                  FusionCounts& counts);
+    /// What the frame's lines of sight say: unknown ground below them, and (if so configured)
+    /// remembered surfaces in their way, which are forgotten.
+    void look_along_lines(const Eigen::Vector3d& camera_m,
+                          std::int64_t time_ns,
+                          Executor& executor,
+                          FusionCounts& counts);
     /// A look agreed with the height of the cell, or of one beside it that is as high, just now.
     [[nodiscard]] bool stands_beside(grid::Cell cell, std::int64_t time_ns) const;
+    void look_over_block(int block);
     void clean_up_block(int block, std::int64_t time_ns);
 
     ElevationConfig config_;

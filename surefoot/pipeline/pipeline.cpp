@@ -279,6 +279,20 @@ void Pipeline::rate() {
     rater_.rate(map_.layers().height_m.view(), map_.geometry().resolution_m, *executor_, rating_);
 }
 
+Image<traversability::Foothold> Pipeline::footholds() const {
+    const elevation::ElevationLayers& layers = map_.layers();
+    Image<traversability::Foothold> found;
+    traversability::FootholdFinder(config_.foothold)
+        .find({layers.height_m.view(),
+               layers.height_var_m2.view(),
+               layers.clearance_m.view(),
+               layers.free_above_m.view(),
+               map_.geometry().resolution_m},
+              *executor_,
+              found);
+    return found;
+}
+
 Status Pipeline::snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) const {
     const elevation::ElevationLayers& layers = map_.layers();
     grid::SnapshotInput input;

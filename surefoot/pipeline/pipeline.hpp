@@ -70,6 +70,9 @@ class Pipeline {
     [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
     [[nodiscard]] const camera::DepthImage& depth() const noexcept { return depth_; }
 
+    /// Where a foot may stand, as of now. Allocates, takes milliseconds: not for every frame.
+    [[nodiscard]] Image<traversability::Foothold> footholds() const;
+
     /// What the gate may know, as of the last frame. An error leaves `out` not intact.
     [[nodiscard]] Status snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) const;
 

@@ -12,6 +12,7 @@
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/pair_trim.hpp"
+#include "surefoot/traversability/foothold.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::pipeline {
@@ -26,6 +27,7 @@ struct PipelineConfig {
     ground::GroundConfig ground;
     elevation::ElevationConfig elevation;
     traversability::TraversabilityConfig traversability;
+    traversability::FootholdConfig foothold;
 
     void describe(ConfigVisitor& visitor);
     /// First contradiction between values that are each in range, or nothing.

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// How true is the map, and how often is it wrong about where a foot may stand?
+// Usage: terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES]]]
+//   terrain_truth out/terrain.csv floor,demo_stairs 20001 3 ideal,zed
+//
+// The whole chain runs over rendered images with true poses (sim.known_motion). At the end of the
+// way the map is compared with the scene's geometry in the cells that were in view within 2.5 m.
+// A foothold holds for every yaw of the foot, so that a cell is truly safe if sim::cell_safety says
+// so at eight yaws, 22.5 deg apart (half a turn exchanges heel and toe), and truly unsafe if one of
+// them is not. The machine is the REX; the floor is reached from the first base_link.
+// One line a scene, seed and profile:
+//   median_mm, p90_mm, coverage               of all heights
+//   sigma_1, sigma_2, sigma_3                 share of errors within, farther than 2 cells from
+//   edges truly_unsafe, called_safe, cluster        cells; largest connected group of the second
+//   truly_safe, called_unsafe, unsure, unknown  cells; the last three are of the truly safe ones
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/run_session.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
+#include "eval/maps.hpp"
+#include "sim/cell_safety.hpp"
+#include "sim/scene_source.hpp"
+#include "sim/truth.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr int kYaws = 8;
+constexpr double kRange_m = 2.5;
+
+struct Case {
+    std::string scene;
+    std::uint64_t seed = 1;
+    sim::CameraProfile profile = sim::CameraProfile::ideal;
+};
+
+struct FootholdCounts {
+    int truly_unsafe = 0;
+    int called_safe = 0;
+    int cluster = 0;
+    int truly_safe = 0;
+    int called_unsafe = 0;
+    int unsure = 0;
+    int unknown = 0;
+};
+
+std::vector<std::string> split(const std::string& list) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    while (begin <= list.size()) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        parts.push_back(list.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return parts;
+}
+
+/// 1 where a foot is safe at every yaw.
+eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
+                                const Machine& machine,
+                                const sim::Lattice& lattice,
+                                Executor& executor) {
+    eval::CellMask safe(lattice.nx, lattice.ny, 1);
+    sim::CellQuestion question;
+    question.start_m = truth.trajectory.front().T_world_body.translation_m;
+    const auto floor = truth.scene.height_at(question.start_m.x(), question.start_m.y());
+    question.start_m.z() = floor ? floor->z_m : 0.0;
+    for (int k = 0; k < kYaws; ++k) {
+        question.yaw_rad = std::numbers::pi * k / kYaws;
+        const auto cells = sim::cell_safety(truth.scene, machine, lattice, question, executor);
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            if (!cells.data()[i].safe) safe.data()[i] = 0;
+    }
+    return safe;
+}
+
+/// Size of the largest group of cells of the mask that touch at their edges.
+int largest_cluster(eval::CellMask mask) {
+    int largest = 0;
+    std::vector<std::pair<int, int>> open;
+    for (int iy = 0; iy < mask.height(); ++iy) {
+        for (int ix = 0; ix < mask.width(); ++ix) {
+            int size = 0;
+            open.emplace_back(ix, iy);
+            while (!open.empty()) {
+                const auto [x, y] = open.back();
+                open.pop_back();
+                if (!mask.contains(x, y) || mask.at(x, y) == 0) continue;
+                mask.at(x, y) = 0;
+                ++size;
+                for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+                    open.emplace_back(x + dx, y + dy);
+            }
+            largest = std::max(largest, size);
+        }
+    }
+    return largest;
+}
+
+FootholdCounts compare(const Image<traversability::Foothold>& found,
+                       const eval::CellMask& truly_safe,
+                       const eval::CellMask& visible) {
+    using traversability::Foothold;
+    FootholdCounts counts;
+    eval::CellMask missed(found.width(), found.height(), 0);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (visible.data()[i] == 0) continue;
+        const Foothold call = found.data()[i];
+        const bool called_safe = call == Foothold::safe;
+        if (truly_safe.data()[i] == 0) {
+            ++counts.truly_unsafe;
+            counts.called_safe += called_safe ? 1 : 0;
+            missed.data()[i] = called_safe ? 1 : 0;
+            continue;
+        }
+        ++counts.truly_safe;
+        counts.unknown += call == Foothold::unknown ? 1 : 0;
+        counts.unsure += call == Foothold::unsure ? 1 : 0;
+        counts.called_unsafe += call > Foothold::unsure ? 1 : 0;
+    }
+    counts.cluster = largest_cluster(missed);
+    return counts;
+}
+
+Status measure(const Case& now,
+               const io::MachineFile& machine,
+               Executor& executor,
+               fmt::ostream& out) {
+    auto settings = load_settings({});
+    if (!settings) return settings.error();
+    sim::SceneOptions& sim = settings->sim;
+    sim.scene = now.scene;
+    sim.seed = now.seed;
+    sim.profile = now.profile;
+    sim.known_motion = true;
+    sim.drift = {0.0, 0.0};
+    auto source = sim::open_scene(sim, &executor);
+    if (!source) return source.error();
+    auto pipeline =
+        pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor, steady_now_ns);
+    if (!pipeline) return pipeline.error();
+    RunSession session(*pipeline, **source, (*source)->rig(), 1, settings->maps);
+    session.drive("");
+    const RunRecord& record = session.record();
+    if (record.error) return *record.error;
+
+    const grid::GridGeometry& geometry = pipeline->map().geometry();
+    const sim::Lattice lattice{
+        geometry.nx, geometry.ny, geometry.resolution_m, geometry.origin_m};
+    const sim::SceneTruth& truth = (*source)->truth();
+    const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kRange_m}, executor);
+    const auto heights = eval::elevation_errors(
+        pipeline->map().layers().height_m, sim::dem(truth.scene, lattice), visible, settings->maps);
+    const eval::SigmaCoverage& sigma = record.truth->maps.sigma;
+    const FootholdCounts holds =
+        compare(pipeline->footholds(),
+                safe_at_all_yaws(truth, machine.machine, lattice, executor),
+                visible);
+    out.print("{},{},{},{:.2f},{:.2f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{}\n",
+              now.scene,
+              now.seed,
+              sim::kCameraProfileNames[static_cast<int>(now.profile)],
+              1e3 * heights.median_abs_m,
+              1e3 * heights.p90_abs_m,
+              record.truth->coverage_within_2_5_m,
+              sigma.within_1_sigma,
+              sigma.within_2_sigma,
+              sigma.within_3_sigma,
+              holds.truly_unsafe,
+              holds.called_safe,
+              holds.cluster,
+              holds.truly_safe,
+              holds.called_unsafe,
+              holds.unsure,
+              holds.unknown);
+    out.flush();
+    return {};
+}
+
+Result<sim::CameraProfile> profile_named(const std::string& name) {
+    for (int i = 0; i < static_cast<int>(std::size(sim::kCameraProfileNames)); ++i)
+        if (name == sim::kCameraProfileNames[i]) return static_cast<sim::CameraProfile>(i);
+    return usage_error("there is no profile " + name);
+}
+
+int main(const std::vector<std::string>& words) {
+    if (words.size() < 2)
+        return report(usage_error("terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES]]]"));
+    const std::uint64_t first = words.size() > 2 ? std::stoull(words[2]) : 1;
+    const std::uint64_t seeds = words.size() > 3 ? std::stoull(words[3]) : 1;
+    const auto machine = load_machine("rex");
+    if (!machine) return report(machine.error());
+    const auto executor = make_executor({});
+    auto out = fmt::output_file(words[0]);
+    out.print(
+        "scene,seed,profile,median_mm,p90_mm,coverage,sigma_1,sigma_2,sigma_3,truly_unsafe,"
+        "called_safe,cluster,truly_safe,called_unsafe,unsure,unknown\n");
+    for (const std::string& name : split(words.size() > 4 ? words[4] : "ideal,zed")) {
+        const auto profile = profile_named(name);
+        if (!profile) return report(profile.error());
+        for (const std::string& scene : split(words[1])) {
+            for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
+                if (const auto done = measure({scene, seed, *profile}, **machine, *executor, out);
+                    !done)
+                    return report(done.error());
+            }
+        }
+    }
+    return kExitOk;
+}
+
+}  // namespace
+}  // namespace surefoot::app
+
+int main(int argc, char** argv) {
+    return surefoot::app::main({argv + 1, argv + argc});
+}

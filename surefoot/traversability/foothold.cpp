@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/traversability/foothold.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "surefoot/core/assert.hpp"
+#include "surefoot/traversability/disc.hpp"
+
+namespace surefoot::traversability {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNothing = -std::numeric_limits<float>::infinity();
+
+std::vector<int> half_widths(double radius_m, double resolution_m) {
+    std::vector<int> widths;
+    const int reach = Disc::reach_of(radius_m, resolution_m);
+    for (int dy = 0; dy <= reach; ++dy)
+        widths.push_back(Disc::half_width_of(radius_m, resolution_m, dy));
+    return widths;
+}
+
+int reach_of(const std::vector<int>& half_widths) {
+    return static_cast<int>(half_widths.size()) - 1;
+}
+
+float at_or_nan(ImageView<const float> layer, int ix, int iy) {
+    return layer.empty() ? kNan : layer.at(ix, iy);
+}
+
+double variance_of(const FootholdGround& ground, int ix, int iy) {
+    return ground.height_var_m2.empty() ? 0.0
+                                        : static_cast<double>(ground.height_var_m2.at(ix, iy));
+}
+
+}  // namespace
+
+/// What lies around the cells of one row.
+struct FootholdFinder::Row {
+    std::vector<Sums> foot;            ///< over F; xz from the cell
+    std::vector<double> yz;            ///< sum of y z over F, y in cells from the cell
+    std::vector<double> unknown_band;  ///< unknown cells of B
+    std::vector<float> patch_high;
+    std::vector<float> patch_low;
+    std::vector<float> low_shown;
+    std::vector<float> low_possible;
+    std::vector<float> tight;
+
+    void reset(int nx) {
+        const auto n = static_cast<std::size_t>(nx);
+        foot.assign(n, {});
+        yz.assign(n, 0.0);
+        unknown_band.assign(n, 0.0);
+        for (auto* best : {&patch_high, &patch_low, &low_shown, &low_possible, &tight})
+            best->assign(n, kNothing);
+    }
+};
+
+FootholdFinder::FootholdFinder(const FootholdConfig& config) : config_(config) {}
+FootholdFinder::FootholdFinder(FootholdFinder&&) noexcept = default;
+FootholdFinder& FootholdFinder::operator=(FootholdFinder&&) noexcept = default;
+FootholdFinder::~FootholdFinder() = default;
+
+void FootholdFinder::shape(double resolution_m) {
+    resolution_m_ = resolution_m;
+    const double foot_m = config_.foot_radius_m + config_.margin_m;
+    foot_ = half_widths(foot_m, resolution_m);
+    band_ = half_widths(foot_m + config_.band_m, resolution_m);
+    patch_cells_ = std::max(1, static_cast<int>(std::lround(config_.patch_side_m / resolution_m)));
+    foot_cells_ = 0.0;
+    foot_moment_ = 0.0;
+    for (int dy = -reach_of(foot_); dy <= reach_of(foot_); ++dy) {
+        const int h = foot_[static_cast<std::size_t>(std::abs(dy))];
+        foot_cells_ += 2 * h + 1;
+        foot_moment_ += (2 * h + 1) * dy * dy;
+    }
+    const double errors = std::max(
+        1.0, std::numbers::pi * foot_m * foot_m / (config_.correlation_m * config_.correlation_m));
+    slope_sigmas_per_m_ = config_.sigma_factor / (0.5 * foot_m * std::sqrt(errors));
+}
+
+void FootholdFinder::find(const FootholdGround& ground, Executor& executor, Image<Foothold>& out) {
+    SUREFOOT_ASSERT(!config_.problem());
+    nx_ = ground.height_m.width;
+    ny_ = ground.height_m.height;
+    out.resize(nx_, ny_);
+    if (!config_.fits(ground.resolution_m)) {
+        std::fill_n(out.data(), out.size(), Foothold::unknown);
+        return;
+    }
+    shape(ground.resolution_m);
+    sums_.resize((static_cast<std::size_t>(nx_) + 1) * static_cast<std::size_t>(ny_));
+    patch_m_.resize(nx_, ny_);
+    patch_doubt_m_.resize(nx_, ny_);
+    for (RunMaxima* maxima : {&patch_high_, &patch_low_, &low_shown_, &low_possible_, &tight_})
+        maxima->reset(nx_, ny_);
+    rows_.resize(static_cast<std::size_t>(ny_));
+    struct Job {
+        FootholdFinder& finder;
+        const FootholdGround& ground;
+        Image<Foothold>& out;
+    } job{*this, ground, out};
+    executor.parallel_for(ny_, [&job](int iy) {
+        job.finder.sum_row(job.ground, iy);
+        job.finder.patch_row(job.ground, iy);
+    });
+    executor.parallel_for(
+        ny_, [&job](int iy) { job.finder.judge_row(job.ground, iy, job.out.row(iy)); });
+}
+
+/// Everything that one row of the ground says by itself.
+void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
+    Sums* sums = sums_.data() + static_cast<std::ptrdiff_t>(iy) * (nx_ + 1);
+    float* shown = low_shown_.row(iy);
+    float* possible = low_possible_.row(iy);
+    float* tight = tight_.row(iy);
+    Sums total;
+    for (int ix = 0; ix < nx_; ++ix) {
+        sums[ix] = total;
+        const float height_m = ground.height_m.at(ix, iy);
+        const float clearance_m = at_or_nan(ground.clearance_m, ix, iy);
+        tight[ix] = static_cast<double>(clearance_m) < config_.clearance_m ? 1.0F : kNothing;
+        if (!std::isfinite(height_m)) {
+            total.unknown += 1.0;
+            const float free_m = at_or_nan(ground.free_above_m, ix, iy);
+            shown[ix] = std::isnan(free_m) ? kNothing : -free_m;
+            possible[ix] = kNothing;
+            continue;
+        }
+        const auto z_m = static_cast<double>(height_m);
+        const double var_m2 = variance_of(ground, ix, iy);
+        const auto doubt_m = static_cast<float>(config_.sigma_factor * std::sqrt(var_m2));
+        shown[ix] = -(height_m + doubt_m);
+        possible[ix] = -(height_m - doubt_m);
+        total.z += z_m;
+        total.xz += ix * z_m;
+        total.var += var_m2;
+    }
+    sums[nx_] = total;
+    low_shown_.build(iy);
+    low_possible_.build(iy);
+    tight_.build(iy);
+}
+
+/// Patches that begin in the cells of a row; those with an unknown cell, or beyond the map, are no
+/// patch.
+void FootholdFinder::patch_row(const FootholdGround& ground, int iy) {
+    const double cells = patch_cells_ * patch_cells_;
+    const double per_error = 1.0 / std::min(cells, config_.independent_cells);
+    for (int ix = 0; ix < nx_; ++ix) {
+        double z_m = 0.0;
+        double var_m2 = 0.0;
+        const bool inside = ix + patch_cells_ <= nx_ && iy + patch_cells_ <= ny_;
+        for (int i = 0; inside && i < patch_cells_ * patch_cells_; ++i) {
+            const int x = ix + i % patch_cells_;
+            const int y = iy + i / patch_cells_;
+            z_m += static_cast<double>(ground.height_m.at(x, y));
+            var_m2 += variance_of(ground, x, y);
+        }
+        const bool known = inside && std::isfinite(z_m);
+        const auto mean_m = static_cast<float>(z_m / cells);
+        const auto doubt_m =
+            static_cast<float>(config_.sigma_factor * std::sqrt(var_m2 / cells * per_error));
+        patch_m_.at(ix, iy) = known ? mean_m : kNan;
+        patch_doubt_m_.at(ix, iy) = doubt_m;
+        patch_high_.row(iy)[ix] = known ? mean_m + doubt_m : kNothing;
+        patch_low_.row(iy)[ix] = known ? -(mean_m - doubt_m) : kNothing;
+    }
+    patch_high_.build(iy);
+    patch_low_.build(iy);
+}
+
+int FootholdFinder::patch_half_width(int dy) const {
+    // All rows of the patch must lie within F, each as far as it is wide.
+    return std::min(foot_[static_cast<std::size_t>(std::abs(dy))],
+                    foot_[static_cast<std::size_t>(std::abs(dy + patch_cells_ - 1))]);
+}
+
+void FootholdFinder::gather(int iy, Row& row) const {
+    row.reset(nx_);
+    const int foot = reach_of(foot_);
+    const int band = reach_of(band_);
+    for (int dy = std::max(-band, -iy); dy <= std::min(band, ny_ - 1 - iy); ++dy) {
+        const auto distance = static_cast<std::size_t>(std::abs(dy));
+        const Sums* sums = sums_.data() + static_cast<std::ptrdiff_t>(iy + dy) * (nx_ + 1);
+        const int h = band_[distance];
+        low_shown_.take(iy + dy, -h, h, row.low_shown.data());
+        low_possible_.take(iy + dy, -h, h, row.low_possible.data());
+        for (int ix = h; ix < nx_ - h; ++ix) {
+            row.unknown_band[static_cast<std::size_t>(ix)] +=
+                sums[ix + h + 1].unknown - sums[ix - h].unknown;
+        }
+        if (std::abs(dy) > foot) continue;
+        const int f = foot_[distance];
+        tight_.take(iy + dy, -f, f, row.tight.data());
+        for (int ix = f; ix < nx_ - f; ++ix) {
+            const Sums& begin = sums[ix - f];
+            const Sums& end = sums[ix + f + 1];
+            Sums& total = row.foot[static_cast<std::size_t>(ix)];
+            const double z = end.z - begin.z;
+            total.z += z;
+            total.xz += (end.xz - begin.xz) - ix * z;
+            total.var += end.var - begin.var;
+            total.unknown += end.unknown - begin.unknown;
+            row.yz[static_cast<std::size_t>(ix)] += dy * z;
+        }
+        if (dy + patch_cells_ - 1 > foot) continue;
+        const int p = patch_half_width(dy);
+        if (2 * p + 1 < patch_cells_) continue;
+        patch_high_.take(iy + dy, -p, p - patch_cells_ + 1, row.patch_high.data());
+        patch_low_.take(iy + dy, -p, p - patch_cells_ + 1, row.patch_low.data());
+    }
+}
+
+void FootholdFinder::judge_row(const FootholdGround& ground, int iy, Foothold* out) {
+    Row& row = rows_[static_cast<std::size_t>(iy)];
+    gather(iy, row);
+    for (int ix = 0; ix < nx_; ++ix) out[ix] = judge(ground, ix, iy, row);
+}
+
+Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, const Row& row) const {
+    const float height_m = ground.height_m.at(ix, iy);
+    if (!std::isfinite(height_m)) return Foothold::unknown;
+    const auto at = static_cast<std::size_t>(ix);
+    const auto inside = [&](int reach) {
+        return ix >= reach && iy >= reach && ix < nx_ - reach && iy < ny_ - reach;
+    };
+    const Sums& foot = row.foot[at];
+    const bool foot_known = inside(reach_of(foot_)) && foot.unknown == 0.0;
+    const double middle_m = foot_known
+                                ? foot.z / foot_cells_
+                                : static_cast<double>(height_m) -
+                                      config_.sigma_factor * std::sqrt(variance_of(ground, ix, iy));
+    if (middle_m + static_cast<double>(row.low_shown[at]) > config_.drop_m) return Foothold::drop;
+    const bool band_known = inside(reach_of(band_)) && row.unknown_band[at] == 0.0;
+    if (!foot_known || !band_known) return Foothold::unknown;
+
+    const double slope_x = foot.xz / foot_moment_ / resolution_m_;
+    const double slope_y = row.yz[at] / foot_moment_ / resolution_m_;
+    const double slope = std::sqrt(slope_x * slope_x + slope_y * slope_y);
+    const double slope_doubt = slope_sigmas_per_m_ * std::sqrt(foot.var / foot_cells_);
+    if (slope - slope_doubt > config_.max_slope) return Foothold::tilted;
+    Foothold found = Foothold::safe;
+    // Where the highest and the lowest patch are near any height of p, all are near it.
+    const double rise_m = slope * (config_.foot_radius_m + config_.margin_m);
+    const bool level =
+        static_cast<double>(row.patch_high[at]) - (middle_m - rise_m) <= config_.max_residual_m &&
+        static_cast<double>(row.patch_low[at]) + (middle_m + rise_m) <= config_.max_residual_m;
+    if (!level) found = judge_patches(ix, iy, middle_m, slope_x, slope_y);
+    if (found == Foothold::rough) return found;
+    if (row.tight[at] > 0.0F) return Foothold::low;
+    if (slope + slope_doubt > config_.max_slope ||
+        middle_m + static_cast<double>(row.low_possible[at]) > config_.drop_m) {
+        return Foothold::unsure;
+    }
+    return found;
+}
+
+Foothold FootholdFinder::judge_patches(
+    int ix, int iy, double middle_m, double slope_x, double slope_y) const {
+    const double to_middle = 0.5 * (patch_cells_ - 1);
+    const int foot = reach_of(foot_);
+    Foothold found = Foothold::safe;
+    for (int dy = -foot; dy + patch_cells_ - 1 <= foot; ++dy) {
+        const int p = patch_half_width(dy);
+        const float* mean_m = patch_m_.row(iy + dy) + ix;
+        const float* doubt_m = patch_doubt_m_.row(iy + dy) + ix;
+        const double row_m = middle_m + slope_y * (dy + to_middle) * resolution_m_;
+        for (int dx = -p; dx <= p - patch_cells_ + 1; ++dx) {
+            const double plane_m = row_m + slope_x * (dx + to_middle) * resolution_m_;
+            const double residual_m = std::abs(static_cast<double>(mean_m[dx]) - plane_m);
+            const auto doubt = static_cast<double>(doubt_m[dx]);
+            if (residual_m - doubt > config_.max_residual_m) return Foothold::rough;
+            if (residual_m + doubt > config_.max_residual_m) found = Foothold::unsure;
+        }
+    }
+    return found;
+}
+
+void FootholdConfig::describe(ConfigVisitor& visitor) {
+    visitor.number("foot_radius_m", foot_radius_m, 0.01, 1.0, "half the diagonal of a foot");
+    visitor.number("margin_m", margin_m, 0.0, 1.0, "edges may lie beside where the map has them");
+    visitor.number("band_m", band_m, 0.0, 1.0, "solid ground wanted beyond the foot");
+    visitor.number("drop_m", drop_m, 0.001, 1.0, "ground lower than the foot by more is a drop");
+    visitor.number(
+        "max_slope", max_slope, 0.001, 10.0, "of the plane under the foot, rise over run");
+    visitor.number("patch_side_m", patch_side_m, 0.001, 1.0, "what the foot is cut into");
+    visitor.number("max_residual_m", max_residual_m, 0.001, 1.0, "of a patch to that plane");
+    visitor.number("sigma_factor", sigma_factor, 0.0, 100.0, "everything is to be sure by so many");
+    visitor.number("independent_cells",
+                   independent_cells,
+                   1.0,
+                   10000.0,
+                   "at most so many independent errors in a patch");
+    visitor.number(
+        "correlation_m", correlation_m, 0.001, 10.0, "reach of one error of the matcher");
+    visitor.number("clearance_m", clearance_m, 0.0, 100.0, "free height wanted over the foot");
+}
+
+std::optional<std::string> FootholdConfig::problem() const {
+    if (patch_side_m <= foot_radius_m) return std::nullopt;
+    return fmt::format("foothold.patch_side_m = {} must not exceed foothold.foot_radius_m = {}",
+                       patch_side_m,
+                       foot_radius_m);
+}
+
+bool FootholdConfig::fits(double resolution_m) const noexcept {
+    const double reach_m = foot_radius_m + margin_m + band_m;
+    return resolution_m <= foot_radius_m && reach_m <= (RunMaxima::kMargin - 1) * resolution_m;
+}
+
+std::string_view to_string(Foothold foothold) noexcept {
+    switch (foothold) {
+        case Foothold::unknown: return "unknown";
+        case Foothold::safe: return "safe";
+        case Foothold::unsure: return "unsure";
+        case Foothold::drop: return "drop";
+        case Foothold::tilted: return "tilted";
+        case Foothold::rough: return "rough";
+        case Foothold::low: return "low";
+    }
+    return "unknown";
+}
+
+}  // namespace surefoot::traversability

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/traversability/foothold.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "surefoot/core/rng.hpp"
+
+namespace surefoot::traversability {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr double kCell_m = 0.025;
+constexpr int kSide = 60;
+
+/// A map of kSide x kSide cells with a height for every cell.
+struct Map {
+    Image<float> height_m{kSide, kSide, 0.0F};
+    Image<float> var_m2{kSide, kSide, 0.0F};
+    Image<float> clearance_m{kSide, kSide, kNan};
+    Image<float> free_above_m{kSide, kSide, kNan};
+
+    template <typename F>
+    explicit Map(const F& height) {
+        for (int iy = 0; iy < kSide; ++iy)
+            for (int ix = 0; ix < kSide; ++ix) height_m.at(ix, iy) = static_cast<float>(height(ix));
+    }
+    [[nodiscard]] FootholdGround ground() const {
+        return {height_m.view(), var_m2.view(), clearance_m.view(), free_above_m.view(), kCell_m};
+    }
+    void forget_from(int column) {
+        for (int iy = 0; iy < kSide; ++iy)
+            for (int ix = column; ix < kSide; ++ix) height_m.at(ix, iy) = kNan;
+    }
+};
+
+Image<Foothold> found(const Map& map, const FootholdConfig& config = {}) {
+    Image<Foothold> out;
+    FootholdFinder(config).find(map.ground(), serial(), out);
+    return out;
+}
+
+/// The middle row of a map whose rows are alike.
+Foothold at(const Map& map, int ix, const FootholdConfig& config = {}) {
+    return found(map, config).at(ix, kSide / 2);
+}
+
+/// The rules as they are written, for one cell.
+class Oracle {
+  public:
+    Oracle(const FootholdConfig& config, const FootholdGround& ground) : c_(config), g_(ground) {}
+
+    [[nodiscard]] Foothold judge(int cx, int cy) const {
+        if (!known(cx, cy)) return Foothold::unknown;
+        const double foot_m = c_.foot_radius_m + c_.margin_m;
+        const double foot = foot_m / g_.resolution_m;
+        const double band = (foot_m + c_.band_m) / g_.resolution_m;
+        const int reach = static_cast<int>(std::ceil(band));
+        double n = 0, sum = 0, xz = 0, yz = 0, xx = 0, var = 0;
+        bool foot_known = true;
+        bool band_known = true;
+        bool tight = false;
+        for (int dy = -reach; dy <= reach; ++dy) {
+            for (int dx = -reach; dx <= reach; ++dx) {
+                if (!within(dx, dy, band)) continue;
+                const bool is_known = known(cx + dx, cy + dy);
+                band_known = band_known && is_known;
+                if (!within(dx, dy, foot)) continue;
+                foot_known = foot_known && is_known;
+                if (!is_known) continue;
+                const double z = height(cx + dx, cy + dy);
+                n += 1;
+                sum += z;
+                xz += dx * z;
+                yz += dy * z;
+                xx += dx * dx;
+                var += variance(cx + dx, cy + dy);
+                tight = tight || clearance(cx + dx, cy + dy) < c_.clearance_m;
+            }
+        }
+        const double k = c_.sigma_factor;
+        const double middle =
+            foot_known ? sum / n : height(cx, cy) - k * std::sqrt(variance(cx, cy));
+        bool deep = false;
+        bool perhaps_deep = false;
+        for (int dy = -reach; dy <= reach; ++dy) {
+            for (int dx = -reach; dx <= reach; ++dx) {
+                const int x = cx + dx;
+                const int y = cy + dy;
+                if (!within(dx, dy, band) || !inside(x, y)) continue;
+                if (!known(x, y)) {
+                    deep = deep || middle - free_above(x, y) > c_.drop_m;
+                    continue;
+                }
+                const double z = height(x, y);
+                const double doubt = k * std::sqrt(variance(x, y));
+                deep = deep || middle - (z + doubt) > c_.drop_m;
+                perhaps_deep = perhaps_deep || middle - (z - doubt) > c_.drop_m;
+            }
+        }
+        if (deep) return Foothold::drop;
+        if (!foot_known || !band_known) return Foothold::unknown;
+        const double ax = xz / xx / g_.resolution_m;
+        const double ay = yz / xx / g_.resolution_m;
+        const double slope = std::hypot(ax, ay);
+        const double errors =
+            std::max(1.0, M_PI * foot_m * foot_m / (c_.correlation_m * c_.correlation_m));
+        const double doubt = k * std::sqrt(var / n) / (0.5 * foot_m * std::sqrt(errors));
+        if (slope - doubt > c_.max_slope) return Foothold::tilted;
+        const auto [rough, perhaps_rough] = patches(cx, cy, foot, middle, ax, ay);
+        if (rough) return Foothold::rough;
+        if (tight) return Foothold::low;
+        return perhaps_rough || perhaps_deep || slope + doubt > c_.max_slope ? Foothold::unsure
+                                                                             : Foothold::safe;
+    }
+
+  private:
+    [[nodiscard]] double height(int x, int y) const { return read(g_.height_m, x, y); }
+    [[nodiscard]] double variance(int x, int y) const { return read(g_.height_var_m2, x, y); }
+    [[nodiscard]] double clearance(int x, int y) const { return read(g_.clearance_m, x, y); }
+    [[nodiscard]] double free_above(int x, int y) const { return read(g_.free_above_m, x, y); }
+    static double read(ImageView<const float> layer, int x, int y) {
+        return static_cast<double>(layer.at(x, y));
+    }
+    static bool within(int dx, int dy, double radius) {
+        return dx * dx + dy * dy <= radius * radius + 1e-6;
+    }
+    [[nodiscard]] bool inside(int x, int y) const {
+        return x >= 0 && y >= 0 && x < g_.height_m.width && y < g_.height_m.height;
+    }
+    [[nodiscard]] bool known(int x, int y) const {
+        return inside(x, y) && std::isfinite(height(x, y));
+    }
+    [[nodiscard]] std::pair<bool, bool> patches(
+        int cx, int cy, double foot, double middle, double ax, double ay) const {
+        const int side =
+            std::max(1, static_cast<int>(std::lround(c_.patch_side_m / g_.resolution_m)));
+        const int reach = static_cast<int>(std::ceil(foot));
+        bool rough = false;
+        bool perhaps = false;
+        for (int dy = -reach; dy <= reach; ++dy) {
+            for (int dx = -reach; dx <= reach; ++dx) {
+                double z = 0;
+                double var = 0;
+                bool all = true;
+                for (int i = 0; i < side * side; ++i) {
+                    const int x = dx + i % side;
+                    const int y = dy + i / side;
+                    all = all && within(x, y, foot);
+                    if (!all) break;
+                    z += height(cx + x, cy + y);
+                    var += variance(cx + x, cy + y);
+                }
+                if (!all) continue;
+                const double cells = side * side;
+                const double plane =
+                    middle +
+                    (ax * (dx + 0.5 * (side - 1)) + ay * (dy + 0.5 * (side - 1))) * g_.resolution_m;
+                const double residual = std::abs(z / cells - plane);
+                const double doubt = c_.sigma_factor *
+                                     std::sqrt(var / cells / std::min(cells, c_.independent_cells));
+                rough = rough || residual - doubt > c_.max_residual_m;
+                perhaps = perhaps || residual + doubt > c_.max_residual_m;
+            }
+        }
+        return {rough, perhaps};
+    }
+
+    const FootholdConfig& c_;
+    const FootholdGround& g_;
+};
+
+TEST(Foothold, FloorIsSafeAsFarAsAllOfItIsKnown) {
+    const Image<Foothold> holds = found(Map([](int) { return -1.7; }));
+    // F reaches 9 cells, B 13.
+    for (int i = 0; i < kSide; ++i) {
+        const bool known = i >= 13 && i < kSide - 13;
+        EXPECT_EQ(holds.at(i, kSide / 2), known ? Foothold::safe : Foothold::unknown) << i;
+        EXPECT_EQ(holds.at(kSide / 2, i), known ? Foothold::safe : Foothold::unknown) << i;
+    }
+    Map hole([](int) { return 0.0; });
+    hole.height_m.at(30, 30) = kNan;
+    EXPECT_EQ(found(hole).at(30, 30 + 13), Foothold::unknown);
+    EXPECT_EQ(found(hole).at(30, 30 + 14), Foothold::safe);
+}
+
+TEST(Foothold, AStepDownIsADropAsFarAsTheBandReaches) {
+    const Map edge([](int ix) { return ix < 30 ? 0.0 : -0.17; });
+    EXPECT_EQ(at(edge, 30 - 14), Foothold::safe);
+    for (int ix = 30 - 13; ix < 30; ++ix) EXPECT_EQ(at(edge, ix), Foothold::drop) << ix;
+    // Down there the step is in the way of the foot, not of the band.
+    EXPECT_EQ(at(edge, 30 + 10), Foothold::safe);
+    EXPECT_NE(at(edge, 30 + 8), Foothold::safe);
+    const Map kerb([](int ix) { return ix < 30 ? 0.0 : -0.04; });
+    EXPECT_EQ(at(kerb, 30 - 10), Foothold::safe);
+    EXPECT_EQ(at(kerb, 30 - 2), Foothold::tilted);
+}
+
+TEST(Foothold, LinesOfSightShowADropThatIsNeverSeen) {
+    Map edge([](int) { return 0.0; });
+    edge.forget_from(30);
+    EXPECT_EQ(at(edge, 30 - 8), Foothold::unknown);
+    for (int iy = 0; iy < kSide; ++iy)
+        for (int ix = 30; ix < kSide; ++ix)
+            edge.free_above_m.at(ix, iy) = -0.024F * static_cast<float>(ix - 29);
+    // The line is 0.05 m deep two cells behind the edge, and more than that one cell on.
+    EXPECT_EQ(at(edge, 32 - 13), Foothold::drop);
+    EXPECT_EQ(at(edge, 30 - 1), Foothold::drop);
+    EXPECT_EQ(at(edge, 32 - 14), Foothold::unknown);
+    EXPECT_EQ(at(edge, 30 - 14), Foothold::safe);
+}
+
+TEST(Foothold, RampsUpToSixDegrees) {
+    EXPECT_EQ(at(Map([](int ix) { return ix * kCell_m / 12.0; }), 30), Foothold::safe);
+    EXPECT_EQ(at(Map([](int ix) { return ix * kCell_m / 8.0; }), 30), Foothold::tilted);
+    Map across([](int) { return 0.0; });
+    for (int iy = 0; iy < kSide; ++iy)
+        for (int ix = 0; ix < kSide; ++ix)
+            across.height_m.at(ix, iy) = static_cast<float>(-iy * kCell_m / 9.0);
+    EXPECT_EQ(at(across, 30), Foothold::tilted);
+}
+
+TEST(Foothold, ABumpUnderTheFootIsRough) {
+    Map bump([](int) { return 0.0; });
+    for (int i = 0; i < 4; ++i) bump.height_m.at(30 + i % 2, 30 + i / 2) = 0.03F;
+    EXPECT_EQ(found(bump).at(30, 30), Foothold::rough);
+    EXPECT_EQ(found(bump).at(30 - 8, 30), Foothold::rough);
+    EXPECT_EQ(found(bump).at(30 - 10, 30), Foothold::safe);
+    // A single cell is a quarter of a patch.
+    Map peak([](int) { return 0.0; });
+    peak.height_m.at(30, 30) = 0.06F;
+    EXPECT_EQ(found(peak).at(30, 30), Foothold::safe);
+}
+
+TEST(Foothold, WhatCannotBeToldIsUnsure) {
+    Map floor([](int) { return 0.0; });
+    std::fill_n(floor.var_m2.data(), floor.var_m2.size(), 0.02F * 0.02F);
+    EXPECT_EQ(at(floor, 30), Foothold::unsure);
+    FootholdConfig careless;
+    careless.sigma_factor = 1.0;
+    EXPECT_EQ(at(floor, 30, careless), Foothold::safe);
+    std::fill_n(floor.var_m2.data(), floor.var_m2.size(), 0.003F * 0.003F);
+    EXPECT_EQ(at(floor, 30), Foothold::safe);
+}
+
+TEST(Foothold, UnderATableThereIsNoRoom) {
+    Map table([](int) { return 0.0; });
+    table.clearance_m.at(30, 30) = 0.7F;
+    EXPECT_EQ(found(table).at(30 + 9, 30), Foothold::low);
+    EXPECT_EQ(found(table).at(30 + 10, 30), Foothold::safe);
+    table.clearance_m.at(30, 30) = 2.06F;
+    EXPECT_EQ(found(table).at(30, 30), Foothold::safe);
+}
+
+TEST(Foothold, SameAsTheRulesOnRandomGround) {
+    int seen[7] = {};
+    for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+        Rng rng(seed);
+        Map map([](int) { return 0.0; });
+        const double slope = 0.12 * rng.uniform();
+        const double noise_m = 0.006 * rng.uniform();
+        const double step_m = seed % 3 == 0 ? 0.08 * rng.uniform() : 0.0;
+        for (int iy = 0; iy < kSide; ++iy) {
+            for (int ix = 0; ix < kSide; ++ix) {
+                const double z = 3.0 + slope * ix * kCell_m - (ix + iy > 70 ? step_m : 0.0) +
+                                 noise_m * rng.normal();
+                map.height_m.at(ix, iy) = rng.uniform() < 2e-4 ? kNan : static_cast<float>(z);
+                map.var_m2.at(ix, iy) = static_cast<float>(1.5 * noise_m * noise_m * rng.uniform());
+                if (rng.uniform() < 1e-4) map.clearance_m.at(ix, iy) = 1.0F;
+                if (rng.uniform() < 0.5)
+                    map.free_above_m.at(ix, iy) = static_cast<float>(z - 0.12 * rng.uniform());
+            }
+        }
+        const Image<Foothold> holds = found(map);
+        const FootholdGround ground = map.ground();
+        const FootholdConfig config;
+        const Oracle oracle(config, ground);
+        for (int iy = 0; iy < kSide; ++iy) {
+            for (int ix = 0; ix < kSide; ++ix) {
+                const Foothold expected = oracle.judge(ix, iy);
+                ++seen[static_cast<int>(expected)];
+                ASSERT_EQ(to_string(holds.at(ix, iy)), to_string(expected))
+                    << "seed " << seed << " cell " << ix << ", " << iy;
+            }
+        }
+    }
+    for (const int count : seen) EXPECT_GT(count, 20);
+}
+
+TEST(Foothold, OtherGridsAreUnknown) {
+    FootholdConfig config;
+    EXPECT_FALSE(config.problem());
+    Map floor([](int) { return 0.0; });
+    for (const double resolution_m : {0.005, 0.3}) {
+        EXPECT_FALSE(config.fits(resolution_m));
+        FootholdGround ground = floor.ground();
+        ground.resolution_m = resolution_m;
+        Image<Foothold> out;
+        FootholdFinder(config).find(ground, serial(), out);
+        EXPECT_EQ(out.at(30, 30), Foothold::unknown);
+    }
+    EXPECT_TRUE(config.fits(0.01));
+    EXPECT_TRUE(config.fits(0.1));
+    config.patch_side_m = 0.3;
+    EXPECT_NE(config.problem()->find("must not exceed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surefoot::traversability
