@@ -41,7 +41,7 @@ std::int64_t ElevationMap::known_cells() const noexcept {
 
 void ElevationMap::follow(const Pose& T_odom_body, const Matrix6& relative_covariance) {
     const MotionNoise noise(relative_covariance, T_odom_body.R());
-    if (!T_odom_body.all_finite() || !noise.is_finite()) {
+    if (!T_odom_body.all_finite() || !noise.is_bounded()) {
         clear();
         return;
     }

@@ -40,8 +40,8 @@ class ElevationMap {
 
     /// Moves the window with the body and lets every remembered cell pay for the motion.
     /// `relative_covariance`: of the motion since the last call, see `MotionEstimate`. If it is not
-    /// finite nothing is known about where the cells are now: the map is cleared. A pose that is
-    /// not finite clears too.
+    /// bounded (`MotionNoise::is_bounded`) nothing is known about where the cells are now: the map
+    /// is cleared. A pose that is not finite clears too.
     void follow(const Pose& T_odom_body, const Matrix6& relative_covariance);
 
     /// Fuses a depth image taken at the pose last followed; every cell takes one measurement at

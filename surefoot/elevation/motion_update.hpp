@@ -20,6 +20,12 @@ class MotionNoise {
 
     /// All entries are finite. An infinite or NaN covariance says nothing about the cells any more.
     [[nodiscard]] bool is_finite() const { return covariance_.allFinite(); }
+    /// All entries are so small that `blur_row` stays in the range of floats on every map. Beyond
+    /// it what they add may vanish as the difference of two infinities.
+    [[nodiscard]] bool is_bounded() const {
+        return is_finite() && covariance_.cwiseAbs().maxCoeff() <= kMostVariance;
+    }
+    static constexpr double kMostVariance = 1e12;  ///< (1000 km)^2, (1e6 rad)^2
     [[nodiscard]] bool is_zero() const { return covariance_.isZero(0.0); }
 
     /// Variance that the motion adds to the height of a cell, never negative.
