@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any sequence of motions, clouds, depth images and remembered regions leaves the elevation map as
+// the plain map (plain_map.hpp) says, bit for bit in every layer and count; and a second map that
+// does its blocks backwards on another instruction set has the same bytes. No cell is ever half
+// known, and none that is known lacks a finite height and a positive variance.
+#include <hwy/targets.h>
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <numbers>
+#include <vector>
+
+#include "fuzz/choices.hpp"
+#include "fuzz/plain_map.hpp"
+
+namespace {
+
+using namespace surefoot;
+using namespace surefoot::elevation;
+using fuzz::Choices;
+using fuzz::PlainMap;
+
+constexpr int kMostOperations = 16;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+void must(bool holds, const char* what) {
+    if (holds) return;
+    std::fprintf(stderr, "elevation_fuzz: %s\n", what);
+    std::abort();
+}
+
+template <typename T>
+bool same_cells(const grid::SlidingLayer<T>& a, const Image<T>& b) {
+    // Mostly so, and quick; NaN may have other bits.
+    if (std::memcmp(a.data(), b.data(), b.size() * sizeof(T)) == 0) return true;
+    for (std::size_t i = 0; i < b.size(); ++i) {
+        const bool both_unknown = a.data()[i] != a.data()[i] && b.data()[i] != b.data()[i];
+        if (!both_unknown && std::memcmp(a.data() + i, b.data() + i, sizeof(T)) != 0) return false;
+    }
+    return true;
+}
+
+bool same(const FusionCounts& a, const FusionCounts& b) {
+    return a.points == b.points && a.gated_range == b.gated_range &&
+           a.gated_height == b.gated_height && a.gated_confidence == b.gated_confidence &&
+           a.gated_density == b.gated_density && a.outside == b.outside &&
+           a.cells_measured == b.cells_measured && a.cells_new == b.cells_new &&
+           a.cells_fused == b.cells_fused && a.cells_inflated == b.cells_inflated &&
+           a.cells_cleared == b.cells_cleared;
+}
+
+class Backwards final : public Executor {
+  public:
+    void parallel_for(int count, const std::function<void(int)>& work) override {
+        for (int index = count - 1; index >= 0; --index) work(index);
+    }
+};
+
+/// Holds the dispatch of Highway on one of the instruction sets while it lives.
+class OnTarget {
+  public:
+    explicit OnTarget(int which) {
+        std::int64_t left = all();
+        for (int i = which % std::popcount(static_cast<std::uint64_t>(left)); i > 0; --i)
+            left &= left - 1;
+        hold(left & -left);
+    }
+    ~OnTarget() { hold(all()); }
+    OnTarget(const OnTarget&) = delete;
+    OnTarget& operator=(const OnTarget&) = delete;
+
+  private:
+    /// Asked once: the processor takes its time to answer.
+    static std::int64_t all() {
+        static const std::int64_t targets = hwy::SupportedTargets();
+        return targets;
+    }
+    static void hold(std::int64_t target) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    }
+};
+
+ElevationConfig config_of(Choices& choices) {
+    ElevationConfig config;
+    config.resolution_m = choices.yes() ? 0.05 : 0.025;
+    constexpr int kSides[] = {1, 2, 15, 16, 17, 24};
+    config.length_m = kSides[choices.below(6)] * config.resolution_m;
+    config.prefilter.range = choices.below(4) != 0;
+    config.prefilter.height = choices.below(4) != 0;
+    config.prefilter.down_sampling = choices.below(8) == 1;
+    config.prefilter.outlier_removal = choices.below(8) == 1;
+    config.reduction.min_points = 1 + choices.below(3);
+    config.fusion.scan_duration_s = choices.below(4) == 1 ? 0.5 : 0.0;
+    config.sensor.model = static_cast<SensorModel>(choices.below(8) == 1 ? choices.below(7) : 0);
+    config.pixels.surface_check = choices.yes();
+    return config;
+}
+
+class Play {
+  public:
+    Play(const ElevationConfig& config, Choices& choices)
+        : choices_(choices),
+          target_(choices.byte()),
+          config_(config),
+          map_(config),
+          twin_(config),
+          plain_(config) {}
+
+    void one_operation() {
+        switch (choices_.below(8)) {
+            case 0:
+            case 1: follow(); break;
+            case 2: depth_image(); break;
+            case 3: region(); break;
+            case 4: clear(); break;
+            default: cloud(); break;
+        }
+        compare();
+    }
+
+  private:
+    Pose small_pose() {
+        return {
+            exp_so3(
+                {0.01 * choices_.below(16), -0.01 * choices_.below(16), 0.1 * choices_.below(63)}),
+            {static_cast<double>(choices_.number(0.02F)),
+             static_cast<double>(choices_.number(0.02F)),
+             static_cast<double>(choices_.number(0.05F))}};
+    }
+
+    void follow() {
+        T_odom_body_ = small_pose();
+        if (choices_.below(8) == 1) T_odom_body_.translation_m *= 1e3;
+        Matrix6 covariance = Matrix6::Zero();
+        if (choices_.yes()) {
+            for (int i = 0; i < 6; ++i)
+                covariance(i, i) = std::abs(static_cast<double>(choices_.number(1e-5F)));
+        }
+        map_.follow(T_odom_body_, covariance);
+        {
+            const OnTarget other(target_);
+            twin_.follow(T_odom_body_, covariance);
+        }
+        plain_.follow(T_odom_body_, covariance);
+    }
+
+    /// Points around the machine, many of them in a few cells, as one sees ground and what stands
+    /// on it; some are none.
+    void cloud() {
+        std::vector<MeasuredPoint> points;
+        const int patches = 1 + choices_.below(4);
+        for (int patch = 0; patch < patches; ++patch) {
+            const Eigen::Vector3f at_m(
+                choices_.number(0.02F), choices_.number(0.02F), choices_.number(0.05F));
+            const float along_m2 = choices_.number(1e-4F);
+            const float lateral_m2 = std::abs(choices_.number(1e-5F));
+            const int count = choices_.below(80);
+            for (int i = 0; i < count; ++i) {
+                const Eigen::Vector3f off_m(0.007F * static_cast<float>(i % 9),
+                                            0.011F * static_cast<float>(i % 7),
+                                            0.002F * static_cast<float>(i % 5));
+                points.push_back({at_m + off_m, std::abs(along_m2), lateral_m2});
+            }
+            if (choices_.yes()) points.push_back({at_m, along_m2, lateral_m2});
+        }
+        const Pose T_body_sensor = choices_.below(4) == 1 ? small_pose() : Pose{};
+        const std::int64_t time_ns = next_time_ns();
+        const FusionCounts counts = map_.add_points(points, T_body_sensor, T_odom_body_, time_ns);
+        {
+            const OnTarget other(target_);
+            const FusionCounts again =
+                twin_.add_points(points, T_body_sensor, T_odom_body_, time_ns, backwards_);
+            must(same(counts, again), "counts of a cloud depend on executor or target");
+        }
+        must(same(counts, plain_.add_points(points, T_body_sensor, T_odom_body_, time_ns)),
+             "counts of a cloud differ from the plain map");
+    }
+
+    void depth_image() {
+        camera::RectifiedRig rig;
+        rig.width = choices_.below(40);
+        rig.height = choices_.below(40);
+        rig.fx_px = rig.fy_px = 20.0;
+        rig.cx_px = 0.5 * rig.width;
+        rig.cy_px = 0.5 * rig.height;
+        rig.baseline_m = 0.12;
+        rig.T_body_camera =
+            Pose{exp_so3({0.0, 0.5 * std::numbers::pi, 0.0}), {0.0, 0.0, 1.0}} * T_body_optical();
+        DepthImage depth;
+        depth.resize(rig.width, rig.height);
+        const float disparity_px = choices_.number(0.5F);
+        const float sigma_px = choices_.number(0.1F);
+        for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
+            depth.disparity_px.data()[i] = disparity_px;
+            depth.sigma_px.data()[i] = sigma_px;
+            depth.outlier_probability.data()[i] = 0.1F;
+        }
+        const int spoilt = choices_.below(8);
+        for (int i = 0; i < spoilt && depth.disparity_px.size() > 0; ++i) {
+            const std::size_t at = choices_.byte() * 7U % depth.disparity_px.size();
+            depth.disparity_px.data()[at] = choices_.number(0.5F);
+            depth.sigma_px.data()[at] = choices_.number(0.1F);
+            depth.outlier_probability.data()[at] = choices_.number(0.05F);
+        }
+        const std::int64_t time_ns = next_time_ns();
+        const FusionCounts counts = map_.add(rig, T_odom_body_, depth, time_ns);
+        {
+            const OnTarget other(target_);
+            must(same(counts, twin_.add(rig, T_odom_body_, depth, time_ns, backwards_)),
+                 "counts of an image depend on executor or target");
+        }
+        must(same(counts, plain_.add(rig, T_odom_body_, depth, time_ns)),
+             "counts of an image differ from the plain map");
+    }
+
+    /// A remembered patch somewhere near the window, of one kind of cell with a few holes.
+    void region() {
+        grid::MapRegion region;
+        region.resolution_m = config_.resolution_m;
+        region.box = grid::box_of(map_.geometry());
+        region.box.first_ix += choices_.below(32) - 16;
+        region.box.first_iy += choices_.below(32) - 16;
+        region.box.nx = 1 + choices_.below(30);
+        region.box.ny = 1 + choices_.below(30);
+        grid::for_each_layer([&](const grid::RegionLayer&, auto member, auto unknown) {
+            (region.*member).resize(region.box.nx, region.box.ny);
+            (region.*member).fill(unknown);
+        });
+        const float z_m = choices_.number(0.02F);
+        const float clearance_m = choices_.yes() ? choices_.number(0.1F) : kNan;
+        const float var_m2 = choices_.number(1e-4F);
+        const int holes = 1 + choices_.below(5);
+        for (std::size_t i = 0; i < region.height_m.size(); ++i) {
+            if (i % static_cast<std::size_t>(holes) == 1) continue;
+            region.height_m.data()[i] = z_m;
+            region.height_var_m2.data()[i] = var_m2;
+            region.count.data()[i] = 1U + choices_.byte() % 2U;
+            region.seen_ns.data()[i] = 5;
+            region.horizontal_drift_m.data()[i] = 0.01F;
+            region.highest_m.data()[i] = z_m;
+            region.lowest_m.data()[i] = z_m;
+            region.clearance_m.data()[i] = clearance_m;
+            region.confidence.data()[i] = 0.75F;
+        }
+        const Matrix6 placement = 1e-6 * Matrix6::Identity() * choices_.below(100);
+        const auto filled = map_.insert(region, T_odom_body_, placement);
+        const OnTarget other(target_);
+        const auto again = twin_.insert(region, T_odom_body_, placement);
+        must(filled.ok() == again.ok(), "a region is refused by one of two equal maps");
+        must(!(filled.ok() && region.problem()), "an impossible region is taken");
+        if (!filled.ok()) {
+            must(!filled.error().message.empty(), "a region is refused without a sentence");
+            return;
+        }
+        must(*filled == *again && *filled == plain_.insert(region, T_odom_body_, placement),
+             "another number of cells was filled");
+    }
+
+    void clear() {
+        map_.clear();
+        twin_.clear();
+        plain_.clear();
+    }
+
+    /// Mostly forward, sometimes back, sometimes years.
+    std::int64_t next_time_ns() {
+        constexpr std::int64_t kYear_ns = 31'536'000'000'000'000;
+        const int way = choices_.below(16);
+        time_ns_ += way == 15 ? -kYear_ns : way == 14 ? kYear_ns : way * 33'000'000 - 66'000'000;
+        return time_ns_;
+    }
+
+    void compare() const {
+        must(map_.geometry().origin_m == plain_.geometry().origin_m, "the window went elsewhere");
+        const grid::MapRegion plain = plain_.layers();
+        must(same_layers(map_.layers(), plain), "the map differs from the plain map");
+        must(same_layers(twin_.layers(), plain), "executor or target change the map");
+        for (std::size_t i = 0; i < plain.height_m.size(); ++i) must_be_whole(plain, i);
+    }
+
+    static bool same_layers(const ElevationLayers& a, const grid::MapRegion& b) {
+        return same_cells(a.height_m, b.height_m) && same_cells(a.height_var_m2, b.height_var_m2) &&
+               same_cells(a.count, b.count) && same_cells(a.seen_ns, b.seen_ns) &&
+               same_cells(a.horizontal_drift_m, b.horizontal_drift_m) &&
+               same_cells(a.highest_m, b.highest_m) && same_cells(a.lowest_m, b.lowest_m) &&
+               same_cells(a.clearance_m, b.clearance_m) && same_cells(a.confidence, b.confidence) &&
+               same_cells(a.density_ratio, b.density_ratio);
+    }
+
+    static void must_be_whole(const grid::MapRegion& map, std::size_t i) {
+        const float height_m = map.height_m.data()[i];
+        const float var_m2 = map.height_var_m2.data()[i];
+        const float drift_m = map.horizontal_drift_m.data()[i];
+        const float confidence = map.confidence.data()[i];
+        const bool counted = map.count.data()[i] > 0;
+        if (std::isnan(height_m)) {
+            must(!counted && map.seen_ns.data()[i] == 0 && std::isnan(var_m2) &&
+                     std::isnan(drift_m) && std::isnan(confidence),
+                 "an unknown cell claims to know something");
+            return;
+        }
+        must(std::isfinite(height_m), "a height is not finite");
+        must(var_m2 > 0.0F, "a variance is not positive");
+        must(drift_m >= 0.0F, "a drift is negative or NaN");
+        must(confidence >= 0.0F && confidence <= 1.0F, "a confidence is no share");
+        must(counted, "a height that nobody measured");
+    }
+
+    Choices& choices_;
+    int target_;
+    ElevationConfig config_;
+    ElevationMap map_;
+    ElevationMap twin_;  ///< blocks backwards, another instruction set
+    PlainMap plain_;
+    Backwards backwards_;
+    Pose T_odom_body_;
+    std::int64_t time_ns_ = 1'000'000'000'000;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Choices choices(data, size);
+    const ElevationConfig config = config_of(choices);
+    if (config.problem()) return 0;
+    Play play(config, choices);
+    for (int i = 0; i < kMostOperations && !choices.done(); ++i) play.one_operation();
+    return 0;
+}

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "surefoot/elevation/elevation_map.hpp"
+
+namespace surefoot::fuzz {
+
+/// The elevation map once more, as plainly as it can be said: a dictionary from lattice cells to
+/// what is known of them, no layers, no sliding, no blocks, no registers. Shares with the map the
+/// functions that have oracles of their own: points of a cloud or an image, the plain reduction of
+/// a cell, the height fusion, the noise of a row, the history of viewpoints. Without clean-up.
+class PlainMap {
+  public:
+    explicit PlainMap(const elevation::ElevationConfig& config);
+
+    void follow(const Pose& T_odom_body, const Matrix6& relative_covariance);
+    FusionCounts add(const camera::RectifiedRig& rig,
+                     const Pose& T_odom_body,
+                     const DepthImage& depth,
+                     std::int64_t time_ns);
+    FusionCounts add_points(std::span<const elevation::MeasuredPoint> points,
+                            const Pose& T_body_sensor,
+                            const Pose& T_odom_body,
+                            std::int64_t time_ns);
+    /// How many cells it filled; nothing where the placement is refused.
+    std::int64_t insert(const grid::MapRegion& region,
+                        const Pose& T_odom_body,
+                        const Matrix6& placement_covariance);
+    void clear() { cells_.clear(); }
+
+    /// What ElevationLayers say of the cell (ix, iy) of the window.
+    struct Known {
+        float height_m = kNan;
+        float height_var_m2 = kNan;
+        std::uint32_t count = 0;
+        std::int64_t seen_ns = 0;
+        float horizontal_drift_m = kNan;
+        float highest_m = kNan;
+        float lowest_m = kNan;
+        float clearance_m = kNan;
+        float confidence = kNan;
+        float density_ratio = kNan;
+    };
+    [[nodiscard]] Known known(int ix, int iy) const;
+    /// All cells of the window; only the layers are filled in.
+    [[nodiscard]] grid::MapRegion layers() const;
+    [[nodiscard]] const grid::GridGeometry& geometry() const { return geometry_; }
+
+  private:
+    static constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    using Index = std::pair<std::int64_t, std::int64_t>;  ///< (iy, ix) on the lattice
+
+    struct Cell : Known {
+        float settled_var_m2 = kNan;
+        elevation::ViewpointHistory::Id view = elevation::ViewpointHistory::kNever;
+        float overhead_m = kNan;
+        int overhead_trust = 0;
+    };
+    /// What one look says about one cell.
+    struct Seen {
+        elevation::CellMeasurement measured;
+        float density_ratio = kNan;
+    };
+    struct Heights {
+        std::vector<float> z_m;
+        std::vector<float> var_m2;
+    };
+    using Samples = std::map<Index, Heights>;
+
+    [[nodiscard]] Index lattice_of(int ix, int iy) const {
+        return {first_iy_ + iy, first_ix_ + ix};
+    }
+    [[nodiscard]] Samples samples_of(std::span<const elevation::GridPoint> points,
+                                     FusionCounts& counts) const;
+    /// Through the cloud filters that are on.
+    [[nodiscard]] Samples samples_of(std::vector<elevation::GridPoint>& points,
+                                     FusionCounts& counts) const;
+    void fuse(const Samples& samples,
+              const Pose& T_odom_body,
+              const elevation::ExpectedPoints* expected,
+              std::int64_t time_ns,
+              FusionCounts& counts);
+    void update(Cell& cell, const Seen& seen, std::int64_t time_ns, FusionCounts& counts);
+    void start(Cell& cell, const Seen& seen, std::int64_t time_ns);
+    void agree(Cell& cell, const elevation::Height& fused, const Seen& seen, std::int64_t time_ns);
+    static void see_above(Cell& cell, float z_m, int trust);
+    static void set_clearance(Cell& cell);
+    void drop_what_touches(Cell& cell) const;
+
+    elevation::ElevationConfig config_;
+    grid::GridGeometry geometry_;
+    std::int64_t first_ix_ = 0;
+    std::int64_t first_iy_ = 0;
+    elevation::ViewpointHistory views_;
+    elevation::ViewpointHistory::Id view_ = elevation::ViewpointHistory::kNever;  ///< of the look
+    std::map<Index, Cell> cells_;
+};
+
+}  // namespace surefoot::fuzz

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any heights, radii and changed rectangles: rating what a change affects gives the bytes of rating
+// the whole map, on every instruction set and in any order of blocks; the plain filters know the
+// same cells and agree to the tolerances of traversability_fast_test; a cell of unknown height is
+// not traversable, and no rating lies outside of 0 to 1.
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+
+#include "fuzz/choices.hpp"
+#include "surefoot/traversability/traversability.hpp"
+
+namespace {
+
+using namespace surefoot;
+using namespace surefoot::traversability;
+using fuzz::Choices;
+
+constexpr int kMostChanges = 3;
+// As in traversability_fast_test. A normal on the other side of a rounding turns a slope near 0 by
+// 3.5e-4 rad: no critical slope here is below 1 rad.
+constexpr float kTolerance = 3e-7F;
+constexpr float kSlopeTolerance = 4e-4F;
+
+void must(bool holds, const char* what) {
+    if (holds) return;
+    std::fprintf(stderr, "traversability_fuzz: %s\n", what);
+    std::abort();
+}
+
+bool same(float a, float b) {
+    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ||
+           (std::isnan(a) && std::isnan(b));
+}
+
+class Backwards final : public Executor {
+  public:
+    void parallel_for(int count, const std::function<void(int)>& work) override {
+        for (int index = count - 1; index >= 0; --index) work(index);
+    }
+};
+
+void hold_target(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+template <typename Visit>
+void for_each_layer(const TraversabilityLayers& a, const TraversabilityLayers& b, Visit visit) {
+    visit(a.normal_x, b.normal_x);
+    visit(a.normal_y, b.normal_y);
+    visit(a.normal_z, b.normal_z);
+    visit(a.slope, b.slope);
+    visit(a.step, b.step);
+    visit(a.roughness, b.roughness);
+    visit(a.traversability, b.traversability);
+}
+
+bool same_bytes(const TraversabilityLayers& a, const TraversabilityLayers& b) {
+    bool equal = true;
+    for_each_layer(a, b, [&](const grid::Layer& one, const grid::Layer& other) {
+        for (std::size_t i = 0; i < one.size(); ++i)
+            equal = equal && same(one.data()[i], other.data()[i]);
+    });
+    return equal;
+}
+
+/// Two ways to one figure differ by rounding alone.
+void must_be_close(const TraversabilityLayers& fast, const TraversabilityLayers& plain) {
+    for_each_layer(fast, plain, [&](const grid::Layer& one, const grid::Layer& other) {
+        const bool of_slope = &one == &fast.slope || &one == &fast.traversability;
+        const float tolerance = of_slope ? kSlopeTolerance : kTolerance;
+        for (std::size_t i = 0; i < one.size(); ++i) {
+            const float a = one.data()[i];
+            const float b = other.data()[i];
+            must(std::isnan(a) == std::isnan(b), "the plain filters know other cells");
+            must(std::isnan(a) || std::abs(a - b) <= tolerance, "the plain filters disagree");
+        }
+    });
+}
+
+TraversabilityConfig config_of(Choices& choices, double resolution_m) {
+    TraversabilityConfig config =
+        choices.yes() ? TraversabilityConfig{}
+                      : *preset(kPresetNames[static_cast<std::size_t>(choices.below(4))]);
+    if (choices.yes()) {
+        const auto radius_m = [&] { return resolution_m * (0.5 + 0.125 * choices.below(28)); };
+        config.normals.radius_m = radius_m();
+        config.step.first_radius_m = radius_m();
+        config.step.second_radius_m = radius_m();
+        config.roughness.radius_m = radius_m();
+    }
+    return config;
+}
+
+/// A tile of ground: level, tilted, a step or single heights that may be anything.
+void change(Choices& choices, const CellRect& rect, grid::Layer& height_m) {
+    const int kind = choices.below(5);
+    const float z_m = choices.number(0.05F);
+    const float slope = choices.number(0.01F);
+    for (int iy = rect.iy0; iy < rect.iy0 + rect.ny; ++iy) {
+        for (int ix = rect.ix0; ix < rect.ix0 + rect.nx; ++ix) {
+            float& cell = height_m.at(ix, iy);
+            if (kind == 0) cell = z_m;
+            if (kind == 1) cell = z_m + slope * static_cast<float>(ix + 2 * iy);
+            if (kind == 2) cell = ix % 7 < 3 ? z_m : z_m + slope;
+            if (kind == 3) cell = std::numeric_limits<float>::quiet_NaN();
+            if (kind == 4) cell = choices.number(0.01F);
+        }
+    }
+}
+
+void must_be_ratings(const grid::Layer& height_m, const TraversabilityLayers& layers) {
+    for (std::size_t i = 0; i < height_m.size(); ++i) {
+        const bool known = std::isfinite(height_m.data()[i]);
+        for (const grid::Layer* layer :
+             {&layers.slope, &layers.step, &layers.roughness, &layers.traversability}) {
+            const float rating = layer->data()[i];
+            must(std::isnan(rating) || (rating >= 0.0F && rating <= 1.0F),
+                 "a rating beyond 0 to 1");
+        }
+        must(known || !(layers.traversability.data()[i] > 0.0F),
+             "a cell of unknown height is traversable");
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    Choices choices(data, size);
+    const double resolution_m = choices.yes() ? 0.025 : 0.05;
+    const TraversabilityConfig config = config_of(choices, resolution_m);
+    grid::Layer height_m(1 + choices.below(24), 1 + choices.below(50));
+    height_m.fill(choices.number(0.05F));
+    Traversability kept(config);
+    TraversabilityLayers layers;
+    Backwards backwards;
+    kept.rate(height_m.view(), resolution_m, serial(), layers);
+    for (int i = 0; i < kMostChanges && !choices.done(); ++i) {
+        const CellRect rect =
+            CellRect{choices.below(24), choices.below(50), choices.below(16), choices.below(30)}
+                .clipped(height_m.width(), height_m.height());
+        change(choices, rect, height_m);
+        kept.rate(
+            height_m.view(), resolution_m, kept.affected_by(rect, resolution_m), serial(), layers);
+    }
+    must_be_ratings(height_m, layers);
+    TraversabilityLayers other;
+    static const std::int64_t all = hwy::SupportedTargets();
+    std::int64_t left = all;
+    for (int i = choices.below(std::popcount(static_cast<std::uint64_t>(all))); i > 0; --i)
+        left &= left - 1;
+    hold_target(left & -left);
+    Traversability(config).rate(height_m.view(), resolution_m, backwards, other);
+    must(same_bytes(layers, other), "a change, a target or an order of blocks decides");
+    hold_target(all);
+    Traversability(config, Way::plain).rate(height_m.view(), resolution_m, serial(), other);
+    must_be_close(layers, other);
+    return 0;
+}
