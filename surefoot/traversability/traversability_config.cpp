@@ -77,6 +77,10 @@ void TraversabilityConfig::describe(ConfigVisitor& visitor) {
 }
 
 std::optional<std::string> TraversabilityConfig::problem(double resolution_m) const {
+    if (!(resolution_m > 0.0)) {
+        return fmt::format("a map with cells of {} m cannot be rated; a cell size is above 0",
+                           resolution_m);
+    }
     if (!(weights.slope + weights.step + weights.roughness > 0.0)) {
         return "traversability.weights: slope, step and roughness are all 0; give one a weight "
                "above 0";
