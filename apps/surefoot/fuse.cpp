@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cstring>
+#include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
@@ -47,6 +49,19 @@ Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& pat
     for (std::size_t i = 0; i < points.size(); ++i) {
         const float* v = values->data() + 4 * i;
         points[i] = {v[0], v[1], v[2], v[3]};
+        const bool is_measurement =
+            std::all_of(v, v + 4, [](float value) { return std::isfinite(value); }) && v[3] >= 0.0F;
+        if (!is_measurement) {
+            return input_error(fmt::format(
+                "{}: point {} (from 0) is ({}, {}, {}) with variance {}; finite numbers and a "
+                "variance of at least 0 are expected",
+                path,
+                i,
+                v[0],
+                v[1],
+                v[2],
+                v[3]));
+        }
     }
     return points;
 }
@@ -68,8 +83,11 @@ Result<elevation::FuseStep> parse_step(std::string_view line,
     const auto time_s = io::parse_double(words[2]);
     const auto x_m = io::parse_double(words[4]);
     const auto y_m = io::parse_double(words[5]);
-    if (!index || !time_s || !x_m || !y_m) {
-        return input_error(fmt::format("{}: one of '{}', '{}', '{}', '{}' is no number",
+    const auto is_number = [](const std::optional<double>& value) {
+        return value && std::isfinite(*value);
+    };
+    if (!index || !is_number(time_s) || !is_number(x_m) || !is_number(y_m)) {
+        return input_error(fmt::format("{}: one of '{}', '{}', '{}', '{}' is no finite number",
                                        where,
                                        words[0],
                                        words[2],

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <opencv2/core/utility.hpp>
 #include <string_view>
 
@@ -15,6 +16,23 @@
 
 namespace surefoot::app {
 namespace {
+
+/// NaN compares as no less than any limit, and infinity as positive.
+CLI::Validator finite_number() {
+    return {[](const std::string& text) {
+                double value = 0.0;
+                const bool is_number = CLI::detail::lexical_cast(text, value);
+                return is_number && !std::isfinite(value) ? "Value " + text + " is no number"
+                                                          : std::string();
+            },
+            ""};
+}
+CLI::Validator number_in(double least, double most) {
+    return CLI::Range(least, most) & finite_number();
+}
+CLI::Validator positive_number() {
+    return CLI::PositiveNumber & finite_number();
+}
 
 /// A subcommand with an example under its help; the tests run every example.
 CLI::App* add_verb(CLI::App& app, const char* name, const char* what, const char* example) {
@@ -128,9 +146,9 @@ void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
         ->type_name("FILE|NAME");
     verb->add_option("--rate", o.rate_hz, "frame rate of a source without stamps")
         ->type_name("HZ")
-        ->check(CLI::Range(0.01, 1000.0));
+        ->check(number_in(0.01, 1000.0));
     verb->add_option("--max-frames", o.max_frames, "stop after this many frames")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     verb->add_option("--depth-every",
                      o.depth_every,
                      "depth and map on every n-th frame; odometry runs on all")
@@ -160,11 +178,10 @@ void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
         ->type_name("SCENE");
     CLI::Option* out =
         verb->add_option("--out", o.out_dir, "folder for the recording")->type_name("DIR");
-    verb->add_option("--frames", o.frames, "stop after this many frames")
-        ->check(CLI::PositiveNumber);
+    verb->add_option("--frames", o.frames, "stop after this many frames")->check(positive_number());
     verb->add_option("--rate", o.rate_hz, "frame rate")
         ->type_name("HZ")
-        ->check(CLI::Range(0.1, 1000.0));
+        ->check(number_in(0.1, 1000.0));
     verb->add_option(
             "--rig", o.rig, "calibration file, or name of a built-in rig; doctor lists them")
         ->type_name("FILE|NAME");
@@ -204,10 +221,10 @@ void add_rate(CLI::App& app, RateOptions& o, int& exit_code) {
     verb->add_option("--out", o.out_dir, "folder for the layers")->required()->type_name("DIR");
     verb->add_option("--scale", o.scale_m_per_px, "PNG: metres per pixel")
         ->type_name("M")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     verb->add_option("--height", o.height_m, "PNG: height of the brightest value")
         ->type_name("M")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
 }
 
 void add_fuse(CLI::App& app, FuseOptions& o, int& exit_code) {
@@ -274,7 +291,7 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
             "none; "
             "without it the ground under the present feet is assumed, and listed in 'assumed'")
         ->type_name("M")
-        ->check(CLI::Range(0.0, 2.0));
+        ->check(number_in(0.0, 2.0));
 }
 
 void add_depth(CLI::App& app, DepthOptions& o, int& exit_code) {
@@ -325,12 +342,12 @@ void add_depth_accuracy(CLI::App& app, DepthAccuracyOptions& o, int& exit_code) 
     CLI::Option* distances =
         verb->add_option("--distances", o.distances_m, "of the board or floor, separated by commas")
             ->delimiter(',')
-            ->check(CLI::Range(0.1, 20.0))
+            ->check(number_in(0.1, 20.0))
             ->type_name("M");
     verb->add_option("--repeats", o.repeats, "rendered boards per distance")
         ->check(CLI::Range(1, 1000));
     verb->add_option("--board", o.board_m, "side of the square board; its inner 80 % count")
-        ->check(CLI::Range(0.05, 4.0))
+        ->check(number_in(0.05, 4.0))
         ->type_name("M");
     CLI::Option* pairs = verb->add_option("--pairs",
                                           o.pairs_file,
@@ -380,7 +397,7 @@ void add_eval_depth(CLI::App& eval_verb, EvalDepthOptions& o, int& exit_code) {
                      "the truth holds this times the disparity (default: 256 for 16-bit images as "
                      "KITTI has them, 1 for others)")
         ->type_name("S")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     verb->add_option("--mask", o.mask, "image; only pixels above 200 count (seen by both eyes)")
         ->type_name("M");
     verb->add_option("--sigma", o.sigma, "standard deviation of the estimate in pixels")
@@ -411,7 +428,7 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
         ->check(CLI::IsMember({"se3", "yaw", "none"}));
     trajectory->add_option("--rate", t.rate_hz, "KITTI poses without times.txt")
         ->type_name("HZ")
-        ->check(CLI::Range(0.01, 1000.0));
+        ->check(number_in(0.01, 1000.0));
     trajectory
         ->add_option("--delta",
                      t.lengths_m,
@@ -419,7 +436,7 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
                      "5)")
         ->type_name("M")
         ->allow_extra_args(false)
-        ->check(CLI::Range(1e-3, 1e6));
+        ->check(number_in(1e-3, 1e6));
     trajectory->add_option("--plot", t.plot_file, "picture: from above, and the error over time")
         ->type_name("F.png");
     auto& m = all.eval_maps;
@@ -454,7 +471,7 @@ void add_dem(CLI::App& app, DemOptions& o, int& exit_code) {
     verb->add_option("--resolution", o.resolution_m, "side of a cell")
         ->required()
         ->type_name("M")
-        ->check(CLI::Range(1e-4, 1e3));
+        ->check(number_in(1e-4, 1e3));
     verb->add_option("--reduce", o.reduce, "which height a cell takes of its points")
         ->check(CLI::IsMember({"max", "mean", "min"}));
     verb->add_option("--lattice",
@@ -496,15 +513,15 @@ void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
         ->check(CLI::Range(1, 100000));
     suite->add_option("--noise", s.noise, "factors on the noise amplitude, separated by commas")
         ->delimiter(',')
-        ->check(CLI::Range(0.0, 10.0))
+        ->check(number_in(0.0, 10.0))
         ->type_name("FACTORS");
     suite->add_option("--frames", s.frames, "stop each case after this many frames")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
     suite
         ->add_option(
             "--reach", s.reach_m, "how far around the last pose the gate is asked; 0 = only there")
         ->type_name("M")
-        ->check(CLI::Range(0.0, 2.0));
+        ->check(number_in(0.0, 2.0));
     suite->add_option("--machine", s.machine, "machine file or built-in name")
         ->type_name("FILE|NAME");
 }
@@ -729,9 +746,9 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     record_verb->add_option("--rig", all.record.rig_file, "calibration")->type_name("FILE");
     record_verb->add_option("--imu", all.record.imu_file, "as for run")->type_name("FILE");
     record_verb->add_option("--rate", all.record.rate_hz, "frame rate of a source without stamps")
-        ->check(CLI::Range(0.01, 1000.0));
+        ->check(number_in(0.01, 1000.0));
     record_verb->add_option("--max-frames", all.record.max_frames, "stop after this many frames")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_number());
 
     CLI::App* replay_verb =
         bind(add_verb(app,
@@ -750,7 +767,7 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
             "--machine", all.replay.machine, "machine file or built-in name; sets the camera mount")
         ->type_name("FILE|NAME");
     replay_verb->add_option("--speed", all.replay.speed, "times real time")
-        ->check(CLI::Range(0.01, 1000.0));
+        ->check(number_in(0.01, 1000.0));
 
     CLI::App* info_verb =
         bind(add_verb(app,

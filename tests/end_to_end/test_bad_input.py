@@ -1,10 +1,12 @@
 """Bad input: a clear sentence, exit code 1 or 2, and what was computed before is kept and valid."""
 import json
+import math
 import pathlib
 import random
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import tempfile
 import time
@@ -132,6 +134,70 @@ class BadInput(CliTest):
         # What fitted is there, whole.
         self.assertEqual(len(read_tum(self.dir / "out" / "trajectory.tum")), FRAMES)
         self.assertEqual(list((self.dir / "out").glob("*.tmp*")), [])
+
+    GRID = "ncols {n}\nnrows {n}\nxllcorner 0\nyllcorner 0\ncellsize {cell}\n{body}\n"
+
+    def grid(self, n, cell, body):
+        path = self.dir / "heights.asc"
+        path.write_text(self.GRID.format(n=n, cell=cell, body=body))
+        return path
+
+    def test_height_maps_that_are_none(self):
+        flat = "0 0 0\n0 0 0\n0 0 0"
+        for n, cell, body, word in ((3, 0, flat, "cellsize 0"), (3, "nan", flat, "cellsize"), (3, -1, flat, "cellsize -1"),
+                                    (3, "1e400", flat, "heights.asc:5"), (0, 0.025, "", "ncols = 0"), (3, 0.025, "0 0", "3 x 3"),
+                                    (3, 0.025, flat.replace("0 0 0", "0 inf 0", 1), "row 1"),
+                                    (3, 0.025, flat.replace("0 0 0", "0 1e400 0", 1), "row 1")):
+            process = surefoot("rate", self.grid(n, cell, body), "--out", self.dir / "rated")
+            self.fails(process, "heights.asc", word)
+            self.assertFalse((self.dir / "rated" / "traversability.asc").exists())
+        self.fails(surefoot("rate", self.grid(3, 0.5, flat), "--out", self.dir / "rated"), "less than the cell size 0.5 m",
+                   code=2)
+
+    def test_heights_that_nobody_measures_are_never_traversable(self):
+        for bad in ("nan", "1e30", "-1e30", "3e38", "-9999"):
+            rows = [["0"] * 21 for _ in range(21)]
+            rows[10][10] = bad
+            heights = self.grid(21, 0.025, "\n".join(" ".join(row) for row in rows))
+            self.json_of("rate", heights, "--out", self.dir / "rated")
+            lines = (self.dir / "rated" / "traversability.asc").read_text().splitlines()[6:]
+            ratings = [[float(word) for word in line.split()] for line in lines]
+            self.assertLess(ratings[10][10], 0.8, bad)
+            self.assertEqual(ratings[0][0], 1.0, bad)
+
+    def test_clouds_that_make_no_height_map(self):
+        cloud, out = self.dir / "c.xyz", self.dir / "d.asc"
+        for text, word, code in (("", "no points", 1), ("nan nan nan\ninf 0 0\n", "no point with finite coordinates", 1),
+                                 ("0 0 0\n1e30 0 0\n", "remove stray points", 2)):
+            cloud.write_text(text)
+            self.fails(surefoot("dem", cloud, "--resolution", 0.1, "--out", out), "c.xyz", word, code=code)
+            self.assertFalse(out.exists())
+        cloud.write_text("0 0 0\nnan 0 0\n0 inf 0\n0.05 0.02 0.5\n")
+        answer = self.json_of("dem", cloud, "--resolution", 0.1, "--out", out)
+        self.assertEqual((answer["points"], answer["skipped"]), (2, 2))
+        for resolution in ("nan", "inf", "0", "-1"):
+            self.fails(surefoot("dem", cloud, "--resolution", resolution, "--out", out), "--resolution", code=2)
+        image = self.dir / "heights.png"
+        image.write_bytes(grey_png(8, 8))
+        for scale, height in (("nan", 1), ("inf", 1), (0.025, "nan"), (0.025, 0)):
+            self.fails(surefoot("rate", image, "--scale", scale, "--height", height, "--out", self.dir / "rated"), "--",
+                       code=2)
+
+    def test_clouds_of_fuse_that_are_none(self):
+        steps = self.dir / "steps.txt"
+        good = [0.0, 0.0, 1.0, 1e-4]
+        for place, value in ((0, math.nan), (1, math.inf), (2, -math.inf), (3, math.nan), (3, -1.0)):
+            point = list(good)
+            point[place] = value
+            (self.dir / "cloud0.f32").write_bytes(struct.pack("<8f", *good, *point))
+            steps.write_text("0 time 1000 move_to 0 0\n")
+            self.fails(surefoot("fuse", steps, "--preset", "ethz", "--out", self.dir / "f"), "cloud0.f32", "point 1")
+        (self.dir / "cloud0.f32").write_bytes(struct.pack("<4f", *good))
+        for line in ("0 time nan move_to 0 0", "0 time 1 move_to inf 0", "0 time 1 move_to 0 nan", "x time 1 move_to 0 0"):
+            steps.write_text(line + "\n")
+            self.fails(surefoot("fuse", steps, "--preset", "ethz", "--out", self.dir / "f"), "steps.txt:1")
+        steps.write_text("0 time 1000 move_to 0 0\n0 time 999 move_to 1e30 0\n")  # back in time, and far away
+        self.assertEqual(self.json_of("fuse", steps, "--preset", "ethz", "--out", self.dir / "f")["steps"], 2)
 
     def test_a_camera_that_froze_is_an_error_of_its_own(self):
         recording = self.broken_copy()
