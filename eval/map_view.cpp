@@ -39,13 +39,16 @@ std::vector<PointPx> to_px(const MapView& view, const std::vector<Eigen::Vector2
     return points;
 }
 
-void draw_body(Picture& picture, const MapView& view, const Pose& T_odom_body) {
+void draw_body(Picture& picture,
+               const MapView& view,
+               const Pose& T_odom_body,
+               const std::optional<double>& length_px) {
     const double yaw = yaw_rad(T_odom_body);
     const PointPx forward{-std::sin(yaw), -std::cos(yaw)};  // +x is up, +y is left
     draw_body_symbol(picture,
                      view.to_px(T_odom_body.translation_m.head<2>()),
                      forward,
-                     std::max(kSmallestBody_px, kBodyLength_m * view.px_per_m));
+                     length_px.value_or(std::max(kSmallestBody_px, kBodyLength_m * view.px_per_m)));
 }
 
 }  // namespace
@@ -124,7 +127,7 @@ void draw_overlays(Picture& picture, const MapView& view, const Overlays& overla
         draw_polyline(part, points, 3, outline.color, true);
     }
     if (overlays.T_odom_body && overlays.T_odom_body->all_finite())
-        draw_body(part, inside, *overlays.T_odom_body);
+        draw_body(part, inside, *overlays.T_odom_body, overlays.body_px);
     for (const Mark& mark : overlays.marks) {
         if (mark.point_m.allFinite()) draw_mark_symbol(part, inside.to_px(mark.point_m));
     }

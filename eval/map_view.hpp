@@ -47,6 +47,8 @@ struct Overlays {
     std::vector<Eigen::Vector2d> trajectory_m;
     std::vector<Mark> marks;
     bool scale_bar = true;
+    /// Length of the arrow for the body; nothing: 0.35 m, but not too small to be seen.
+    std::optional<double> body_px = {};
 };
 
 /// Ticks and names of the two axes around the plot.

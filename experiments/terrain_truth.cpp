@@ -157,7 +157,7 @@ Status measure(const Case& now,
 
     const grid::GridGeometry& geometry = pipeline->map().geometry();
     const sim::Lattice lattice{
-        geometry.nx, geometry.ny, geometry.resolution_m, geometry.origin_m};
+        geometry.origin_m, geometry.nx, geometry.ny, geometry.resolution_m};
     const sim::SceneTruth& truth = (*source)->truth();
     const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kRange_m}, executor);
     const auto heights = eval::elevation_errors(

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <span>
+#include <vector>
+
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/map_layers.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
@@ -33,6 +37,22 @@ eval::LayerStyle style_of(const std::string& name, double safe_threshold) {
     return style;
 }
 
+/// The heights and all that was made of them, side by side.
+Status write_sheet(const RateOptions& options,
+                   const Settings& settings,
+                   const io::Dem& dem,
+                   std::span<const NamedLayer> rated) {
+    std::vector<NamedLayer> layers{{"elevation", dem.values}};
+    layers.insert(layers.end(), rated.begin(), rated.end());
+    const auto png = layer_sheet_png(dem.geometry,
+                                     layers,
+                                     settings.maps.safe_threshold,
+                                     4,
+                                     {fmt::format("Rated: {}", options.dem), ""},
+                                     {});
+    return io::write_file(options.out_dir + "/layers.png", std::string(png.begin(), png.end()));
+}
+
 }  // namespace
 
 int rate(const RateOptions& options) {
@@ -51,26 +71,24 @@ int rate(const RateOptions& options) {
     traversability::rate(
         settings->pipeline.traversability, dem->values.view(), resolution_m, *executor, layers);
 
-    const std::pair<const char*, const grid::Layer*> outputs[] = {
-        {"slope", &layers.slope},
-        {"step", &layers.step},
-        {"roughness", &layers.roughness},
-        {"normal_x", &layers.normal_x},
-        {"normal_y", &layers.normal_y},
-        {"normal_z", &layers.normal_z},
-        {"traversability", &layers.traversability}};
+    const NamedLayer outputs[] = {{"normal_x", layers.normal_x},
+                                  {"normal_y", layers.normal_y},
+                                  {"normal_z", layers.normal_z},
+                                  {"slope", layers.slope},
+                                  {"step", layers.step},
+                                  {"roughness", layers.roughness},
+                                  {"traversability", layers.traversability}};
     Writes writes;
     writes += io::write_config_of(options.out_dir + "/config.yaml", *settings);
     for (const auto& [name, layer] : outputs) {
-        const auto png = encode_png(render_layer(dem->geometry,
-                                                 *layer,
-                                                 style_of(name, settings->maps.safe_threshold),
-                                                 eval::Overlays{}));
+        const auto png = encode_png(render_layer(
+            dem->geometry, layer, style_of(name, settings->maps.safe_threshold), eval::Overlays{}));
         writes += io::write_esri_grid(
-            fmt::format("{}/{}.asc", options.out_dir, name), dem->geometry, *layer);
+            fmt::format("{}/{}.asc", options.out_dir, name), dem->geometry, layer);
         writes += io::write_file(fmt::format("{}/{}.png", options.out_dir, name),
                                  std::string(png.begin(), png.end()));
     }
+    writes += write_sheet(options, *settings, *dem, outputs);
     if (!writes.first()) return report(writes.first().error());
     if (options.common.json) {
         print_answer(rate_json(dem->geometry, options.out_dir));

@@ -9,8 +9,11 @@
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <string_view>
 
 #include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/map_layers.hpp"
 #include "apps/surefoot/run_report.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "io/config_yaml.hpp"
@@ -21,7 +24,6 @@
 #include "io/snapshot_file.hpp"
 #include "io/trajectory_file.hpp"
 #include "surefoot/camera/reproject.hpp"
-#include "surefoot/elevation/height_bounds.hpp"
 #include "surefoot/elevation/map_region.hpp"
 
 namespace surefoot::app {
@@ -67,55 +69,15 @@ std::string command_line(const RunOptions& options) {
     return line + fmt::format(" --seed {}\n", options.common.seed);
 }
 
-/// 1 = safe, 0 = shown to be unsafe, 0.5 = cannot be told, NaN = unknown.
-grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
-    const auto holds = pipeline.footholds();
-    grid::Layer layer(holds.width(), holds.height());
-    for (std::size_t i = 0; i < holds.size(); ++i) {
-        switch (holds.data()[i]) {
-            case traversability::Foothold::unknown: layer.data()[i] = NAN; break;
-            case traversability::Foothold::safe: layer.data()[i] = 1.0F; break;
-            case traversability::Foothold::unsure: layer.data()[i] = 0.5F; break;
-            default: layer.data()[i] = 0.0F;
-        }
-    }
-    return layer;
-}
-
-void write_all_layers(const std::string& out, const pipeline::Pipeline& pipeline, Writes& writes) {
-    const grid::GridGeometry& geometry = pipeline.map().geometry();
-    const auto& map = pipeline.map().layers();
-    const auto& rating = pipeline.rating();
-    grid::Layer lower_m;
-    grid::Layer upper_m;
-    elevation::HeightBounds().compute({map.height_m.view(),
-                                       map.height_var_m2.view(),
-                                       map.horizontal_drift_m.view(),
-                                       geometry.resolution_m},
-                                      serial(),
-                                      lower_m,
-                                      upper_m);
-    const std::pair<const char*, grid::Layer> layers[] = {
-        {"drift", map.horizontal_drift_m},
-        {"highest", map.highest_m},
-        {"lowest", map.lowest_m},
-        {"clearance", map.clearance_m},
-        {"free_above", map.free_above_m},
-        {"foothold", foothold_layer(pipeline)},
-        {"confidence", map.confidence},
-        {"density_ratio", map.density_ratio},
-        {"lower_bound", lower_m},
-        {"upper_bound", upper_m},
-        {"normal_x", rating.normal_x},
-        {"normal_y", rating.normal_y},
-        {"normal_z", rating.normal_z},
-        {"slope", rating.slope},
-        {"step", rating.step},
-        {"roughness", rating.roughness},
-    };
-    for (const auto& [name, layer] : layers) {
-        writes += io::write_esri_grid(
-            fmt::format("{}/{}.asc", out, name), geometry, or_unknown(layer, geometry));
+/// Besides the three that every run writes.
+void write_all_layers(const std::string& out,
+                      const grid::GridGeometry& geometry,
+                      std::span<const NamedLayer> layers,
+                      Writes& writes) {
+    for (const NamedLayer& layer : layers) {
+        const std::string_view name = layer.name;
+        if (name == "elevation" || name == "variance" || name == "traversability") continue;
+        writes += io::write_esri_grid(fmt::format("{}/{}.asc", out, name), geometry, layer.values);
     }
 }
 
@@ -205,7 +167,17 @@ Status write_results(const RunOptions& options,
     writes += io::write_esri_grid(out + "/traversability.asc",
                                   geometry,
                                   or_unknown(pipeline.rating().traversability, geometry));
-    if (options.all_layers) write_all_layers(out, pipeline, writes);
+    if (options.all_layers) {
+        const std::vector<NamedLayer> named = all_layers(pipeline);
+        write_all_layers(out, geometry, named, writes);
+        const auto png = layer_sheet_png(geometry,
+                                         named,
+                                         settings.maps.safe_threshold,
+                                         3,
+                                         {fmt::format("All layers: {}", record.source.path), ""},
+                                         overlays_of(machine, record));
+        writes += io::write_file(out + "/layers.png", std::string(png.begin(), png.end()));
+    }
     writes += io::write_ply(out + "/map.ply", map_cloud(pipeline));
 
     const auto snapshot = std::make_unique<grid::MapSnapshot>();
@@ -294,14 +266,6 @@ double peak_memory_mb() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports kB
 }
 
-std::string modelled_note(const camera::SourceInfo& source) {
-    if (source.modelled_depth) {
-        return "Odometry and depth were modelled from the truth; no image was rendered, matched or "
-               "tracked.";
-    }
-    return source.modelled_motion ? "Motion was not measured: the source told it." : "";
-}
-
 std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const Percentiles frame = frame_percentiles(record);
     std::string text =
@@ -321,7 +285,7 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
             trim->row_error_px,
             trim->row_error_left_px);
     }
-    if (const std::string note = modelled_note(record.source); !note.empty()) text += note + "\n";
+    if (record.source.modelled) text += kModelled + std::string("\n");
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         text += fmt::format("the map is empty: {}\n", reason);
     }

@@ -16,24 +16,6 @@
 namespace surefoot::app {
 namespace {
 
-eval::Overlays overlays(const std::optional<io::MachineFile>& machine, const RunRecord& record) {
-    eval::Overlays result;
-    for (const FrameReport& frame : record.frames) {
-        result.trajectory_m.emplace_back(frame.motion.T_odom_body.translation_m.head<2>());
-    }
-    if (record.frames.empty()) return result;
-    result.T_odom_body = record.frames.back().motion.T_odom_body;
-    if (machine) {
-        for (const GroundBox* foot : {&machine->machine.left_foot, &machine->machine.right_foot}) {
-            eval::Outline outline;
-            outline.points_m = box_outline(*foot, *result.T_odom_body);
-            outline.label = "feet";
-            result.outlines.push_back(outline);
-        }
-    }
-    return result;
-}
-
 grid::Layer sigma_of(const grid::Layer& variance_m2, const grid::Layer& height_m) {
     grid::Layer sigma_m(variance_m2.width(), variance_m2.height());
     for (std::size_t i = 0; i < sigma_m.size(); ++i) {
@@ -153,6 +135,24 @@ std::vector<std::string> summary_lines(const RunRecord& record,
 
 }  // namespace
 
+eval::Overlays overlays_of(const std::optional<io::MachineFile>& machine, const RunRecord& record) {
+    eval::Overlays result;
+    for (const FrameReport& frame : record.frames) {
+        result.trajectory_m.emplace_back(frame.motion.T_odom_body.translation_m.head<2>());
+    }
+    if (record.frames.empty()) return result;
+    result.T_odom_body = record.frames.back().motion.T_odom_body;
+    if (machine) {
+        for (const GroundBox* foot : {&machine->machine.left_foot, &machine->machine.right_foot}) {
+            eval::Outline outline;
+            outline.points_m = box_outline(*foot, *result.T_odom_body);
+            outline.label = "feet";
+            result.outlines.push_back(outline);
+        }
+    }
+    return result;
+}
+
 Status write_pictures_and_report(const RunOptions& options,
                                  const Settings& settings,
                                  const std::optional<io::MachineFile>& machine,
@@ -160,7 +160,7 @@ Status write_pictures_and_report(const RunOptions& options,
                                  const RunRecord& record) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& layers = pipeline.map().layers();
-    const eval::Overlays drawn = overlays(machine, record);
+    const eval::Overlays drawn = overlays_of(machine, record);
     const auto elevation_png = eval::encode_png(
         eval::render_layer(geometry, layers.height_m, eval::elevation_style(), drawn));
     const grid::Layer unknown(geometry.nx, geometry.ny, std::nanf(""));

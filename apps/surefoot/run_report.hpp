@@ -2,8 +2,13 @@
 #pragma once
 
 #include "apps/surefoot/run_output.hpp"
+#include "eval/map_view.hpp"
 
 namespace surefoot::app {
+
+/// What is drawn over the maps of a run: the way, the body at its end, the feet of a machine.
+[[nodiscard]] eval::Overlays overlays_of(const std::optional<io::MachineFile>& machine,
+                                         const RunRecord& record);
 
 /// elevation.png, traversability.png and the self-contained report.html.
 [[nodiscard]] Status write_pictures_and_report(const RunOptions& options,

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/map_layers.hpp"
+
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "apps/surefoot/run_output.hpp"
+#include "surefoot/elevation/height_bounds.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Variances are shown as sigmas.
+grid::Layer shown(const NamedLayer& layer) {
+    grid::Layer values = layer.values;
+    if (std::string_view(layer.name) != "variance") return values;
+    for (std::size_t i = 0; i < values.size(); ++i) values.data()[i] = std::sqrt(values.data()[i]);
+    return values;
+}
+
+bool is_height(std::string_view name) {
+    return name == "elevation" || name == "highest" || name == "lowest" || name == "lower_bound" ||
+           name == "upper_bound";
+}
+
+/// 1 = safe, 0 = shown to be unsafe, 0.5 = cannot be told, NaN = unknown.
+grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
+    using traversability::Foothold;
+    const Image<Foothold> holds = pipeline.footholds();
+    grid::Layer layer(holds.width(), holds.height(), 0.0F);
+    for (std::size_t i = 0; i < holds.size(); ++i) {
+        if (holds.data()[i] == Foothold::unknown) layer.data()[i] = std::nanf("");
+        if (holds.data()[i] == Foothold::safe) layer.data()[i] = 1.0F;
+        if (holds.data()[i] == Foothold::unsure) layer.data()[i] = 0.5F;
+    }
+    return layer;
+}
+
+}  // namespace
+
+std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline) {
+    const grid::GridGeometry& geometry = pipeline.map().geometry();
+    const auto& map = pipeline.map().layers();
+    const auto& rating = pipeline.rating();
+    grid::Layer lower_m;
+    grid::Layer upper_m;
+    elevation::HeightBounds().compute({map.height_m.view(),
+                                       map.height_var_m2.view(),
+                                       map.horizontal_drift_m.view(),
+                                       geometry.resolution_m},
+                                      serial(),
+                                      lower_m,
+                                      upper_m);
+    grid::Layer count(geometry.nx, geometry.ny);
+    for (std::size_t i = 0; i < count.size(); ++i) {
+        const bool known = !std::isnan(map.height_m.data()[i]);
+        count.data()[i] = known ? static_cast<float>(map.count.data()[i]) : std::nanf("");
+    }
+    std::vector<NamedLayer> layers{{"elevation", map.height_m},
+                                   {"variance", map.height_var_m2},
+                                   {"drift", map.horizontal_drift_m},
+                                   {"confidence", map.confidence},
+                                   {"count", std::move(count)},
+                                   {"density_ratio", map.density_ratio},
+                                   {"highest", map.highest_m},
+                                   {"lowest", map.lowest_m},
+                                   {"clearance", map.clearance_m},
+                                   {"free_above", map.free_above_m},
+                                   {"foothold", foothold_layer(pipeline)},
+                                   {"normal_x", rating.normal_x},
+                                   {"normal_y", rating.normal_y},
+                                   {"normal_z", rating.normal_z},
+                                   {"slope", rating.slope},
+                                   {"step", rating.step},
+                                   {"roughness", rating.roughness},
+                                   {"lower_bound", lower_m},
+                                   {"upper_bound", upper_m},
+                                   {"traversability", rating.traversability}};
+    for (NamedLayer& layer : layers) layer.values = or_unknown(layer.values, geometry);
+    return layers;
+}
+
+std::vector<std::uint8_t> layer_sheet_png(const grid::GridGeometry& geometry,
+                                          std::span<const NamedLayer> layers,
+                                          double safe_threshold,
+                                          int columns,
+                                          const eval::FigureText& text,
+                                          const eval::Overlays& overlays) {
+    std::optional<eval::ValueRange> heights_m;
+    std::vector<eval::SheetLayer> sheet;
+    sheet.reserve(layers.size());
+    for (const NamedLayer& layer : layers) {
+        sheet.push_back({shown(layer), eval::style_of_layer(layer.name, safe_threshold)});
+        eval::SheetLayer& added = sheet.back();
+        if (!is_height(layer.name)) continue;
+        if (!heights_m) heights_m = eval::shown_range(added.values, added.style);
+        added.style.range = heights_m;
+    }
+    return eval::encode_png(eval::render_layer_sheet(geometry, sheet, columns, text, overlays));
+}
+
+}  // namespace surefoot::app
