@@ -83,8 +83,8 @@ class RealRecordings(CliTest):
         self.assertIn(report["gravity_source"], ("imu", "plane"))
 
 
-def road_quality(out):
-    """Of the known cells within 2 m of the driven line: share within 80 mm of a fitted plane, share traversable."""
+def road_quality(out, within_m=0.08):
+    """Of the known cells within 2 m of the driven line: share that near a fitted plane, share traversable."""
     header, heights = read_asc(out / "elevation.asc")
     _, values = read_asc(out / "traversability.asc")
     size, x0, y0 = header["cellsize"], header["xllcorner"], header["yllcorner"]
@@ -97,7 +97,7 @@ def road_quality(out):
             if z is not None and min(math.dist((x, y), p) for p in path) <= 2.0:
                 chosen.append((x, y, z, line_t[column]))
     a, b, c = fit_plane([(x, y, z) for x, y, z, _ in chosen])
-    flat = sum(abs(z - (a * x + b * y + c)) <= 0.08 for x, y, z, _ in chosen)
+    flat = sum(abs(z - (a * x + b * y + c)) <= within_m for x, y, z, _ in chosen)
     safe = sum(t is not None and t >= 0.80 for _, _, _, t in chosen)
     return flat / len(chosen), safe / len(chosen), len(chosen)
 
