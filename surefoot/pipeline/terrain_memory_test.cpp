@@ -5,10 +5,13 @@
 #include <malloc.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "surefoot/elevation/elevation_map.hpp"
