@@ -9,6 +9,7 @@
 #include <new>
 
 #include "surefoot/traversability/footprint.hpp"
+#include "surefoot/traversability/reachability.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace {
@@ -54,6 +55,23 @@ TEST(TraversabilityAllocation, NoneAfterTheFirstMap) {
     rater.rate(map.view(), 0.025, CellRect{10, 10, 30, 30}, serial, layers);
     EXPECT_EQ(allocations - before, 0);
     EXPECT_GT(before, 0) << "the counter works";
+}
+
+TEST(TraversabilityAllocation, NoneInReachabilityAfterTheFirstMap) {
+    const grid::Layer map(120, 100, 0.25F);
+    grid::Layer rough = map;
+    for (std::size_t i = 0; i < rough.size(); ++i)
+        rough.data()[i] = 0.001F * static_cast<float>(i * 7919 % 101);
+    const grid::GridGeometry geometry{0.025, 120, 100, {-1.5, -1.25}};
+    Reachability reachability({});
+    grid::Layer out;
+    const long before_first = allocations;
+    reachability.reach(geometry, map.view(), {0.0, 0.0}, out);
+    const long before = allocations;
+    EXPECT_GT(before, before_first) << "the counter works";
+    reachability.reach(geometry, rough.view(), {0.0, 0.0}, out);
+    reachability.reach(geometry, rough.view(), {9.0, 9.0}, out);
+    EXPECT_EQ(allocations - before, 0);
 }
 
 TEST(TraversabilityAllocation, NoneInFootprintQueriesAfterTheFirstPath) {

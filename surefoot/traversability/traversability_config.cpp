@@ -64,6 +64,16 @@ void TraversabilityConfig::Weights::describe(ConfigVisitor& visitor) {
     visitor.number("roughness", roughness, 0.0, 1000.0, "share of the roughness in the sum");
 }
 
+void TraversabilityConfig::Reach::describe(ConfigVisitor& visitor) {
+    visitor.number(
+        "max_step_m", max_step_m, 0.0, 1.0, "ground beyond a higher step is not reachable");
+    visitor.number("stance_radius_m",
+                   stance_radius_m,
+                   kMinRadius_m,
+                   kMaxRadius_m,
+                   "known cells this near to the body are what it stands on");
+}
+
 void TraversabilityConfig::describe(ConfigVisitor& visitor) {
     visitor.group("normals", normals);
     visitor.group("slope", slope);
@@ -74,6 +84,7 @@ void TraversabilityConfig::describe(ConfigVisitor& visitor) {
                         combine,
                         kCombineNames,
                         "mean_nan: unknown if any layer is; zero_dominates: an exact 0 forces 0");
+    visitor.group("reach", reach);
 }
 
 std::optional<std::string> TraversabilityConfig::problem(double resolution_m) const {

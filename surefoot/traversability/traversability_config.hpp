@@ -49,12 +49,20 @@ struct TraversabilityConfig {
         void describe(ConfigVisitor& visitor);
     };
 
+    /// See reachability.hpp.
+    struct Reach {
+        double max_step_m = 0.18;  ///< the step that the gate's class `stair` may take
+        double stance_radius_m = 0.30;
+        void describe(ConfigVisitor& visitor);
+    };
+
     Normals normals;
     Slope slope;
     Step step;
     Roughness roughness;
     Weights weights;
     Combine combine = Combine::mean_nan;
+    Reach reach = {};
 
     void describe(ConfigVisitor& visitor);
 

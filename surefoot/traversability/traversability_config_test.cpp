@@ -58,10 +58,12 @@ TEST(TraversabilityConfig, KeysAreThoseThatScriptsRelyOn) {
                             "weights.slope",
                             "weights.step",
                             "weights.roughness",
-                            "combine"}) {
+                            "combine",
+                            "reach.max_step_m",
+                            "reach.stance_radius_m"}) {
         EXPECT_TRUE(values.contains(std::string("traversability.") + key)) << key;
     }
-    EXPECT_EQ(values.size(), 12U);
+    EXPECT_EQ(values.size(), 14U);
 }
 
 TEST(TraversabilityConfig, DefaultsAndPresetsAreUsableAt25Millimetres) {
