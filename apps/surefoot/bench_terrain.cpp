@@ -14,6 +14,8 @@
 #include "apps/surefoot/bench_result.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/traversability/footprint.hpp"
+#include "surefoot/traversability/rating_confidence.hpp"
+#include "surefoot/traversability/reachability.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {
@@ -74,6 +76,32 @@ Timing time_change(const TraversabilityConfig& config,
     const auto affected = rater.affected_by({90, 90, 60, 60}, kResolution_m);
     return timed(kRepeats,
                  [&] { rater.rate(height_m.view(), kResolution_m, affected, executor, layers); });
+}
+
+/// From the floor beside the stairs, the box and the ramp, over every hole.
+Timing time_reach(const TraversabilityConfig& config, const grid::Layer& height_m) {
+    const grid::GridGeometry geometry{kResolution_m, kSide, kSide, {0.0, 0.0}};
+    traversability::Reachability reachability(config.reach);
+    grid::Layer reach_step_m;
+    return timed(kRepeats, [&] {
+        reachability.reach(geometry, height_m.view(), {3.0, 3.0}, reach_step_m);
+    });
+}
+
+/// On top of the ratings.
+Timing time_confidence(const TraversabilityConfig& config,
+                       const grid::Layer& height_m,
+                       Executor& executor) {
+    const grid::Layer var_m2(kSide, kSide, 9e-6F);
+    Traversability rater(config);
+    TraversabilityLayers layers;
+    rater.rate(height_m.view(), kResolution_m, executor, layers);
+    traversability::RatingConfidence confidence(config, kResolution_m);
+    traversability::ConfidenceLayers out;
+    return timed(kRepeats, [&] {
+        confidence.compute({height_m.view(), var_m2.view(), rater.rated_step_heights(), layers},
+                           out);
+    });
 }
 
 /// A query alone is shorter than the clock resolves.
@@ -158,6 +186,8 @@ Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common, Exec
                        time_rating(thesis, measured_ground(600, kFine_m), kFine_m, executor)});
     results.push_back(
         {"terrain/rate_rex_zed_changed_60x60", time_change(thesis, ground, executor)});
+    results.push_back({"terrain/reach_240x240", time_reach({}, ground)});
+    results.push_back({"terrain/confidence_240x240", time_confidence({}, ground, executor)});
     const auto footprints = bench_footprints();
     if (!footprints) return footprints.error();
     results.insert(results.end(), footprints->begin(), footprints->end());

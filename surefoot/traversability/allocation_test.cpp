@@ -9,6 +9,7 @@
 #include <new>
 
 #include "surefoot/traversability/footprint.hpp"
+#include "surefoot/traversability/rating_confidence.hpp"
 #include "surefoot/traversability/reachability.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
@@ -71,6 +72,25 @@ TEST(TraversabilityAllocation, NoneInReachabilityAfterTheFirstMap) {
     EXPECT_GT(before, before_first) << "the counter works";
     reachability.reach(geometry, rough.view(), {0.0, 0.0}, out);
     reachability.reach(geometry, rough.view(), {9.0, 9.0}, out);
+    EXPECT_EQ(allocations - before, 0);
+}
+
+TEST(TraversabilityAllocation, NoneInConfidenceAfterTheFirstMap) {
+    const grid::Layer map(120, 100, 0.25F);
+    const grid::Layer var_m2(120, 100, 1e-5F);
+    Serial serial;
+    Traversability rater{TraversabilityConfig{}};
+    TraversabilityLayers layers;
+    rater.rate(map.view(), 0.025, serial, layers);
+    RatingConfidence confidence(rater.config(), 0.025);
+    ConfidenceLayers out;
+    const RatingConfidence::Input input{
+        map.view(), var_m2.view(), rater.rated_step_heights(), layers};
+    const long before_first = allocations;
+    confidence.compute(input, out);
+    const long before = allocations;
+    EXPECT_GT(before, before_first) << "the counter works";
+    confidence.compute(input, out);
     EXPECT_EQ(allocations - before, 0);
 }
 

@@ -65,6 +65,10 @@ class Traversability {
               Executor& executor,
               TraversabilityLayers& out);
 
+    /// Highest minus lowest within the first disc [m], pass 1 of the step filter, of the cells
+    /// rated last; NaN = unknown.
+    [[nodiscard]] const PaddedLayer& rated_step_heights() const noexcept { return step_height_; }
+
     /// The cells whose ratings can differ after the heights in `changed` have changed (not
     /// clipped).
     [[nodiscard]] CellRect affected_by(const CellRect& changed, double resolution_m) const noexcept;

@@ -74,6 +74,29 @@ void TraversabilityConfig::Reach::describe(ConfigVisitor& visitor) {
                    "known cells this near to the body are what it stands on");
 }
 
+void TraversabilityConfig::Confidence::describe(ConfigVisitor& visitor) {
+    visitor.number("safe_threshold",
+                   safe_threshold,
+                   0.0,
+                   1.0,
+                   "confidence: that the true rating is on the same side of this one");
+    visitor.integer("independent_cells",
+                    independent_cells,
+                    1,
+                    1000,
+                    "most cells of a disc whose height errors may average");
+}
+
+void TraversabilityConfig::Resolve::describe(ConfigVisitor& visitor) {
+    visitor.number(
+        "step_m", step_m, 0.0001, 1.0, "smallest obstacle that matters: a sill to trip over");
+    visitor.number("radius_m",
+                   radius_m,
+                   kMinRadius_m,
+                   kMaxRadius_m,
+                   "it must stand out of the noise of the mean height within this distance");
+}
+
 void TraversabilityConfig::describe(ConfigVisitor& visitor) {
     visitor.group("normals", normals);
     visitor.group("slope", slope);
@@ -85,6 +108,8 @@ void TraversabilityConfig::describe(ConfigVisitor& visitor) {
                         kCombineNames,
                         "mean_nan: unknown if any layer is; zero_dominates: an exact 0 forces 0");
     visitor.group("reach", reach);
+    visitor.group("confidence", confidence);
+    visitor.group("resolve", resolve);
 }
 
 std::optional<std::string> TraversabilityConfig::problem(double resolution_m) const {

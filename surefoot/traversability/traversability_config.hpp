@@ -56,6 +56,18 @@ struct TraversabilityConfig {
         void describe(ConfigVisitor& visitor);
     };
 
+    /// See rating_confidence.hpp.
+    struct Confidence {
+        double safe_threshold = 0.80;  ///< as `eval.maps.safe_threshold`
+        int independent_cells = 4;     ///< as the REX gate's patches
+        void describe(ConfigVisitor& visitor);
+    };
+    struct Resolve {
+        double step_m = 0.010;    ///< the lowest door sill that a toe catches
+        double radius_m = 0.025;  ///< a patch of about 50 mm, as the gate's
+        void describe(ConfigVisitor& visitor);
+    };
+
     Normals normals;
     Slope slope;
     Step step;
@@ -63,6 +75,8 @@ struct TraversabilityConfig {
     Weights weights;
     Combine combine = Combine::mean_nan;
     Reach reach = {};
+    Confidence confidence = {};
+    Resolve resolve = {};
 
     void describe(ConfigVisitor& visitor);
 

@@ -60,10 +60,14 @@ TEST(TraversabilityConfig, KeysAreThoseThatScriptsRelyOn) {
                             "weights.roughness",
                             "combine",
                             "reach.max_step_m",
-                            "reach.stance_radius_m"}) {
+                            "reach.stance_radius_m",
+                            "confidence.safe_threshold",
+                            "confidence.independent_cells",
+                            "resolve.step_m",
+                            "resolve.radius_m"}) {
         EXPECT_TRUE(values.contains(std::string("traversability.") + key)) << key;
     }
-    EXPECT_EQ(values.size(), 14U);
+    EXPECT_EQ(values.size(), 18U);
 }
 
 TEST(TraversabilityConfig, DefaultsAndPresetsAreUsableAt25Millimetres) {
