@@ -7,6 +7,8 @@
 
 #include "apps/surefoot/run_output.hpp"
 #include "surefoot/elevation/height_bounds.hpp"
+#include "surefoot/traversability/rating_confidence.hpp"
+#include "surefoot/traversability/reachability.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -37,6 +39,32 @@ grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
     return layer;
 }
 
+/// Which ground can be walked to from the last pose.
+grid::Layer reach_step_layer(const pipeline::Pipeline& pipeline) {
+    grid::Layer reach_step_m;
+    traversability::Reachability(pipeline.config().traversability.reach)
+        .reach(pipeline.map().geometry(),
+               pipeline.map().layers().height_m.view(),
+               pipeline.T_odom_body().translation_m.head<2>(),
+               reach_step_m);
+    return reach_step_m;
+}
+
+/// How far the ratings can be trusted.
+traversability::ConfidenceLayers rating_confidence(const pipeline::Pipeline& pipeline) {
+    const auto& map = pipeline.map().layers();
+    const double resolution_m = pipeline.map().geometry().resolution_m;
+    traversability::Traversability rater(pipeline.config().traversability.widened_to(resolution_m));
+    traversability::TraversabilityLayers rating;
+    rater.rate(map.height_m.view(), resolution_m, serial(), rating);
+    traversability::ConfidenceLayers confidence;
+    traversability::RatingConfidence(rater.config(), resolution_m)
+        .compute(
+            {map.height_m.view(), map.height_var_m2.view(), rater.rated_step_heights(), rating},
+            confidence);
+    return confidence;
+}
+
 }  // namespace
 
 std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline) {
@@ -52,6 +80,7 @@ std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline) {
                                       serial(),
                                       lower_m,
                                       upper_m);
+    traversability::ConfidenceLayers ratings = rating_confidence(pipeline);
     grid::Layer count(geometry.nx, geometry.ny);
     for (std::size_t i = 0; i < count.size(); ++i) {
         const bool known = !std::isnan(map.height_m.data()[i]);
@@ -76,6 +105,10 @@ std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline) {
                                    {"roughness", rating.roughness},
                                    {"lower_bound", lower_m},
                                    {"upper_bound", upper_m},
+                                   {"rating_confidence", std::move(ratings.confidence)},
+                                   {"smallest_step", std::move(ratings.smallest_step_m)},
+                                   {"not_resolvable", std::move(ratings.not_resolvable)},
+                                   {"reach_step", reach_step_layer(pipeline)},
                                    {"traversability", rating.traversability}};
     for (NamedLayer& layer : layers) layer.values = or_unknown(layer.values, geometry);
     return layers;

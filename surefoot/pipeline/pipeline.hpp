@@ -70,6 +70,8 @@ class Pipeline {
     [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
     [[nodiscard]] const camera::DepthImage& depth() const noexcept { return depth_; }
 
+    /// base_link at the last frame.
+    [[nodiscard]] const Pose& T_odom_body() const noexcept { return last_motion_.T_odom_body; }
     /// Where a foot may stand, as of now. Allocates, takes milliseconds: not for every frame.
     [[nodiscard]] Image<traversability::Foothold> footholds() const;
 

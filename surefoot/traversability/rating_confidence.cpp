@@ -12,7 +12,8 @@ namespace surefoot::traversability {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kGateSigmas = 3.4F;  ///< GateLimits::sigma_factor
+constexpr float kHighest = std::numeric_limits<float>::max();  ///< of what is finite
+constexpr float kGateSigmas = 3.4F;                            ///< GateLimits::sigma_factor
 constexpr float kSqrt2 = 1.41421356F;
 constexpr float kRangeSigma = 0.87F;  ///< largest for any number of cells, at four of them
 constexpr float kCertain = 6.0F;      ///< sigmas beyond which 1e-9 is nothing
@@ -39,6 +40,20 @@ float count_of(std::uint64_t sum) noexcept {
 float variance_m2_of(std::uint64_t sum) noexcept {
     return static_cast<float>(static_cast<double>(static_cast<std::int64_t>(sum & kVarianceMask)) /
                               kVariancesPerM2);
+}
+
+/// P(z < x) of a standard normal x, z >= 0. For loops over rows.
+inline float upper_tail(float z) noexcept {
+    const float x = z > kCertain ? kCertain : z;
+    const float p =
+        1.0F + x * (0.0498673470F +
+                    x * (0.0211410061F +
+                         x * (0.0032776263F +
+                              x * (0.0000380036F + x * (0.0000488906F + x * 0.0000053830F)))));
+    const float p2 = p * p;
+    const float p4 = p2 * p2;
+    const float p8 = p4 * p4;
+    return 0.5F / (p8 * p8);
 }
 
 /// Mean range of n standard normal numbers (Tippett 1925), of the next larger n of his table.
@@ -70,16 +85,7 @@ double moment_m2(const std::vector<int>& half_width, int cells, double resolutio
 }  // namespace
 
 float normal_cdf(float z) noexcept {
-    const float x = std::min(std::abs(z), kCertain);
-    const float p =
-        1.0F + x * (0.0498673470F +
-                    x * (0.0211410061F +
-                         x * (0.0032776263F +
-                              x * (0.0000380036F + x * (0.0000488906F + x * 0.0000053830F)))));
-    const float p2 = p * p;
-    const float p4 = p2 * p2;
-    const float p8 = p4 * p4;
-    const float tail = 0.5F / (p8 * p8);
+    const float tail = upper_tail(std::abs(z));
     return z < 0.0F ? tail : 1.0F - tail;
 }
 
@@ -118,7 +124,7 @@ void RatingConfidence::compute(const Input& input, ConfidenceLayers& out) {
     add_up_rows(input);
     for (int iy = 0; iy < ny_; ++iy) {
         sum_disc(surface_, iy);
-        find_sigmas(input, iy);
+        find_sigmas(iy);
         sum_disc(patch_, iy);
         find_patches(input, iy, out);
     }
@@ -132,6 +138,8 @@ void RatingConfidence::add_up_rows(const Input& input) {
     margin_ = std::max(surface_.reach(), patch_.reach()) + 1;
     const auto stride = static_cast<std::size_t>(nx_ + 2 * margin_);
     before_.resize(stride * static_cast<std::size_t>(ny_));
+    for (std::vector<float>* row : {&known_, &variance_m2_})
+        row->resize(static_cast<std::size_t>(nx_));
     sum_.resize(static_cast<std::size_t>(nx_));
     for (int iy = 0; iy < ny_; ++iy) {
         std::uint64_t* before = before_.data() + static_cast<std::size_t>(iy) * stride;
@@ -148,8 +156,9 @@ void RatingConfidence::add_up_rows(const Input& input) {
 }
 
 void RatingConfidence::sum_disc(const RunDisc& disc, int iy) {
+    const int nx = nx_;
     std::uint64_t* sum = sum_.data();
-    std::fill_n(sum, nx_, std::uint64_t{0});
+    std::fill_n(sum, nx, std::uint64_t{0});
     const auto stride = static_cast<std::ptrdiff_t>(nx_ + 2 * margin_);
     const int first = std::max(iy - disc.reach(), 0);
     const int last = std::min(iy + disc.reach(), ny_ - 1);
@@ -158,44 +167,52 @@ void RatingConfidence::sum_disc(const RunDisc& disc, int iy) {
         const std::uint64_t* before = before_.data() + row * stride + margin_;
         const std::uint64_t* begin = before - h;
         const std::uint64_t* end = before + h + 1;
-        for (int ix = 0; ix < nx_; ++ix) sum[ix] += end[ix] - begin[ix];
+        for (int ix = 0; ix < nx; ++ix) sum[ix] += end[ix] - begin[ix];
+    }
+    for (int ix = 0; ix < nx; ++ix) {
+        known_[static_cast<std::size_t>(ix)] = count_of(sum[ix]);
+        variance_m2_[static_cast<std::size_t>(ix)] = variance_m2_of(sum[ix]);
     }
 }
 
-void RatingConfidence::find_sigmas(const Input& input, int iy) {
+void RatingConfidence::find_sigmas(int iy) {
+    const int nx = nx_;
     const auto independent = static_cast<float>(config_.confidence.independent_cells);
-    const auto all = static_cast<float>(surface_.cells);
-    const float* height_m = input.height_m.row(iy);
+    const float per_cell = 1.0F / static_cast<float>(surface_.cells);
+    const float inverse_moment_m2 = 2.0F * inverse_moment_m2_;
+    const float* known = known_.data();
+    const float* variance_m2 = variance_m2_.data();
     float* sigma_m = sigma_m_.row(iy);
     float* slope_sigma = slope_sigma_rad_.row(iy);
     float* roughness_sigma_m = roughness_sigma_m_.row(iy);
-    for (int ix = 0; ix < nx_; ++ix) {
-        const float n = count_of(sum_[static_cast<std::size_t>(ix)]);
-        const float v_m2 = std::isfinite(height_m[ix])
-                               ? variance_m2_of(sum_[static_cast<std::size_t>(ix)]) / n
-                               : kNaN;
-        const float k = std::min(n, independent);
-        const float share = n / all;
+    for (int ix = 0; ix < nx; ++ix) {
+        const float n = known[ix];
+        const float v_m2 = variance_m2[ix] / n;
+        const float k = n < independent ? n : independent;
+        const float spare = k > 2.0F ? k - 1.0F : 1.0F;
         sigma_m[ix] = std::sqrt(v_m2);
-        slope_sigma[ix] = std::sqrt(2.0F * v_m2 * inverse_moment_m2_ / k) / share;
-        roughness_sigma_m[ix] = std::sqrt(v_m2 * (1.0F + 1.5F / std::max(k - 1.0F, 1.0F)));
+        slope_sigma[ix] = std::sqrt(inverse_moment_m2 * v_m2 / k) / (n * per_cell);
+        roughness_sigma_m[ix] = std::sqrt(v_m2 * (1.0F + 1.5F / spare));
     }
 }
 
 void RatingConfidence::find_patches(const Input& input, int iy, ConfidenceLayers& out) {
+    const int nx = nx_;
     const auto independent = static_cast<float>(config_.confidence.independent_cells);
     const auto step_m = static_cast<float>(config_.resolve.step_m);
     const float* height_m = input.height_m.row(iy);
+    const float* known = known_.data();
+    const float* variance_m2 = variance_m2_.data();
     float* smallest_m = out.smallest_step_m.row(iy);
     float* hidden = out.not_resolvable.row(iy);
-    for (int ix = 0; ix < nx_; ++ix) {
-        const std::uint64_t sum = sum_[static_cast<std::size_t>(ix)];
-        const float n = count_of(sum);
-        const float var_m2 = variance_m2_of(sum) / (n * std::min(n, independent));
-        const bool known = std::isfinite(height_m[ix]);
-        smallest_m[ix] = known ? kGateSigmas * std::sqrt(var_m2) : kNaN;
-        const float flag = smallest_m[ix] > step_m ? 1.0F : 0.0F;
-        hidden[ix] = known ? flag : kNaN;
+    for (int ix = 0; ix < nx; ++ix) {
+        const float n = known[ix];
+        const float k = n < independent ? n : independent;
+        const float sigma_m = std::sqrt(variance_m2[ix] / (n * k));
+        const bool unknown = !(std::abs(height_m[ix]) <= kHighest);
+        const float flag = kGateSigmas * sigma_m > step_m ? 1.0F : 0.0F;
+        smallest_m[ix] = unknown ? kNaN : kGateSigmas * sigma_m;
+        hidden[ix] = unknown ? kNaN : flag;
     }
 }
 
@@ -251,26 +268,29 @@ void RatingConfidence::find_confidence(const TraversabilityLayers& rating,
     const float* slope_rad = slope_sigma_rad_.row(iy);
     const float* roughness_m = roughness_sigma_m_.row(iy);
     const float* flips = flips_.row(iy);
-    for (int ix = 0; ix < nx_; ++ix) {
+    const float step_error = (error_range_ + kRangeSigma) * per_step;
+    const float slope_counts = zero_dominates && w_slope > 0.0F ? 1.0F : 0.0F;
+    const float roughness_counts = zero_dominates && w_roughness > 0.0F ? 1.0F : 0.0F;
+    const int nx = nx_;
+    for (int ix = 0; ix < nx; ++ix) {
         const float slope_sigma = slope_rad[ix] * normal_z[ix] * normal_z[ix] * per_slope;
         const float roughness_sigma = roughness_m[ix] * per_roughness;
-        const float step_sigma =
-            (1.0F - step[ix]) * (error_range_ + kRangeSigma) * sigma_m[ix] * per_step;
+        const float step_sigma = (1.0F - step[ix]) * step_error * sigma_m[ix];
         const float sigma =
             w_slope * slope_sigma + w_step * step_sigma + w_roughness * roughness_sigma;
         const float mean = w_slope * slope[ix] + w_step * step[ix] + w_roughness * roughness[ix];
         const float margin = mean - threshold;
-        float wrong = normal_cdf(-std::abs(margin) / sigma) + flips[ix];
-        if (zero_dominates && margin >= 0.0F) {
-            wrong += w_slope > 0.0F ? normal_cdf(-slope[ix] / slope_sigma) : 0.0F;
-            wrong += w_roughness > 0.0F ? normal_cdf(-roughness[ix] / roughness_sigma) : 0.0F;
-        }
-        const float right = std::max(1.0F - wrong, 0.0F);
+        const float zeros = slope_counts * upper_tail(slope[ix] / slope_sigma) +
+                            roughness_counts * upper_tail(roughness[ix] / roughness_sigma);
+        const float wrong =
+            upper_tail(std::abs(margin) / sigma) + flips[ix] + (margin < 0.0F ? 0.0F : zeros);
+        const float rest = 1.0F - wrong;
+        const float right = rest > 0.0F ? rest : 0.0F;
         // A zero over an unknown layer, or over a sum that is safe without the rule.
-        const bool by_zero_alone = sum[ix] == 0.0F && !(margin < 0.0F);
-        const float known =
-            by_zero_alone ? std::min(0.5F, std::isnan(right) ? 0.5F : right) : right;
-        confidence[ix] = std::isnan(sum[ix]) ? kNaN : known;
+        const float half = rest < 0.5F ? right : 0.5F;
+        const float by_zero = margin < 0.0F ? right : half;
+        const float known = sum[ix] > 0.0F ? right : by_zero;
+        confidence[ix] = sum[ix] >= 0.0F ? known : kNaN;
     }
 }
 

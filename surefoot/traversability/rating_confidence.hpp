@@ -78,7 +78,7 @@ class RatingConfidence {
 
     void add_up_rows(const Input& input);
     void sum_disc(const RunDisc& disc, int iy);
-    void find_sigmas(const Input& input, int iy);
+    void find_sigmas(int iy);
     void find_patches(const Input& input, int iy, ConfidenceLayers& out);
     void find_flips(const Input& input);
     void spread_flip(float probability, int ix, int iy);
@@ -95,8 +95,10 @@ class RatingConfidence {
     int margin_ = 0;                     ///< cells beyond the map that runs reach
     std::vector<std::uint64_t> before_;  ///< of a cell in its row: known cells and their variances
     std::vector<std::uint64_t> sum_;     ///< one row of discs
-    grid::Layer sigma_m_;                ///< sqrt(v)
-    grid::Layer slope_sigma_rad_;        ///< of level ground
+    std::vector<float> known_;           ///< the same, taken apart
+    std::vector<float> variance_m2_;
+    grid::Layer sigma_m_;          ///< sqrt(v)
+    grid::Layer slope_sigma_rad_;  ///< of level ground
     grid::Layer roughness_sigma_m_;
     grid::Layer flips_;  ///< Q
 };

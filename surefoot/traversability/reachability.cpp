@@ -14,7 +14,6 @@ constexpr double kTenthMmPerM = 1e4;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// So far below all heights that no step leads there.
 constexpr std::int32_t kUnknown = -1'000'000'000;
-constexpr std::int32_t kNotReached = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kNobody = -1;
 constexpr int kNeighbours = 4;
 
@@ -28,7 +27,7 @@ std::int32_t tenth_mm(double length_m) noexcept {
 Reachability::Reachability(const TraversabilityConfig::Reach& config)
     : stance_radius_m_(config.stance_radius_m),
       max_step_(tenth_mm(config.max_step_m)),
-      bucket_(static_cast<std::size_t>(max_step_) + 1, kNobody) {}
+      bucket_(static_cast<std::size_t>(max_step_) + 1 + kNeighbours, kNobody) {}
 
 Stance Reachability::reach(const grid::GridGeometry& geometry,
                            ImageView<const float> height_m,
@@ -47,21 +46,20 @@ void Reachability::load(ImageView<const float> height_m) {
     ny_ = height_m.height;
     stride_ = nx_ + 2;
     const std::size_t cells = index(-1, ny_ + 1);
-    height_.assign(cells, kUnknown);
-    step_.assign(cells, kNotReached);
+    // More than every step that may be taken means not reached.
+    cells_.assign(cells, {kUnknown, max_step_ + 1});
     // A cell is visited once, and then sends each neighbour to wait at most once.
-    stack_.resize(cells);
-    waiting_.resize(kNeighbours * cells);
+    waiting_.resize((kNeighbours + 1) * cells);
     stance_.clear();
     stance_.reserve(cells);
     sorted_.reserve(cells);
     distance_m_.reserve(cells);
     for (int iy = 0; iy < ny_; ++iy) {
         const float* from = height_m.row(iy);
-        std::int32_t* to = height_.data() + index(0, iy);
+        Cell* to = cells_.data() + index(0, iy);
         for (int ix = 0; ix < nx_; ++ix) {
             const double z_m = static_cast<double>(from[ix]);
-            to[ix] = std::abs(z_m) <= kHighest_m ? tenth_mm(z_m) : kUnknown;
+            to[ix].height = std::abs(z_m) <= kHighest_m ? tenth_mm(z_m) : kUnknown;
         }
     }
 }
@@ -79,7 +77,7 @@ Stance Reachability::find_stance(const grid::GridGeometry& geometry,
     const std::int32_t lowest = lowest_surface();
     const std::int32_t highest = lowest + tenth_mm(kSurface_m);
     std::erase_if(stance_, [&](std::int32_t cell) {
-        const std::int32_t height = height_[static_cast<std::size_t>(cell)];
+        const std::int32_t height = cells_[static_cast<std::size_t>(cell)].height;
         return height < lowest || height > highest;
     });
     stance.cells = static_cast<int>(stance_.size());
@@ -92,7 +90,7 @@ double Reachability::distance_of_nearest(const grid::GridGeometry& geometry,
     distance_m_.clear();
     for (int iy = 0; iy < ny_; ++iy) {
         for (int ix = 0; ix < nx_; ++ix) {
-            if (height_[index(ix, iy)] == kUnknown) continue;
+            if (cells_[index(ix, iy)].height == kUnknown) continue;
             distance_m_.push_back((geometry.center_m({ix, iy}) - body_m).norm());
         }
     }
@@ -107,9 +105,16 @@ void Reachability::gather(const grid::GridGeometry& geometry,
                           const Eigen::Vector2d& body_m,
                           double radius_m) {
     stance_.clear();
-    for (int iy = 0; iy < ny_; ++iy) {
-        for (int ix = 0; ix < nx_; ++ix) {
-            if (height_[index(ix, iy)] == kUnknown) continue;
+    const Eigen::Vector2d middle = (body_m - geometry.origin_m) / geometry.resolution_m;
+    const double reach = radius_m / geometry.resolution_m + 1.0;
+    const auto clamped = [](double at, int n) {
+        return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(n)));
+    };
+    const int last_ix = clamped(middle.x() + reach, nx_);
+    const int last_iy = clamped(middle.y() + reach, ny_);
+    for (int iy = clamped(middle.y() - reach, ny_); iy < last_iy; ++iy) {
+        for (int ix = clamped(middle.x() - reach, nx_); ix < last_ix; ++ix) {
+            if (cells_[index(ix, iy)].height == kUnknown) continue;
             const Eigen::Vector2d way_m = geometry.center_m({ix, iy}) - body_m;
             if (way_m.squaredNorm() > radius_m * radius_m) continue;
             stance_.push_back(static_cast<std::int32_t>(index(ix, iy)));
@@ -120,7 +125,7 @@ void Reachability::gather(const grid::GridGeometry& geometry,
 std::int32_t Reachability::lowest_surface() {
     sorted_.clear();
     for (const std::int32_t cell : stance_)
-        sorted_.push_back(height_[static_cast<std::size_t>(cell)]);
+        sorted_.push_back(cells_[static_cast<std::size_t>(cell)].height);
     std::sort(sorted_.begin(), sorted_.end());
     const std::size_t wanted = (sorted_.size() + 3) / 4;
     const std::int32_t surface = tenth_mm(kSurface_m);
@@ -140,49 +145,58 @@ std::int32_t Reachability::lowest_surface() {
 
 void Reachability::spread() {
     std::fill(bucket_.begin(), bucket_.end(), kNobody);
-    Front front;
+    std::int32_t waiting = 0;
     for (const std::int32_t cell : stance_) {
-        step_[static_cast<std::size_t>(cell)] = 0;
-        stack_[front.open++] = cell;
+        cells_[static_cast<std::size_t>(cell)].step = 0;
+        waiting_[static_cast<std::size_t>(waiting)] = {cell, bucket_[0]};
+        bucket_[0] = waiting++;
     }
     for (std::int32_t step = 0; step <= max_step_; ++step) {
-        for (std::int32_t i = bucket_[static_cast<std::size_t>(step)]; i != kNobody;) {
-            const Waiting& entry = waiting_[static_cast<std::size_t>(i)];
+        std::int32_t& first = bucket_[static_cast<std::size_t>(step)];
+        while (first != kNobody) {
+            const Waiting entry = waiting_[static_cast<std::size_t>(first)];
+            first = entry.next;
             // Others have been reached over a smaller step since, and visited.
-            if (step_[static_cast<std::size_t>(entry.cell)] == step) {
-                stack_[front.open++] = entry.cell;
+            if (cells_[static_cast<std::size_t>(entry.cell)].step == step) {
+                waiting = visit(entry.cell, step, waiting);
             }
-            i = entry.next;
         }
-        while (front.open > 0) visit(stack_[--front.open], step, front);
     }
 }
 
-void Reachability::visit(std::int32_t cell, std::int32_t step, Front& front) {
-    const std::int32_t height = height_[static_cast<std::size_t>(cell)];
-    for (const std::int32_t other : {cell - 1, cell + 1, cell - stride_, cell + stride_}) {
-        const std::int32_t rise = std::abs(height_[static_cast<std::size_t>(other)] - height);
-        const std::int32_t needed = std::max(step, rise);
-        std::int32_t& least = step_[static_cast<std::size_t>(other)];
-        if (needed >= least || needed > max_step_) continue;
-        least = needed;
-        if (needed == step) {
-            stack_[front.open++] = other;
-        } else {
-            std::int32_t& first = bucket_[static_cast<std::size_t>(needed)];
-            waiting_[front.waiting] = {other, first};
-            first = static_cast<std::int32_t>(front.waiting++);
-        }
-    }
+std::int32_t Reachability::visit(std::int32_t cell, std::int32_t step, std::int32_t waiting) {
+    // Without branches, which noise would make unpredictable: a neighbour that gains nothing is
+    // written to a place that the next one overwrites.
+    Cell* const cells = cells_.data();
+    Waiting* const places = waiting_.data();
+    std::int32_t* const buckets = bucket_.data();
+    const std::int32_t end = max_step_ + 1;
+    const std::int32_t height = cells[cell].height;
+    const auto look = [&](std::int32_t other, std::int32_t nobodys) {
+        const std::int32_t needed = std::max(step, std::abs(cells[other].height - height));
+        const std::int32_t least = cells[other].step;
+        const std::int32_t gains = needed < least ? 1 : 0;
+        const std::int32_t bucket = nobodys + (needed - nobodys) * gains;
+        cells[other].step = std::min(needed, least);
+        places[waiting] = {other, buckets[bucket]};
+        buckets[bucket] = waiting;
+        waiting += gains;
+    };
+    look(cell - 1, end);
+    look(cell + 1, end + 1);
+    look(cell - stride_, end + 2);
+    look(cell + stride_, end + 3);
+    return waiting;
 }
 
 void Reachability::write(grid::Layer& reach_step_m) const {
     reach_step_m.resize(nx_, ny_);
     for (int iy = 0; iy < ny_; ++iy) {
-        const std::int32_t* from = step_.data() + index(0, iy);
+        const Cell* from = cells_.data() + index(0, iy);
         float* to = reach_step_m.row(iy);
         for (int ix = 0; ix < nx_; ++ix) {
-            to[ix] = from[ix] == kNotReached ? kNaN : static_cast<float>(from[ix] / kTenthMmPerM);
+            to[ix] =
+                from[ix].step > max_step_ ? kNaN : static_cast<float>(from[ix].step / kTenthMmPerM);
         }
     }
 }

@@ -65,10 +65,9 @@ class Reachability {
         std::int32_t cell;
         std::int32_t next;
     };
-    /// How many cells are about to be visited, and how many places of `waiting_` are used.
-    struct Front {
-        std::size_t open = 0;
-        std::size_t waiting = 0;
+    struct Cell {
+        std::int32_t height;  ///< 0.1 mm, as all steps
+        std::int32_t step;    ///< least known so far
     };
 
     void load(ImageView<const float> height_m);
@@ -83,21 +82,21 @@ class Reachability {
     void gather(const grid::GridGeometry& geometry, const Eigen::Vector2d& body_m, double radius_m);
     [[nodiscard]] std::int32_t lowest_surface();
     void spread();
-    void visit(std::int32_t cell, std::int32_t step, Front& front);
+    /// `waiting`: places of `waiting_` in use; returns how many are now.
+    [[nodiscard]] std::int32_t visit(std::int32_t cell, std::int32_t step, std::int32_t waiting);
     void write(grid::Layer& reach_step_m) const;
 
     double stance_radius_m_;
-    std::int32_t max_step_;  ///< this and all steps: 0.1 mm
+    std::int32_t max_step_;  ///< 0.1 mm
     int nx_ = 0;
     int ny_ = 0;
-    int stride_ = 0;  ///< of the two layers below, which have a rim of unknown cells
-    std::vector<std::int32_t> height_;  ///< 0.1 mm
-    std::vector<std::int32_t> step_;    ///< least known so far
+    int stride_ = 0;                    ///< of `cells_`
+    std::vector<Cell> cells_;           ///< with a rim of unknown ones
     std::vector<std::int32_t> stance_;  ///< candidates, then the cells of the stance
     std::vector<std::int32_t> sorted_;  ///< heights of the candidates
     std::vector<double> distance_m_;    ///< of all known cells from the body
-    std::vector<std::int32_t> stack_;
-    std::vector<std::int32_t> bucket_;  ///< first that waits for a step, by step
+    std::vector<std::int32_t>
+        bucket_;  ///< first that waits for a step, by step; the last one for nobody
     std::vector<Waiting> waiting_;
 };
 
