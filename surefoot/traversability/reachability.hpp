@@ -31,7 +31,9 @@ struct Stance {
 ///
 /// NaN = unknown, or only to be reached over a step above `max_step_m`, or not at all; the height
 /// tells the first from the others. Every comparison with it is false, so that `<= limit` never
-/// takes it for reachable. A ramp has no steps: how steep a way is, the slope says.
+/// takes it for reachable. A ramp has no steps: how steep a way is, the slope says. And a riser
+/// counts by its parts where cells lie at heights in between: on an edge that the map has smeared,
+/// steps are lower than the riser.
 ///
 /// The stance: known cells with their centre within `stance_radius_m` of the body along the ground.
 /// If they are fewer than kStanceCells (the ground at the feet is not in view), the radius becomes
@@ -47,8 +49,8 @@ class Reachability {
   public:
     static constexpr int kStanceCells = 16;     ///< about a foot: 0.01 m2 at 25 mm
     static constexpr double kSurface_m = 0.05;  ///< heights of one surface under the body
-    static constexpr double kHighest_m =
-        1000.0;  ///< beyond it a height is unknown, as for the gate
+    /// Beyond it a height is unknown, as for the gate.
+    static constexpr double kHighest_m = 1000.0;
 
     explicit Reachability(const TraversabilityConfig::Reach& config);
 

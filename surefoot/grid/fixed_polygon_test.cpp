@@ -1,143 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/grid/polygon.hpp"
+#include "surefoot/grid/fixed_polygon.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <set>
-#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/grid/fixed_polygon.hpp"
 
 namespace surefoot::grid {
 namespace {
-
-/// "0 0, 2 0, 2 1" -> vertices in m.
-Polygon polygon_from(const std::string& text) {
-    std::vector<Eigen::Vector2d> vertices;
-    std::istringstream in(text);
-    std::string pair;
-    while (std::getline(in, pair, ',')) {
-        std::istringstream numbers(pair);
-        Eigen::Vector2d v;
-        numbers >> v.x() >> v.y();
-        vertices.push_back(v);
-    }
-    return Polygon(vertices);
-}
-
-GridGeometry grid_of(int nx, int ny, double res_m, double x_m = 0.0, double y_m = 0.0) {
-    return {res_m, nx, ny, {x_m, y_m}};
-}
-
-std::set<std::pair<int, int>> cells_of(const Polygon& polygon, const GridGeometry& grid) {
-    std::set<std::pair<int, int>> cells;
-    cells_in(polygon, grid, [&](Cell c) {
-        EXPECT_TRUE(cells.insert({c.ix, c.iy}).second) << "cell visited twice";
-    });
-    return cells;
-}
-
-Polygon random_star(Rng& rng, double reach_m) {
-    std::vector<Eigen::Vector2d> vertices;
-    const auto n = static_cast<int>(3 + rng.below(8));
-    const Eigen::Vector2d center(rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0));
-    for (int i = 0; i < n; ++i) {
-        const double angle = 2.0 * std::numbers::pi * (i + 0.8 * rng.uniform()) / n;
-        const double radius_m = rng.uniform(0.1, 1.0) * reach_m;
-        vertices.push_back(center + radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
-    }
-    return Polygon(vertices);
-}
-
-TEST(Polygon, degenerate_ones_contain_nothing) {
-    const GridGeometry grid = grid_of(4, 4, 1.0);
-    for (const char* text : {"", "1 1", "0 0, 2 2", "0 0, 4 0, nan 4", "0 0, inf 0, 0 2"}) {
-        const Polygon polygon = polygon_from(text);
-        EXPECT_FALSE(polygon.contains(1.0, 1.0)) << text;
-        EXPECT_TRUE(cells_of(polygon, grid).empty()) << text;
-    }
-    EXPECT_TRUE(cells_of(polygon_from("1 1, 1 1, 1 1, 1 1"), grid).empty());
-    EXPECT_TRUE(cells_of(polygon_from("0 0, 1 1, 2 2, 3 3"), grid).empty());
-    EXPECT_FALSE(polygon_from("0 0, 4 0, 4 4").contains(std::nan(""), 1.0));
-    EXPECT_FALSE(polygon_from("0 0, 4 0, 4 4").contains(3.0, std::nan("")));
-}
-
-TEST(Polygon, literal_triangle_and_notch) {
-    const GridGeometry grid = grid_of(4, 4, 1.0);
-    // Centres at .5: the triangle holds those below its diagonal.
-    const std::set<std::pair<int, int>> triangle{{1, 0}, {2, 0}, {3, 0}, {2, 1}, {3, 1}, {3, 2}};
-    EXPECT_EQ(cells_of(polygon_from("0.2 0, 4 0, 4 3.8"), grid), triangle);
-    // A concave "C": the notch is not inside.
-    const Polygon notch = polygon_from("0 0, 4 0, 4 1, 1 1, 1 3, 4 3, 4 4, 0 4");
-    EXPECT_FALSE(notch.contains(2.5, 2.0));
-    EXPECT_TRUE(notch.contains(0.5, 2.0));
-    EXPECT_EQ(cells_of(notch, grid).size(), 4U + 1U + 1U + 4U);
-}
-
-TEST(Polygon, neighbours_share_no_cell_and_lose_none) {
-    const GridGeometry grid = grid_of(8, 8, 0.5);
-    // The common edge runs exactly through cell centres.
-    const auto left = cells_of(polygon_from("0 0, 1.75 0, 1.75 4, 0 4"), grid);
-    const auto right = cells_of(polygon_from("1.75 0, 4 0, 4 4, 1.75 4"), grid);
-    EXPECT_EQ(left.size() + right.size(), 64U);
-    for (const auto& cell : left) EXPECT_FALSE(right.contains(cell));
-}
-
-TEST(Polygon, cells_match_the_point_test_of_every_centre) {
-    Rng rng(7);
-    for (int round = 0; round < 300; ++round) {
-        const GridGeometry grid = grid_of(37, 29, 0.05, -0.9, -0.7);
-        const Polygon polygon = random_star(rng, 1.2);
-        std::set<std::pair<int, int>> expected;
-        std::int64_t outside = 0;
-        for (int iy = -80; iy < 120; ++iy) {
-            for (int ix = -80; ix < 120; ++ix) {
-                const Eigen::Vector2d c = grid.center_m({ix, iy});
-                if (!polygon.contains(c.x(), c.y())) continue;
-                if (grid.contains({ix, iy}))
-                    expected.insert({ix, iy});
-                else
-                    ++outside;
-            }
-        }
-        EXPECT_EQ(cells_of(polygon, grid), expected) << "round " << round;
-        EXPECT_EQ(cells_in(polygon, grid, [](Cell) {}), outside) << "round " << round;
-    }
-}
-
-TEST(Polygon, summary_finds_all_in_one_pass_and_counts_what_is_missing) {
-    const GridGeometry grid = grid_of(4, 2, 1.0);
-    Layer layer(4, 2, 1.0F);
-    layer.at(0, 0) = -3.0F;
-    layer.at(1, 0) = 5.0F;
-    layer.at(2, 0) = std::nanf("");
-    const LayerSummary all =
-        summarise(polygon_from("0 0, 4 0, 4 2, 0 2"), grid, std::as_const(layer).view());
-    EXPECT_EQ(all.known, 7);
-    EXPECT_EQ(all.unknown, 1);
-    EXPECT_EQ(all.outside, 0);
-    EXPECT_EQ(all.min, -3.0);
-    EXPECT_EQ(all.max, 5.0);
-    EXPECT_EQ(all.mean, 1.0);
-    EXPECT_FALSE(all.all_known());
-    const LayerSummary half =
-        summarise(polygon_from("3 0, 5 0, 5 2, 3 2"), grid, std::as_const(layer).view());
-    EXPECT_EQ(half.known, 2);
-    EXPECT_EQ(half.outside, 2);
-    EXPECT_FALSE(half.all_known());
-    const LayerSummary beyond =
-        summarise(polygon_from("9 9, 11 9, 11 11"), grid, std::as_const(layer).view());
-    EXPECT_EQ(beyond.known, 0);
-    EXPECT_TRUE(std::isnan(beyond.mean));
-    EXPECT_FALSE(beyond.all_known());
-}
-
-// ---- the exact twin -----------------------------------------------------------------------------
 
 /// Area of the polygon clipped to a square (Sutherland and Hodgman): the oracle of "overlaps".
 double clipped_area(const FixedConvex& polygon, double x, double y, double side) {
