@@ -266,6 +266,14 @@ double peak_memory_mb() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux reports kB
 }
 
+std::string modelled_note(const camera::SourceInfo& source) {
+    if (source.modelled_depth) {
+        return "Odometry and depth were modelled from the truth; no image was rendered, matched or "
+               "tracked.";
+    }
+    return source.modelled_motion ? "Motion was not measured: the source told it." : "";
+}
+
 std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const Percentiles frame = frame_percentiles(record);
     std::string text =
@@ -285,7 +293,7 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
             trim->row_error_px,
             trim->row_error_left_px);
     }
-    if (record.source.modelled) text += kModelled + std::string("\n");
+    if (const std::string note = modelled_note(record.source); !note.empty()) text += note + "\n";
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         text += fmt::format("the map is empty: {}\n", reason);
     }

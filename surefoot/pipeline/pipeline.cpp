@@ -2,6 +2,7 @@
 #include "surefoot/pipeline/pipeline.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/time.hpp"
@@ -10,6 +11,7 @@
 #include "surefoot/ground/sample_points.hpp"
 #include "surefoot/odometry/health.hpp"
 #include "surefoot/pipeline/rgbd_depth.hpp"
+#include "surefoot/traversability/reachability.hpp"
 
 namespace surefoot::pipeline {
 namespace {
@@ -207,6 +209,9 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
         timer.finished(Stage::traversability);
         report.depth_pixels = count_valid(depth_.disparity_px);
         report.image_pixels = static_cast<std::int64_t>(depth_.disparity_px.size());
+    } else if (rated_at_m_ != map_.geometry().origin_m) {
+        rate();  // the window moved: the ratings are those of other cells
+        timer.finished(Stage::traversability);
     }
     report.known_cells = map_.known_cells();
     return report;
@@ -276,17 +281,25 @@ FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
 }
 
 void Pipeline::rate() {
+    rated_at_m_ = map_.geometry().origin_m;
     rater_.rate(map_.layers().height_m.view(), map_.geometry().resolution_m, *executor_, rating_);
 }
 
 Image<traversability::Foothold> Pipeline::footholds() const {
     const elevation::ElevationLayers& layers = map_.layers();
+    grid::Layer reach_step_m;
+    traversability::Reachability(config_.traversability.reach)
+        .reach(map_.geometry(),
+               layers.height_m.view(),
+               last_motion_.T_odom_body.translation_m.head<2>(),
+               reach_step_m);
     Image<traversability::Foothold> found;
     traversability::FootholdFinder(config_.foothold)
         .find({layers.height_m.view(),
                layers.height_var_m2.view(),
                layers.clearance_m.view(),
                layers.free_above_m.view(),
+               std::as_const(reach_step_m).view(),
                map_.geometry().resolution_m},
               *executor_,
               found);

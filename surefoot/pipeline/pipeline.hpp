@@ -113,6 +113,7 @@ class Pipeline {
     elevation::ElevationMap map_;
     traversability::Traversability rater_;
     traversability::TraversabilityLayers rating_;
+    Eigen::Vector2d rated_at_m_ = Eigen::Vector2d::Zero();  ///< corner of the window rated last
     Alignment alignment_;
 
     std::optional<camera::ImuMount> imu_mount_;

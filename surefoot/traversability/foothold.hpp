@@ -46,7 +46,8 @@ enum class Foothold : std::uint8_t {
     drop,     ///< this and the following: shown to be unsafe, and by what
     tilted,
     rough,
-    low,  ///< too little room above
+    low,          ///< too little room above
+    unreachable,  ///< no way leads there from the stance
 };
 [[nodiscard]] std::string_view to_string(Foothold foothold) noexcept;
 
@@ -58,6 +59,7 @@ struct FootholdGround {
     /// Of unknown cells: the ground there, if any, is lower, because lines of sight passed. Empty
     /// or NaN = nothing is known.
     ImageView<const float> free_above_m;
+    ImageView<const float> reach_step_m;  ///< see Reachability; empty = everything is reachable
     double resolution_m = 0.0;
 };
 
@@ -71,10 +73,9 @@ struct FootholdGround {
 ///   diameter (rms);
 /// - rough: the mean of a patch within F is more than `max_residual_m` from p, at k sigma of the
 ///   mean (variance of the cells over their number, at most `independent_cells`);
-/// - low: `clearance_m` is not open somewhere in F.
+/// - low: `clearance_m` is less than wanted somewhere in F;
+/// - unreachable: the cell has no `reach_step_m`.
 /// What is only beyond a limit when k sigma are added is unsure.
-///
-/// Left out on purpose: whether the foothold can be reached (reachability.hpp).
 ///
 /// Holds the working memory: maps of one size allocate nothing after the first. The same bytes for
 /// every executor. Cost: cells times rows of B.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "surefoot/core/rng.hpp"
 
@@ -29,7 +30,8 @@ struct Map {
             for (int ix = 0; ix < kSide; ++ix) height_m.at(ix, iy) = static_cast<float>(height(ix));
     }
     [[nodiscard]] FootholdGround ground() const {
-        return {height_m.view(), var_m2.view(), clearance_m.view(), free_above_m.view(), kCell_m};
+        return {
+            height_m.view(), var_m2.view(), clearance_m.view(), free_above_m.view(), {}, kCell_m};
     }
     void forget_from(int column) {
         for (int iy = 0; iy < kSide; ++iy)
@@ -253,6 +255,18 @@ TEST(Foothold, UnderATableThereIsNoRoom) {
     EXPECT_EQ(found(table).at(30 + 10, 30), Foothold::safe);
     table.clearance_m.at(30, 30) = 2.06F;
     EXPECT_EQ(found(table).at(30, 30), Foothold::safe);
+}
+
+TEST(Foothold, ATableTopIsFlatAndOutOfReach) {
+    const Map floor([](int) { return 0.0; });
+    Image<float> reach_m(kSide, kSide, 0.0F);
+    reach_m.at(30, 30) = kNan;
+    FootholdGround ground = floor.ground();
+    ground.reach_step_m = std::as_const(reach_m).view();
+    Image<Foothold> out;
+    FootholdFinder(FootholdConfig{}).find(ground, serial(), out);
+    EXPECT_EQ(out.at(30, 30), Foothold::unreachable);
+    EXPECT_EQ(out.at(31, 30), Foothold::safe);
 }
 
 TEST(Foothold, SameAsTheRulesOnRandomGround) {
