@@ -125,9 +125,9 @@ FootholdCounts compare(const Image<traversability::Foothold>& found,
             continue;
         }
         ++counts.truly_safe;
-        counts.unknown += call == Foothold::unknown ? 1 : 0;
+        counts.unknown += call == Foothold::unknown || call == Foothold::unreachable ? 1 : 0;
         counts.unsure += call == Foothold::unsure ? 1 : 0;
-        counts.called_unsafe += call > Foothold::unsure ? 1 : 0;
+        counts.called_unsafe += call > Foothold::unreachable ? 1 : 0;
     }
     counts.cluster = largest_cluster(missed);
     return counts;
@@ -156,8 +156,7 @@ Status measure(const Case& now,
     if (record.error) return *record.error;
 
     const grid::GridGeometry& geometry = pipeline->map().geometry();
-    const sim::Lattice lattice{
-        geometry.origin_m, geometry.nx, geometry.ny, geometry.resolution_m};
+    const sim::Lattice lattice{geometry.origin_m, geometry.nx, geometry.ny, geometry.resolution_m};
     const sim::SceneTruth& truth = (*source)->truth();
     const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kRange_m}, executor);
     const auto heights = eval::elevation_errors(

@@ -26,7 +26,7 @@ bool is_height(std::string_view name) {
            name == "upper_bound";
 }
 
-/// 1 = safe, 0 = shown to be unsafe, 0.5 = cannot be told, NaN = unknown.
+/// 1 = safe, 0 = shown to be unsafe, 0.5 = cannot be told or not be reached, NaN = unknown.
 grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
     using traversability::Foothold;
     const Image<Foothold> holds = pipeline.footholds();
@@ -34,7 +34,8 @@ grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
     for (std::size_t i = 0; i < holds.size(); ++i) {
         if (holds.data()[i] == Foothold::unknown) layer.data()[i] = std::nanf("");
         if (holds.data()[i] == Foothold::safe) layer.data()[i] = 1.0F;
-        if (holds.data()[i] == Foothold::unsure) layer.data()[i] = 0.5F;
+        if (holds.data()[i] == Foothold::unsure || holds.data()[i] == Foothold::unreachable)
+            layer.data()[i] = 0.5F;
     }
     return layer;
 }

@@ -253,13 +253,12 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
     if (!level) found = judge_patches(ix, iy, middle_m, slope_x, slope_y);
     if (found == Foothold::rough) return found;
     if (row.tight[at] > 0.0F) return Foothold::low;
-    if (!ground.reach_step_m.empty() && std::isnan(ground.reach_step_m.at(ix, iy)))
-        return Foothold::unreachable;
     if (slope + slope_doubt > config_.max_slope ||
         middle_m + static_cast<double>(row.low_possible[at]) > config_.drop_m) {
         return Foothold::unsure;
     }
-    return found;
+    const bool cut_off = !ground.reach_step_m.empty() && std::isnan(ground.reach_step_m.at(ix, iy));
+    return found == Foothold::safe && cut_off ? Foothold::unreachable : found;
 }
 
 Foothold FootholdFinder::judge_patches(

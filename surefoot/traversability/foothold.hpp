@@ -19,7 +19,7 @@ namespace surefoot::traversability {
 /// this one every cell, for a foot turned in any way.
 struct FootholdConfig {
     double foot_radius_m = 0.206;  ///< half the diagonal of a foot of 0.366 x 0.190 m
-    double margin_m = 0.025;       ///< edges may lie a cell beside where the map has them
+    double margin_m = 0.05;        ///< edges may lie two cells beside where the map has them
     double band_m = 0.10;          ///< solid ground wanted beyond the foot
     double drop_m = 0.05;          ///< ground lower than the foot by more is a drop
     double max_slope = 0.1051;     ///< rise over run: tan 6 deg
@@ -40,14 +40,14 @@ struct FootholdConfig {
 };
 
 enum class Foothold : std::uint8_t {
-    unknown,  ///< not all cells under the foot and around it are known
-    safe,     ///< shown at `sigma_factor`
-    unsure,   ///< neither safe nor unsafe can be shown: the heights are not sure enough
-    drop,     ///< this and the following: shown to be unsafe, and by what
+    unknown,      ///< not all cells under the foot and around it are known
+    safe,         ///< shown at `sigma_factor`
+    unsure,       ///< neither safe nor unsafe can be shown: the heights are not sure enough
+    unreachable,  ///< safe as such, but no way is known that leads there from the stance
+    drop,         ///< this and the following: shown to be unsafe, and by what
     tilted,
     rough,
-    low,          ///< too little room above
-    unreachable,  ///< no way leads there from the stance
+    low,  ///< too little room above
 };
 [[nodiscard]] std::string_view to_string(Foothold foothold) noexcept;
 

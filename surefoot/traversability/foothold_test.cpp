@@ -23,6 +23,7 @@ struct Map {
     Image<float> var_m2{kSide, kSide, 0.0F};
     Image<float> clearance_m{kSide, kSide, kNan};
     Image<float> free_above_m{kSide, kSide, kNan};
+    Image<float> reach_m{kSide, kSide, 0.0F};
 
     template <typename F>
     explicit Map(const F& height) {
@@ -30,8 +31,12 @@ struct Map {
             for (int ix = 0; ix < kSide; ++ix) height_m.at(ix, iy) = static_cast<float>(height(ix));
     }
     [[nodiscard]] FootholdGround ground() const {
-        return {
-            height_m.view(), var_m2.view(), clearance_m.view(), free_above_m.view(), {}, kCell_m};
+        return {height_m.view(),
+                var_m2.view(),
+                clearance_m.view(),
+                free_above_m.view(),
+                reach_m.view(),
+                kCell_m};
     }
     void forget_from(int column) {
         for (int iy = 0; iy < kSide; ++iy)
@@ -39,14 +44,21 @@ struct Map {
     }
 };
 
-Image<Foothold> found(const Map& map, const FootholdConfig& config = {}) {
+/// F reaches 9 cells and B 13: margin of one cell.
+FootholdConfig narrow() {
+    FootholdConfig config;
+    config.margin_m = 0.025;
+    return config;
+}
+
+Image<Foothold> found(const Map& map, const FootholdConfig& config = narrow()) {
     Image<Foothold> out;
     FootholdFinder(config).find(map.ground(), serial(), out);
     return out;
 }
 
 /// The middle row of a map whose rows are alike.
-Foothold at(const Map& map, int ix, const FootholdConfig& config = {}) {
+Foothold at(const Map& map, int ix, const FootholdConfig& config = narrow()) {
     return found(map, config).at(ix, kSide / 2);
 }
 
@@ -115,8 +127,8 @@ class Oracle {
         const auto [rough, perhaps_rough] = patches(cx, cy, foot, middle, ax, ay);
         if (rough) return Foothold::rough;
         if (tight) return Foothold::low;
-        return perhaps_rough || perhaps_deep || slope + doubt > c_.max_slope ? Foothold::unsure
-                                                                             : Foothold::safe;
+        if (perhaps_rough || perhaps_deep || slope + doubt > c_.max_slope) return Foothold::unsure;
+        return std::isnan(g_.reach_step_m.at(cx, cy)) ? Foothold::unreachable : Foothold::safe;
     }
 
   private:
@@ -177,7 +189,6 @@ class Oracle {
 
 TEST(Foothold, FloorIsSafeAsFarAsAllOfItIsKnown) {
     const Image<Foothold> holds = found(Map([](int) { return -1.7; }));
-    // F reaches 9 cells, B 13.
     for (int i = 0; i < kSide; ++i) {
         const bool known = i >= 13 && i < kSide - 13;
         EXPECT_EQ(holds.at(i, kSide / 2), known ? Foothold::safe : Foothold::unknown) << i;
@@ -241,7 +252,7 @@ TEST(Foothold, WhatCannotBeToldIsUnsure) {
     Map floor([](int) { return 0.0; });
     std::fill_n(floor.var_m2.data(), floor.var_m2.size(), 0.02F * 0.02F);
     EXPECT_EQ(at(floor, 30), Foothold::unsure);
-    FootholdConfig careless;
+    FootholdConfig careless = narrow();
     careless.sigma_factor = 1.0;
     EXPECT_EQ(at(floor, 30, careless), Foothold::safe);
     std::fill_n(floor.var_m2.data(), floor.var_m2.size(), 0.003F * 0.003F);
@@ -258,19 +269,14 @@ TEST(Foothold, UnderATableThereIsNoRoom) {
 }
 
 TEST(Foothold, ATableTopIsFlatAndOutOfReach) {
-    const Map floor([](int) { return 0.0; });
-    Image<float> reach_m(kSide, kSide, 0.0F);
-    reach_m.at(30, 30) = kNan;
-    FootholdGround ground = floor.ground();
-    ground.reach_step_m = std::as_const(reach_m).view();
-    Image<Foothold> out;
-    FootholdFinder(FootholdConfig{}).find(ground, serial(), out);
-    EXPECT_EQ(out.at(30, 30), Foothold::unreachable);
-    EXPECT_EQ(out.at(31, 30), Foothold::safe);
+    Map floor([](int) { return 0.0; });
+    floor.reach_m.at(30, 30) = kNan;
+    EXPECT_EQ(found(floor).at(30, 30), Foothold::unreachable);
+    EXPECT_EQ(found(floor).at(31, 30), Foothold::safe);
 }
 
 TEST(Foothold, SameAsTheRulesOnRandomGround) {
-    int seen[7] = {};
+    int seen[8] = {};
     for (std::uint64_t seed = 1; seed <= 24; ++seed) {
         Rng rng(seed);
         Map map([](int) { return 0.0; });
@@ -284,13 +290,14 @@ TEST(Foothold, SameAsTheRulesOnRandomGround) {
                 map.height_m.at(ix, iy) = rng.uniform() < 2e-4 ? kNan : static_cast<float>(z);
                 map.var_m2.at(ix, iy) = static_cast<float>(1.5 * noise_m * noise_m * rng.uniform());
                 if (rng.uniform() < 1e-4) map.clearance_m.at(ix, iy) = 1.0F;
+                if (rng.uniform() < 0.1) map.reach_m.at(ix, iy) = kNan;
                 if (rng.uniform() < 0.5)
                     map.free_above_m.at(ix, iy) = static_cast<float>(z - 0.12 * rng.uniform());
             }
         }
         const Image<Foothold> holds = found(map);
         const FootholdGround ground = map.ground();
-        const FootholdConfig config;
+        const FootholdConfig config = narrow();
         const Oracle oracle(config, ground);
         for (int iy = 0; iy < kSide; ++iy) {
             for (int ix = 0; ix < kSide; ++ix) {
