@@ -203,12 +203,14 @@ struct Counts {
     int hidden = 0;
     int invented = 0;
     int invented_wrong = 0;  ///< more than 20 mm from the ground that is really there
+    int invented_sure = 0;   ///< with a sigma of at most 10 mm
     int visible = 0;
     int visible_known = 0;
 };
 
 Counts count(const elevation::ElevationMap& map, const std::vector<Cell>& cells) {
     constexpr float kWrong_m = 0.02F;
+    constexpr float kSureVar_m2 = 0.01F * 0.01F;
     Counts counts;
     for (const Cell& cell : cells) {
         const auto index = map.geometry().cell_at(cell.center_m.x(), cell.center_m.y());
@@ -218,6 +220,8 @@ Counts count(const elevation::ElevationMap& map, const std::vector<Cell>& cells)
         if (cell.sight == Sight::hidden) {
             ++counts.hidden;
             counts.invented += known ? 1 : 0;
+            counts.invented_sure +=
+                known && map.layers().height_var_m2.at(index->ix, index->iy) <= kSureVar_m2 ? 1 : 0;
             counts.invented_wrong += known && std::abs(height_m - cell.truth_m) > kWrong_m ? 1 : 0;
         } else if (cell.sight == Sight::seen) {
             ++counts.visible;
@@ -284,7 +288,8 @@ void print_profile(fmt::ostream& file, const Outcome& outcome, const std::vector
 void measure_drops(ZedBench& bench, const std::string& out, int first_seed, int seeds) {
     auto file = fmt::output_file(out + "/invented.csv");
     file.print(
-        "motion,drop,distance_m,seed,rule,hidden,invented,invented_wrong,visible,visible_known\n");
+        "motion,drop,distance_m,seed,rule,hidden,invented,invented_wrong,invented_sure,visible,"
+        "visible_known\n");
     auto profile = fmt::output_file(out + "/profile.csv");
     profile.print("rule,x_m,truth_m,height_m,sight\n");
     const auto all_rules = rules();
@@ -292,7 +297,7 @@ void measure_drops(ZedBench& bench, const std::string& out, int first_seed, int 
         const Outcome outcome = look_over_edge(bench, look, all_rules);
         for (std::size_t r = 0; r < all_rules.size(); ++r) {
             const Counts c = count(outcome.maps[r], outcome.cells);
-            file.print("{},{},{:.2f},{},\"{}\",{},{},{},{},{}\n",
+            file.print("{},{},{:.2f},{},\"{}\",{},{},{},{},{},{}\n",
                        look.frames == 1 ? "one frame" : "approach",
                        look.drop.name,
                        look.distance_m,
@@ -301,6 +306,7 @@ void measure_drops(ZedBench& bench, const std::string& out, int first_seed, int 
                        c.hidden,
                        c.invented,
                        c.invented_wrong,
+                       c.invented_sure,
                        c.visible,
                        c.visible_known);
         }

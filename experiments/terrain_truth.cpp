@@ -8,11 +8,13 @@
 // A foothold holds for every yaw of the foot, so that a cell is truly safe if sim::cell_safety says
 // so at eight yaws, 22.5 deg apart (half a turn exchanges heel and toe), and truly unsafe if one of
 // them is not. The machine is the REX; the floor is reached from the first base_link.
+// Profiles: those of the simulator, and zed_calibrated: zed without its error of calibration.
 // One line a scene, seed and profile:
 //   median_mm, p90_mm, coverage               of all heights
 //   sigma_1, sigma_2, sigma_3                 share of errors within, farther than 2 cells from
 //   edges truly_unsafe, called_safe, cluster        cells; largest connected group of the second
 //   truly_safe, called_unsafe, unsure, unknown  cells; the last three are of the truly safe ones
+//   near_...                                  the same within 0.7 m of the body, in view or not
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -38,11 +40,19 @@ namespace {
 
 constexpr int kYaws = 8;
 constexpr double kRange_m = 2.5;
+constexpr double kNear_m = 0.7;
+
+/// How the scene is seen.
+struct Camera {
+    std::string name;
+    sim::CameraProfile profile = sim::CameraProfile::ideal;
+    bool calibrated = false;  ///< the profile's error of calibration is taken away
+};
 
 struct Case {
     std::string scene;
     std::uint64_t seed = 1;
-    sim::CameraProfile profile = sim::CameraProfile::ideal;
+    Camera camera;
 };
 
 struct FootholdCounts {
@@ -73,9 +83,10 @@ eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
                                 Executor& executor) {
     eval::CellMask safe(lattice.nx, lattice.ny, 1);
     sim::CellQuestion question;
-    question.start_m = truth.trajectory.front().T_world_body.translation_m;
-    const auto floor = truth.scene.height_at(question.start_m.x(), question.start_m.y());
-    question.start_m.z() = floor ? floor->z_m : 0.0;
+    // Every scene begins on ground at the world's 0; the machine ends on ground that it reached.
+    const Pose& T_world_first = truth.trajectory.front().T_world_body;
+    question.start_m = truth.trajectory.back().T_world_body.translation_m;
+    question.start_m.z() -= T_world_first.translation_m.z();
     for (int k = 0; k < kYaws; ++k) {
         question.yaw_rad = std::numbers::pi * k / kYaws;
         const auto cells = sim::cell_safety(truth.scene, machine, lattice, question, executor);
@@ -133,6 +144,17 @@ FootholdCounts compare(const Image<traversability::Foothold>& found,
     return counts;
 }
 
+void print(const FootholdCounts& counts, fmt::ostream& out) {
+    out.print(",{},{},{},{},{},{},{}",
+              counts.truly_unsafe,
+              counts.called_safe,
+              counts.cluster,
+              counts.truly_safe,
+              counts.called_unsafe,
+              counts.unsure,
+              counts.unknown);
+}
+
 Status measure(const Case& now,
                const io::MachineFile& machine,
                Executor& executor,
@@ -142,7 +164,14 @@ Status measure(const Case& now,
     sim::SceneOptions& sim = settings->sim;
     sim.scene = now.scene;
     sim.seed = now.seed;
-    sim.profile = now.profile;
+    sim.profile = now.camera.profile;
+    if (now.camera.calibrated) {
+        const sim::CalibrationError error = sim::figures_of(now.camera.profile).calibration;
+        sim.calibration_error = {.right_roll_rad = -error.right_roll_rad,
+                                 .right_pitch_rad = -error.right_pitch_rad,
+                                 .right_yaw_rad = -error.right_yaw_rad,
+                                 .right_focal_share = -error.right_focal_share};
+    }
     sim.known_motion = true;
     sim.drift = {0.0, 0.0};
     auto source = sim::open_scene(sim, &executor);
@@ -161,35 +190,34 @@ Status measure(const Case& now,
     const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kRange_m}, executor);
     const auto heights = eval::elevation_errors(
         pipeline->map().layers().height_m, sim::dem(truth.scene, lattice), visible, settings->maps);
+    const auto found = pipeline->footholds();
+    const auto truly_safe = safe_at_all_yaws(truth, machine.machine, lattice, executor);
+    const auto near =
+        eval::within_radius(geometry, pipeline->T_odom_body().translation_m.head<2>(), kNear_m);
     const eval::SigmaCoverage& sigma = record.truth->maps.sigma;
-    const FootholdCounts holds =
-        compare(pipeline->footholds(),
-                safe_at_all_yaws(truth, machine.machine, lattice, executor),
-                visible);
-    out.print("{},{},{},{:.2f},{:.2f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{}\n",
+    out.print("{},{},{},{:.2f},{:.2f},{:.4f},{:.4f},{:.4f},{:.4f}",
               now.scene,
               now.seed,
-              sim::kCameraProfileNames[static_cast<int>(now.profile)],
+              now.camera.name,
               1e3 * heights.median_abs_m,
               1e3 * heights.p90_abs_m,
               record.truth->coverage_within_2_5_m,
               sigma.within_1_sigma,
               sigma.within_2_sigma,
-              sigma.within_3_sigma,
-              holds.truly_unsafe,
-              holds.called_safe,
-              holds.cluster,
-              holds.truly_safe,
-              holds.called_unsafe,
-              holds.unsure,
-              holds.unknown);
+              sigma.within_3_sigma);
+    for (const eval::CellMask& where : {visible, near})
+        print(compare(found, truly_safe, where), out);
+    out.print("\n");
     out.flush();
     return {};
 }
 
-Result<sim::CameraProfile> profile_named(const std::string& name) {
-    for (int i = 0; i < static_cast<int>(std::size(sim::kCameraProfileNames)); ++i)
-        if (name == sim::kCameraProfileNames[i]) return static_cast<sim::CameraProfile>(i);
+Result<Camera> camera_named(const std::string& name) {
+    if (name == "zed_calibrated") return Camera{name, sim::CameraProfile::zed, true};
+    for (int i = 0; i < static_cast<int>(std::size(sim::kCameraProfileNames)); ++i) {
+        if (name == sim::kCameraProfileNames[i])
+            return Camera{name, static_cast<sim::CameraProfile>(i), false};
+    }
     return usage_error("there is no profile " + name);
 }
 
@@ -202,15 +230,25 @@ int main(const std::vector<std::string>& words) {
     if (!machine) return report(machine.error());
     const auto executor = make_executor({});
     auto out = fmt::output_file(words[0]);
-    out.print(
-        "scene,seed,profile,median_mm,p90_mm,coverage,sigma_1,sigma_2,sigma_3,truly_unsafe,"
-        "called_safe,cluster,truly_safe,called_unsafe,unsure,unknown\n");
+    out.print("scene,seed,profile,median_mm,p90_mm,coverage,sigma_1,sigma_2,sigma_3");
+    for (const char* where : {"", "near_"}) {
+        for (const char* what : {"truly_unsafe",
+                                 "called_safe",
+                                 "cluster",
+                                 "truly_safe",
+                                 "called_unsafe",
+                                 "unsure",
+                                 "unknown"}) {
+            out.print(",{}{}", where, what);
+        }
+    }
+    out.print("\n");
     for (const std::string& name : split(words.size() > 4 ? words[4] : "ideal,zed")) {
-        const auto profile = profile_named(name);
-        if (!profile) return report(profile.error());
+        const auto camera = camera_named(name);
+        if (!camera) return report(camera.error());
         for (const std::string& scene : split(words[1])) {
             for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
-                if (const auto done = measure({scene, seed, *profile}, **machine, *executor, out);
+                if (const auto done = measure({scene, seed, *camera}, **machine, *executor, out);
                     !done)
                     return report(done.error());
             }

@@ -98,9 +98,8 @@ std::vector<BenchResult> bench_elevation(Executor& executor) {
     std::vector<camera::DepthImage> views;
     views.reserve(kViews);
     for (int i = 0; i < kViews; ++i) views.push_back(look(rig, body_at(0.02 * i), rng));
-    elevation::ElevationMap map({});
     int frame = 0;
-    const auto add = [&] {
+    const auto add_to = [&](elevation::ElevationMap& map) {
         const int view = frame % kViews;
         map.follow(body_at(0.02 * view), 1e-8 * Matrix6::Identity());
         static_cast<void>(map.add(rig,
@@ -110,7 +109,13 @@ std::vector<BenchResult> bench_elevation(Executor& executor) {
                                   executor));
         ++frame;
     };
-    std::vector<BenchResult> results{{"terrain/fuse_672x376", timed(kRepeats, add)}};
+    elevation::ElevationConfig without_lines;
+    without_lines.visibility.drops = false;
+    elevation::ElevationMap plain(without_lines);
+    elevation::ElevationMap map({});
+    std::vector<BenchResult> results{
+        {"terrain/fuse_672x376", timed(kRepeats, [&] { add_to(plain); })},
+        {"terrain/fuse_with_lines_672x376", timed(kRepeats, [&] { add_to(map); })}};
     int moves = 0;
     results.push_back({"terrain/move_4_cells", timed(10 * kRepeats, [&] {
                            map.follow(body_at(0.1 * ++moves), Matrix6::Zero());

@@ -182,6 +182,48 @@ TEST_F(CleanUp, WhatStandsThereStays) {
     EXPECT_LE(later.free, table.free) << "floor seen under the table is not free to walk on";
 }
 
+/// The machine stands 0.3 m higher than the floor that begins 1.2 m ahead: 0.48 m of it are hidden.
+const Box kPlatform{{-3.0, -3.0, 0.0}, {1.2, 3.0, 0.3}};
+
+TEST_F(CleanUp, LinesOfSightSayHowDeepHiddenGroundLies) {
+    frames({kPlatform}, 3);
+    const ElevationLayers& layers = map_.layers();
+    int hidden = 0;
+    for (int iy = 0; iy < map_.geometry().ny; ++iy) {
+        for (int ix = 0; ix < map_.geometry().nx; ++ix) {
+            const Eigen::Vector2d at = map_.geometry().center_m({ix, iy});
+            const float free_m = layers.free_above_m.at(ix, iy);
+            if (!std::isnan(layers.height_m.at(ix, iy))) {
+                EXPECT_TRUE(std::isnan(free_m));
+            }
+            const bool behind = at.x() > 1.26 && at.x() < 1.58 && std::abs(at.y()) < 0.3;
+            if (!behind || !std::isnan(layers.height_m.at(ix, iy))) continue;
+            ++hidden;
+            // Between the line from the camera, 1.05 m up, over the edge, and one that ends on the
+            // floor a few cells behind what is hidden (1.68 m); noise.
+            constexpr double kNoise_m = 0.01;
+            EXPECT_GT(static_cast<double>(free_m), 1.05 - 0.75 / 1.2 * at.x() - kNoise_m);
+            EXPECT_LT(static_cast<double>(free_m), 1.05 - 1.05 / 1.85 * at.x() + kNoise_m);
+        }
+    }
+    EXPECT_GT(hidden, 200);
+    frames({kPlatform}, 5, 0.1);  // from nearer the edge, more is seen, and the rest lies deeper
+    const auto cell = map_.geometry().cell_at(1.5, 0.0);
+    EXPECT_NEAR(static_cast<double>(layers.height_m.at(cell->ix, cell->iy)), 0.0, 0.02);
+    EXPECT_TRUE(std::isnan(layers.free_above_m.at(cell->ix, cell->iy)));
+}
+
+TEST_F(CleanUp, LinesOverUnknownGroundCanBeLeftOut) {
+    ElevationConfig config;
+    config.visibility.drops = false;
+    ElevationMap map(config);
+    map.add(eye_, body_at(0), look(eye_, {kPlatform}, body_at(0), rng_), 1);
+    const float* free_m = map.layers().free_above_m.data();
+    EXPECT_TRUE(std::all_of(free_m, free_m + map.layers().free_above_m.size(), [](float z_m) {
+        return std::isnan(z_m);
+    }));
+}
+
 TEST_F(CleanUp, IsOffByDefault) {
     ElevationMap map({});
     std::int64_t time_ns = 1;

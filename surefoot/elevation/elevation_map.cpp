@@ -198,6 +198,8 @@ void ElevationMap::look_along_lines(const Eigen::Vector3d& camera_m,
                                     std::int64_t time_ns,
                                     Executor& executor,
                                     FusionCounts& counts) {
+    const VisibilityConfig& visibility = config_.visibility;
+    if (!visibility.drops && !visibility.cleanup) return;
     lines_.reset(geometry(), camera_m);
     for (int iy = 0; iy < geometry().ny; ++iy) {
         const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * geometry().nx;
@@ -214,7 +216,7 @@ void ElevationMap::look_along_lines(const Eigen::Vector3d& camera_m,
         std::int64_t time_ns;
     } job{*this, time_ns};
     executor.parallel_for(blocks, [&job](int block) {
-        job.map.look_over_block(block);
+        if (job.map.config_.visibility.drops) job.map.look_over_block(block);
         if (job.map.config_.visibility.cleanup) job.map.clean_up_block(block, job.time_ns);
     });
     for (const FusionCounts& block : block_counts_) counts += block;

@@ -19,6 +19,7 @@ constexpr int kEndRings = 3;
 void VisibilityConfig::describe(ConfigVisitor& visitor) {
     visitor.boolean(
         "cleanup", cleanup, "forget surfaces that lines of sight pass through (keys below)");
+    visitor.boolean("drops", drops, "lines of sight over unknown ground say how deep it must lie");
     visitor.number("margin_m",
                    margin_m,
                    0.0,
@@ -38,6 +39,14 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
 }
 
 void LinesOfSight::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {
+    for (std::size_t quarter = 0; quarter < used_.size(); ++quarter) {
+        if (!used_[quarter]) continue;
+        for (int ring = 0; ring < rings_; ++ring) {
+            float* row = lowest_.data() + static_cast<std::ptrdiff_t>(ring) * kDirections;
+            std::fill_n(row + quarter * kQuarter, kQuarter, kInfinity);
+        }
+    }
+    used_ = {};
     geometry_ = geometry;
     const Eigen::Vector2d corner_cells =
         (camera_m.head<2>() - geometry.origin_m) / geometry.resolution_m;
@@ -51,7 +60,13 @@ void LinesOfSight::reset(const grid::GridGeometry& geometry, const Eigen::Vector
     const float farthest =
         std::max(camera_x_, nx - camera_x_) + std::max(camera_y_, ny - camera_y_);
     rings_ = farthest <= 4.0F * (nx + ny) ? static_cast<int>(farthest) + 1 : 0;
-    lowest_.assign(static_cast<std::size_t>(rings_) * kDirections, kInfinity);
+    const auto wanted = static_cast<std::size_t>(rings_) * kDirections;
+    if (lowest_.size() < wanted) lowest_.resize(wanted, kInfinity);
+}
+
+std::size_t LinesOfSight::quarter_of(float dx_cells, float dy_cells) noexcept {
+    if (dx_cells < 0.0F) return dy_cells > 0.0F ? 1 : 2;
+    return dy_cells < 0.0F ? 3 : 0;
 }
 
 LinesOfSight::Place LinesOfSight::place_of(float dx_cells, float dy_cells) const {
@@ -81,7 +96,9 @@ void LinesOfSight::add(grid::Cell cell, float z_m) {
     const int last = static_cast<int>(std::floor(place.direction + half_width));
     float* row = lowest_.data() + static_cast<std::ptrdiff_t>(ring) * kDirections;
     for (int direction = first; direction <= last; ++direction) {
-        float& lowest = row[direction & (kDirections - 1)];
+        const auto at = static_cast<std::size_t>(direction & (kDirections - 1));
+        used_[at / kQuarter] = true;
+        float& lowest = row[at];
         lowest = std::min(lowest, slope);
     }
 }
@@ -90,8 +107,11 @@ void LinesOfSight::finish() {
     for (int ring = rings_ - 2; ring >= 0; --ring) {
         float* here = lowest_.data() + static_cast<std::ptrdiff_t>(ring) * kDirections;
         const float* beyond = here + kDirections;
-        for (int direction = 0; direction < kDirections; ++direction) {
-            here[direction] = std::min(here[direction], beyond[direction]);
+        for (std::size_t quarter = 0; quarter < used_.size(); ++quarter) {
+            if (!used_[quarter]) continue;
+            for (std::size_t i = quarter * kQuarter; i < (quarter + 1) * kQuarter; ++i) {
+                here[i] = std::min(here[i], beyond[i]);
+            }
         }
     }
 }
@@ -99,6 +119,8 @@ void LinesOfSight::finish() {
 float LinesOfSight::lowest_over(grid::Cell cell) const {
     const float dx = static_cast<float>(cell.ix) + 0.5F - camera_x_;
     const float dy = static_cast<float>(cell.iy) + 0.5F - camera_y_;
+    // On the border of two quarters a direction may count for either.
+    if (!used_[quarter_of(dx, dy)] && dx != 0.0F && dy != 0.0F) return kInfinity;
     const Place place = place_of(dx, dy);
     if (!(place.distance >= kNearest && place.distance < static_cast<float>(rings_ - 1))) {
         return kInfinity;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct VisibilityConfig {
     /// Off: a table top seen edge-on over floor that is seen under it is still taken for gone too
     /// often (docs/safety.md, known gaps).
     bool cleanup = false;
+    /// Lines of sight that pass over unknown cells say how deep the ground there must lie.
+    bool drops = true;
     double margin_m = 0.05;  ///< lines this far below a height contradict it ...
     double sigmas = 3.0;     ///< ... plus this many sigma of the height
     /// Frames with such a line, and without a look that agrees in between, until a surface that
@@ -60,6 +63,8 @@ class LinesOfSight {
         float distance = 0.0F;   ///< |dx| + |dy| in cells
     };
     [[nodiscard]] Place place_of(float dx_cells, float dy_cells) const;
+    /// In which quarter of the diamond a direction lies.
+    [[nodiscard]] static std::size_t quarter_of(float dx_cells, float dy_cells) noexcept;
 
     grid::GridGeometry geometry_;
     float camera_x_ = 0.0F;  ///< in cells from the corner of the grid
@@ -67,6 +72,8 @@ class LinesOfSight {
     float camera_z_m_ = 0.0F;
     int rings_ = 0;
     std::vector<float> lowest_;  ///< ring by ring: smallest height over distance [m per cell]
+    /// A camera looks ahead: the quarters that no line passes are left out.
+    std::array<bool, 4> used_{};
 };
 
 }  // namespace surefoot::elevation
