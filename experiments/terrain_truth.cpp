@@ -221,11 +221,11 @@ Result<Camera> camera_named(const std::string& name) {
     return usage_error("there is no profile " + name);
 }
 
-int main(const std::vector<std::string>& words) {
+int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2)
         return report(usage_error("terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES]]]"));
-    const std::uint64_t first = words.size() > 2 ? std::stoull(words[2]) : 1;
-    const std::uint64_t seeds = words.size() > 3 ? std::stoull(words[3]) : 1;
+    const std::uint64_t first = words.size() > 2 ? std::strtoull(words[2].c_str(), nullptr, 10) : 1;
+    const std::uint64_t seeds = words.size() > 3 ? std::strtoull(words[3].c_str(), nullptr, 10) : 1;
     const auto machine = load_machine("rex");
     if (!machine) return report(machine.error());
     const auto executor = make_executor({});
@@ -260,6 +260,6 @@ int main(const std::vector<std::string>& words) {
 }  // namespace
 }  // namespace surefoot::app
 
-int main(int argc, char** argv) {
-    return surefoot::app::main({argv + 1, argv + argc});
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    return surefoot::app::measure_all({argv + 1, argv + argc});
 }
