@@ -92,15 +92,18 @@ void LinesOfSight::add(grid::Cell cell, float z_m) {
     const float slope = (z_m - camera_z_m_) / place.distance;
     // Ends side by side leave no gap: what they see through, they see through everywhere.
     const float half_width = 0.5F * kQuarter / place.distance;
-    const int first = static_cast<int>(std::floor(place.direction - half_width));
-    const int last = static_cast<int>(std::floor(place.direction + half_width));
+    // Rounded down: a turn of one quarter more keeps what is converted positive.
+    const float around = place.direction + kQuarter;
+    const int first = static_cast<int>(around - half_width) - kQuarter;
+    const int last = static_cast<int>(around + half_width) - kQuarter;
     float* row = lowest_.data() + static_cast<std::ptrdiff_t>(ring) * kDirections;
     for (int direction = first; direction <= last; ++direction) {
-        const auto at = static_cast<std::size_t>(direction & (kDirections - 1));
-        used_[at / kQuarter] = true;
-        float& lowest = row[at];
+        float& lowest = row[direction & (kDirections - 1)];
         lowest = std::min(lowest, slope);
     }
+    // A line is narrower than a quarter.
+    for (const int direction : {first, last})
+        used_[static_cast<std::size_t>(direction & (kDirections - 1)) / kQuarter] = true;
 }
 
 void LinesOfSight::finish() {
@@ -109,8 +112,10 @@ void LinesOfSight::finish() {
         const float* beyond = here + kDirections;
         for (std::size_t quarter = 0; quarter < used_.size(); ++quarter) {
             if (!used_[quarter]) continue;
-            for (std::size_t i = quarter * kQuarter; i < (quarter + 1) * kQuarter; ++i) {
-                here[i] = std::min(here[i], beyond[i]);
+            float* nearer = here + quarter * kQuarter;
+            const float* farther = beyond + quarter * kQuarter;
+            for (int i = 0; i < kQuarter; ++i) {
+                nearer[i] = farther[i] < nearer[i] ? farther[i] : nearer[i];
             }
         }
     }
