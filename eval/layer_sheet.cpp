@@ -228,7 +228,6 @@ LayerStyle style_of_layer(std::string_view name, double safe_threshold) {
     if (name == "normal_y") return direction_style("Normal, y");
     if (name == "normal_z") return share_style("Normal, z");
     if (name == "free_above") return height_style("Unknown ground is below");
-    if (name == "foothold") return share_style("Foothold");
     if (name == "rating_confidence") return share_style("Confidence of the rating");
     if (name == "smallest_step") return millimetre_style("Smallest step to be told");
     if (name == "not_resolvable") return share_style("Sill not resolvable");
@@ -237,8 +236,9 @@ LayerStyle style_of_layer(std::string_view name, double safe_threshold) {
     if (name == "slope") rating.text.title = "Slope rating";
     if (name == "step") rating.text.title = "Step rating";
     if (name == "roughness") rating.text.title = "Roughness rating";
-    const bool is_rating =
-        name == "traversability" || name == "slope" || name == "step" || name == "roughness";
+    if (name == "foothold") rating.text.title = "Foothold";
+    const bool is_rating = name == "foothold" || name == "traversability" || name == "slope" ||
+                           name == "step" || name == "roughness";
     return is_rating ? rating : plain_style(std::string(name), "", ColorMap::viridis);
 }
 
