@@ -23,6 +23,7 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
@@ -30,6 +31,7 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "eval/maps.hpp"
+#include "io/text.hpp"
 #include "sim/cell_safety.hpp"
 #include "sim/scene_source.hpp"
 #include "sim/truth.hpp"
@@ -64,17 +66,6 @@ struct FootholdCounts {
     int unsure = 0;
     int unknown = 0;
 };
-
-std::vector<std::string> split(const std::string& list) {
-    std::vector<std::string> parts;
-    std::size_t begin = 0;
-    while (begin <= list.size()) {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        parts.push_back(list.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return parts;
-}
 
 /// 1 where a foot is safe at every yaw.
 eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
@@ -243,12 +234,14 @@ int measure_all(const std::vector<std::string>& words) {
         }
     }
     out.print("\n");
-    for (const std::string& name : split(words.size() > 4 ? words[4] : "ideal,zed")) {
-        const auto camera = camera_named(name);
+    const std::string profiles = words.size() > 4 ? words[4] : "ideal,zed";
+    for (const std::string_view name : io::split(profiles, ",")) {
+        const auto camera = camera_named(std::string(name));
         if (!camera) return report(camera.error());
-        for (const std::string& scene : split(words[1])) {
+        for (const std::string_view scene : io::split(words[1], ",")) {
             for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
-                if (const auto done = measure({scene, seed, *camera}, **machine, *executor, out);
+                if (const auto done =
+                        measure({std::string(scene), seed, *camera}, **machine, *executor, out);
                     !done)
                     return report(done.error());
             }

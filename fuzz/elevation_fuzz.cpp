@@ -3,9 +3,6 @@
 // the plain map (plain_map.hpp) says, bit for bit in every layer and count; and a second map that
 // does its blocks backwards on another instruction set has the same bytes. No cell is ever half
 // known, and none that is known lacks a finite height and a positive variance.
-#include <hwy/targets.h>
-
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,12 +14,15 @@
 
 #include "fuzz/choices.hpp"
 #include "fuzz/plain_map.hpp"
+#include "fuzz/twin.hpp"
 
 namespace {
 
 using namespace surefoot;
 using namespace surefoot::elevation;
+using fuzz::Backwards;
 using fuzz::Choices;
+using fuzz::OnTarget;
 using fuzz::PlainMap;
 
 constexpr int kMostOperations = 16;
@@ -53,38 +53,6 @@ bool same(const FusionCounts& a, const FusionCounts& b) {
            a.cells_fused == b.cells_fused && a.cells_inflated == b.cells_inflated &&
            a.cells_cleared == b.cells_cleared;
 }
-
-class Backwards final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        for (int index = count - 1; index >= 0; --index) work(index);
-    }
-};
-
-/// Holds the dispatch of Highway on one of the instruction sets while it lives.
-class OnTarget {
-  public:
-    explicit OnTarget(int which) {
-        std::int64_t left = all();
-        for (int i = which % std::popcount(static_cast<std::uint64_t>(left)); i > 0; --i)
-            left &= left - 1;
-        hold(left & -left);
-    }
-    ~OnTarget() { hold(all()); }
-    OnTarget(const OnTarget&) = delete;
-    OnTarget& operator=(const OnTarget&) = delete;
-
-  private:
-    /// Asked once: the processor takes its time to answer.
-    static std::int64_t all() {
-        static const std::int64_t targets = hwy::SupportedTargets();
-        return targets;
-    }
-    static void hold(std::int64_t target) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    }
-};
 
 ElevationConfig config_of(Choices& choices) {
     ElevationConfig config;

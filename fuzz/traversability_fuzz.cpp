@@ -3,8 +3,6 @@
 // the whole map, on every instruction set and in any order of blocks; the plain filters know the
 // same cells and agree to the tolerances of traversability_fast_test; a cell of unknown height is
 // not traversable, and no rating lies outside of 0 to 1.
-#include <hwy/targets.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -14,13 +12,16 @@
 #include <cstdlib>
 
 #include "fuzz/choices.hpp"
+#include "fuzz/twin.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace {
 
 using namespace surefoot;
 using namespace surefoot::traversability;
+using fuzz::Backwards;
 using fuzz::Choices;
+using fuzz::OnTarget;
 
 constexpr int kMostChanges = 3;
 // As in traversability_fast_test. A normal on the other side of a rounding turns a slope near 0 by
@@ -37,18 +38,6 @@ void must(bool holds, const char* what) {
 bool same(float a, float b) {
     return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ||
            (std::isnan(a) && std::isnan(b));
-}
-
-class Backwards final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        for (int index = count - 1; index >= 0; --index) work(index);
-    }
-};
-
-void hold_target(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 template <typename Visit>
@@ -152,14 +141,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     must_be_ratings(height_m, layers);
     TraversabilityLayers other;
-    static const std::int64_t all = hwy::SupportedTargets();
-    std::int64_t left = all;
-    for (int i = choices.below(std::popcount(static_cast<std::uint64_t>(all))); i > 0; --i)
-        left &= left - 1;
-    hold_target(left & -left);
-    Traversability(config).rate(height_m.view(), resolution_m, backwards, other);
+    {
+        const OnTarget another(choices.byte());
+        Traversability(config).rate(height_m.view(), resolution_m, backwards, other);
+    }
     must(same_bytes(layers, other), "a change, a target or an order of blocks decides");
-    hold_target(all);
     Traversability(config, Way::plain).rate(height_m.view(), resolution_m, serial(), other);
     must_be_close(layers, other);
     return 0;

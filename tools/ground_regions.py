@@ -14,15 +14,16 @@ that of the floor itself, and what is an edge and how far the filters reach is r
 import math
 import pathlib
 import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "end_to_end"))
+from surefoot_cli import read_asc  # noqa: E402
 
 
 def read_grid(path):
     """Cell size [m] and rows from the smallest y, NaN = unknown."""
-    lines = pathlib.Path(path).read_text().splitlines()
-    head = {key.lower(): float(value) for key, value in (line.split() for line in lines[:6])}
-    rows = [[math.nan if float(word) == head["nodata_value"] else float(word) for word in line.split()]
-            for line in lines[6:]]
-    return head["cellsize"], rows[::-1]
+    head, rows = read_asc(pathlib.Path(path))
+    return head["cellsize"], [[math.nan if z is None else z for z in row] for row in reversed(rows)]
 
 
 def setting(config, group, key):

@@ -8,7 +8,6 @@
 #include "apps/surefoot/run_output.hpp"
 #include "surefoot/elevation/height_bounds.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"
-#include "surefoot/traversability/reachability.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -38,17 +37,6 @@ grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
             layer.data()[i] = 0.5F;
     }
     return layer;
-}
-
-/// Which ground can be walked to from the last pose.
-grid::Layer reach_step_layer(const pipeline::Pipeline& pipeline) {
-    grid::Layer reach_step_m;
-    traversability::Reachability(pipeline.config().traversability.reach)
-        .reach(pipeline.map().geometry(),
-               pipeline.map().layers().height_m.view(),
-               pipeline.T_odom_body().translation_m.head<2>(),
-               reach_step_m);
-    return reach_step_m;
 }
 
 /// How far the ratings can be trusted.
@@ -109,7 +97,7 @@ std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline) {
                                    {"rating_confidence", std::move(ratings.confidence)},
                                    {"smallest_step", std::move(ratings.smallest_step_m)},
                                    {"not_resolvable", std::move(ratings.not_resolvable)},
-                                   {"reach_step", reach_step_layer(pipeline)},
+                                   {"reach_step", pipeline.reach_step_m()},
                                    {"traversability", rating.traversability}};
     for (NamedLayer& layer : layers) layer.values = or_unknown(layer.values, geometry);
     return layers;

@@ -209,16 +209,21 @@ void ElevationMap::look_along_lines(const Eigen::Vector3d& camera_m,
     }
     lines_.finish();
     const auto blocks = static_cast<int>(block_counts_.size());
+    if (visibility.drops)
+        executor.parallel_for(blocks, [this](int block) { look_over_block(block); });
+    if (visibility.cleanup) clean_up(time_ns, executor, counts);
+}
+
+void ElevationMap::clean_up(std::int64_t time_ns, Executor& executor, FusionCounts& counts) {
+    const auto blocks = static_cast<int>(block_counts_.size());
     block_counts_.assign(block_counts_.size(), {});
     gone_.assign(seen_z_m_.size(), 0);
     struct Job {
         ElevationMap& map;
         std::int64_t time_ns;
     } job{*this, time_ns};
-    executor.parallel_for(blocks, [&job](int block) {
-        if (job.map.config_.visibility.drops) job.map.look_over_block(block);
-        if (job.map.config_.visibility.cleanup) job.map.clean_up_block(block, job.time_ns);
-    });
+    executor.parallel_for(blocks,
+                          [&job](int block) { job.map.clean_up_block(block, job.time_ns); });
     for (const FusionCounts& block : block_counts_) counts += block;
     // Not before all have been asked: neighbours vouch for each other.
     for (std::size_t cell = 0; cell < gone_.size(); ++cell) {

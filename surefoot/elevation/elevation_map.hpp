@@ -97,6 +97,7 @@ class ElevationMap {
     /// A look agreed with the height of the cell, or of one beside it that is as high, just now.
     [[nodiscard]] bool stands_beside(grid::Cell cell, std::int64_t time_ns) const;
     void look_over_block(int block);
+    void clean_up(std::int64_t time_ns, Executor& executor, FusionCounts& counts);
     void clean_up_block(int block, std::int64_t time_ns);
 
     ElevationConfig config_;

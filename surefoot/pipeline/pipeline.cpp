@@ -2,7 +2,6 @@
 #include "surefoot/pipeline/pipeline.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/time.hpp"
@@ -285,21 +284,26 @@ void Pipeline::rate() {
     rater_.rate(map_.layers().height_m.view(), map_.geometry().resolution_m, *executor_, rating_);
 }
 
-Image<traversability::Foothold> Pipeline::footholds() const {
-    const elevation::ElevationLayers& layers = map_.layers();
-    grid::Layer reach_step_m;
+grid::Layer Pipeline::reach_step_m() const {
+    grid::Layer step_m;
     traversability::Reachability(config_.traversability.reach)
         .reach(map_.geometry(),
-               layers.height_m.view(),
+               map_.layers().height_m.view(),
                last_motion_.T_odom_body.translation_m.head<2>(),
-               reach_step_m);
+               step_m);
+    return step_m;
+}
+
+Image<traversability::Foothold> Pipeline::footholds() const {
+    const elevation::ElevationLayers& layers = map_.layers();
+    const grid::Layer reach_m = reach_step_m();
     Image<traversability::Foothold> found;
     traversability::FootholdFinder(config_.foothold)
         .find({layers.height_m.view(),
                layers.height_var_m2.view(),
                layers.clearance_m.view(),
                layers.free_above_m.view(),
-               std::as_const(reach_step_m).view(),
+               reach_m.view(),
                map_.geometry().resolution_m},
               *executor_,
               found);

@@ -72,6 +72,8 @@ class Pipeline {
 
     /// base_link at the last frame.
     [[nodiscard]] const Pose& T_odom_body() const noexcept { return last_motion_.T_odom_body; }
+    /// Which ground can be walked to from there, see Reachability. Allocates.
+    [[nodiscard]] grid::Layer reach_step_m() const;
     /// Where a foot may stand, as of now. Allocates, takes milliseconds: not for every frame.
     [[nodiscard]] Image<traversability::Foothold> footholds() const;
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <hwy/targets.h>
+
+#include <bit>
+#include <cstdint>
+#include <functional>
+
+#include "surefoot/core/executor.hpp"
+
+/// How a second computation differs from the first that must have the same bytes.
+namespace surefoot::fuzz {
+
+/// Last block first.
+class Backwards final : public Executor {
+  public:
+    void parallel_for(int count, const std::function<void(int)>& work) override {
+        for (int index = count - 1; index >= 0; --index) work(index);
+    }
+};
+
+/// Holds the dispatch of Highway on one of the instruction sets while it lives.
+class OnTarget {
+  public:
+    explicit OnTarget(int which) {
+        std::int64_t left = all();
+        for (int i = which % std::popcount(static_cast<std::uint64_t>(left)); i > 0; --i)
+            left &= left - 1;
+        hold(left & -left);
+    }
+    ~OnTarget() { hold(all()); }
+    OnTarget(const OnTarget&) = delete;
+    OnTarget& operator=(const OnTarget&) = delete;
+
+  private:
+    /// Asked once: the processor takes its time to answer.
+    static std::int64_t all() {
+        static const std::int64_t targets = hwy::SupportedTargets();
+        return targets;
+    }
+    static void hold(std::int64_t target) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    }
+};
+
+}  // namespace surefoot::fuzz
