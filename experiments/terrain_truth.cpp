@@ -12,9 +12,13 @@
 // One line a scene, seed and profile:
 //   median_mm, p90_mm, coverage               of all heights
 //   sigma_1, sigma_2, sigma_3                 share of errors within, farther than 2 cells from
-//   edges truly_unsafe, called_safe, cluster        cells; largest connected group of the second
+//                                             edges
+//   truly_unsafe, called_safe, cluster        cells; largest connected group of the second
+//   hazards, hazards_called_safe, hazard_cluster  the same where the foot itself could not stand
+//                                             (no drop is asked to be a band away), clear cut
 //   truly_safe, called_unsafe, unsure, unknown  cells; the last three are of the truly safe ones
 //   near_...                                  the same within 0.7 m of the body, in view or not
+// OUT.missed.csv gets the truly unsafe cells that were called safe, one a line, in odom.
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -57,10 +61,16 @@ struct Case {
     Camera camera;
 };
 
-struct FootholdCounts {
+/// Truly unsafe cells, those of them that were called safe and the largest group of these.
+struct Missed {
     int truly_unsafe = 0;
     int called_safe = 0;
     int cluster = 0;
+};
+
+struct FootholdCounts {
+    Missed all;
+    Missed hazards;  ///< of those where the foot itself could not stand, clear cut
     int truly_safe = 0;
     int called_unsafe = 0;
     int unsure = 0;
@@ -87,6 +97,26 @@ eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
     return safe;
 }
 
+/// Judges what lies under the foot itself, no band around it, by the margin of the suite: every
+/// limit is looser by that share, and the foot smaller by that length on all sides.
+Machine foot_alone(Machine machine) {
+    const sim::SafetyMargin margin;
+    const auto looser = [&](std::int32_t& limit) {
+        limit = static_cast<std::int32_t>(std::lround(limit * (1.0 + margin.limit_share)));
+    };
+    GateLimits& limits = machine.limits;
+    limits.drop_band_tenth_mm = 0;
+    limits.min_normal_z = std::cos((1.0 + margin.limit_share) * std::acos(limits.min_normal_z));
+    looser(limits.patch_residual_tenth_mm);
+    looser(limits.drop_tenth_mm);
+    const auto smaller = static_cast<std::int32_t>(std::lround(1e4 * margin.position_m));
+    for (GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
+        foot->length_tenth_mm -= 2 * smaller;
+        foot->width_tenth_mm -= 2 * smaller;
+    }
+    return machine;
+}
+
 /// Size of the largest group of cells of the mask that touch at their edges.
 int largest_cluster(eval::CellMask mask) {
     int largest = 0;
@@ -110,46 +140,63 @@ int largest_cluster(eval::CellMask mask) {
     return largest;
 }
 
+/// Cells of a map at which a foot may truly stand.
+struct TrulySafe {
+    eval::CellMask all;    ///< by all rules
+    eval::CellMask alone;  ///< by those for what lies under the foot itself; see `foot_alone`
+};
+
+bool is_missed(traversability::Foothold call, std::uint8_t truly_safe, std::uint8_t visible) {
+    return visible != 0 && truly_safe == 0 && call == traversability::Foothold::safe;
+}
+
+Missed count_missed(const Image<traversability::Foothold>& found,
+                    const eval::CellMask& truly_safe,
+                    const eval::CellMask& visible) {
+    Missed missed;
+    eval::CellMask where(found.width(), found.height(), 0);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (visible.data()[i] == 0 || truly_safe.data()[i] != 0) continue;
+        ++missed.truly_unsafe;
+        where.data()[i] = is_missed(found.data()[i], 0, 1) ? 1 : 0;
+        missed.called_safe += where.data()[i];
+    }
+    missed.cluster = largest_cluster(std::move(where));
+    return missed;
+}
+
 FootholdCounts compare(const Image<traversability::Foothold>& found,
-                       const eval::CellMask& truly_safe,
+                       const TrulySafe& truly_safe,
                        const eval::CellMask& visible) {
     using traversability::Foothold;
     FootholdCounts counts;
-    eval::CellMask missed(found.width(), found.height(), 0);
+    counts.all = count_missed(found, truly_safe.all, visible);
+    counts.hazards = count_missed(found, truly_safe.alone, visible);
     for (std::size_t i = 0; i < found.size(); ++i) {
-        if (visible.data()[i] == 0) continue;
+        if (visible.data()[i] == 0 || truly_safe.all.data()[i] == 0) continue;
         const Foothold call = found.data()[i];
-        const bool called_safe = call == Foothold::safe;
-        if (truly_safe.data()[i] == 0) {
-            ++counts.truly_unsafe;
-            counts.called_safe += called_safe ? 1 : 0;
-            missed.data()[i] = called_safe ? 1 : 0;
-            continue;
-        }
         ++counts.truly_safe;
         counts.unknown += call == Foothold::unknown || call == Foothold::unreachable ? 1 : 0;
         counts.unsure += call == Foothold::unsure ? 1 : 0;
         counts.called_unsafe += call > Foothold::unreachable ? 1 : 0;
     }
-    counts.cluster = largest_cluster(missed);
     return counts;
 }
 
 void print(const FootholdCounts& counts, fmt::ostream& out) {
-    out.print(",{},{},{},{},{},{},{}",
-              counts.truly_unsafe,
-              counts.called_safe,
-              counts.cluster,
-              counts.truly_safe,
-              counts.called_unsafe,
-              counts.unsure,
-              counts.unknown);
+    for (const Missed& missed : {counts.all, counts.hazards})
+        out.print(",{},{},{}", missed.truly_unsafe, missed.called_safe, missed.cluster);
+    out.print(
+        ",{},{},{},{}", counts.truly_safe, counts.called_unsafe, counts.unsure, counts.unknown);
 }
 
-Status measure(const Case& now,
-               const io::MachineFile& machine,
-               Executor& executor,
-               fmt::ostream& out) {
+/// The files that results go to.
+struct Results {
+    fmt::ostream cases;
+    fmt::ostream missed;
+};
+
+Status measure(const Case& now, const io::MachineFile& machine, Executor& executor, Results& out) {
     auto settings = load_settings({});
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
@@ -182,24 +229,40 @@ Status measure(const Case& now,
     const auto heights = eval::elevation_errors(
         pipeline->map().layers().height_m, sim::dem(truth.scene, lattice), visible, settings->maps);
     const auto found = pipeline->footholds();
-    const auto truly_safe = safe_at_all_yaws(truth, machine.machine, lattice, executor);
+    const TrulySafe truly_safe{
+        safe_at_all_yaws(truth, machine.machine, lattice, executor),
+        safe_at_all_yaws(truth, foot_alone(machine.machine), lattice, executor)};
     const auto near =
         eval::within_radius(geometry, pipeline->T_odom_body().translation_m.head<2>(), kNear_m);
     const eval::SigmaCoverage& sigma = record.truth->maps.sigma;
-    out.print("{},{},{},{:.2f},{:.2f},{:.4f},{:.4f},{:.4f},{:.4f}",
-              now.scene,
-              now.seed,
-              now.camera.name,
-              1e3 * heights.median_abs_m,
-              1e3 * heights.p90_abs_m,
-              record.truth->coverage_within_2_5_m,
-              sigma.within_1_sigma,
-              sigma.within_2_sigma,
-              sigma.within_3_sigma);
+    out.cases.print("{},{},{},{:.2f},{:.2f},{:.4f},{:.4f},{:.4f},{:.4f}",
+                    now.scene,
+                    now.seed,
+                    now.camera.name,
+                    1e3 * heights.median_abs_m,
+                    1e3 * heights.p90_abs_m,
+                    record.truth->coverage_within_2_5_m,
+                    sigma.within_1_sigma,
+                    sigma.within_2_sigma,
+                    sigma.within_3_sigma);
     for (const eval::CellMask& where : {visible, near})
-        print(compare(found, truly_safe, where), out);
-    out.print("\n");
-    out.flush();
+        print(compare(found, truly_safe, where), out.cases);
+    out.cases.print("\n");
+    out.cases.flush();
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (!is_missed(found.data()[i], truly_safe.all.data()[i], visible.data()[i])) continue;
+        const auto nx = static_cast<std::size_t>(geometry.nx);
+        const Eigen::Vector2d at =
+            geometry.center_m({static_cast<int>(i % nx), static_cast<int>(i / nx)});
+        out.missed.print("{},{},{},{:.4f},{:.4f},{}\n",
+                         now.scene,
+                         now.seed,
+                         now.camera.name,
+                         at.x(),
+                         at.y(),
+                         truly_safe.alone.data()[i] == 0 ? 1 : 0);
+    }
+    out.missed.flush();
     return {};
 }
 
@@ -220,20 +283,24 @@ int measure_all(const std::vector<std::string>& words) {
     const auto machine = load_machine("rex");
     if (!machine) return report(machine.error());
     const auto executor = make_executor({});
-    auto out = fmt::output_file(words[0]);
-    out.print("scene,seed,profile,median_mm,p90_mm,coverage,sigma_1,sigma_2,sigma_3");
+    Results out{fmt::output_file(words[0]), fmt::output_file(words[0] + ".missed.csv")};
+    out.missed.print("scene,seed,profile,x_m,y_m,hazard\n");
+    out.cases.print("scene,seed,profile,median_mm,p90_mm,coverage,sigma_1,sigma_2,sigma_3");
     for (const char* where : {"", "near_"}) {
         for (const char* what : {"truly_unsafe",
                                  "called_safe",
                                  "cluster",
+                                 "hazards",
+                                 "hazards_called_safe",
+                                 "hazard_cluster",
                                  "truly_safe",
                                  "called_unsafe",
                                  "unsure",
                                  "unknown"}) {
-            out.print(",{}{}", where, what);
+            out.cases.print(",{}{}", where, what);
         }
     }
-    out.print("\n");
+    out.cases.print("\n");
     const std::string profiles = words.size() > 4 ? words[4] : "ideal,zed";
     for (const std::string_view name : io::split(profiles, ",")) {
         const auto camera = camera_named(std::string(name));

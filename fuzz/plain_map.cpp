@@ -14,6 +14,7 @@ namespace {
 using namespace surefoot::elevation;
 
 // Trust in what hangs over a cell, and the weights of a look: as elevation_cells.cpp says.
+constexpr float kFaceDensity = 3.0F;
 constexpr int kSeenAbove = 2;
 constexpr int kSureAbove = 4;
 constexpr int kMostAbove = 8;
@@ -105,7 +106,12 @@ FusionCounts PlainMap::add(const camera::RectifiedRig& rig,
         samples = samples_of(points, counts);
     }
     const ExpectedPoints expected(rig, T_odom_body, geometry_);
-    fuse(samples, T_odom_body, &expected, time_ns, counts);
+    fuse(samples,
+         T_odom_body,
+         (T_odom_body * rig.T_body_camera).translation_m,
+         &expected,
+         time_ns,
+         counts);
     return counts;
 }
 
@@ -118,7 +124,12 @@ FusionCounts PlainMap::add_points(std::span<const MeasuredPoint> cloud,
     std::vector<GridPoint> points;
     points_from_cloud(
         config_, cloud, T_body_sensor, T_odom_body, geometry_.origin_m, points, counts);
-    fuse(samples_of(points, counts), T_odom_body, nullptr, time_ns, counts);
+    fuse(samples_of(points, counts),
+         T_odom_body,
+         (T_odom_body * T_body_sensor).translation_m,
+         nullptr,
+         time_ns,
+         counts);
     return counts;
 }
 
@@ -157,23 +168,44 @@ PlainMap::Samples PlainMap::samples_of(std::span<const GridPoint> points,
 
 void PlainMap::fuse(const Samples& samples,
                     const Pose& T_odom_body,
+                    const Eigen::Vector3d& camera_m,
                     const ExpectedPoints* expected,
                     std::int64_t time_ns,
                     FusionCounts& counts) {
     view_ = views_.look_from(T_odom_body);
+    SightEnds ends;
+    ends.reset(geometry_, camera_m);
     for (const auto& [index, heights] : samples) {
         const auto measured = reduce_cell(config_.reduction, heights.z_m, heights.var_m2);
         if (!measured || !std::isfinite(measured->z_m) || !std::isfinite(measured->var_m2)) {
             continue;
         }
-        Seen seen{*measured, kNan};
+        const auto ix = static_cast<int>(index.second - first_ix_);
+        const auto iy = static_cast<int>(index.first - first_iy_);
+        Seen seen{*measured, kNan, measured->z_m};
         if (expected != nullptr) {
-            const float level = expected->at(static_cast<int>(index.second - first_ix_),
-                                             static_cast<int>(index.first - first_iy_),
-                                             measured->z_m);
-            if (level > 0.0F) seen.density_ratio = static_cast<float>(heights.z_m.size()) / level;
+            const auto points = static_cast<float>(heights.z_m.size());
+            const float level = expected->at(ix, iy, measured->z_m);
+            if (level > 0.0F) seen.density_ratio = points / level;
+            if (points > kFaceDensity * expected->at(ix, iy, measured->lowest_m))
+                seen.bottom_m = std::min(measured->lowest_m, measured->z_m);
         }
+        ends.set(static_cast<std::size_t>(iy * geometry_.nx + ix), *measured, seen.bottom_m);
         update(cells_[index], seen, time_ns, counts);
+    }
+    look_overhead(ends);
+}
+
+void PlainMap::look_overhead(const SightEnds& ends) {
+    const auto margin_m = static_cast<float>(config_.visibility.margin_m);
+    for (int iy = 0; iy < geometry_.ny; ++iy) {
+        for (int ix = 0; ix < geometry_.nx; ++ix) {
+            const auto found = cells_.find(lattice_of(ix, iy));
+            if (found == cells_.end() || std::isnan(found->second.overhead_m)) continue;
+            const float z_m = found->second.overhead_m;
+            if (ends.passed_through({ix, iy}, z_m - margin_m, z_m + margin_m))
+                see_no_more_above(found->second);
+        }
     }
 }
 
@@ -188,6 +220,8 @@ void PlainMap::update(Cell& cell, const Seen& seen, std::int64_t time_ns, Fusion
     const double scan_s = config_.fusion.scan_duration_s;
     const bool same_scan = scan_s > 0.0 && time_ns - cell.seen_ns <= ns_from_seconds(scan_s);
     const float before_m = cell.height_m;
+    const float bottom_m = cell.bottom_m;
+    const int trust = cell.count > 1 ? kMostAbove : kSeenAbove;
     const FusionResult result =
         elevation::fuse(config_.fusion,
                         {static_cast<double>(before_m), static_cast<double>(cell.height_var_m2)},
@@ -203,10 +237,11 @@ void PlainMap::update(Cell& cell, const Seen& seen, std::int64_t time_ns, Fusion
     const auto hangs = static_cast<float>(config_.min_overhead_m);
     if (result.outcome == FusionOutcome::replaced) {
         start(cell, seen, time_ns);
-        if (before_m - measured.z_m > hangs) see_above(cell, before_m, kMostAbove);
+        if (bottom_m - measured.z_m > hangs) see_above(cell, bottom_m, trust, true);
     } else if (result.outcome == FusionOutcome::inflated) {
         cell.height_var_m2 = static_cast<float>(result.cell.var_m2);
-        if (measured.z_m - before_m > hangs) see_above(cell, measured.z_m, kSeenAbove);
+        if (measured.z_m - before_m > hangs)
+            see_above(cell, measured.z_m, kSeenAbove, seen.bottom_m - before_m > hangs);
     }
 }
 
@@ -224,6 +259,7 @@ void PlainMap::start(Cell& cell, const Seen& seen, std::int64_t time_ns) {
     cell.density_ratio = seen.density_ratio;
     cell.settled_var_m2 = cell.height_var_m2;
     cell.view = view_;
+    cell.bottom_m = seen.bottom_m;
     drop_what_touches(cell);
     set_clearance(cell);
 }
@@ -251,8 +287,8 @@ void PlainMap::agree(Cell& cell, const Height& fused, const Seen& seen, std::int
     } else if (!std::isnan(seen.density_ratio)) {
         cell.density_ratio += kNewLook * (seen.density_ratio - cell.density_ratio);
     }
-    if (cell.overhead_trust == 0) return;
-    if (--cell.overhead_trust == 0) cell.overhead_m = kNan;
+    cell.bottom_m = std::min(cell.bottom_m, seen.bottom_m);
+    if (!cell.overhead_hangs) see_no_more_above(cell);
     set_clearance(cell);
 }
 
@@ -260,9 +296,20 @@ void PlainMap::drop_what_touches(Cell& cell) const {
     if (cell.overhead_m - cell.height_m > static_cast<float>(config_.min_overhead_m)) return;
     cell.overhead_m = kNan;
     cell.overhead_trust = 0;
+    cell.overhead_hangs = false;
 }
 
-void PlainMap::see_above(Cell& cell, float z_m, int trust) {
+void PlainMap::see_no_more_above(Cell& cell) {
+    if (cell.overhead_trust == 0) return;
+    if (--cell.overhead_trust == 0) {
+        cell.overhead_m = kNan;
+        cell.overhead_hangs = false;
+    }
+    set_clearance(cell);
+}
+
+void PlainMap::see_above(Cell& cell, float z_m, int trust, bool hangs) {
+    cell.overhead_hangs = cell.overhead_hangs || hangs;
     if (!(cell.overhead_m <= z_m)) cell.overhead_m = z_m;
     cell.overhead_trust = std::min(cell.overhead_trust + trust, kMostAbove);
     set_clearance(cell);
@@ -301,9 +348,11 @@ std::int64_t PlainMap::insert(const grid::MapRegion& region,
             cell.density_ratio = placed.density_ratio.at(ix, iy);
             cell.settled_var_m2 = cell.height_var_m2;
             cell.view = ViewpointHistory::kNever;
+            cell.bottom_m = cell.height_m;
             drop_what_touches(cell);
             const float clearance_m = placed.clearance_m.at(ix, iy);
-            if (!std::isnan(clearance_m)) see_above(cell, cell.height_m + clearance_m, kMostAbove);
+            if (!std::isnan(clearance_m))
+                see_above(cell, cell.height_m + clearance_m, kMostAbove, true);
             set_clearance(cell);
             ++filled;
         }

@@ -15,7 +15,8 @@ namespace surefoot::fuzz {
 /// The elevation map once more, as plainly as it can be said: a dictionary from lattice cells to
 /// what is known of them, no layers, no sliding, no blocks, no registers. Shares with the map the
 /// functions that have oracles of their own: points of a cloud or an image, the plain reduction of
-/// a cell, the height fusion, the noise of a row, the history of viewpoints. Without clean-up.
+/// a cell, the height fusion, the noise of a row, the history of viewpoints, the ends of the lines
+/// of sight. Without clean-up.
 class PlainMap {
   public:
     explicit PlainMap(const elevation::ElevationConfig& config);
@@ -62,11 +63,14 @@ class PlainMap {
         elevation::ViewpointHistory::Id view = elevation::ViewpointHistory::kNever;
         float overhead_m = kNan;
         int overhead_trust = 0;
+        bool overhead_hangs = false;
+        float bottom_m = kNan;
     };
     /// What one look says about one cell.
     struct Seen {
         elevation::CellMeasurement measured;
         float density_ratio = kNan;
+        float bottom_m = kNan;
     };
     struct Heights {
         std::vector<float> z_m;
@@ -84,13 +88,16 @@ class PlainMap {
                                      FusionCounts& counts) const;
     void fuse(const Samples& samples,
               const Pose& T_odom_body,
+              const Eigen::Vector3d& camera_m,
               const elevation::ExpectedPoints* expected,
               std::int64_t time_ns,
               FusionCounts& counts);
     void update(Cell& cell, const Seen& seen, std::int64_t time_ns, FusionCounts& counts);
     void start(Cell& cell, const Seen& seen, std::int64_t time_ns);
     void agree(Cell& cell, const elevation::Height& fused, const Seen& seen, std::int64_t time_ns);
-    static void see_above(Cell& cell, float z_m, int trust);
+    void look_overhead(const elevation::SightEnds& ends);
+    static void see_above(Cell& cell, float z_m, int trust, bool hangs);
+    static void see_no_more_above(Cell& cell);
     static void set_clearance(Cell& cell);
     void drop_what_touches(Cell& cell) const;
 

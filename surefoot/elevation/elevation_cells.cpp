@@ -12,9 +12,9 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Trust in what hangs over a cell: a sighting adds two, seeing the ground below takes one away.
-/// Two sightings are believed, one may be a wrong match; what was the cell's height before the
-/// ground below it was found is believed longest. ASSUMPTION, all three.
+/// Trust in what hangs over a cell: a sighting adds two, a line of sight through it takes one away.
+/// Two sightings are believed, one may be a wrong match; what was the cell's height, for more than
+/// one look, before the ground below it was found is believed longest. ASSUMPTION, all three.
 constexpr int kOverheadSeen = 2;
 constexpr int kOverheadSure = 4;
 constexpr int kOverheadMost = 8;
@@ -44,6 +44,8 @@ void ElevationCells::for_each_layer(const F& f) {
     f(viewpoint_, ViewpointHistory::kNever);
     f(overhead_m_, kNan);
     f(overhead_trust_, std::uint8_t{0});
+    f(overhead_hangs_, std::uint8_t{0});
+    f(bottom_m_, kNan);
     f(steady_, std::uint8_t{0});
     f(seen_through_, std::uint16_t{0});
 }
@@ -98,23 +100,28 @@ void ElevationCells::update(std::size_t cell,
     layers_.confidence.data()[cell] *= 1.0F - kNewLook;
     const auto hangs = static_cast<float>(config_.min_overhead_m);
     if (result.outcome == FusionOutcome::replaced) {
+        const float before_m = bottom_m(cell);
+        const int trust = trust_in(cell);
         start(cell, seen, look);
-        if (height_m - measured.z_m > hangs) see_above(cell, height_m, kOverheadMost);
+        if (before_m - measured.z_m > hangs) see_above(cell, before_m, trust, true);
     }
     if (result.outcome == FusionOutcome::inflated) {
         var_m2 = static_cast<float>(result.cell.var_m2);
-        if (measured.z_m - height_m > hangs) see_above(cell, measured.z_m, kOverheadSeen);
+        if (measured.z_m - height_m > hangs)
+            see_above(cell, measured.z_m, kOverheadSeen, seen.bottom_m - height_m > hangs);
     }
 }
 
-bool ElevationCells::see_through(std::size_t cell, float line_z_m) {
+bool ElevationCells::is_above(std::size_t cell, float line_z_m) const {
     const VisibilityConfig& visibility = config_.visibility;
     const float height_m = layers_.height_m.data()[cell];
     const float sigma_m = std::sqrt(layers_.height_var_m2.data()[cell]);
     const auto margin_m = static_cast<float>(visibility.margin_m);
-    if (!(height_m - line_z_m > margin_m + static_cast<float>(visibility.sigmas) * sigma_m)) {
-        return false;
-    }
+    return height_m - line_z_m > margin_m + static_cast<float>(visibility.sigmas) * sigma_m;
+}
+
+bool ElevationCells::see_through(std::size_t cell) {
+    const VisibilityConfig& visibility = config_.visibility;
     std::uint16_t& evidence = seen_through_.data()[cell];
     evidence = static_cast<std::uint16_t>(evidence + steady_.data()[cell]);
     if (evidence < visibility.frames * kGone) return false;
@@ -125,6 +132,10 @@ bool ElevationCells::see_through(std::size_t cell, float line_z_m) {
 void ElevationCells::see_over(std::size_t cell, float line_z_m) {
     float& lowest_m = layers_.free_above_m.data()[cell];
     lowest_m = lowest_m < line_z_m ? lowest_m : line_z_m;
+}
+
+int ElevationCells::trust_in(std::size_t cell) const {
+    return layers_.count.data()[cell] > 1 ? kOverheadMost : kOverheadSeen;
 }
 
 void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std::size_t from) {
@@ -143,20 +154,24 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     layers_.free_above_m.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
+    bottom_m_.data()[cell] = height_m;
     seen_through_.data()[cell] = 0;
     // As when a height is first measured: what this run saw hang here stays, unless this is it.
     const auto hangs = static_cast<float>(config_.min_overhead_m);
     if (!(overhead_m_.data()[cell] - height_m > hangs)) {
         overhead_m_.data()[cell] = kNan;
         overhead_trust_.data()[cell] = 0;
+        overhead_hangs_.data()[cell] = 0;
     }
     const float clearance_m = region.clearance_m.data()[from];
-    if (!std::isnan(clearance_m)) see_above(cell, height_m + clearance_m, kOverheadMost);
+    if (!std::isnan(clearance_m)) see_above(cell, height_m + clearance_m, kOverheadMost, true);
     set_clearance(cell);
 }
 
 void ElevationCells::forget(std::size_t cell) {
-    const float height_m = layers_.height_m.data()[cell];
+    const float before_m = bottom_m(cell);
+    const int trust = trust_in(cell);
+    bottom_m_.data()[cell] = kNan;
     layers_.height_m.data()[cell] = kNan;
     layers_.height_var_m2.data()[cell] = kNan;
     layers_.count.data()[cell] = 0;
@@ -169,13 +184,15 @@ void ElevationCells::forget(std::size_t cell) {
     layers_.density_ratio.data()[cell] = kNan;
     overhead_m_.data()[cell] = kNan;
     overhead_trust_.data()[cell] = 0;
+    overhead_hangs_.data()[cell] = 0;
     seen_through_.data()[cell] = 0;
-    // What stood here may have been a thing that one sees under. Until the ground below it has been
-    // seen a few times, it bounds the clearance.
-    see_above(cell, height_m, kOverheadMost);
+    // What stood here may have been a thing that one sees under. Until lines of sight have passed
+    // through it a few times, it bounds the clearance.
+    see_above(cell, before_m, trust, true);
 }
 
-void ElevationCells::see_above(std::size_t cell, float z_m, int trust) {
+void ElevationCells::see_above(std::size_t cell, float z_m, int trust, bool hangs) {
+    if (hangs) overhead_hangs_.data()[cell] = 1;
     float& overhead_m = overhead_m_.data()[cell];
     overhead_m = std::isnan(overhead_m) ? z_m : std::min(overhead_m, z_m);
     std::uint8_t& believed = overhead_trust_.data()[cell];
@@ -187,7 +204,10 @@ void ElevationCells::see_no_more_above(std::size_t cell) {
     std::uint8_t& believed = overhead_trust_.data()[cell];
     if (believed == 0) return;
     --believed;
-    if (believed == 0) overhead_m_.data()[cell] = kNan;
+    if (believed == 0) {
+        overhead_m_.data()[cell] = kNan;
+        overhead_hangs_.data()[cell] = 0;
+    }
     set_clearance(cell);
 }
 
@@ -217,12 +237,14 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
     layers_.free_above_m.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     viewpoint_.data()[cell] = look.view;
+    bottom_m_.data()[cell] = seen.bottom_m;
     seen_through_.data()[cell] = 0;
     // What hangs over an unknown cell stays there, unless this is it.
     const auto hangs = static_cast<float>(config_.min_overhead_m);
     if (!(overhead_m_.data()[cell] - measured.z_m > hangs)) {
         overhead_m_.data()[cell] = kNan;
         overhead_trust_.data()[cell] = 0;
+        overhead_hangs_.data()[cell] = 0;
     }
     set_clearance(cell);
 }
@@ -250,8 +272,11 @@ void ElevationCells::agree(std::size_t cell,
     const float confidence = layers_.confidence.data()[cell];
     set_confidence(cell, confidence + kNewLook * (1.0F - confidence));
     remember_density(cell, seen.density_ratio);
+    bottom_m_.data()[cell] = std::min(bottom_m_.data()[cell], seen.bottom_m);
     seen_through_.data()[cell] = 0;
-    see_no_more_above(cell);
+    // Ground is seen under a table top, but not through a person.
+    if (overhead_hangs_.data()[cell] == 0) see_no_more_above(cell);
+    set_clearance(cell);
 }
 
 void ElevationCells::set_confidence(std::size_t cell, float confidence) {

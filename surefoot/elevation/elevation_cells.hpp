@@ -24,6 +24,9 @@ struct Look {
 struct Seen {
     CellMeasurement measured;
     float density_ratio = 0.0F;  ///< see ElevationLayers; NaN = not known
+    /// Where what has the height begins: a face that is seen from the side reaches down to its
+    /// lowest points, anything else begins at the height.
+    float bottom_m = 0.0F;
 };
 
 /// The cells of an elevation map and what a look does to one of them. Cells do not know of each
@@ -47,12 +50,23 @@ class ElevationCells {
 
     /// Fuses a measurement.
     void update(std::size_t cell, const Seen& seen, const Look& look, FusionCounts& counts);
-    /// A line of sight passes at `line_z_m` over the cell, or the look at it ended there: often
-    /// enough below the height, without a look that agrees, and it is gone. Returns whether it is.
-    /// For cells that no look agreed with in this frame.
-    bool see_through(std::size_t cell, float line_z_m);
+    /// The height of the cell is clearly above a line of sight over it.
+    [[nodiscard]] bool is_above(std::size_t cell, float line_z_m) const;
+    /// A line of sight passes through the surface of the cell: often enough, without a look that
+    /// agrees, and it is gone. Returns whether it is. For cells that no look agreed with in this
+    /// frame.
+    bool see_through(std::size_t cell);
     /// The same over an unknown cell: whatever is there is lower.
     void see_over(std::size_t cell, float line_z_m);
+    /// Where the remembered surface of a cell begins, see `Seen`.
+    [[nodiscard]] float bottom_m(std::size_t cell) const noexcept { return bottom_m_.data()[cell]; }
+    /// The lowest thing that was seen above the height of a cell, or where a surface was that is
+    /// gone; NaN if there is none.
+    [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
+        return overhead_m_.data()[cell];
+    }
+    /// A line of sight passed through the lowest thing above a cell.
+    void see_no_more_above(std::size_t cell);
     /// The cell is unknown; what its height was may still hang over it.
     void forget(std::size_t cell);
 
@@ -70,8 +84,9 @@ class ElevationCells {
     void repeat(std::size_t cell, const CellMeasurement& measured, const Look& look);
     void set_confidence(std::size_t cell, float confidence);
     void remember_density(std::size_t cell, float ratio);
-    void see_above(std::size_t cell, float z_m, int trust);
-    void see_no_more_above(std::size_t cell);
+    /// In the height of a cell, should it turn out to hang over ground.
+    [[nodiscard]] int trust_in(std::size_t cell) const;
+    void see_above(std::size_t cell, float z_m, int trust, bool hangs);
     void set_clearance(std::size_t cell);
 
     ElevationConfig config_;
@@ -83,6 +98,8 @@ class ElevationCells {
     /// Lowest surface seen above the height, and how far it is believed.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;
+    grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: it stands on the ground
+    ElevationLayers::Layer bottom_m_;
     /// A surface seen in a share s of the looks is missed in n of them by chance with (1 - s)^n: so
     /// that 1/s times as many frames are asked of it before it counts as gone.
     grid::SlidingLayer<std::uint8_t> steady_;         ///< s at the last look that agreed, in 1/16

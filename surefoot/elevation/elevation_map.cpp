@@ -16,6 +16,10 @@ namespace surefoot::elevation {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+/// So many times the points that level ground would show at the height of the lowest ones are a
+/// face, seen from the side. Floor under a table top and the top together bring twice as many at
+/// most. ASSUMPTION.
+constexpr float kFaceDensity = 3.0F;
 constexpr int kBeside = 2;  ///< cells that vouch for one that was not seen lie this near
 
 }  // namespace
@@ -80,8 +84,9 @@ FusionCounts ElevationMap::add(const camera::RectifiedRig& rig,
         sample_points(counts);
     }
     const ExpectedPoints expected(rig, T_odom_body, geometry());
-    fuse_samples(T_odom_body, &expected, time_ns, executor, counts);
-    look_along_lines((T_odom_body * rig.T_body_camera).translation_m, time_ns, executor, counts);
+    const Eigen::Vector3d camera_m = (T_odom_body * rig.T_body_camera).translation_m;
+    fuse_samples(T_odom_body, camera_m, &expected, time_ns, executor, counts);
+    look_along_lines(camera_m, time_ns, executor, counts);
     return counts;
 }
 
@@ -95,8 +100,9 @@ FusionCounts ElevationMap::add_points(std::span<const MeasuredPoint> points,
     points_from_cloud(
         config_, points, T_body_sensor, T_odom_body, geometry().origin_m, points_, counts);
     sample_points(counts);
-    fuse_samples(T_odom_body, nullptr, time_ns, executor, counts);
-    look_along_lines((T_odom_body * T_body_sensor).translation_m, time_ns, executor, counts);
+    const Eigen::Vector3d sensor_m = (T_odom_body * T_body_sensor).translation_m;
+    fuse_samples(T_odom_body, sensor_m, nullptr, time_ns, executor, counts);
+    look_along_lines(sensor_m, time_ns, executor, counts);
     return counts;
 }
 
@@ -145,6 +151,7 @@ void ElevationMap::sample_points(FusionCounts& counts) {
 }
 
 void ElevationMap::fuse_samples(const Pose& T_odom_body,
+                                const Eigen::Vector3d& camera_m,
                                 const ExpectedPoints* expected,
                                 std::int64_t time_ns,
                                 Executor& executor,
@@ -152,7 +159,7 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
     const int blocks = (geometry().ny + kBlockRows - 1) / kBlockRows;
     groups_.assign(samples_, layers().height_m.size());
     measured_.resize(static_cast<std::size_t>(blocks) * static_cast<std::size_t>(geometry().nx));
-    seen_z_m_.resize(layers().height_m.size());
+    ends_.reset(geometry(), camera_m);
     block_counts_.assign(static_cast<std::size_t>(blocks), {});
     struct Job {
         ElevationMap& map;
@@ -173,22 +180,21 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
     FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
     for (int iy = first; iy < last; ++iy) {
         const std::uint32_t* begin = groups_.begin() + static_cast<std::ptrdiff_t>(iy) * nx;
-        float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * nx;
         reduce_cells(config_.reduction, begin, nx, groups_.z_m(), groups_.var_m2(), measured);
         for (int ix = 0; ix < nx; ++ix) {
-            if (measured[ix].points == 0) {
-                seen_z_m[ix] = kNan;
-                continue;
-            }
-            seen_z_m[ix] = measured[ix].z_m;
-            Seen seen{measured[ix], kNan};
+            if (measured[ix].points == 0) continue;
+            Seen seen{measured[ix], kNan, measured[ix].z_m};
             if (expected != nullptr) {
                 const auto points = static_cast<float>(begin[ix + 1] - begin[ix]);
                 const float level = expected->at(ix, iy, measured[ix].z_m);
                 if (level > 0.0F) seen.density_ratio = points / level;
+                const float lowest_m = measured[ix].lowest_m;
+                if (points > kFaceDensity * expected->at(ix, iy, lowest_m))
+                    seen.bottom_m = std::min(lowest_m, measured[ix].z_m);
             }
             const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
                               static_cast<std::size_t>(ix);
+            ends_.set(cell, seen.measured, seen.bottom_m);
             cells_.update(cell, seen, look, counts);
         }
     }
@@ -199,16 +205,17 @@ void ElevationMap::look_along_lines(const Eigen::Vector3d& camera_m,
                                     Executor& executor,
                                     FusionCounts& counts) {
     const VisibilityConfig& visibility = config_.visibility;
+    const auto blocks = static_cast<int>(block_counts_.size());
+    executor.parallel_for(blocks, [this](int block) { look_overhead_in_block(block); });
     if (!visibility.drops && !visibility.cleanup) return;
     lines_.reset(geometry(), camera_m);
     for (int iy = 0; iy < geometry().ny; ++iy) {
-        const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * geometry().nx;
+        const float* seen_z_m = ends_.z_m_row(iy);
         for (int ix = 0; ix < geometry().nx; ++ix) {
             if (!std::isnan(seen_z_m[ix])) lines_.add({ix, iy}, seen_z_m[ix]);
         }
     }
     lines_.finish();
-    const auto blocks = static_cast<int>(block_counts_.size());
     if (visibility.drops)
         executor.parallel_for(blocks, [this](int block) { look_over_block(block); });
     if (visibility.cleanup) clean_up(time_ns, executor, counts);
@@ -217,7 +224,7 @@ void ElevationMap::look_along_lines(const Eigen::Vector3d& camera_m,
 void ElevationMap::clean_up(std::int64_t time_ns, Executor& executor, FusionCounts& counts) {
     const auto blocks = static_cast<int>(block_counts_.size());
     block_counts_.assign(block_counts_.size(), {});
-    gone_.assign(seen_z_m_.size(), 0);
+    gone_.assign(layers().height_m.size(), 0);
     struct Job {
         ElevationMap& map;
         std::int64_t time_ns;
@@ -228,6 +235,26 @@ void ElevationMap::clean_up(std::int64_t time_ns, Executor& executor, FusionCoun
     // Not before all have been asked: neighbours vouch for each other.
     for (std::size_t cell = 0; cell < gone_.size(); ++cell) {
         if (gone_[cell] != 0) cells_.forget(cell);
+    }
+}
+
+bool ElevationMap::passed_through(grid::Cell cell, float z_m) const {
+    const auto margin_m = static_cast<float>(config_.visibility.margin_m);
+    return ends_.passed_through(cell, z_m - margin_m, z_m + margin_m);
+}
+
+void ElevationMap::look_overhead_in_block(int block) {
+    const int nx = geometry().nx;
+    const int first = block * kBlockRows;
+    const int last = std::min(first + kBlockRows, geometry().ny);
+    for (int iy = first; iy < last; ++iy) {
+        for (int ix = 0; ix < nx; ++ix) {
+            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
+                              static_cast<std::size_t>(ix);
+            const float overhead_m = cells_.overhead_m(cell);
+            if (std::isnan(overhead_m) || !passed_through({ix, iy}, overhead_m)) continue;
+            cells_.see_no_more_above(cell);
+        }
     }
 }
 
@@ -271,18 +298,25 @@ void ElevationMap::clean_up_block(int block, std::int64_t time_ns) {
     const int first = block * kBlockRows;
     const int last = std::min(first + kBlockRows, geometry().ny);
     FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
+    const auto hangs_m = static_cast<float>(config_.min_overhead_m);
     for (int iy = first; iy < last; ++iy) {
         const float* height_m = layers().height_m.row(iy);
         const std::int64_t* agreed_ns = layers().seen_ns.row(iy);
-        const float* seen_z_m = seen_z_m_.data() + static_cast<std::ptrdiff_t>(iy) * nx;
+        const std::uint32_t* count = layers().count.row(iy);
+        const float* seen_z_m = ends_.z_m_row(iy);
         for (int ix = 0; ix < nx; ++ix) {
             if (std::isnan(height_m[ix]) || agreed_ns[ix] == time_ns) continue;
-            // A look that ended here, below the height, has passed through it as well.
+            // A look that ended here, below the height, has passed by it as well.
             const float line_z_m = lines_.lowest_over({ix, iy});
             const float lowest_m = seen_z_m[ix] < line_z_m ? seen_z_m[ix] : line_z_m;
             const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
                               static_cast<std::size_t>(ix);
-            if (cells_.see_through(cell, lowest_m) && !stands_beside({ix, iy}, time_ns)) {
+            if (!cells_.is_above(cell, lowest_m)) continue;
+            // What stands on the ground is in the way of all lines below its height, what hangs of
+            // those alone that meet it. What one look alone showed may be a wrong match.
+            const bool stands = cells_.bottom_m(cell) - lowest_m <= hangs_m || count[ix] == 1;
+            if (!stands && !passed_through({ix, iy}, height_m[ix])) continue;
+            if (cells_.see_through(cell) && !stands_beside({ix, iy}, time_ns)) {
                 gone_[cell] = 1;
                 ++counts.cells_cleared;
             }

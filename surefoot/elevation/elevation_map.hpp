@@ -20,6 +20,7 @@
 #include "surefoot/elevation/expected_points.hpp"
 #include "surefoot/elevation/motion_update.hpp"
 #include "surefoot/elevation/prefilter.hpp"
+#include "surefoot/elevation/sight_ends.hpp"
 #include "surefoot/elevation/viewpoint_history.hpp"
 #include "surefoot/elevation/visibility.hpp"
 #include "surefoot/grid/map_region.hpp"
@@ -83,17 +84,21 @@ class ElevationMap {
     void inflate(const MotionNoise& noise, const Eigen::Vector3d& body_m);
     void sample_points(FusionCounts& counts);
     void fuse_samples(const Pose& T_odom_body,
+                      const Eigen::Vector3d& camera_m,
                       const ExpectedPoints* expected,
                       std::int64_t time_ns,
                       Executor& executor,
                       FusionCounts& counts);
     void fuse_block(int block, const ExpectedPoints* expected, const Look& look);
-    /// What the frame's lines of sight say: unknown ground below them, and (if so configured)
-    /// remembered surfaces in their way, which are forgotten.
+    /// What the frame's lines of sight say: things overhead that are gone, unknown ground below
+    /// them, and (if so configured) remembered surfaces in their way, which are forgotten.
     void look_along_lines(const Eigen::Vector3d& camera_m,
                           std::int64_t time_ns,
                           Executor& executor,
                           FusionCounts& counts);
+    void look_overhead_in_block(int block);
+    /// Lines of sight passed through a surface at that height.
+    [[nodiscard]] bool passed_through(grid::Cell cell, float z_m) const;
     /// A look agreed with the height of the cell, or of one beside it that is as high, just now.
     [[nodiscard]] bool stands_beside(grid::Cell cell, std::int64_t time_ns) const;
     void look_over_block(int block);
@@ -109,8 +114,8 @@ class ElevationMap {
     DepthSampler sampler_;
     CellSamples samples_;
     CellGroups groups_;
-    std::vector<CellMeasurement> measured_;   ///< a row of cells per block
-    std::vector<float> seen_z_m_;             ///< per cell: what the frame measured; NaN = nothing
+    std::vector<CellMeasurement> measured_;  ///< a row of cells per block
+    SightEnds ends_;
     std::vector<FusionCounts> block_counts_;  ///< per block
     LinesOfSight lines_;
     std::vector<std::uint8_t> gone_;  ///< per cell: the frame's lines of sight say so

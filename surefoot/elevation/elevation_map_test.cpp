@@ -281,14 +281,25 @@ TEST(ElevationMap, ConfigurationDescribesItself) {
         << *config.problem();
 }
 
-/// A machine that moves 0.1 m between its looks, so that each of them counts.
+/// A machine that moves 0.1 m between its looks, so that each of them counts; its camera is 1 m
+/// over the ground.
 class Overhead : public ::testing::Test {
   protected:
-    void look(double z_m) {
-        const Pose T_odom_body = body_at(0.1 * looks_, 0.0);
+    /// At a patch of ground, and at one where the lines of sight through the patch at `through_m`
+    /// end.
+    void look(double z_m, std::optional<double> through_m = {}) {
+        const Pose T_odom_body = body_at(0.1 * looks_ - 0.5, 0.0);
+        const Eigen::Vector3d& camera_m = T_odom_body.translation_m;
         map_.follow(T_odom_body, 1e-9 * Matrix6::Identity());
-        map_.add_points(
-            flat_patch(T_odom_body, 1.0, 0.0, z_m), Pose{}, T_odom_body, (looks_ + 1) * kFrame_ns);
+        auto points = flat_patch(T_odom_body, 1.0, 0.0, z_m);
+        if (through_m) {
+            const double times = camera_m.z() / (camera_m.z() - *through_m);
+            const double x_m = camera_m.x() + times * (1.0 - camera_m.x());
+            for (int i = -2; i <= 2; ++i)
+                for (const MeasuredPoint& p : flat_patch(T_odom_body, x_m + 0.1 * i, 0.0, 0.0))
+                    points.push_back(p);
+        }
+        map_.add_points(points, Pose{}, T_odom_body, (looks_ + 1) * kFrame_ns);
         ++looks_;
     }
     [[nodiscard]] float clearance() const { return at(map_, map_.layers().clearance_m, 1.0, 0.0); }
@@ -307,16 +318,26 @@ TEST_F(Overhead, TwoSightingsOfATableTopBoundTheClearance) {
     EXPECT_NEAR(height_at(map_, 1.0, 0.0), 0.0F, 0.002F);
 }
 
-TEST_F(Overhead, IsForgottenWhenTheGroundIsSeenAgain) {
+TEST_F(Overhead, StaysWhileTheGroundUnderItIsSeen) {
     for (int i = 0; i < 3; ++i) look(0.0);
-    look(0.7);
+    look(0.4);
+    look(0.4);
+    ASSERT_NEAR(clearance(), 0.4F, 0.005F);
+    for (int i = 0; i < 3; ++i) look(0.0);
+    look(0.0, 0.2);  // lines that pass below it
+    EXPECT_NEAR(clearance(), 0.4F, 0.005F);
+}
+
+TEST_F(Overhead, IsForgottenWhenLinesOfSightPassThroughIt) {
     look(0.0);
-    look(0.7);
+    look(0.4);
+    look(0.0, 0.4);
+    look(0.4);
     EXPECT_TRUE(std::isnan(clearance())) << "3 of 4 points of trust";
-    look(0.7);
+    look(0.4);
     EXPECT_FALSE(std::isnan(clearance()));
-    look(0.0);
-    look(0.0);
+    look(0.0, 0.4);
+    look(0.0, 0.4);
     EXPECT_TRUE(std::isnan(clearance()));
 }
 
@@ -328,13 +349,23 @@ TEST_F(Overhead, AKerbHangsOverNothing) {
 
 TEST_F(Overhead, WhatTheHeightWasStaysAboveTheGroundThatReplacesIt) {
     look(0.7);
+    look(0.7);
     while (!(height_at(map_, 1.0, 0.0) < 0.5F)) {  // also while it is unknown
         ASSERT_LT(looks_, 40);
         look(0.0);
     }
     EXPECT_NEAR(clearance(), 0.7F, 0.005F);
-    for (int i = 0; i < 5; ++i) look(0.0);
-    EXPECT_TRUE(std::isnan(clearance())) << "it has gone away";
+    for (int i = 0; i < 9; ++i) look(0.0);
+    EXPECT_NEAR(clearance(), 0.7F, 0.005F) << "it may hang there still";
+}
+
+TEST_F(Overhead, WhatOneLookAloneShowedHangsOverNothing) {
+    look(0.7);
+    while (!(height_at(map_, 1.0, 0.0) < 0.5F)) {
+        ASSERT_LT(looks_, 40);
+        look(0.0);
+    }
+    EXPECT_TRUE(std::isnan(clearance())) << "it may have been a wrong match";
 }
 
 }  // namespace
