@@ -60,9 +60,10 @@ MapComparison compare_maps(const MapPair& maps, const EvalMapsConfig& config) {
     MapComparison result;
     const CellMask away = away_from_edges(maps.truth_m, config);
     const CellMask floor = level_floor(maps.truth_m, config);
-    result.error_m = height_error(maps.live_m, maps.truth_m);
-    result.elevation = elevation_errors(maps.live_m, maps.truth_m, {}, config);
-    result.elevation_away_from_edges = elevation_errors(maps.live_m, maps.truth_m, away, config);
+    const grid::Layer& compared_m = maps.compared_m.empty() ? maps.truth_m : maps.compared_m;
+    result.error_m = height_error(maps.live_m, compared_m);
+    result.elevation = elevation_errors(maps.live_m, compared_m, {}, config);
+    result.elevation_away_from_edges = elevation_errors(maps.live_m, compared_m, away, config);
     result.coverage = coverage(maps.live_m, maps.truth_m, {});
     result.calls =
         classify(maps.live_traversability, maps.truth_traversability, config.safe_threshold);

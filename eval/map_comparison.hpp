@@ -25,6 +25,9 @@ struct MapPair {
     grid::Layer live_var_m2;  ///< may be empty
     grid::Layer live_traversability;
     grid::Layer truth_m;
+    /// The true surface that each live height is compared with, where that is not the highest one:
+    /// floor under a table top. Empty = truth_m.
+    grid::Layer compared_m;
     grid::Layer truth_traversability;
     Trajectory trajectory;              ///< base_link in the map's frame; may be empty
     std::optional<CameraTrack> camera;  ///< nothing: no figures by column and range

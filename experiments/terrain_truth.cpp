@@ -226,8 +226,13 @@ Status measure(const Case& now, const io::MachineFile& machine, Executor& execut
     const sim::Lattice lattice{geometry.origin_m, geometry.nx, geometry.ny, geometry.resolution_m};
     const sim::SceneTruth& truth = (*source)->truth();
     const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kRange_m}, executor);
+    const elevation::ElevationLayers& layers = pipeline->map().layers();
     const auto heights = eval::elevation_errors(
-        pipeline->map().layers().height_m, sim::dem(truth.scene, lattice), visible, settings->maps);
+        layers.height_m,
+        sim::dem_below_overhead(
+            truth.scene, lattice, layers.height_m.view(), layers.clearance_m.view()),
+        visible,
+        settings->maps);
     const auto found = pipeline->footholds();
     const TrulySafe truly_safe{
         safe_at_all_yaws(truth, machine.machine, lattice, executor),

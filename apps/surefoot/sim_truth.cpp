@@ -79,6 +79,11 @@ double odom_height_m(const pipeline::Pipeline& pipeline,
            frames.front().motion.T_odom_body.translation_m.z();
 }
 
+void lift(grid::Layer& height_m, double by_m) {
+    for (std::size_t i = 0; i < height_m.size(); ++i)
+        height_m.data()[i] += static_cast<float>(by_m);
+}
+
 /// How true heights are rated: the same chain with the same settings as the live map.
 grid::Layer rated(const pipeline::Pipeline& pipeline, const grid::Layer& height_m) {
     Serial serial;
@@ -154,8 +159,11 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     maps.live_traversability = or_unknown(pipeline.rating().traversability, geometry);
     maps.truth_m = sim::dem(truth.scene, lattice);
     const double odom_z_m = odom_height_m(pipeline, truth, frames);
-    for (std::size_t i = 0; i < maps.truth_m.size(); ++i)
-        maps.truth_m.data()[i] -= static_cast<float>(odom_z_m);
+    grid::Layer live_world_m = live_m;
+    lift(live_world_m, odom_z_m);
+    maps.compared_m = sim::dem_below_overhead(
+        truth.scene, lattice, live_world_m.view(), pipeline.map().layers().clearance_m.view());
+    for (grid::Layer* true_m : {&maps.truth_m, &maps.compared_m}) lift(*true_m, -odom_z_m);
     maps.truth_traversability = rated(pipeline, maps.truth_m);
     maps.trajectory = trajectory_of(frames);
     maps.camera = camera_track(pipeline, maps.trajectory);
