@@ -12,20 +12,22 @@ namespace {
 
 constexpr int kMaxWindowRadius_px = 16;
 constexpr int kMaxSmoothRadius_px = 16;
+/// Blocks that begin with a window of rows want to be higher than it.
+constexpr int kSolvedRows = 64;
 
 void smooth_image_row(ImageView<const std::uint8_t> in,
                       int v,
-                      std::vector<int>& scratch,
-                      Image<std::int16_t>& out) {
+                      std::vector<std::uint16_t>& scratch,
+                      std::vector<std::int16_t>& out) {
     const std::uint8_t* lines[5];
     for (int k = 0; k < 5; ++k) lines[k] = in.row(std::clamp(v + k - 2, 0, in.height - 1));
-    rows::smooth_image(lines, in.width, scratch.data(), out.row(v));
+    rows::smooth_image(lines, in.width, scratch.data(), out.data());
 }
 
 /// Sums of the columns of a window that slides down, and scratch for its way along the row.
 struct WindowSums {
     WindowSums(int width, int radius) {
-        const auto columns = static_cast<std::size_t>(width);
+        const auto columns = static_cast<std::size_t>(width + rows::kPadding);
         const auto padded = columns + 2 * static_cast<std::size_t>(radius) + 1;
         sums.resize(rows::kSums * columns);
         prefixes.resize(rows::kSums * padded);
@@ -35,9 +37,9 @@ struct WindowSums {
         }
     }
     std::vector<std::int32_t> sums;
-    std::vector<std::uint32_t> prefixes;
+    std::vector<std::int32_t> prefixes;
     std::int32_t* column[rows::kSums] = {};
-    std::uint32_t* prefix[rows::kSums] = {};
+    std::int32_t* prefix[rows::kSums] = {};
 };
 
 }  // namespace
@@ -76,29 +78,31 @@ SubpixelRefiner::SubpixelRefiner(const RefineConfig& config) : config_(config) {
 /// Grey difference and gradient of every pixel of some rows at its disparity.
 void SubpixelRefiner::warp_block(int first,
                                  int last,
+                                 ImageView<const std::uint8_t> left,
+                                 ImageView<const std::uint8_t> right,
                                  const Image<std::uint8_t>& jump_distance_px,
                                  const Image<float>& disparity_px) {
-    const int width = left_.width();
-    const auto columns = static_cast<std::size_t>(width);
+    const auto columns = static_cast<std::size_t>(left.width);
+    std::vector<std::uint16_t> sums(columns + 4);
+    std::vector<std::int16_t> smooth_left(columns);
+    std::vector<std::int16_t> smooth_right(columns);
     std::vector<std::int32_t> places(columns);
     std::vector<float> fractions(columns);
-    const std::size_t padded = columns + rows::kTapPadding;
-    std::vector<std::int16_t> taps(8 * padded);
+    std::vector<std::int32_t> pairs(2 * columns);
     rows::WarpRow row;
+    row.left = smooth_left.data();
+    row.right = smooth_right.data();
     row.jump_margin_px = config_.jump_margin_px;
-    row.width = width;
+    row.width = left.width;
     row.place = places.data();
     row.fraction = fractions.data();
-    for (std::size_t k = 0; k < 4; ++k) row.taps[k] = taps.data() + k * padded;
-    row.fours = taps.data() + 4 * padded;
+    row.pairs = pairs.data();
     for (int v = first; v < last; ++v) {
-        row.left = left_.row(v);
-        row.right = right_.row(v);
+        smooth_image_row(left, v, sums, smooth_left);
+        smooth_image_row(right, v, sums, smooth_right);
         row.disparity_px = disparity_px.row(v);
         row.jump_distance_px = jump_distance_px.row(v);
-        row.gradient = gradient_.row(v);
-        row.error = error_.row(v);
-        row.used = used_.row(v);
+        row.evidence = evidence_.row(v);
         rows::warp(row);
     }
 }
@@ -108,13 +112,13 @@ void SubpixelRefiner::solve_block(int first,
                                   int last,
                                   Image<float>& disparity_px,
                                   Refinement& out) const {
-    const int width = left_.width();
-    const int height = left_.height();
+    const int width = evidence_.width();
+    const int height = evidence_.height();
     const int r = config_.window_radius_px;
     WindowSums sums(width, r);
-    const auto slide = [&](int v, std::int32_t sign) {
-        if (v < 0 || v >= height) return;
-        rows::accumulate(gradient_.row(v), error_.row(v), used_.row(v), sign, width, sums.column);
+    const std::vector<std::int32_t> nothing(static_cast<std::size_t>(width), rows::kUnused);
+    const auto evidence = [&](int v) {
+        return v >= 0 && v < height ? evidence_.row(v) : nothing.data();
     };
     rows::SolveRow row;
     for (int k = 0; k < rows::kSums; ++k) {
@@ -128,15 +132,17 @@ void SubpixelRefiner::solve_block(int first,
     row.min_noise_grey = static_cast<float>(config_.min_noise_grey);
     row.prior_sigma_px = static_cast<float>(config_.prior_sigma_px);
     row.max_step_px = static_cast<float>(config_.max_step_px);
-    for (int v = first - r; v < first + r; ++v) slide(v, 1);
+    for (int v = std::max(0, first - r); v < std::min(first + r, height); ++v)
+        rows::slide(evidence(v), nothing.data(), width, sums.column);
     for (int v = first; v < last; ++v) {
-        slide(v + r, 1);
+        const bool begun = v > first;
+        rows::slide(
+            evidence(v + r), begun ? evidence(v - r - 1) : nothing.data(), width, sums.column);
         row.disparity_px = disparity_px.row(v);
         row.shift_px = out.shift_px.row(v);
         row.residual_grey = out.residual_grey.row(v);
         row.gradient_grey_px = out.gradient_grey_px.row(v);
         rows::solve(row);
-        slide(v - r, -1);
     }
 }
 
@@ -148,8 +154,7 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
                              Refinement& out) {
     const int width = left.width;
     const int height = left.height;
-    for (Image<std::int16_t>* image : {&left_, &right_, &gradient_, &error_, &used_})
-        image->resize(width, height);
+    evidence_.resize(width, height);
     for (Image<float>* image :
          {&horizontal_, &out.shift_px, &out.residual_grey, &out.gradient_grey_px}) {
         image->resize(width, height);
@@ -157,19 +162,15 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
     const int radius = config_.smooth_radius_px;
     const double same = config_.same_surface_px;
     for_row_blocks(executor, height, [&](int first, int last) {
-        std::vector<int> scratch(static_cast<std::size_t>(width) + 4);
-        for (int v = first; v < last; ++v) {
-            smooth_image_row(left, v, scratch, left_);
-            smooth_image_row(right, v, scratch, right_);
+        for (int v = first; v < last; ++v)
             smooth_along(disparity_px, v, false, radius, same, horizontal_);
-        }
     });
     for_row_blocks(executor, height, [&](int first, int last) {
         for (int v = first; v < last; ++v)
             smooth_along(horizontal_, v, true, radius, same, disparity_px);
-        warp_block(first, last, jump_distance_px, disparity_px);
+        warp_block(first, last, left, right, jump_distance_px, disparity_px);
     });
-    for_row_blocks(executor, height, [&](int first, int last) {
+    for_row_blocks<kSolvedRows>(executor, height, [&](int first, int last) {
         solve_block(first, last, disparity_px, out);
     });
 }

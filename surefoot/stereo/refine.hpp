@@ -62,17 +62,15 @@ class SubpixelRefiner {
   private:
     void warp_block(int first,
                     int last,
+                    ImageView<const std::uint8_t> left,
+                    ImageView<const std::uint8_t> right,
                     const Image<std::uint8_t>& jump_distance_px,
                     const Image<float>& disparity_px);
     void solve_block(int first, int last, Image<float>& disparity_px, Refinement& out) const;
 
     RefineConfig config_;
-    Image<std::int16_t> left_;  ///< smoothed, 1/16 grey level
-    Image<std::int16_t> right_;
-    Image<float> horizontal_;  ///< disparity, smoothed along the row alone
-    Image<std::int16_t> gradient_;
-    Image<std::int16_t> error_;
-    Image<std::int16_t> used_;  ///< 1 where gradient and error are valid
+    Image<float> horizontal_;       ///< disparity, smoothed along the row alone
+    Image<std::int32_t> evidence_;  ///< see rows::kUnused
 };
 
 /// Mean over the neighbours on the same surface, along the row (`down` false) or the column.

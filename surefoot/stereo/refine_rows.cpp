@@ -31,29 +31,40 @@ constexpr float kMaxGradient = 1024.0F;
 
 void smooth_image_row(const std::uint8_t* const in[5],
                       int width,
-                      int* HWY_RESTRICT scratch,
+                      std::uint16_t* HWY_RESTRICT scratch,
                       std::int16_t* HWY_RESTRICT out) {
-    int* const sum = scratch + 2;
-    for (int u = 0; u < width; ++u)
-        sum[u] = in[0][u] + in[4][u] + 4 * (in[1][u] + in[3][u]) + 6 * in[2][u];
+    std::uint16_t* HWY_RESTRICT sum = scratch + 2;
+    const std::uint8_t* const in0 = in[0];
+    const std::uint8_t* const in1 = in[1];
+    const std::uint8_t* const in2 = in[2];
+    const std::uint8_t* const in3 = in[3];
+    const std::uint8_t* const in4 = in[4];
+    for (int u = 0; u < width; ++u) {
+        sum[u] = static_cast<std::uint16_t>(in0[u] + in4[u] + 4 * (in1[u] + in3[u]) + 6 * in2[u]);
+    }
     sum[-2] = sum[-1] = sum[0];
     sum[width] = sum[width + 1] = sum[width - 1];
+    // At most 256 * 255 + 8: it fits.
     for (int u = 0; u < width; ++u) {
-        const int total = sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u];
-        out[u] = static_cast<std::int16_t>((total + 8) >> 4);
+        const auto total = static_cast<std::uint16_t>(
+            sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u] + 8);
+        out[u] = static_cast<std::int16_t>(total >> 4);
     }
 }
 
-/// Calls here(tag, u) for the columns from `first` to before `last`, in whole registers and then
-/// one by one.
+/// Calls here(tag, u) for the columns from `first` to before `last` in whole registers, the last of
+/// which may do some columns again; one by one if there are fewer.
 template <class Here>
 HWY_INLINE void for_columns(int first, int last, const Here& here) {
     const hn::ScalableTag<float> whole;
     const hn::CappedTag<float, 1> single;
     const int lanes = static_cast<int>(hn::Lanes(whole));
-    int u = first;
-    for (; u + lanes <= last; u += lanes) here(whole, u);
-    for (; u < last; ++u) here(single, u);
+    if (last - first < lanes) {
+        for (int u = first; u < last; ++u) here(single, u);
+        return;
+    }
+    for (int u = first; u < last - lanes; u += lanes) here(whole, u);
+    here(whole, last - lanes);
 }
 
 /// The lanes from `u` on, averaged with the neighbours of `steps` lines on either side.
@@ -87,11 +98,10 @@ void smooth_along_row(const SmoothRow& row) {
     for (int u = row.width - margin; u < row.width; ++u) beside_end(u);
 }
 
-/// Where the lanes from `u` on are seen in the right row: whole pixel, fraction, and whether.
+/// Where the lanes from `u` on are seen in the right row: whole pixel, or kNowhere, and fraction.
 template <class D>
 HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
     const hn::RebindToSigned<D> d32;
-    const hn::Rebind<std::int16_t, D> d16;
     const hn::Rebind<std::uint8_t, D> d8;
     const auto column = hn::ConvertTo(d, hn::Iota(d32, u));
     const auto x = hn::Sub(column, hn::LoadU(d, row.disparity_px + u));
@@ -101,169 +111,184 @@ HWY_INLINE void place_here(D d, const WarpRow& row, int u) {
     // NaN compares false. One column is left on each side for the gradients.
     const auto inside = hn::And(hn::Ge(x, hn::Set(d, 1.0F)),
                                 hn::Lt(x, hn::Set(d, static_cast<float>(row.width - 3))));
-    const auto used = hn::And(inside, far);
-    const auto kept = hn::IfThenElse(used, x, hn::Set(d, 1.0F));
+    const auto kept = hn::IfThenElseZero(hn::And(inside, far), x);
     const auto place = hn::ConvertTo(d32, kept);
     hn::StoreU(place, d32, row.place + u);
     hn::StoreU(hn::Sub(kept, hn::ConvertTo(d, place)), d, row.fraction + u);
-    const auto one = hn::IfThenElseZero(hn::RebindMask(d32, used), hn::Set(d32, 1));
-    hn::StoreU(hn::DemoteTo(d16, one), d16, row.used + u);
 }
 
-void place_taps(const WarpRow& row) {
-    for_columns(1, row.width - 1, [&](auto d, int u) { place_here(d, row, u); });
-    const std::int16_t* const right = row.right;
-    const std::int32_t* const place = row.place;
-    std::int16_t* const fours = row.fours;
-    const int end = row.width - 1;
-    // Four pixels at once, and then sorted by their place: a gather of each would take four times
-    // as many loads.
-    for (int u = 1; u < end; ++u)
-        std::memcpy(fours + 4 * u, right + place[u] - 1, 4 * sizeof(std::int16_t));
-    const hn::ScalableTag<std::int16_t> tag;
-    for (int u = 0; u < row.width; u += static_cast<int>(hn::Lanes(tag))) {
-        hn::Vec<decltype(tag)> tap[4];
-        hn::LoadInterleaved4(tag, row.fours + 4 * u, tap[0], tap[1], tap[2], tap[3]);
-        for (int k = 0; k < 4; ++k) hn::StoreU(tap[k], tag, row.taps[k] + u);
+/// The four pixels of the right row around each place, side by side. A gather of each would take
+/// four times as many loads.
+void take_pairs(const WarpRow& row) {
+    const std::int16_t* HWY_RESTRICT right = row.right;
+    const std::int32_t* HWY_RESTRICT place = row.place;
+    std::int32_t* HWY_RESTRICT pairs = row.pairs;
+    for (int u = 1; u < row.width - 1; ++u)
+        std::memcpy(pairs + 2 * u, right + place[u] - 1, 2 * sizeof(std::int32_t));
+}
+
+/// Pairs of pixels of the lanes from `u` on: `front` of those left of the fraction, `back` of those
+/// right of it.
+template <class D32>
+HWY_INLINE void load_pairs(
+    D32 d32, const WarpRow& row, int u, hn::Vec<D32>& front, hn::Vec<D32>& back) {
+    const std::int32_t* const pairs = row.pairs + 2 * u;
+    if constexpr (hn::MaxLanes(d32) == 1) {
+        front = hn::LoadU(d32, pairs);
+        back = hn::LoadU(d32, pairs + 1);
     }
-}
-
-/// int16 pixels as floats.
-template <class D>
-HWY_INLINE hn::Vec<D> grey(D d, const std::int16_t* from) {
-    const hn::Rebind<std::int16_t, D> d16;
-    const hn::RebindToSigned<D> d32;
-    return hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d16, from)));
+#if HWY_TARGET != HWY_SCALAR
+    else {
+        const auto low = hn::LoadU(d32, pairs);
+        const auto high = hn::LoadU(d32, pairs + hn::Lanes(d32));
+        front = hn::ConcatEven(d32, high, low);
+        back = hn::ConcatOdd(d32, high, low);
+    }
+#endif
 }
 
 /// Nearest integers of |x| < 4096, halves upwards.
 template <class D>
-HWY_INLINE void store_rounded(D d, hn::Vec<D> x, std::int16_t* to) {
-    const hn::Rebind<std::int16_t, D> d16;
+HWY_INLINE hn::Vec<hn::RebindToSigned<D>> rounded(D d, hn::Vec<D> x) {
     const hn::RebindToSigned<D> d32;
     const auto shifted = hn::ConvertTo(d32, hn::Add(x, hn::Set(d, 4096.5F)));
-    hn::StoreU(hn::DemoteTo(d16, hn::Sub(shifted, hn::Set(d32, 4096))), d16, to);
+    return hn::Sub(shifted, hn::Set(d32, 4096));
 }
 
 template <class D>
 HWY_INLINE void warp_here(D d, const WarpRow& row, int u) {
+    const hn::RebindToSigned<D> d32;
+    const hn::Rebind<std::int16_t, D> d16;
+    const auto lower_half = hn::Set(d32, 0xffff);
+    const auto left = [&](int at) { return hn::PromoteTo(d32, hn::LoadU(d16, row.left + at)); };
+    const auto real = [&](auto whole) { return hn::ConvertTo(d, whole); };
+    auto front = hn::Zero(d32);
+    auto back = hn::Zero(d32);
+    load_pairs(d32, row, u, front, back);
+    // No pixel is negative.
+    const auto before = hn::And(front, lower_half);
+    const auto low = hn::ShiftRight<16>(front);
+    const auto high = hn::And(back, lower_half);
+    const auto after = hn::ShiftRight<16>(back);
     const auto s = hn::LoadU(d, row.fraction + u);
-    const auto before = grey(d, row.taps[0] + u);
-    const auto low = grey(d, row.taps[1] + u);
-    const auto high = grey(d, row.taps[2] + u);
-    const auto after = grey(d, row.taps[3] + u);
-    const auto error = hn::Sub(grey(d, row.left + u), hn::Add(low, hn::Mul(s, hn::Sub(high, low))));
-    const auto slope_right = hn::Add(hn::Mul(hn::Sub(hn::Set(d, 1.0F), s), hn::Sub(high, before)),
-                                     hn::Mul(s, hn::Sub(after, low)));
-    const auto slope_left = hn::Sub(grey(d, row.left + u + 1), grey(d, row.left + u - 1));
+    const auto seen = hn::Add(real(low), hn::Mul(s, real(hn::Sub(high, low))));
+    const auto error = hn::Sub(real(left(u)), seen);
+    const auto slope_right =
+        hn::Add(hn::Mul(hn::Sub(hn::Set(d, 1.0F), s), real(hn::Sub(high, before))),
+                hn::Mul(s, real(hn::Sub(after, low))));
+    const auto slope_left = real(hn::Sub(left(u + 1), left(u - 1)));
     const auto slope = hn::Mul(hn::Set(d, 0.25F), hn::Add(slope_left, slope_right));
-    const auto used = grey(d, row.used + u);
-    const auto valid =
-        hn::And(hn::Gt(used, hn::Zero(d)), hn::Le(hn::Abs(error), hn::Set(d, kMaxError)));
     const auto kept = hn::Min(hn::Max(slope, hn::Set(d, -kMaxGradient)), hn::Set(d, kMaxGradient));
-    store_rounded(d, hn::IfThenElseZero(valid, error), row.error + u);
-    store_rounded(d, hn::IfThenElseZero(valid, kept), row.gradient + u);
-    store_rounded(d, hn::IfThenElseZero(valid, used), row.used + u);
+    const auto valid = hn::And(hn::Gt(hn::LoadU(d32, row.place + u), hn::Zero(d32)),
+                               hn::RebindMask(d32, hn::Le(hn::Abs(error), hn::Set(d, kMaxError))));
+    const auto pair =
+        hn::Or(hn::ShiftLeft<16>(rounded(d, error)), hn::And(rounded(d, kept), lower_half));
+    hn::StoreU(hn::IfThenElse(valid, pair, hn::Set(d32, kUnused)), d32, row.evidence + u);
 }
 
 void warp_row(const WarpRow& row) {
     const int width = row.width;
-    const auto clear = [&](int first, int last) {
-        for (std::int16_t* const out : {row.used, row.gradient, row.error})
-            std::fill(out + first, out + last, std::int16_t{0});
-    };
-    if (width < 5) return clear(0, width);
-    clear(0, 1);
-    clear(width - 1, width);
-    place_taps(row);
+    if (width < 5) return static_cast<void>(std::fill_n(row.evidence, width, kUnused));
+    row.evidence[0] = row.evidence[width - 1] = kUnused;
+    for_columns(1, width - 1, [&](auto d, int u) { place_here(d, row, u); });
+    take_pairs(row);
     for_columns(1, width - 1, [&](auto d, int u) { warp_here(d, row, u); });
 }
 
-void add_column_sums(const std::int16_t* HWY_RESTRICT g,
-                     const std::int16_t* HWY_RESTRICT e,
-                     std::int32_t sign,
-                     int width,
-                     std::int32_t* HWY_RESTRICT sum_g,
-                     std::int32_t* HWY_RESTRICT sum_e,
-                     std::int32_t* HWY_RESTRICT sum_gg,
-                     std::int32_t* HWY_RESTRICT sum_ge,
-                     std::int32_t* HWY_RESTRICT sum_ee) {
+void slide_row(const std::int32_t* HWY_RESTRICT entering,
+               const std::int32_t* HWY_RESTRICT leaving,
+               int width,
+               std::int32_t* const sums[kSums]) {
+    std::int32_t* HWY_RESTRICT count_error = sums[0];
+    std::int32_t* HWY_RESTRICT sum_g = sums[1];
+    std::int32_t* HWY_RESTRICT sum_gg = sums[2];
+    std::int32_t* HWY_RESTRICT sum_ge = sums[3];
+    std::int32_t* HWY_RESTRICT sum_ee = sums[4];
     for (int u = 0; u < width; ++u) {
-        const std::int32_t sg = sign * g[u];
-        const std::int32_t se = sign * e[u];
-        sum_g[u] += sg;
-        sum_e[u] += se;
-        sum_gg[u] += sg * g[u];
-        sum_ge[u] += sg * e[u];
-        sum_ee[u] += se * e[u];
+        const std::int32_t a = entering[u];
+        const std::int32_t b = leaving[u];
+        const std::int32_t a_used = a != kUnused ? 1 : 0;
+        const std::int32_t b_used = b != kUnused ? 1 : 0;
+        const std::int32_t a_g = static_cast<std::int16_t>(a);
+        const std::int32_t b_g = static_cast<std::int16_t>(b);
+        const std::int32_t a_e = a != kUnused ? a >> 16 : 0;
+        const std::int32_t b_e = b != kUnused ? b >> 16 : 0;
+        count_error[u] += (a_e - b_e) * kCounted + (a_used - b_used);
+        sum_g[u] += a_g - b_g;
+        sum_gg[u] += (a_g - b_g) * (a_g + b_g);
+        sum_ge[u] += a_g * a_e - b_g * b_e;
+        sum_ee[u] += (a_e - b_e) * (a_e + b_e);
     }
 }
 
-void accumulate_row(const std::int16_t* g,
-                    const std::int16_t* e,
-                    const std::int16_t* HWY_RESTRICT used,
-                    std::int32_t sign,
-                    int width,
-                    std::int32_t* const c[kSums]) {
-    std::int32_t* HWY_RESTRICT sum_n = c[0];
-    for (int u = 0; u < width; ++u) sum_n[u] += sign * used[u];
-    add_column_sums(g, e, sign, width, c[1], c[2], c[3], c[4], c[5]);
+/// Sums of each lane and all before it.
+template <class D32>
+HWY_INLINE hn::Vec<D32> sums_so_far(D32 d32, hn::Vec<D32> x) {
+    const auto lane = hn::Iota(d32, 0);
+    for (int step = 1; step < static_cast<int>(hn::Lanes(d32)); step *= 2) {
+        const auto from = hn::Sub(lane, hn::Set(d32, step));
+        const auto inside = hn::Gt(from, hn::Set(d32, -1));
+        const auto index = hn::IndicesFromVec(d32, hn::Max(from, hn::Zero(d32)));
+        x = hn::Add(x, hn::IfThenElseZero(inside, hn::TableLookupLanes(x, index)));
+    }
+    return x;
 }
 
 /// prefix[k][u + radius + 1] = sum of columns[k][0 ... u]; below 0 nothing, beyond the end the
-/// total. They wrap around; differences that fit are right all the same. All six at once: a sum
-/// alone would wait for its own last addition.
+/// total. They wrap around; differences that fit are right all the same.
 void sum_up(const SolveRow& row) {
-    const int radius = row.radius_px;
-    const int width = row.width;
-    const std::int32_t* HWY_RESTRICT columns[kSums];
-    std::uint32_t* HWY_RESTRICT prefix[kSums];
-    std::uint32_t sums[kSums] = {};
+    const hn::ScalableTag<std::int32_t> d32;
+    const int lanes = static_cast<int>(hn::Lanes(d32));
+    const auto last_lane = hn::IndicesFromVec(d32, hn::Set(d32, lanes - 1));
     for (int k = 0; k < kSums; ++k) {
-        columns[k] = row.columns[k];
-        std::fill(row.prefix[k], row.prefix[k] + radius + 1, 0U);
-        prefix[k] = row.prefix[k] + radius + 1;
-    }
-    for (int u = 0; u < width; ++u) {
-        for (int k = 0; k < kSums; ++k) {
-            sums[k] += static_cast<std::uint32_t>(columns[k][u]);
-            prefix[k][u] = sums[k];
+        std::fill_n(row.prefix[k], row.radius_px + 1, 0);
+        std::int32_t* HWY_RESTRICT prefix = row.prefix[k] + row.radius_px + 1;
+        const std::int32_t* HWY_RESTRICT column = row.columns[k];
+        auto before = hn::Zero(d32);
+        for (int u = 0; u < row.width + row.radius_px; u += lanes) {
+            const auto here = sums_so_far(d32, hn::LoadU(d32, column + u));
+            const auto sum = hn::Add(before, here);
+            hn::StoreU(sum, d32, prefix + u);
+            before = hn::TableLookupLanes(sum, last_lane);
         }
     }
-    for (int k = 0; k < kSums; ++k)
-        std::fill(prefix[k] + width, prefix[k] + width + radius, sums[k]);
 }
 
 void solve_row(const SolveRow& row) {
     sum_up(row);
     const int span = 2 * row.radius_px + 1;
-    const std::uint32_t* HWY_RESTRICT pn = row.prefix[0];
-    const std::uint32_t* HWY_RESTRICT pg = row.prefix[1];
-    const std::uint32_t* HWY_RESTRICT pe = row.prefix[2];
-    const std::uint32_t* HWY_RESTRICT pgg = row.prefix[3];
-    const std::uint32_t* HWY_RESTRICT pge = row.prefix[4];
-    const std::uint32_t* HWY_RESTRICT pee = row.prefix[5];
+    const std::int32_t* HWY_RESTRICT count_error = row.prefix[0];
+    const std::int32_t* HWY_RESTRICT pg = row.prefix[1];
+    const std::int32_t* HWY_RESTRICT pgg = row.prefix[2];
+    const std::int32_t* HWY_RESTRICT pge = row.prefix[3];
+    const std::int32_t* HWY_RESTRICT pee = row.prefix[4];
     float* HWY_RESTRICT disparity_px = row.disparity_px;
     float* HWY_RESTRICT shift_px = row.shift_px;
     float* HWY_RESTRICT residual = row.residual_grey;
     float* HWY_RESTRICT gradient = row.gradient_grey_px;
-    const auto window = [span](const std::uint32_t* prefix, int u) {
-        return static_cast<float>(static_cast<std::int32_t>(prefix[u + span] - prefix[u]));
+    const auto window = [span](const std::int32_t* prefix, int u) {
+        // As unsigned: prefixes may have wrapped around.
+        return static_cast<std::int32_t>(static_cast<std::uint32_t>(prefix[u + span]) -
+                                         static_cast<std::uint32_t>(prefix[u]));
+    };
+    const auto real_window = [window](const std::int32_t* prefix, int u) {
+        return static_cast<float>(window(prefix, u));
     };
     constexpr float kUnit = 1.0F / (kScale * kScale);
     const float least_variance = row.min_noise_grey * row.min_noise_grey;
     const float prior_weight = 1.0F / (row.prior_sigma_px * row.prior_sigma_px);
     for (int u = 0; u < row.width; ++u) {
-        const float count = window(pn, u);
+        const std::int32_t packed = window(count_error, u);
+        const auto count = static_cast<float>(packed & (kCounted - 1));
         const bool solvable = count >= row.enough;
         const float n = solvable ? count : 1.0F;
         const float per_pixel = 1.0F / n;
-        const float g = window(pg, u);
-        const float e = window(pe, u);
+        const float g = real_window(pg, u);
+        const auto e = static_cast<float>(packed >> kCountBits);
         const float mean_g = g * per_pixel;
-        const float gg = std::max(0.0F, (window(pgg, u) - mean_g * g) * kUnit);
-        const float ge = (window(pge, u) - mean_g * e) * kUnit;
-        const float ee = (window(pee, u) - e * per_pixel * e) * kUnit;
+        const float gg = std::max(0.0F, (real_window(pgg, u) - mean_g * g) * kUnit);
+        const float ge = (real_window(pge, u) - mean_g * e) * kUnit;
+        const float ee = (real_window(pee, u) - e * per_pixel * e) * kUnit;
         const float explained = gg > 0.0F ? ge * ge / gg : 0.0F;
         const float variance = std::max(least_variance, (ee - explained) * per_pixel);
         // The correction of least squares, held back by the prior: both weighed by the variance.
@@ -379,11 +404,14 @@ namespace surefoot::stereo::rows {
 HWY_EXPORT(smooth_image_row);
 HWY_EXPORT(smooth_along_row);
 HWY_EXPORT(warp_row);
-HWY_EXPORT(accumulate_row);
+HWY_EXPORT(slide_row);
 HWY_EXPORT(solve_row);
 HWY_EXPORT(rate_row);
 
-void smooth_image(const std::uint8_t* const in[5], int width, int* scratch, std::int16_t* out) {
+void smooth_image(const std::uint8_t* const in[5],
+                  int width,
+                  std::uint16_t* scratch,
+                  std::int16_t* out) {
     HWY_DYNAMIC_DISPATCH(smooth_image_row)(in, width, scratch, out);
 }
 void smooth_along(const SmoothRow& row) {
@@ -392,13 +420,11 @@ void smooth_along(const SmoothRow& row) {
 void warp(const WarpRow& row) {
     HWY_DYNAMIC_DISPATCH(warp_row)(row);
 }
-void accumulate(const std::int16_t* g,
-                const std::int16_t* e,
-                const std::int16_t* used,
-                std::int32_t sign,
-                int width,
-                std::int32_t* const columns[kSums]) {
-    HWY_DYNAMIC_DISPATCH(accumulate_row)(g, e, used, sign, width, columns);
+void slide(const std::int32_t* entering,
+           const std::int32_t* leaving,
+           int width,
+           std::int32_t* const columns[kSums]) {
+    HWY_DYNAMIC_DISPATCH(slide_row)(entering, leaving, width, columns);
 }
 void solve(const SolveRow& row) {
     HWY_DYNAMIC_DISPATCH(solve_row)(row);

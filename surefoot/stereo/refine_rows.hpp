@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 /// The loops of SubpixelRefiner and of the confidence over one row of an image. Plain loops,
 /// compiled once for every instruction set and chosen at run time; all give the same bytes, because
@@ -10,7 +11,10 @@ namespace surefoot::stereo::rows {
 
 /// Binomial 1 4 6 4 1 in both directions, in 1/16 grey level. `in`: five rows around the one that
 /// is made; `scratch`: width + 4.
-void smooth_image(const std::uint8_t* const in[5], int width, int* scratch, std::int16_t* out);
+void smooth_image(const std::uint8_t* const in[5],
+                  int width,
+                  std::uint16_t* scratch,
+                  std::int16_t* out);
 
 struct SmoothRow {
     const float* center = nullptr;
@@ -26,6 +30,10 @@ struct SmoothRow {
 /// See stereo::smooth_along.
 void smooth_along(const SmoothRow& row);
 
+/// What a pixel tells about its shift: the gradient [1/16 grey level per pixel] in the lower half,
+/// the grey difference between the eyes in the upper one; kUnused tells nothing.
+inline constexpr std::int32_t kUnused = std::numeric_limits<std::int32_t>::min();
+
 struct WarpRow {
     const std::int16_t* left = nullptr;   ///< smoothed, 1/16 grey level
     const std::int16_t* right = nullptr;  ///< the same
@@ -33,33 +41,31 @@ struct WarpRow {
     const std::uint8_t* jump_distance_px = nullptr;
     int jump_margin_px = 0;
     int width = 0;
-    std::int16_t* gradient = nullptr;
-    std::int16_t* error = nullptr;
-    std::int16_t* used = nullptr;
-    // Scratch of the row: where in the right row, and its four pixels there, side by side and
-    // apart.
+    std::int32_t* evidence = nullptr;
+    // Scratch of the row: where in the right row (0: nowhere), and its four pixels there.
     std::int32_t* place = nullptr;
     float* fraction = nullptr;
-    std::int16_t* fours = nullptr;  ///< 4 (width + kTapPadding)
-    std::int16_t* taps[4] = {};     ///< width + kTapPadding each
+    std::int32_t* pairs = nullptr;  ///< 2 width
 };
-/// Registers may reach this far beyond the end of the row.
-inline constexpr int kTapPadding = 64;
 /// Grey difference and gradient of every pixel at its disparity.
 void warp(const WarpRow& row);
 
-/// Exact sums over the columns of a window: n, g, e, gg, ge, ee, each `width` long.
-inline constexpr int kSums = 6;
-void accumulate(const std::int16_t* g,
-                const std::int16_t* e,
-                const std::int16_t* used,
-                std::int32_t sign,
-                int width,
-                std::int32_t* const columns[kSums]);
+/// Exact sums over the columns of a window: count and e, g, gg, ge, ee, each `width` long and
+/// kPadding zeros. The first holds kCounted times the sum of e and the number of pixels.
+inline constexpr int kSums = 5;
+inline constexpr int kCountBits = 11;
+inline constexpr std::int32_t kCounted = 1 << kCountBits;
+/// Registers may reach this far beyond the end of a row.
+inline constexpr int kPadding = 64;
+/// One row of evidence enters the window, another leaves it.
+void slide(const std::int32_t* entering,
+           const std::int32_t* leaving,
+           int width,
+           std::int32_t* const columns[kSums]);
 
 struct SolveRow {
     const std::int32_t* columns[kSums] = {};
-    std::uint32_t* prefix[kSums] = {};  ///< scratch, width + 2 * radius_px + 1 each
+    std::int32_t* prefix[kSums] = {};  ///< scratch, width + 2 * radius_px + 1 + kPadding each
     int radius_px = 0;
     int width = 0;
     float enough = 0.0F;

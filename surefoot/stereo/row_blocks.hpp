@@ -9,9 +9,8 @@ namespace surefoot::stereo {
 
 /// Calls work(first, last) for blocks of rows. The blocks are fixed, whatever the number of
 /// threads: results cannot depend on it.
-template <typename Work>
+template <int kBlockRows = 32, typename Work>
 void for_row_blocks(Executor& executor, int height, const Work& work) {
-    constexpr int kBlockRows = 32;
     const int blocks = (height + kBlockRows - 1) / kBlockRows;
     executor.parallel_for(blocks, [&](int block) {
         work(block * kBlockRows, std::min(height, (block + 1) * kBlockRows));
