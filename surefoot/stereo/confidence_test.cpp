@@ -2,13 +2,13 @@
 #include "surefoot/stereo/confidence.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/stereo/test_targets.hpp"
 
 namespace surefoot::stereo {
 namespace {

@@ -9,12 +9,13 @@
 #include "surefoot/core/assert.hpp"
 #include "surefoot/stereo/match_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
+#include "surefoot/stereo/row_runs.hpp"
 
 namespace surefoot::stereo {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-static_assert(kFarthest_px == 15, "steps of 1, 2, 4 and 8 reach that far");
+static_assert(kFarthest_px == rows::kFarthest_px);
 constexpr float kSteepestGround = 0.4F;
 constexpr int kBlockColumns = 256;
 
@@ -41,6 +42,19 @@ void drop_hidden_in_row(float* d, int width, float tolerance_px, std::vector<flo
     }
 }
 
+/// Jumps across holes, which have no neighbour to compare with.
+void mark_across_holes(const float* d,
+                       const RowRuns& runs,
+                       rows::JumpRule rule,
+                       std::uint8_t* mark) {
+    int before = -1;  // the last pixel of the run before
+    runs.for_each([&](int first, int last) {
+        const float limit = rule.step_px + rule.slope * static_cast<float>(first - before);
+        if (before >= 0 && std::abs(d[first] - d[before]) > limit) mark[before] = mark[first] = 255;
+        before = last;
+    });
+}
+
 }  // namespace
 
 void drop_hidden(Executor& executor, double tolerance_px, Image<float>& disparity_px) {
@@ -63,8 +77,11 @@ void mark_jumps(Executor& executor,
     const rows::JumpRule rule{static_cast<float>(jump_px), kSteepestGround};
     constexpr int kRamp_px = rows::kRampHalf_px;
     for_row_blocks(executor, height, [&](int first, int last) {
+        RowRuns runs;
         for (int v = first; v < last; ++v) {
             rows::mark_along(disparity_px.row(v), width, rule, jumps.row(v));
+            runs.find(disparity_px.row(v), width, std::numeric_limits<float>::infinity());
+            mark_across_holes(disparity_px.row(v), runs, rule, jumps.row(v));
             if (v < kRamp_px || v >= height - kRamp_px) continue;
             rows::mark_ramps(disparity_px.row(v - kRamp_px),
                              disparity_px.row(v + kRamp_px),
@@ -73,22 +90,17 @@ void mark_jumps(Executor& executor,
                              jumps.row(v));
         }
     });
-    // Both sides of a jump along a column: what differs from the last known pixel on the way down,
-    // and on the way up.
+    if (height == 0) return;
     const int blocks = (width + kBlockColumns - 1) / kBlockColumns;
     executor.parallel_for(blocks, [&](int block) {
         const int u = block * kBlockColumns;
         const int count = std::min(kBlockColumns, width - u);
         float last_px[kBlockColumns];
-        float rows_since[kBlockColumns];
-        for (const bool down : {true, false}) {
-            std::fill_n(last_px, kBlockColumns, kNan);
-            std::fill_n(rows_since, kBlockColumns, 0.0F);
-            for (int k = 0; k < height; ++k) {
-                const int v = down ? k : height - 1 - k;
-                rows::mark_from_last(
-                    disparity_px.row(v) + u, count, rule, last_px, rows_since, jumps.row(v) + u);
-            }
+        float rows_since[kBlockColumns] = {};
+        std::copy_n(disparity_px.row(0) + u, count, last_px);
+        for (int v = 1; v < height; ++v) {
+            rows::mark_down(
+                disparity_px.row(v) + u, count, rule, last_px, rows_since, jumps.row(v) + u, width);
         }
     });
 }
@@ -99,31 +111,18 @@ void distance_to_marks(Executor& executor,
     const int width = marks.width();
     const int height = marks.height();
     distance_px.resize(width, height);
-    // Along each row, in steps of 1, 2, 4 and 8; then from row to row, straight or aslant. A longer
-    // way along the row than down the column takes its first part along the row of the mark.
+    // Along each row; then from row to row, straight or aslant. A longer way along the row than
+    // down the column takes its first part along the row of the mark.
     for_row_blocks(executor, height, [&](int first, int last) {
-        std::vector<std::uint8_t> before(static_cast<std::size_t>(width));
-        for (int v = first; v < last; ++v) {
-            std::uint8_t* const d = distance_px.row(v);
-            const std::uint8_t* const mark = marks.row(v);
-            for (int u = 0; u < width; ++u) d[u] = mark[u] != 0 ? 0 : 255;
-            for (int step = 1; step <= std::min(kFarthest_px, width - 1); step *= 2) {
-                std::copy(d, d + width, before.begin());
-                const std::uint8_t* const b = before.data();
-                rows::nearer(b + step, step, kFarthest_px, width - step, d);
-                rows::nearer(b, step, kFarthest_px, width - step, d + step);
-            }
-        }
+        std::vector<std::uint8_t> scratch(
+            2 * static_cast<std::size_t>(width + 2 * rows::kSpreadMargin));
+        for (int v = first; v < last; ++v)
+            rows::spread_along(marks.row(v), width, scratch.data(), distance_px.row(v));
     });
-    const auto pass = [&](int v, int from) {
-        std::uint8_t* const d = distance_px.row(v);
-        const std::uint8_t* const b = distance_px.row(from);
-        rows::nearer(b, 1, kFarthest_px, width, d);
-        rows::nearer(b + 1, 1, kFarthest_px, width - 1, d);
-        rows::nearer(b, 1, kFarthest_px, width - 1, d + 1);
-    };
-    for (int v = 1; v < height; ++v) pass(v, v - 1);
-    for (int v = height - 2; v >= 0; --v) pass(v, v + 1);
+    for (int v = 1; v < height; ++v)
+        rows::spread_across(distance_px.row(v - 1), width, distance_px.row(v));
+    for (int v = height - 2; v >= 0; --v)
+        rows::spread_across(distance_px.row(v + 1), width, distance_px.row(v));
 }
 
 void unknown_share(Executor& executor,

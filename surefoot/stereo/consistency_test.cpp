@@ -2,7 +2,6 @@
 #include "surefoot/stereo/consistency.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/stereo/test_executors.hpp"
+#include "surefoot/stereo/test_targets.hpp"
 
 namespace surefoot::stereo {
 namespace {
@@ -142,29 +142,42 @@ TEST(MarkJumps, FollowsTheRuleOnEveryProcessorAndThread) {
     }
 }
 
-TEST(DistanceToMarks, IsTheChessboardDistance) {
-    Rng rng(5);
-    Image<std::uint8_t> marks(40, 25, 0);
-    for (int n = 0; n < 6; ++n)
-        marks.at(static_cast<int>(rng.below(40)), static_cast<int>(rng.below(25))) = 255;
-    Serial serial;
-    Image<std::uint8_t> distance;
-    distance_to_marks(serial, marks, distance);
-    for (int v = 0; v < 25; ++v) {
-        for (int u = 0; u < 40; ++u) {
-            int nearest = 255;
-            for (int b = 0; b < 25; ++b) {
-                for (int a = 0; a < 40; ++a) {
-                    if (marks.at(a, b) != 0)
-                        nearest = std::min(nearest, std::max(std::abs(a - u), std::abs(b - v)));
-                }
-            }
-            if (nearest > kFarthest_px) nearest = 255;
-            ASSERT_EQ(distance.at(u, v), nearest) << u << " " << v;
+/// Chessboard distance from the nearest mark, 255 beyond kFarthest_px.
+std::uint8_t distance_plainly(const Image<std::uint8_t>& marks, int u, int v) {
+    int nearest = kFarthest_px + 1;
+    for (int b = 0; b < marks.height(); ++b) {
+        for (int a = 0; a < marks.width(); ++a) {
+            if (marks.at(a, b) != 0)
+                nearest = std::min(nearest, std::max(std::abs(a - u), std::abs(b - v)));
         }
     }
-    marks.fill(0);
-    distance_to_marks(serial, marks, distance);
+    return static_cast<std::uint8_t>(nearest > kFarthest_px ? 255 : nearest);
+}
+
+TEST(DistanceToMarks, IsTheChessboardDistanceOnEveryProcessorAndThread) {
+    Rng rng(5);
+    for (const auto& [width, height] : {std::pair{1, 1}, {2, 40}, {40, 25}, {64, 3}, {150, 70}}) {
+        Image<std::uint8_t> marks(width, height, 0);
+        for (int n = 0; n < 6; ++n) {
+            marks.at(static_cast<int>(rng.below(static_cast<std::uint64_t>(width))),
+                     static_cast<int>(rng.below(static_cast<std::uint64_t>(height)))) = 255;
+        }
+        Image<std::uint8_t> expected(width, height);
+        for (int v = 0; v < height; ++v) {
+            for (int u = 0; u < width; ++u) expected.at(u, v) = distance_plainly(marks, u, v);
+        }
+        test::TwoThreads threads;
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+            hwy::SetSupportedTargetsForTest(target);
+            Image<std::uint8_t> distance;
+            distance_to_marks(threads, marks, distance);
+            EXPECT_EQ(distance, expected) << hwy::TargetName(target) << " " << width;
+        }
+        hwy::SetSupportedTargetsForTest(0);
+    }
+    Serial serial;
+    Image<std::uint8_t> distance;
+    distance_to_marks(serial, Image<std::uint8_t>(40, 25, 0), distance);
     EXPECT_EQ(distance.at(0, 0), 255);
 }
 

@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::stereo::rows::HWY_NAMESPACE {
@@ -18,6 +20,43 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+std::uint64_t bits_of(hn::ScalableTag<float> d, hn::Mask<hn::ScalableTag<float>> mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, bytes, sizeof(bits));
+    return bits;
+}
+
+void link_row(const float* disparity_px,
+              int width,
+              float same_px,
+              std::uint64_t* HWY_RESTRICT known,
+              std::uint64_t* HWY_RESTRICT linked) {
+    constexpr int kWord = 64;
+    const hn::ScalableTag<float> d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const auto limit = hn::Set(d, same_px);
+    float rest[kWord + 1];  // of the row, and then nothing known
+    for (int u = 0; u < width; u += kWord) {
+        const float* from = disparity_px + u;
+        if (u + kWord >= width) {
+            std::fill(std::copy(from, disparity_px + width, rest), rest + kWord + 1, kNan);
+            from = rest;
+        }
+        std::uint64_t known_bits = 0;
+        std::uint64_t linked_bits = 0;
+        for (int i = 0; i < kWord; i += lanes) {
+            const auto here = hn::LoadU(d, from + i);
+            const auto step = hn::Abs(hn::Sub(hn::LoadU(d, from + i + 1), here));
+            known_bits |= bits_of(d, hn::Eq(here, here)) << i;
+            linked_bits |= bits_of(d, hn::Le(step, limit)) << i;
+        }
+        known[u / kWord] = known_bits;
+        linked[u / kWord] = linked_bits;
+    }
+}
 
 /// Known disparities, and less than all of them for an unknown one: they are positive.
 template <class D>
@@ -105,18 +144,6 @@ HWY_INLINE std::uint8_t torn(float a, float b, float limit) {
     return std::abs(a - b) > limit ? 255 : 0;
 }
 
-/// Jumps across holes, which have no neighbour to compare with.
-void mark_across_holes(const float* d, int width, JumpRule rule, std::uint8_t* mark) {
-    int last = width;  // the last known pixel
-    for (int u = 0; u < width; ++u) {
-        if (d[u] != d[u]) continue;
-        if (u - last > 1 &&
-            torn(d[u], d[last], rule.step_px + rule.slope * static_cast<float>(u - last)))
-            mark[u] = mark[last] = 255;
-        last = u;
-    }
-}
-
 void mark_along_row(const float* d, int width, JumpRule rule, std::uint8_t* HWY_RESTRICT mark) {
     const float step = rule.step_px + rule.slope;
     const float ramp = rule.step_px + rule.slope * static_cast<float>(2 * kRampHalf_px);
@@ -135,7 +162,6 @@ void mark_along_row(const float* d, int width, JumpRule rule, std::uint8_t* HWY_
         mark[u] = jump ? 255 : 0;
     }
     for (int u = std::max(r, width - r); u < width; ++u) beside_end(u);
-    mark_across_holes(d, width, rule, mark);
 }
 
 void mark_ramps_row(const float* HWY_RESTRICT above,
@@ -147,19 +173,58 @@ void mark_ramps_row(const float* HWY_RESTRICT above,
     for (int u = 0; u < width; ++u) mark[u] |= torn(above[u], below[u], ramp);
 }
 
-void mark_from_last_row(const float* HWY_RESTRICT d,
-                        int width,
-                        JumpRule rule,
-                        float* HWY_RESTRICT last_px,
-                        float* HWY_RESTRICT rows_since,
-                        std::uint8_t* HWY_RESTRICT mark) {
-    for (int u = 0; u < width; ++u) {
-        const float distance = rows_since[u] + 1.0F;
-        const bool known = d[u] == d[u];
-        mark[u] |= torn(d[u], last_px[u], rule.step_px + rule.slope * distance);
-        last_px[u] = known ? d[u] : last_px[u];
-        rows_since[u] = known ? 0.0F : distance;
+/// 255 in the lanes of the mask.
+template <class D>
+HWY_INLINE hn::Vec<hn::Rebind<std::uint8_t, D>> bytes_of(D /*d*/, hn::Mask<D> mask) {
+    const hn::RebindToSigned<D> d32;
+    const hn::Rebind<std::uint8_t, D> d8;
+    return hn::DemoteTo(d8, hn::IfThenElseZero(hn::RebindMask(d32, mask), hn::Set(d32, 255)));
+}
+
+/// What mark_down does to the lanes from `u` on.
+template <class D>
+HWY_INLINE void mark_down_here(D d,
+                               const float* disparity_px,
+                               JumpRule rule,
+                               float* last_px,
+                               float* rows_since,
+                               std::uint8_t* mark,
+                               std::ptrdiff_t stride) {
+    const hn::Rebind<std::uint8_t, D> d8;
+    const auto here = hn::LoadU(d, disparity_px);
+    const auto last = hn::LoadU(d, last_px);
+    const auto since = hn::LoadU(d, rows_since);
+    const auto distance = hn::Add(since, hn::Set(d, 1.0F));
+    const auto limit = hn::Add(hn::Set(d, rule.step_px), hn::Mul(hn::Set(d, rule.slope), distance));
+    const auto torn = hn::Gt(hn::Abs(hn::Sub(here, last)), limit);
+    const auto known = hn::Eq(here, here);
+    hn::StoreU(hn::IfThenElse(known, here, last), d, last_px);
+    hn::StoreU(hn::IfThenElse(known, hn::Zero(d), distance), d, rows_since);
+    if (hn::AllFalse(d, torn)) return;
+    HWY_ALIGN float sides[hn::MaxLanes(d)];
+    hn::Store(hn::IfThenElseZero(torn, distance), d, sides);
+    hn::StoreU(hn::Or(hn::LoadU(d8, mark), bytes_of(d, torn)), d8, mark);
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+        if (sides[i] > 0.0F) *(mark + i - static_cast<std::ptrdiff_t>(sides[i]) * stride) = 255;
     }
+}
+
+void mark_down_row(const float* disparity_px,
+                   int width,
+                   JumpRule rule,
+                   float* last_px,
+                   float* rows_since,
+                   std::uint8_t* mark,
+                   std::ptrdiff_t stride) {
+    const auto here = [&](auto d, int u) {
+        mark_down_here(d, disparity_px + u, rule, last_px + u, rows_since + u, mark + u, stride);
+    };
+    const hn::ScalableTag<float> whole;
+    const hn::CappedTag<float, 1> single;
+    const int lanes = static_cast<int>(hn::Lanes(whole));
+    int u = 0;
+    for (; u + lanes <= width; u += lanes) here(whole, u);
+    for (; u < width; ++u) here(single, u);
 }
 
 void count_unknown_row(const float* HWY_RESTRICT d,
@@ -202,18 +267,55 @@ void unknown_share_row(const std::uint8_t* HWY_RESTRICT counts,
     for (int u = inner; u < width; ++u) share[u] = share_at(u);
 }
 
-void nearer_row(const std::uint8_t* HWY_RESTRICT other,
-                int steps,
-                int farthest,
-                int width,
-                std::uint8_t* HWY_RESTRICT here) {
-    const auto most = static_cast<std::uint8_t>(farthest - steps);
-    const auto step = static_cast<std::uint8_t>(steps);
-    for (int u = 0; u < width; ++u) {
-        const auto longer = static_cast<std::uint8_t>(other[u] + step);
-        const std::uint8_t far = other[u] > most ? std::uint8_t{255} : longer;
-        here[u] = here[u] < far ? here[u] : far;
+/// In steps of 1, 2, 4 and 8, each of which may be taken or not.
+void spread_along_row(const std::uint8_t* HWY_RESTRICT mark,
+                      int width,
+                      std::uint8_t* scratch,
+                      std::uint8_t* HWY_RESTRICT distance_px) {
+    static_assert(kFarthest_px == 1 + 2 + 4 + 8);
+    const hn::ScalableTag<std::uint8_t> d8;
+    const int lanes = static_cast<int>(hn::Lanes(d8));
+    const int padded = width + 2 * kSpreadMargin;
+    std::fill_n(scratch, 2 * padded, std::uint8_t{255});
+    std::uint8_t* from = scratch + kSpreadMargin;
+    std::uint8_t* to = from + padded;
+    for (int u = 0; u < width; ++u) from[u] = mark[u] != 0 ? 0 : 255;
+    for (int step = 1; step <= kFarthest_px; step *= 2) {
+        const auto more = hn::Set(d8, static_cast<std::uint8_t>(step));
+        for (int u = 0; u < width; u += lanes) {
+            const auto beside =
+                hn::Min(hn::LoadU(d8, from + u - step), hn::LoadU(d8, from + u + step));
+            const auto longer = hn::SaturatedAdd(beside, more);
+            hn::StoreU(hn::Min(hn::LoadU(d8, from + u), longer), d8, to + u);
+        }
+        // What registers wrote beyond the end is no distance.
+        std::fill_n(to + width, kSpreadMargin, std::uint8_t{255});
+        std::swap(from, to);
     }
+    std::copy_n(from, width, distance_px);
+}
+
+template <class D>
+HWY_INLINE void spread_here(
+    D d8, const std::uint8_t* from, int before, int u, int after, std::uint8_t* to) {
+    const auto least = hn::Min(hn::Min(hn::LoadU(d8, from + before), hn::LoadU(d8, from + after)),
+                               hn::LoadU(d8, from + u));
+    const auto longer = hn::SaturatedAdd(least, hn::Set(d8, std::uint8_t{1}));
+    const auto farther = hn::Gt(longer, hn::Set(d8, std::uint8_t{kFarthest_px}));
+    const auto counted = hn::IfThenElse(farther, hn::Set(d8, std::uint8_t{255}), longer);
+    hn::StoreU(hn::Min(hn::LoadU(d8, to + u), counted), d8, to + u);
+}
+
+void spread_across_row(const std::uint8_t* from, int width, std::uint8_t* distance_px) {
+    const hn::ScalableTag<std::uint8_t> whole;
+    const hn::CappedTag<std::uint8_t, 1> single;
+    const int lanes = static_cast<int>(hn::Lanes(whole));
+    const int last = width - 1;
+    spread_here(single, from, 0, 0, std::min(1, last), distance_px);
+    int u = 1;
+    for (; u + lanes <= last; u += lanes) spread_here(whole, from, u - 1, u, u + 1, distance_px);
+    for (; u < last; ++u) spread_here(single, from, u - 1, u, u + 1, distance_px);
+    if (last > 0) spread_here(single, from, last - 1, last, last, distance_px);
 }
 
 }  // namespace
@@ -223,15 +325,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace surefoot::stereo::rows {
 
+HWY_EXPORT(link_row);
 HWY_EXPORT(median_row);
 HWY_EXPORT(settle_row);
 HWY_EXPORT(mark_along_row);
 HWY_EXPORT(mark_ramps_row);
-HWY_EXPORT(mark_from_last_row);
+HWY_EXPORT(mark_down_row);
 HWY_EXPORT(count_unknown_row);
 HWY_EXPORT(unknown_share_row);
-HWY_EXPORT(nearer_row);
+HWY_EXPORT(spread_along_row);
+HWY_EXPORT(spread_across_row);
 
+void link(const float* disparity_px,
+          int width,
+          float same_px,
+          std::uint64_t* known,
+          std::uint64_t* linked) {
+    HWY_DYNAMIC_DISPATCH(link_row)(disparity_px, width, same_px, known, linked);
+}
 void median(const float* const lines[3], int width, float* out) {
     HWY_DYNAMIC_DISPATCH(median_row)(lines, width, out);
 }
@@ -245,24 +356,30 @@ void mark_ramps(
     const float* above, const float* below, int width, JumpRule rule, std::uint8_t* mark) {
     HWY_DYNAMIC_DISPATCH(mark_ramps_row)(above, below, width, rule, mark);
 }
-void mark_from_last(const float* disparity_px,
-                    int width,
-                    JumpRule rule,
-                    float* last_px,
-                    float* rows_since,
-                    std::uint8_t* mark) {
-    HWY_DYNAMIC_DISPATCH(mark_from_last_row)
-    (disparity_px, width, rule, last_px, rows_since, mark);
+void mark_down(const float* disparity_px,
+               int width,
+               JumpRule rule,
+               float* last_px,
+               float* rows_since,
+               std::uint8_t* mark,
+               std::ptrdiff_t stride) {
+    HWY_DYNAMIC_DISPATCH(mark_down_row)
+    (disparity_px, width, rule, last_px, rows_since, mark, stride);
 }
-
 void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::uint8_t* counts) {
     HWY_DYNAMIC_DISPATCH(count_unknown_row)(disparity_px, width, sign, counts);
 }
 void unknown_share(const std::uint8_t* counts, int width, int radius, int rows, float* share) {
     HWY_DYNAMIC_DISPATCH(unknown_share_row)(counts, width, radius, rows, share);
 }
-void nearer(const std::uint8_t* other, int steps, int farthest, int width, std::uint8_t* here) {
-    HWY_DYNAMIC_DISPATCH(nearer_row)(other, steps, farthest, width, here);
+void spread_along(const std::uint8_t* mark,
+                  int width,
+                  std::uint8_t* scratch,
+                  std::uint8_t* distance_px) {
+    HWY_DYNAMIC_DISPATCH(spread_along_row)(mark, width, scratch, distance_px);
+}
+void spread_across(const std::uint8_t* from, int width, std::uint8_t* distance_px) {
+    HWY_DYNAMIC_DISPATCH(spread_across_row)(from, width, distance_px);
 }
 
 }  // namespace surefoot::stereo::rows

@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 /// The loops of settle.cpp and consistency.cpp over one row of an image, compiled once for every
 /// instruction set and chosen at run time; all give the same bytes.
 namespace surefoot::stereo::rows {
+
+/// One bit for each pixel, 64 to a word, the first one lowest: whether it is known, and whether it
+/// and the next one are and differ by at most `same_px`. Bits beyond the end are 0.
+void link(const float* disparity_px,
+          int width,
+          float same_px,
+          std::uint64_t* known,
+          std::uint64_t* linked);
 
 /// Median of 3 x 3 disparities; unknown (NaN) counts as less than all, so that it is the median
 /// only where five are unknown. `lines`: rows above, here and below; columns beyond the ends
@@ -36,20 +45,22 @@ struct JumpRule {
 /// Half the pixels over which the steps of a ramp are spread.
 inline constexpr int kRampHalf_px = 2;
 
-/// Writes 255 into `mark` on both sides of a jump along the row, holes skipped, and in the middle
+/// Writes 255 into `mark` on both sides of a jump between neighbours of the row, and in the middle
 /// of a ramp of 2 kRampHalf_px; else 0.
 void mark_along(const float* disparity_px, int width, JumpRule rule, std::uint8_t* mark);
 /// Adds the middles of ramps between the rows kRampHalf_px above and below.
 void mark_ramps(
     const float* above, const float* below, int width, JumpRule rule, std::uint8_t* mark);
-/// Adds the pixels that differ from the last known one of their column. `last_px` (NaN at first)
-/// and `rows_since` (0 at first) are kept from row to row.
-void mark_from_last(const float* disparity_px,
-                    int width,
-                    JumpRule rule,
-                    float* last_px,
-                    float* rows_since,
-                    std::uint8_t* mark);
+/// Adds both sides of jumps from the last known pixel of each column, which is `last_px` (NaN:
+/// none) and lies 1 + `rows_since` rows above; both are kept from row to row. `mark` is followed by
+/// the next row after `stride` elements.
+void mark_down(const float* disparity_px,
+               int width,
+               JumpRule rule,
+               float* last_px,
+               float* rows_since,
+               std::uint8_t* mark,
+               std::ptrdiff_t stride);
 
 /// Adds `sign` to the count of every column whose pixel is unknown.
 void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::uint8_t* counts);
@@ -58,8 +69,15 @@ void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::
 /// may hold at most 255 pixels.
 void unknown_share(const std::uint8_t* counts, int width, int radius, int rows, float* share);
 
-/// A distance counted up to `farthest`, 255 beyond: the lesser of `here` and `steps` more than
-/// `other`. `here` and `other` must not overlap.
-void nearer(const std::uint8_t* other, int steps, int farthest, int width, std::uint8_t* here);
+/// Distances are counted up to here, 255 beyond.
+inline constexpr int kFarthest_px = 15;
+/// Distance from the nearest marked pixel of the row. `scratch`: 2 (width + 2 kSpreadMargin).
+void spread_along(const std::uint8_t* mark,
+                  int width,
+                  std::uint8_t* scratch,
+                  std::uint8_t* distance_px);
+inline constexpr int kSpreadMargin = 80;
+/// Lessens `distance_px` to one more than the least of three neighbours in the row `from`.
+void spread_across(const std::uint8_t* from, int width, std::uint8_t* distance_px);
 
 }  // namespace surefoot::stereo::rows

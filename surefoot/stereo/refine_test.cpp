@@ -2,7 +2,6 @@
 #include "surefoot/stereo/refine.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/stereo/test_executors.hpp"
 #include "surefoot/stereo/test_scene.hpp"
+#include "surefoot/stereo/test_targets.hpp"
 
 namespace surefoot::stereo {
 namespace {

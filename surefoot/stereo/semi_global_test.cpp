@@ -2,13 +2,13 @@
 #include "surefoot/stereo/semi_global.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/stereo/census_window.hpp"
 #include "surefoot/stereo/test_executors.hpp"
+#include "surefoot/stereo/test_targets.hpp"
 
 namespace surefoot::stereo {
 namespace {

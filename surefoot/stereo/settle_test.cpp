@@ -2,7 +2,6 @@
 #include "surefoot/stereo/settle.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/stereo/test_targets.hpp"
 
 namespace surefoot::stereo {
 namespace {

@@ -54,13 +54,10 @@ void SpeckleFilter::remove(int min_size, double same_px, Image<float>& disparity
     row_first_.clear();
     row_first_.push_back(0);
     for (int v = 0; v < height; ++v) {
-        const float* const d = disparity_px.row(v);
-        for (int u = 0; u < width; ++u) {
-            if (std::isnan(d[u])) continue;
-            const int first = u;
-            while (u + 1 < width && std::abs(d[u + 1] - d[u]) <= limit) ++u;
-            runs_.push_back({first, u, static_cast<int>(runs_.size()), u - first + 1});
-        }
+        in_row_.find(disparity_px.row(v), width, limit);
+        in_row_.for_each([&](int first, int last) {
+            runs_.push_back({first, last, static_cast<int>(runs_.size()), last - first + 1});
+        });
         row_first_.push_back(static_cast<int>(runs_.size()));
         if (v > 0) connect(disparity_px, v, limit);
     }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "surefoot/core/views.hpp"
+#include "surefoot/stereo/row_runs.hpp"
 
 namespace surefoot::stereo {
 
@@ -32,6 +33,7 @@ class SpeckleFilter {
     void join(int a, int b);
     void connect(const Image<float>& disparity_px, int v, float same_px);
 
+    RowRuns in_row_;
     std::vector<Run> runs_;
     std::vector<int> row_first_;  ///< index of the first run of each row, and the end
 };
