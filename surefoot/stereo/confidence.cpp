@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "surefoot/stereo/refine_rows.hpp"
-#include "surefoot/stereo/row_blocks.hpp"
 
 namespace surefoot::stereo {
 namespace {
@@ -45,28 +44,24 @@ float outlier_probability(const MatchEvidence& evidence) noexcept {
                : probability;
 }
 
-void rate_matches(Executor& executor,
-                  const Refinement& refinement,
+void rate_matches(int v,
+                  const RefinedRow& refined,
                   const Image<std::uint8_t>& jump_distance_px,
-                  const Image<float>& unknown_share,
+                  const UnknownCounts& unknown,
                   camera::DepthImage& depth) {
-    const int width = depth.disparity_px.width();
-    const int height = depth.disparity_px.height();
-    for_row_blocks(executor, height, [&](int first, int last) {
-        for (int v = first; v < last; ++v) {
-            rows::RateRow row;
-            row.disparity_px = depth.disparity_px.row(v);
-            row.residual_grey = refinement.residual_grey.row(v);
-            row.gradient_grey_px = refinement.gradient_grey_px.row(v);
-            row.shift_px = refinement.shift_px.row(v);
-            row.jump_distance_px = jump_distance_px.row(v);
-            row.unknown_share = unknown_share.row(v);
-            row.width = width;
-            row.sigma_px = depth.sigma_px.row(v);
-            row.outlier_probability = depth.outlier_probability.row(v);
-            rows::rate(row);
-        }
-    });
+    rows::RateRow row;
+    row.disparity_px = depth.disparity_px.row(v);
+    row.residual_grey = refined.residual_grey;
+    row.gradient_grey_px = refined.gradient_grey_px;
+    row.shift_px = refined.shift_px;
+    row.jump_distance_px = jump_distance_px.row(v);
+    row.unknown_count = unknown.pixels.row(v);
+    row.unknown_radius_px = unknown.radius_px;
+    row.unknown_rows = window_span(v, unknown.radius_px, depth.disparity_px.height());
+    row.width = depth.disparity_px.width();
+    row.sigma_px = depth.sigma_px.row(v);
+    row.outlier_probability = depth.outlier_probability.row(v);
+    rows::rate(row);
 }
 
 }  // namespace surefoot::stereo

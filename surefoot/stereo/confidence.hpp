@@ -2,16 +2,16 @@
 #pragma once
 
 #include "surefoot/camera/depth_image.hpp"
-#include "surefoot/core/executor.hpp"
+#include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/refine.hpp"
 
 namespace surefoot::stereo {
 
 /// What is known about one match when its disparity is settled.
 struct MatchEvidence {
-    float residual_grey = 0.0F;     ///< see Refinement
-    float gradient_grey_px = 0.0F;  ///< see Refinement
-    float shift_px = 0.0F;          ///< see Refinement
+    float residual_grey = 0.0F;     ///< see RefinedRow
+    float gradient_grey_px = 0.0F;  ///< see RefinedRow
+    float shift_px = 0.0F;          ///< see RefinedRow
     int jump_distance_px = 255;     ///< to the nearest disparity jump
     float unknown_share = 0.0F;     ///< of the 9x9 neighbours, [0, 1]
 };
@@ -57,11 +57,12 @@ inline constexpr float kScoreUnknown = 1.9F;
 /// at least kJumpOutlierProbability in the jump zone.
 [[nodiscard]] float outlier_probability(const MatchEvidence& evidence) noexcept;
 
-/// Fills sigma and outlier probability of `depth` from its disparity; unknown pixels get NaN and 1.
-void rate_matches(Executor& executor,
-                  const Refinement& refinement,
+/// Fills row `v` of sigma and outlier probability of `depth` from its disparity; unknown pixels get
+/// NaN and 1.
+void rate_matches(int v,
+                  const RefinedRow& refined,
                   const Image<std::uint8_t>& jump_distance_px,
-                  const Image<float>& unknown_share,
+                  const UnknownCounts& unknown,
                   camera::DepthImage& depth);
 
 }  // namespace surefoot::stereo

@@ -53,45 +53,49 @@ TEST(OutlierProbability, GrowsWithEveryWarning) {
     EXPECT_GT(outlier_probability(changed([](auto& e) { e.unknown_share = 0.5F; })), good);
 }
 
-/// Whole images give, on every processor, what the definition says of single pixels.
+/// Rows give, on every processor, what the definition says of single pixels.
 TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
     constexpr int kWidth = 500;
+    constexpr int kHeight = 2;
+    constexpr int kRadius = 4;
     Rng rng(4);
     camera::DepthImage depth;
-    depth.resize(kWidth, 1);
+    depth.resize(kWidth, kHeight);
     depth.disparity_px.fill(12.0F);
-    Refinement refinement;
-    Image<std::uint8_t> jump_distance_px(kWidth, 1);
-    Image<float> unknown(kWidth, 1);
-    for (Image<float>* image :
-         {&refinement.residual_grey, &refinement.gradient_grey_px, &refinement.shift_px})
-        image->resize(kWidth, 1);
+    std::vector<float> residual(kWidth);
+    std::vector<float> gradient(kWidth);
+    std::vector<float> shift(kWidth);
+    Image<std::uint8_t> jump_distance_px(kWidth, kHeight);
+    UnknownCounts unknown{Image<std::uint8_t>(kWidth, kHeight), kRadius};
     for (int u = 0; u < kWidth; ++u) {
-        refinement.residual_grey.at(u, 0) = static_cast<float>(std::exp(rng.uniform(-3.0, 4.0)));
-        refinement.gradient_grey_px.at(u, 0) =
-            u % 9 == 0 ? 0.0F : static_cast<float>(std::exp(rng.uniform(-6.0, 4.0)));
-        refinement.shift_px.at(u, 0) = static_cast<float>(rng.uniform(-1.0, 1.0));
-        jump_distance_px.at(u, 0) = static_cast<std::uint8_t>(u % 7 == 0 ? 255 : u % 16);
-        unknown.at(u, 0) = static_cast<float>(rng.uniform());
+        const auto i = static_cast<std::size_t>(u);
+        residual[i] = static_cast<float>(std::exp(rng.uniform(-3.0, 4.0)));
+        gradient[i] = u % 9 == 0 ? 0.0F : static_cast<float>(std::exp(rng.uniform(-6.0, 4.0)));
+        shift[i] = static_cast<float>(rng.uniform(-1.0, 1.0));
+        jump_distance_px.at(u, 1) = static_cast<std::uint8_t>(u % 7 == 0 ? 255 : u % 16);
+        unknown.pixels.at(u, 1) = static_cast<std::uint8_t>(rng.below(11));
     }
-    Serial serial;
     std::vector<float> first;
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(target);
-        rate_matches(serial, refinement, jump_distance_px, unknown, depth);
-        std::vector<float> all(depth.sigma_px.data(), depth.sigma_px.data() + kWidth);
+        rate_matches(
+            1, {residual.data(), gradient.data(), shift.data()}, jump_distance_px, unknown, depth);
+        std::vector<float> all(depth.sigma_px.row(1), depth.sigma_px.row(1) + kWidth);
         all.insert(
-            all.end(), depth.outlier_probability.data(), depth.outlier_probability.data() + kWidth);
+            all.end(), depth.outlier_probability.row(1), depth.outlier_probability.row(1) + kWidth);
         if (first.empty()) first = all;
         EXPECT_EQ(all, first) << hwy::TargetName(target);
         for (int u = 0; u < kWidth; ++u) {
-            const MatchEvidence evidence{refinement.residual_grey.at(u, 0),
-                                         refinement.gradient_grey_px.at(u, 0),
-                                         refinement.shift_px.at(u, 0),
-                                         jump_distance_px.at(u, 0),
-                                         unknown.at(u, 0)};
-            ASSERT_NEAR(depth.sigma_px.at(u, 0), match_sigma_px(evidence), 1e-6F) << u;
-            ASSERT_NEAR(depth.outlier_probability.at(u, 0), outlier_probability(evidence), 2e-6F)
+            const auto i = static_cast<std::size_t>(u);
+            const int area = kHeight * window_span(u, kRadius, kWidth);
+            const MatchEvidence evidence{
+                residual[i],
+                gradient[i],
+                shift[i],
+                jump_distance_px.at(u, 1),
+                static_cast<float>(unknown.pixels.at(u, 1)) / static_cast<float>(area)};
+            ASSERT_NEAR(depth.sigma_px.at(u, 1), match_sigma_px(evidence), 1e-6F) << u;
+            ASSERT_NEAR(depth.outlier_probability.at(u, 1), outlier_probability(evidence), 2e-6F)
                 << u;
         }
     }
@@ -99,19 +103,14 @@ TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
 }
 
 TEST(RateMatches, UnknownHasNoSigmaAndIsNoInlier) {
-    Serial serial;
     camera::DepthImage depth;
     depth.resize(2, 1);
     depth.disparity_px.at(0, 0) = 12.0F;
     depth.disparity_px.at(1, 0) = std::numeric_limits<float>::quiet_NaN();
-    Refinement refinement;
-    for (auto* image :
-         {&refinement.residual_grey, &refinement.gradient_grey_px, &refinement.shift_px}) {
-        *image = Image<float>(2, 1, 0.5F);
-    }
+    const float halves[2] = {0.5F, 0.5F};
     const Image<std::uint8_t> jump_distance_px(2, 1, 200);
-    const Image<float> share(2, 1, 0.0F);
-    rate_matches(serial, refinement, jump_distance_px, share, depth);
+    const UnknownCounts unknown{Image<std::uint8_t>(2, 1, 0), 4};
+    rate_matches(0, {halves, halves, halves}, jump_distance_px, unknown, depth);
     EXPECT_GT(depth.sigma_px.at(0, 0), 0.0F);
     EXPECT_LT(depth.outlier_probability.at(0, 0), 0.1F);
     EXPECT_TRUE(std::isnan(depth.sigma_px.at(1, 0)));

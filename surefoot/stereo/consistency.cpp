@@ -125,27 +125,26 @@ void distance_to_marks(Executor& executor,
         rows::spread_across(distance_px.row(v + 1), width, distance_px.row(v));
 }
 
-void unknown_share(Executor& executor,
+void count_unknown(Executor& executor,
                    const Image<float>& disparity_px,
                    int radius_px,
-                   Image<float>& share) {
-    SUREFOOT_ASSERT(radius_px >= 0 && radius_px <= kMaxShareRadius_px);
+                   UnknownCounts& counts) {
+    SUREFOOT_ASSERT(radius_px >= 0 && radius_px <= kMaxCountRadius_px);
     const int width = disparity_px.width();
     const int height = disparity_px.height();
-    share.resize(width, height);
+    counts.pixels.resize(width, height);
+    counts.radius_px = radius_px;
     for_row_blocks(executor, height, [&](int first, int last) {
         std::vector<std::uint8_t> padded(static_cast<std::size_t>(width + 2 * radius_px), 0);
-        std::uint8_t* const counts = padded.data() + radius_px;
+        std::uint8_t* const columns = padded.data() + radius_px;
         const auto add_row = [&](int v, std::int8_t sign) {
             if (v < 0 || v >= height) return;
-            rows::count_unknown(disparity_px.row(v), width, sign, counts);
+            rows::count_unknown(disparity_px.row(v), width, sign, columns);
         };
         for (int v = first - radius_px; v < first + radius_px; ++v) add_row(v, 1);
         for (int v = first; v < last; ++v) {
             add_row(v + radius_px, 1);
-            const int present =
-                std::min(height - 1, v + radius_px) - std::max(0, v - radius_px) + 1;
-            rows::unknown_share(counts, width, radius_px, present, share.row(v));
+            rows::sum_windows(columns, width, radius_px, counts.pixels.row(v));
             add_row(v - radius_px, -1);
         }
     });

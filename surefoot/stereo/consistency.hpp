@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/views.hpp"
 
@@ -29,13 +31,21 @@ void distance_to_marks(Executor& executor,
                        const Image<std::uint8_t>& marks,
                        Image<std::uint8_t>& distance_px);
 
+/// How many pixels around each are unknown.
+struct UnknownCounts {
+    Image<std::uint8_t> pixels;  ///< in the window of `radius_px`, as far as it lies in the image
+    int radius_px = 0;
+};
 /// Windows hold at most 15 x 15 pixels: they are counted in bytes.
-inline constexpr int kMaxShareRadius_px = 7;
-/// Share of unknown pixels in the window of `radius_px` around each pixel, as far as it lies in the
-/// image.
-void unknown_share(Executor& executor,
+inline constexpr int kMaxCountRadius_px = 7;
+void count_unknown(Executor& executor,
                    const Image<float>& disparity_px,
                    int radius_px,
-                   Image<float>& share);
+                   UnknownCounts& counts);
+
+/// How many of the positions 0 ... size - 1 are at most `radius` away from `center`.
+constexpr int window_span(int center, int radius, int size) noexcept {
+    return std::min(size - 1, center + radius) - std::max(0, center - radius) + 1;
+}
 
 }  // namespace surefoot::stereo

@@ -181,15 +181,16 @@ TEST(DistanceToMarks, IsTheChessboardDistanceOnEveryProcessorAndThread) {
     EXPECT_EQ(distance.at(0, 0), 255);
 }
 
-TEST(UnknownShare, CountsTheWindowInsideTheImage) {
+TEST(CountUnknown, CountsTheWindowInsideTheImage) {
     constexpr int kRadius = 3;
     Rng rng(6);
     Image<float> image(37, 70, 1.0F);
     for (int n = 0; n < 600; ++n)
         image.at(static_cast<int>(rng.below(37)), static_cast<int>(rng.below(70))) = kNan;
     Serial serial;
-    Image<float> share;
-    unknown_share(serial, image, kRadius, share);
+    UnknownCounts counts;
+    count_unknown(serial, image, kRadius, counts);
+    EXPECT_EQ(counts.radius_px, kRadius);
     for (int v = 0; v < 70; ++v) {
         for (int u = 0; u < 37; ++u) {
             int unknown = 0;
@@ -201,8 +202,8 @@ TEST(UnknownShare, CountsTheWindowInsideTheImage) {
                     unknown += std::isnan(image.at(a, b)) ? 1 : 0;
                 }
             }
-            ASSERT_EQ(share.at(u, v), static_cast<float>(unknown) / static_cast<float>(all))
-                << u << " " << v;
+            ASSERT_EQ(counts.pixels.at(u, v), unknown) << u << " " << v;
+            ASSERT_EQ(window_span(u, kRadius, 37) * window_span(v, kRadius, 70), all);
         }
     }
 }

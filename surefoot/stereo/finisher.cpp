@@ -20,9 +20,15 @@ void Finisher::finish(ImageView<const std::uint8_t> left,
                       camera::DepthImage& depth) {
     mark_jumps(executor, found_px, kJump_px, jumps_);
     distance_to_marks(executor, jumps_, jump_distance_px_);
-    unknown_share(executor, found_px, kNeighbourhoodRadius_px, unknown_share_);
-    refiner_.refine(left, right, jump_distance_px_, executor, depth.disparity_px, refinement_);
-    rate_matches(executor, refinement_, jump_distance_px_, unknown_share_, depth);
+    count_unknown(executor, found_px, kNeighbourhoodRadius_px, unknown_);
+    refiner_.refine(left,
+                    right,
+                    jump_distance_px_,
+                    executor,
+                    depth.disparity_px,
+                    [&](int v, const RefinedRow& refined) {
+                        rate_matches(v, refined, jump_distance_px_, unknown_, depth);
+                    });
 }
 
 }  // namespace surefoot::stereo

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "surefoot/camera/depth_image.hpp"
+#include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/refine.hpp"
 
 namespace surefoot::stereo {
@@ -24,10 +25,9 @@ class Finisher {
   private:
     SubpixelRefiner refiner_;
     // Kept between frames, so that nothing is allocated anew.
-    Refinement refinement_;
     Image<std::uint8_t> jumps_;
     Image<std::uint8_t> jump_distance_px_;
-    Image<float> unknown_share_;
+    UnknownCounts unknown_;
 };
 
 }  // namespace surefoot::stereo

@@ -58,6 +58,21 @@ void link_row(const float* disparity_px,
     }
 }
 
+/// Calls here(tag, u) for the columns from `first` to before `last` in whole registers, the last of
+/// which may do some columns again; one by one if there are fewer.
+template <class Here>
+HWY_INLINE void for_columns(int first, int last, const Here& here) {
+    const hn::ScalableTag<float> whole;
+    const hn::CappedTag<float, 1> single;
+    const int lanes = static_cast<int>(hn::Lanes(whole));
+    if (last - first < lanes) {
+        for (int u = first; u < last; ++u) here(single, u);
+        return;
+    }
+    for (int u = first; u < last - lanes; u += lanes) here(whole, u);
+    here(whole, last - lanes);
+}
+
 /// Known disparities, and less than all of them for an unknown one: they are positive.
 template <class D>
 HWY_INLINE hn::Vec<D> ordered(D d, const float* from) {
@@ -72,40 +87,50 @@ HWY_INLINE void sort(V& a, V& b) {
     a = low;
 }
 
-/// The middle of the nine around `u`, whose neighbours are `before` and `after` it.
+/// The three of a column in order.
 template <class D>
-HWY_INLINE void median_here(
-    D d, const float* const lines[3], int before, int u, int after, float* HWY_RESTRICT out) {
-    using V = hn::Vec<D>;
-    V p0 = ordered(d, lines[0] + before);
-    V p1 = ordered(d, lines[0] + u);
-    V p2 = ordered(d, lines[0] + after);
-    V p3 = ordered(d, lines[1] + before);
-    V p4 = ordered(d, lines[1] + u);
-    V p5 = ordered(d, lines[1] + after);
-    V p6 = ordered(d, lines[2] + before);
-    V p7 = ordered(d, lines[2] + u);
-    V p8 = ordered(d, lines[2] + after);
-    // 19 exchanges (Paeth 1990).
-    sort(p1, p2), sort(p4, p5), sort(p7, p8);
-    sort(p0, p1), sort(p3, p4), sort(p6, p7);
-    sort(p1, p2), sort(p4, p5), sort(p7, p8);
-    sort(p0, p3), sort(p5, p8), sort(p4, p7);
-    sort(p3, p6), sort(p1, p4), sort(p2, p5);
-    sort(p4, p7), sort(p4, p2), sort(p6, p4), sort(p4, p2);
-    hn::StoreU(hn::IfThenElse(hn::Gt(p4, hn::Zero(d)), p4, hn::Set(d, kNan)), d, out + u);
+HWY_INLINE void sort_column(
+    D d, const float* const lines[3], int u, float* low, float* middle, float* high) {
+    auto a = ordered(d, lines[0] + u);
+    auto b = ordered(d, lines[1] + u);
+    auto c = ordered(d, lines[2] + u);
+    sort(a, b), sort(b, c), sort(a, b);
+    hn::StoreU(a, d, low + u);
+    hn::StoreU(b, d, middle + u);
+    hn::StoreU(c, d, high + u);
 }
 
-void median_row(const float* const lines[3], int width, float* HWY_RESTRICT out) {
-    const hn::ScalableTag<float> whole;
-    const hn::CappedTag<float, 1> single;
-    const int lanes = static_cast<int>(hn::Lanes(whole));
-    const int last = width - 1;
-    median_here(single, lines, 0, 0, std::min(1, last), out);
-    int u = 1;
-    for (; u + lanes <= last; u += lanes) median_here(whole, lines, u - 1, u, u + 1, out);
-    for (; u < last; ++u) median_here(single, lines, u - 1, u, u + 1, out);
-    if (last > 0) median_here(single, lines, last - 1, last, last, out);
+template <class V>
+HWY_INLINE V middle_of(V a, V b, V c) {
+    return hn::Max(hn::Min(a, b), hn::Min(hn::Max(a, b), c));
+}
+
+/// The middle of nine, whose columns are in order: of the highest of the low ones, the middle one
+/// of the middle ones and the lowest of the high ones it is the middle one. Each points at the
+/// column before.
+template <class D>
+HWY_INLINE void median_here(
+    D d, const float* low, const float* middle, const float* high, float* out) {
+    const auto at = [d](const float* from, int k) { return hn::LoadU(d, from + k); };
+    const auto lows = hn::Max(hn::Max(at(low, 0), at(low, 1)), at(low, 2));
+    const auto middles = middle_of(at(middle, 0), at(middle, 1), at(middle, 2));
+    const auto highs = hn::Min(hn::Min(at(high, 0), at(high, 1)), at(high, 2));
+    const auto median = middle_of(lows, middles, highs);
+    hn::StoreU(hn::IfThenElse(hn::Gt(median, hn::Zero(d)), median, hn::Set(d, kNan)), d, out);
+}
+
+void median_row(const float* const lines[3], int width, float* scratch, float* out) {
+    float* const low = scratch + 1;
+    float* const middle = low + width + 2;
+    float* const high = middle + width + 2;
+    for_columns(0, width, [&](auto d, int u) { sort_column(d, lines, u, low, middle, high); });
+    for (float* const sorted : {low, middle, high}) {
+        sorted[-1] = sorted[0];
+        sorted[width] = sorted[width - 1];
+    }
+    for_columns(0, width, [&](auto d, int u) {
+        median_here(d, low + u - 1, middle + u - 1, high + u - 1, out + u);
+    });
 }
 
 void settle_row(const SettleRow& row) {
@@ -238,33 +263,15 @@ void count_unknown_row(const float* HWY_RESTRICT d,
     }
 }
 
-void unknown_share_row(const std::uint8_t* HWY_RESTRICT counts,
-                       int width,
-                       int radius,
-                       int rows,
-                       float* HWY_RESTRICT share) {
-    const auto share_at = [&](int u) {
-        int unknown = 0;
-        for (int k = -radius; k <= radius; ++k) unknown += counts[u + k];
-        const int columns = std::min(width - 1, u + radius) - std::max(0, u - radius) + 1;
-        return static_cast<float>(unknown) / static_cast<float>(rows * columns);
-    };
-    const int inner = std::max(radius, width - radius);
-    for (int u = 0; u < std::min(radius, width); ++u) share[u] = share_at(u);
-    // Inside, where every window is whole, column after column of it for all pixels.
-    const auto area = static_cast<float>(rows * (2 * radius + 1));
-    constexpr int kChunk = 256;
-    std::uint8_t unknown[kChunk];
-    for (int first = radius; first < inner; first += kChunk) {
-        const int count = std::min(kChunk, inner - first);
-        std::fill_n(unknown, kChunk, std::uint8_t{0});
-        for (int k = -radius; k <= radius; ++k) {
-            for (int i = 0; i < count; ++i)
-                unknown[i] = static_cast<std::uint8_t>(unknown[i] + counts[first + k + i]);
-        }
-        for (int i = 0; i < count; ++i) share[first + i] = static_cast<float>(unknown[i]) / area;
+void sum_windows_row(const std::uint8_t* counts,
+                     int width,
+                     int radius,
+                     std::uint8_t* HWY_RESTRICT sums) {
+    std::fill_n(sums, width, std::uint8_t{0});
+    for (int k = -radius; k <= radius; ++k) {
+        const std::uint8_t* HWY_RESTRICT beside = counts + k;
+        for (int u = 0; u < width; ++u) sums[u] = static_cast<std::uint8_t>(sums[u] + beside[u]);
     }
-    for (int u = inner; u < width; ++u) share[u] = share_at(u);
 }
 
 /// In steps of 1, 2, 4 and 8, each of which may be taken or not.
@@ -332,7 +339,7 @@ HWY_EXPORT(mark_along_row);
 HWY_EXPORT(mark_ramps_row);
 HWY_EXPORT(mark_down_row);
 HWY_EXPORT(count_unknown_row);
-HWY_EXPORT(unknown_share_row);
+HWY_EXPORT(sum_windows_row);
 HWY_EXPORT(spread_along_row);
 HWY_EXPORT(spread_across_row);
 
@@ -343,8 +350,8 @@ void link(const float* disparity_px,
           std::uint64_t* linked) {
     HWY_DYNAMIC_DISPATCH(link_row)(disparity_px, width, same_px, known, linked);
 }
-void median(const float* const lines[3], int width, float* out) {
-    HWY_DYNAMIC_DISPATCH(median_row)(lines, width, out);
+void median(const float* const lines[3], int width, float* scratch, float* out) {
+    HWY_DYNAMIC_DISPATCH(median_row)(lines, width, scratch, out);
 }
 void settle(const SettleRow& row) {
     HWY_DYNAMIC_DISPATCH(settle_row)(row);
@@ -369,8 +376,8 @@ void mark_down(const float* disparity_px,
 void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::uint8_t* counts) {
     HWY_DYNAMIC_DISPATCH(count_unknown_row)(disparity_px, width, sign, counts);
 }
-void unknown_share(const std::uint8_t* counts, int width, int radius, int rows, float* share) {
-    HWY_DYNAMIC_DISPATCH(unknown_share_row)(counts, width, radius, rows, share);
+void sum_windows(const std::uint8_t* counts, int width, int radius, std::uint8_t* sums) {
+    HWY_DYNAMIC_DISPATCH(sum_windows_row)(counts, width, radius, sums);
 }
 void spread_along(const std::uint8_t* mark,
                   int width,

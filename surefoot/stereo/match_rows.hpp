@@ -18,8 +18,8 @@ void link(const float* disparity_px,
 
 /// Median of 3 x 3 disparities; unknown (NaN) counts as less than all, so that it is the median
 /// only where five are unknown. `lines`: rows above, here and below; columns beyond the ends
-/// repeat.
-void median(const float* const lines[3], int width, float* out);
+/// repeat. `scratch`: 3 (width + 2).
+void median(const float* const lines[3], int width, float* scratch, float* out);
 
 struct SettleRow {
     const std::uint8_t* disparity = nullptr;
@@ -64,10 +64,8 @@ void mark_down(const float* disparity_px,
 
 /// Adds `sign` to the count of every column whose pixel is unknown.
 void count_unknown(const float* disparity_px, int width, std::int8_t sign, std::uint8_t* counts);
-/// Share of unknown pixels in windows of 2 radius + 1 columns and `rows` rows, of which `counts`
-/// says how many are unknown in each column; `counts` has `radius` zeros on either side. A window
-/// may hold at most 255 pixels.
-void unknown_share(const std::uint8_t* counts, int width, int radius, int rows, float* share);
+/// Sums of 2 radius + 1 neighbours: `counts` has `radius` more on either side. They must fit.
+void sum_windows(const std::uint8_t* counts, int width, int radius, std::uint8_t* sums);
 
 /// Distances are counted up to here, 255 beyond.
 inline constexpr int kFarthest_px = 15;

@@ -111,7 +111,7 @@ void SubpixelRefiner::warp_block(int first,
 void SubpixelRefiner::solve_block(int first,
                                   int last,
                                   Image<float>& disparity_px,
-                                  Refinement& out) const {
+                                  const RefinedRows& refined) const {
     const int width = evidence_.width();
     const int height = evidence_.height();
     const int r = config_.window_radius_px;
@@ -125,6 +125,10 @@ void SubpixelRefiner::solve_block(int first,
         row.columns[k] = sums.column[k];
         row.prefix[k] = sums.prefix[k];
     }
+    std::vector<float> learnt(3 * static_cast<std::size_t>(width));
+    row.residual_grey = learnt.data();
+    row.gradient_grey_px = row.residual_grey + width;
+    row.shift_px = row.gradient_grey_px + width;
     row.radius_px = r;
     row.width = width;
     row.enough = 0.2F * static_cast<float>((2 * r + 1) * (2 * r + 1));
@@ -139,10 +143,8 @@ void SubpixelRefiner::solve_block(int first,
         rows::slide(
             evidence(v + r), begun ? evidence(v - r - 1) : nothing.data(), width, sums.column);
         row.disparity_px = disparity_px.row(v);
-        row.shift_px = out.shift_px.row(v);
-        row.residual_grey = out.residual_grey.row(v);
-        row.gradient_grey_px = out.gradient_grey_px.row(v);
         rows::solve(row);
+        refined(v, {row.residual_grey, row.gradient_grey_px, row.shift_px});
     }
 }
 
@@ -151,14 +153,11 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
                              const Image<std::uint8_t>& jump_distance_px,
                              Executor& executor,
                              Image<float>& disparity_px,
-                             Refinement& out) {
+                             const RefinedRows& refined) {
     const int width = left.width;
     const int height = left.height;
     evidence_.resize(width, height);
-    for (Image<float>* image :
-         {&horizontal_, &out.shift_px, &out.residual_grey, &out.gradient_grey_px}) {
-        image->resize(width, height);
-    }
+    horizontal_.resize(width, height);
     const int radius = config_.smooth_radius_px;
     const double same = config_.same_surface_px;
     for_row_blocks(executor, height, [&](int first, int last) {
@@ -171,7 +170,7 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
         warp_block(first, last, left, right, jump_distance_px, disparity_px);
     });
     for_row_blocks<kSolvedRows>(executor, height, [&](int first, int last) {
-        solve_block(first, last, disparity_px, out);
+        solve_block(first, last, disparity_px, refined);
     });
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/views.hpp"
@@ -22,14 +23,15 @@ struct RefineConfig {
     double correlation = 3.5;
 };
 
-/// What the refinement learnt about a pixel besides its disparity.
-struct Refinement {
-    Image<float>
-        residual_grey;  ///< rms difference between the eyes that no shift explains; NaN = unknown
-    Image<float>
-        gradient_grey_px;  ///< rms slope along the row in the window; 0 = no texture, NaN = unknown
-    Image<float> shift_px;  ///< how far the smoothed value was moved; NaN = unknown
+/// What the refinement learnt about the pixels of a row besides their disparity; NaN = unknown.
+struct RefinedRow {
+    const float* residual_grey = nullptr;     ///< rms grey difference that no shift explains
+    const float* gradient_grey_px = nullptr;  ///< rms slope along the row in the window
+    const float* shift_px = nullptr;          ///< how far the smoothed value was moved
 };
+/// Is called once for each row `v` when it is refined, from any thread; what it is given ends with
+/// the call. So it need not be written to memory.
+using RefinedRows = std::function<void(int v, const RefinedRow&)>;
 
 /// Sub-pixel refinement: smoothing along surfaces, then image registration (Lucas and Kanade 1981)
 /// along the row.
@@ -57,7 +59,7 @@ class SubpixelRefiner {
                 const Image<std::uint8_t>& jump_distance_px,
                 Executor& executor,
                 Image<float>& disparity_px,
-                Refinement& out);
+                const RefinedRows& refined);
 
   private:
     void warp_block(int first,
@@ -66,7 +68,10 @@ class SubpixelRefiner {
                     ImageView<const std::uint8_t> right,
                     const Image<std::uint8_t>& jump_distance_px,
                     const Image<float>& disparity_px);
-    void solve_block(int first, int last, Image<float>& disparity_px, Refinement& out) const;
+    void solve_block(int first,
+                     int last,
+                     Image<float>& disparity_px,
+                     const RefinedRows& refined) const;
 
     RefineConfig config_;
     Image<float> horizontal_;       ///< disparity, smoothed along the row alone

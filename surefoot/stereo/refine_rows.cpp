@@ -15,6 +15,7 @@
 #include <limits>
 
 #include "surefoot/stereo/confidence.hpp"
+#include "surefoot/stereo/consistency.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::stereo::rows::HWY_NAMESPACE {
@@ -330,10 +331,23 @@ HWY_INLINE float exp_of(float x) {
     return series * std::bit_cast<float>(static_cast<std::uint32_t>(n + 127) << 23);
 }
 
-HWY_INLINE float nearness_to_jump(std::uint8_t distance_px) {
-    const float far = 1.0F - static_cast<float>(distance_px) / kJumpReach_px;
+/// Twelfths, as a division would round them: the first part is exact times a small number.
+HWY_INLINE constexpr float nearness_to_jump(std::uint8_t distance_px) {
+    constexpr float kPart = 0.0833282470703125F;  // 1 / 12 to 12 bits
+    constexpr auto kRest = static_cast<float>(1.0 / 12.0 - 0.0833282470703125);
+    const auto distance = static_cast<float>(distance_px);
+    const float far = 1.0F - (distance * kPart + distance * kRest);
     return far > 0.0F ? far : 0.0F;
 }
+constexpr bool nearness_is_exact() {
+    for (int distance = 0; distance < 256; ++distance) {
+        const float far = 1.0F - static_cast<float>(distance) / kJumpReach_px;
+        if (nearness_to_jump(static_cast<std::uint8_t>(distance)) != (far > 0.0F ? far : 0.0F))
+            return false;
+    }
+    return true;
+}
+static_assert(nearness_is_exact());
 
 /// Noise over texture slope, and sigma.
 void rate_noise(const float* HWY_RESTRICT residual,
@@ -375,22 +389,45 @@ void rate_risk(const float* HWY_RESTRICT shift,
     }
 }
 
+/// Share of unknown pixels in the windows of `count` columns from `first` on.
+void unknown_shares(const RateRow& row, int first, int count, float* HWY_RESTRICT shares) {
+    const std::uint8_t* HWY_RESTRICT unknown = row.unknown_count + first;
+    const int radius = row.unknown_radius_px;
+    const auto whole = static_cast<float>(row.unknown_rows * (2 * radius + 1));
+    for (int i = 0; i < count; ++i) shares[i] = static_cast<float>(unknown[i]) / whole;
+    const auto cut_off = [&](int u) {
+        const int area = row.unknown_rows * window_span(u, radius, row.width);
+        shares[u - first] = static_cast<float>(row.unknown_count[u]) / static_cast<float>(area);
+    };
+    for (int u = first; u < std::min(first + count, radius); ++u) cut_off(u);
+    for (int u = std::max(first, row.width - radius); u < first + count; ++u) cut_off(u);
+}
+
 void rate_row(const RateRow& row) {
-    rate_noise(row.residual_grey,
-               row.gradient_grey_px,
-               row.shift_px,
-               row.jump_distance_px,
-               row.unknown_share,
-               row.width,
-               row.outlier_probability,
-               row.sigma_px);
-    rate_risk(
-        row.shift_px, row.jump_distance_px, row.unknown_share, row.width, row.outlier_probability);
-    const float* HWY_RESTRICT d = row.disparity_px;
-    for (int u = 0; u < row.width; ++u) {
-        const bool known = d[u] == d[u];
-        row.sigma_px[u] = known ? row.sigma_px[u] : d[u];
-        row.outlier_probability[u] = known ? row.outlier_probability[u] : 1.0F;
+    constexpr int kChunk = 256;
+    float shares[kChunk];
+    for (int first = 0; first < row.width; first += kChunk) {
+        const int count = std::min(kChunk, row.width - first);
+        const std::uint8_t* const jump_px = row.jump_distance_px + first;
+        const float* const shift_px = row.shift_px + first;
+        float* const sigma_px = row.sigma_px + first;
+        float* const probability = row.outlier_probability + first;
+        unknown_shares(row, first, count, shares);
+        rate_noise(row.residual_grey + first,
+                   row.gradient_grey_px + first,
+                   shift_px,
+                   jump_px,
+                   shares,
+                   count,
+                   probability,
+                   sigma_px);
+        rate_risk(shift_px, jump_px, shares, count, probability);
+        const float* HWY_RESTRICT d = row.disparity_px + first;
+        for (int i = 0; i < count; ++i) {
+            const bool known = d[i] == d[i];
+            sigma_px[i] = known ? sigma_px[i] : d[i];
+            probability[i] = known ? probability[i] : 1.0F;
+        }
     }
 }
 

@@ -86,7 +86,9 @@ struct RateRow {
     const float* gradient_grey_px = nullptr;
     const float* shift_px = nullptr;
     const std::uint8_t* jump_distance_px = nullptr;
-    const float* unknown_share = nullptr;
+    const std::uint8_t* unknown_count = nullptr;  ///< see UnknownCounts
+    int unknown_radius_px = 0;
+    int unknown_rows = 0;  ///< that the windows of this row have inside the image
     int width = 0;
     float* sigma_px = nullptr;
     float* outlier_probability = nullptr;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -32,22 +33,30 @@ const test::SyntheticPair& plane() {
 
 struct Refined {
     Image<float> disparity_px;
-    Refinement refinement;
+    Image<float> residual_grey;
+    Image<float> gradient_grey_px;
+    Image<float> shift_px;
 };
 
 Refined refine(const GreyImage& left,
                const GreyImage& right,
                Image<float> start,
                Executor& executor) {
-    Refined result{std::move(start), {}};
+    const int width = left.width();
+    const Image<float> empty(width, left.height());
+    Refined result{std::move(start), empty, empty, empty};
     SubpixelRefiner refiner{RefineConfig{}};
-    const Image<std::uint8_t> far_from_jumps(left.width(), left.height(), 255);
+    const Image<std::uint8_t> far_from_jumps(width, left.height(), 255);
     refiner.refine(left.view(),
                    right.view(),
                    far_from_jumps,
                    executor,
                    result.disparity_px,
-                   result.refinement);
+                   [&](int v, const RefinedRow& row) {
+                       std::copy_n(row.residual_grey, width, result.residual_grey.row(v));
+                       std::copy_n(row.gradient_grey_px, width, result.gradient_grey_px.row(v));
+                       std::copy_n(row.shift_px, width, result.shift_px.row(v));
+                   });
     return result;
 }
 
@@ -150,7 +159,7 @@ TEST(SubpixelRefiner, WithoutTextureNothingMoves) {
     const Image<float> start(60, 50, 10.5F);
     const Refined refined = refine(grey, grey, start, serial);
     EXPECT_EQ(refined.disparity_px, start);
-    EXPECT_EQ(refined.refinement.gradient_grey_px.at(40, 25), 0.0F);
+    EXPECT_EQ(refined.gradient_grey_px.at(40, 25), 0.0F);
 }
 
 TEST(SubpixelRefiner, UnknownStaysUnknownEvenInTinyImages) {
@@ -159,7 +168,7 @@ TEST(SubpixelRefiner, UnknownStaysUnknownEvenInTinyImages) {
         const GreyImage grey(side, side, 90);
         const Refined refined = refine(grey, grey, Image<float>(side, side, kNan), serial);
         EXPECT_TRUE(std::isnan(refined.disparity_px.at(0, 0)));
-        EXPECT_TRUE(std::isnan(refined.refinement.shift_px.at(0, 0)));
+        EXPECT_TRUE(std::isnan(refined.shift_px.at(0, 0)));
     }
 }
 
@@ -174,8 +183,8 @@ TEST(SubpixelRefiner, SameBytesOnEveryProcessor) {
         hwy::SetSupportedTargetsForTest(target);
         const Refined found = refine(pair.left, pair.right, start, serial);
         EXPECT_EQ(found.disparity_px, expected.disparity_px) << hwy::TargetName(target);
-        EXPECT_EQ(found.refinement.residual_grey, expected.refinement.residual_grey);
-        EXPECT_EQ(found.refinement.gradient_grey_px, expected.refinement.gradient_grey_px);
+        EXPECT_EQ(found.residual_grey, expected.residual_grey);
+        EXPECT_EQ(found.gradient_grey_px, expected.gradient_grey_px);
     }
     hwy::SetSupportedTargetsForTest(0);
 }
@@ -193,7 +202,7 @@ TEST(SubpixelRefiner, SameBytesForEveryExecutor) {
     const Refined c = refine(pair.left, pair.right, start, two);
     EXPECT_EQ(a.disparity_px, b.disparity_px);
     EXPECT_EQ(a.disparity_px, c.disparity_px);
-    EXPECT_EQ(a.refinement.residual_grey, c.refinement.residual_grey);
+    EXPECT_EQ(a.residual_grey, c.residual_grey);
 }
 
 }  // namespace
