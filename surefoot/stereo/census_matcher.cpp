@@ -30,8 +30,7 @@ class CensusMatcher final : public Matcher {
         search_.search(left, right, executor, winners_);
         settle(settle_, winners_, executor, settled_px_);
         speckles_.remove(kSpeckleSize_px, kSpeckleRange_px, settled_px_);
-        median_filter(settled_px_, executor, depth.disparity_px);
-        finisher_.finish(left, right, settled_px_, executor, depth);
+        finisher_.finish(left, right, settled_px_, Filter::median, executor, depth);
     }
 
   private:

@@ -16,6 +16,7 @@ constexpr int kNeighbourhoodRadius_px = 4;
 void Finisher::finish(ImageView<const std::uint8_t> left,
                       ImageView<const std::uint8_t> right,
                       const Image<float>& found_px,
+                      Filter filter,
                       Executor& executor,
                       camera::DepthImage& depth) {
     mark_jumps(executor, found_px, kJump_px, jumps_);
@@ -23,6 +24,8 @@ void Finisher::finish(ImageView<const std::uint8_t> left,
     count_unknown(executor, found_px, kNeighbourhoodRadius_px, unknown_);
     refiner_.refine(left,
                     right,
+                    found_px,
+                    filter,
                     jump_distance_px_,
                     executor,
                     depth.disparity_px,

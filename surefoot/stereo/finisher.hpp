@@ -13,12 +13,12 @@ class Finisher {
   public:
     Finisher() : refiner_(RefineConfig{}) {}
 
-    /// `depth.disparity_px` holds what was found (NaN = nothing); all of `depth` is filled.
-    /// `found_px` is what was found before a filter smoothed it: its jumps and holes are the true
-    /// ones.
+    /// Fills all of `depth` from what was found (NaN = nothing), which may lie in
+    /// `depth.disparity_px` if there is no filter. Jumps and holes are those before the filter.
     void finish(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
                 const Image<float>& found_px,
+                Filter filter,
                 Executor& executor,
                 camera::DepthImage& depth);
 

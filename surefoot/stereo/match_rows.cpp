@@ -133,6 +133,16 @@ void median_row(const float* const lines[3], int width, float* scratch, float* o
     });
 }
 
+void claim_row(const std::uint8_t* HWY_RESTRICT disparity,
+               const std::uint8_t* HWY_RESTRICT cost,
+               int width,
+               std::int32_t* HWY_RESTRICT place,
+               std::uint16_t* HWY_RESTRICT offer) {
+    for (int u = 0; u < width; ++u) place[u] = u - disparity[u];
+    for (int u = 0; u < width; ++u)
+        offer[u] = static_cast<std::uint16_t>(256 * cost[u] + disparity[u]);
+}
+
 void settle_row(const SettleRow& row) {
     constexpr int kNoCost = 255;
     const std::uint8_t* HWY_RESTRICT disparity = row.disparity;
@@ -334,6 +344,7 @@ namespace surefoot::stereo::rows {
 
 HWY_EXPORT(link_row);
 HWY_EXPORT(median_row);
+HWY_EXPORT(claim_row);
 HWY_EXPORT(settle_row);
 HWY_EXPORT(mark_along_row);
 HWY_EXPORT(mark_ramps_row);
@@ -352,6 +363,13 @@ void link(const float* disparity_px,
 }
 void median(const float* const lines[3], int width, float* scratch, float* out) {
     HWY_DYNAMIC_DISPATCH(median_row)(lines, width, scratch, out);
+}
+void claim(const std::uint8_t* disparity,
+           const std::uint8_t* cost,
+           int width,
+           std::int32_t* place,
+           std::uint16_t* offer) {
+    HWY_DYNAMIC_DISPATCH(claim_row)(disparity, cost, width, place, offer);
 }
 void settle(const SettleRow& row) {
     HWY_DYNAMIC_DISPATCH(settle_row)(row);

@@ -21,6 +21,13 @@ void link(const float* disparity_px,
 /// repeat. `scratch`: 3 (width + 2).
 void median(const float* const lines[3], int width, float* scratch, float* out);
 
+/// What each left pixel claims: `place` its right pixel, and `offer` 256 * cost + disparity.
+void claim(const std::uint8_t* disparity,
+           const std::uint8_t* cost,
+           int width,
+           std::int32_t* place,
+           std::uint16_t* offer);
+
 struct SettleRow {
     const std::uint8_t* disparity = nullptr;
     const std::uint8_t* cost = nullptr;

@@ -38,7 +38,7 @@ class OpenCvMatcher final : public Matcher {
         search_->compute(padded_left_, padded_right_, steps_);
         read_steps(executor, depth.disparity_px);
         drop_hidden(executor, left_right_tolerance_px_, depth.disparity_px);
-        finisher_.finish(left, right, depth.disparity_px, executor, depth);
+        finisher_.finish(left, right, depth.disparity_px, Filter::none, executor, depth);
     }
 
   private:

@@ -2,10 +2,12 @@
 #include "surefoot/stereo/refine.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "surefoot/stereo/refine_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
+#include "surefoot/stereo/settle.hpp"
 
 namespace surefoot::stereo {
 namespace {
@@ -44,44 +46,63 @@ struct WindowSums {
 
 }  // namespace
 
-void smooth_along(const Image<float>& in,
-                  int v,
-                  bool down,
-                  int radius_px,
-                  double same_surface_px,
-                  Image<float>& out) {
+void smooth_along(const float* row, int width, int radius_px, double same_surface_px, float* out) {
     SUREFOOT_ASSERT(radius_px <= kMaxSmoothRadius_px);
-    const int width = in.width();
-    const float* const center = in.row(v);
     const float* before[kMaxSmoothRadius_px];
     const float* after[kMaxSmoothRadius_px];
-    const int steps =
-        down ? std::min({radius_px, v, in.height() - 1 - v}) : std::min(radius_px, width);
-    for (int k = 1; k <= steps; ++k) {
-        before[k - 1] = down ? in.row(v - k) : center - k;
-        after[k - 1] = down ? in.row(v + k) : center + k;
+    for (int k = 0; k < radius_px; ++k) {
+        before[k] = row - k - 1;
+        after[k] = row + k + 1;
     }
-    rows::smooth_along({center,
-                        before,
-                        after,
-                        steps,
-                        down ? 0 : 1,
-                        width,
-                        static_cast<float>(same_surface_px),
-                        out.row(v)});
+    const auto same_px = static_cast<float>(same_surface_px);
+    rows::smooth_along({row, before, after, radius_px, width, same_px, out});
+}
+
+void smooth_down(const Image<float>& in, int v, int radius_px, double same_surface_px, float* out) {
+    SUREFOOT_ASSERT(radius_px <= kMaxSmoothRadius_px);
+    const float* above[kMaxSmoothRadius_px];
+    const float* below[kMaxSmoothRadius_px];
+    const int steps = std::min({radius_px, v, in.height() - 1 - v});
+    for (int k = 0; k < steps; ++k) {
+        above[k] = in.row(v - k - 1);
+        below[k] = in.row(v + k + 1);
+    }
+    const auto same_px = static_cast<float>(same_surface_px);
+    rows::smooth_along({in.row(v), above, below, steps, in.width(), same_px, out});
 }
 
 SubpixelRefiner::SubpixelRefiner(const RefineConfig& config) : config_(config) {
     SUREFOOT_ASSERT(config.window_radius_px >= 1 && config.window_radius_px <= kMaxWindowRadius_px);
 }
 
-/// Grey difference and gradient of every pixel of some rows at its disparity.
+/// Filters some rows of what was found and smooths them along the row.
+void SubpixelRefiner::smooth_block(int first,
+                                   int last,
+                                   const Image<float>& found_px,
+                                   Filter filter) {
+    const int width = found_px.width();
+    const int radius = config_.smooth_radius_px;
+    std::vector<float> scratch;
+    std::vector<float> padded(static_cast<std::size_t>(width + 2 * radius),
+                              std::numeric_limits<float>::quiet_NaN());
+    float* const row = padded.data() + radius;
+    for (int v = first; v < last; ++v) {
+        if (filter == Filter::median)
+            median_of_row(found_px, v, scratch, row);
+        else
+            std::copy_n(found_px.row(v), width, row);
+        smooth_along(row, width, radius, config_.same_surface_px, horizontal_.row(v));
+    }
+}
+
+/// Smooths some rows down the columns; grey difference and gradient of every pixel at its
+/// disparity.
 void SubpixelRefiner::warp_block(int first,
                                  int last,
                                  ImageView<const std::uint8_t> left,
                                  ImageView<const std::uint8_t> right,
                                  const Image<std::uint8_t>& jump_distance_px,
-                                 const Image<float>& disparity_px) {
+                                 Image<float>& disparity_px) {
     const auto columns = static_cast<std::size_t>(left.width);
     std::vector<std::uint16_t> sums(columns + 4);
     std::vector<std::int16_t> smooth_left(columns);
@@ -98,9 +119,11 @@ void SubpixelRefiner::warp_block(int first,
     row.fraction = fractions.data();
     row.pairs = pairs.data();
     for (int v = first; v < last; ++v) {
+        float* const disparity = disparity_px.row(v);
+        smooth_down(horizontal_, v, config_.smooth_radius_px, config_.same_surface_px, disparity);
         smooth_image_row(left, v, sums, smooth_left);
         smooth_image_row(right, v, sums, smooth_right);
-        row.disparity_px = disparity_px.row(v);
+        row.disparity_px = disparity;
         row.jump_distance_px = jump_distance_px.row(v);
         row.evidence = evidence_.row(v);
         rows::warp(row);
@@ -150,6 +173,8 @@ void SubpixelRefiner::solve_block(int first,
 
 void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
                              ImageView<const std::uint8_t> right,
+                             const Image<float>& found_px,
+                             Filter filter,
                              const Image<std::uint8_t>& jump_distance_px,
                              Executor& executor,
                              Image<float>& disparity_px,
@@ -158,15 +183,12 @@ void SubpixelRefiner::refine(ImageView<const std::uint8_t> left,
     const int height = left.height;
     evidence_.resize(width, height);
     horizontal_.resize(width, height);
-    const int radius = config_.smooth_radius_px;
-    const double same = config_.same_surface_px;
     for_row_blocks(executor, height, [&](int first, int last) {
-        for (int v = first; v < last; ++v)
-            smooth_along(disparity_px, v, false, radius, same, horizontal_);
+        smooth_block(first, last, found_px, filter);
     });
+    // Only now: it may be the image of what was found.
+    disparity_px.resize(width, height);
     for_row_blocks(executor, height, [&](int first, int last) {
-        for (int v = first; v < last; ++v)
-            smooth_along(horizontal_, v, true, radius, same, disparity_px);
         warp_block(first, last, left, right, jump_distance_px, disparity_px);
     });
     for_row_blocks<kSolvedRows>(executor, height, [&](int first, int last) {

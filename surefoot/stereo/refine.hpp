@@ -23,6 +23,12 @@ struct RefineConfig {
     double correlation = 3.5;
 };
 
+/// What is done to the found disparities before anything else.
+enum class Filter : std::uint8_t {
+    none,
+    median,  ///< of 3 x 3 pixels
+};
+
 /// What the refinement learnt about the pixels of a row besides their disparity; NaN = unknown.
 struct RefinedRow {
     const float* residual_grey = nullptr;     ///< rms grey difference that no shift explains
@@ -52,22 +58,26 @@ class SubpixelRefiner {
   public:
     explicit SubpixelRefiner(const RefineConfig& config);
 
-    /// Replaces `disparity_px` (NaN = unknown stays unknown) by its refined value.
-    /// `jump_distance_px` is the distance of every pixel from the nearest disparity jump.
+    /// Makes `disparity_px` of what was found (NaN = unknown, and stays so); both may be the same
+    /// image if there is no filter. `jump_distance_px` is the distance of every pixel from the
+    /// nearest disparity jump.
     void refine(ImageView<const std::uint8_t> left,
                 ImageView<const std::uint8_t> right,
+                const Image<float>& found_px,
+                Filter filter,
                 const Image<std::uint8_t>& jump_distance_px,
                 Executor& executor,
                 Image<float>& disparity_px,
                 const RefinedRows& refined);
 
   private:
+    void smooth_block(int first, int last, const Image<float>& found_px, Filter filter);
     void warp_block(int first,
                     int last,
                     ImageView<const std::uint8_t> left,
                     ImageView<const std::uint8_t> right,
                     const Image<std::uint8_t>& jump_distance_px,
-                    const Image<float>& disparity_px);
+                    Image<float>& disparity_px);
     void solve_block(int first,
                      int last,
                      Image<float>& disparity_px,
@@ -78,13 +88,10 @@ class SubpixelRefiner {
     Image<std::int32_t> evidence_;  ///< see rows::kUnused
 };
 
-/// Mean over the neighbours on the same surface, along the row (`down` false) or the column.
-/// Neighbours count in opposite pairs, so that a slanted plane keeps its value.
-void smooth_along(const Image<float>& in,
-                  int v,
-                  bool down,
-                  int radius_px,
-                  double same_surface_px,
-                  Image<float>& out);
+/// Mean over the neighbours on the same surface along a row. They count in opposite pairs, so that
+/// a slanted plane keeps its value. On either side of the row stand `radius_px` unknown pixels.
+void smooth_along(const float* row, int width, int radius_px, double same_surface_px, float* out);
+/// The same down the columns, for row `v`; near the ends fewer neighbours count.
+void smooth_down(const Image<float>& in, int v, int radius_px, double same_surface_px, float* out);
 
 }  // namespace surefoot::stereo

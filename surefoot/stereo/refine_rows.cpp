@@ -16,6 +16,7 @@
 
 #include "surefoot/stereo/confidence.hpp"
 #include "surefoot/stereo/consistency.hpp"
+#include "surefoot/stereo/divisor.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::stereo::rows::HWY_NAMESPACE {
@@ -87,16 +88,7 @@ HWY_INLINE void smooth_here(D d, const SmoothRow& row, int steps, int u) {
 }
 
 void smooth_along_row(const SmoothRow& row) {
-    const hn::CappedTag<float, 1> single;
-    const int margin = std::min(row.margin_per_step * row.steps, row.width / 2);
-    const auto beside_end = [&](int u) {
-        const int partners = row.margin_per_step > 0 ? std::min(u, row.width - 1 - u) : row.steps;
-        smooth_here(single, row, std::min(row.steps, partners), u);
-    };
-    for (int u = 0; u < margin; ++u) beside_end(u);
-    for_columns(
-        margin, row.width - margin, [&](auto d, int u) { smooth_here(d, row, row.steps, u); });
-    for (int u = row.width - margin; u < row.width; ++u) beside_end(u);
+    for_columns(0, row.width, [&](auto d, int u) { smooth_here(d, row, row.steps, u); });
 }
 
 /// Where the lanes from `u` on are seen in the right row: whole pixel, or kNowhere, and fraction.
@@ -124,7 +116,8 @@ void take_pairs(const WarpRow& row) {
     const std::int16_t* HWY_RESTRICT right = row.right;
     const std::int32_t* HWY_RESTRICT place = row.place;
     std::int32_t* HWY_RESTRICT pairs = row.pairs;
-    for (int u = 1; u < row.width - 1; ++u)
+    const int end = row.width - 1;  // a copy: the stores below might change `row`
+    for (int u = 1; u < end; ++u)
         std::memcpy(pairs + 2 * u, right + place[u] - 1, 2 * sizeof(std::int32_t));
 }
 
@@ -322,32 +315,22 @@ HWY_INLINE float log_of(float x) {
 
 /// e^x for |x| <= 80: 2^n times the series of the rest. Relative error < 1e-6.
 HWY_INLINE float exp_of(float x) {
+    constexpr Divisor k720(720);
     const float kept = std::min(std::max(x, -80.0F), 80.0F);
     const int n = static_cast<int>(kept * 1.44269504F + 256.5F) - 256;
     const float r = kept - static_cast<float>(n) * 0.69314718F;
     const float series =
-        1.0F + r * (1.0F + r * (0.5F + r * (1.0F / 6.0F + r * (1.0F / 24.0F +
-                                                               r * (1.0F / 120.0F + r / 720.0F)))));
+        1.0F +
+        r * (1.0F + r * (0.5F + r * (1.0F / 6.0F +
+                                     r * (1.0F / 24.0F + r * (1.0F / 120.0F + k720.divide(r))))));
     return series * std::bit_cast<float>(static_cast<std::uint32_t>(n + 127) << 23);
 }
 
-/// Twelfths, as a division would round them: the first part is exact times a small number.
-HWY_INLINE constexpr float nearness_to_jump(std::uint8_t distance_px) {
-    constexpr float kPart = 0.0833282470703125F;  // 1 / 12 to 12 bits
-    constexpr auto kRest = static_cast<float>(1.0 / 12.0 - 0.0833282470703125);
-    const auto distance = static_cast<float>(distance_px);
-    const float far = 1.0F - (distance * kPart + distance * kRest);
+HWY_INLINE float nearness_to_jump(std::uint8_t distance_px) {
+    constexpr Divisor kReach_px(static_cast<int>(kJumpReach_px));
+    const float far = 1.0F - kReach_px.divide(static_cast<float>(distance_px));
     return far > 0.0F ? far : 0.0F;
 }
-constexpr bool nearness_is_exact() {
-    for (int distance = 0; distance < 256; ++distance) {
-        const float far = 1.0F - static_cast<float>(distance) / kJumpReach_px;
-        if (nearness_to_jump(static_cast<std::uint8_t>(distance)) != (far > 0.0F ? far : 0.0F))
-            return false;
-    }
-    return true;
-}
-static_assert(nearness_is_exact());
 
 /// Noise over texture slope, and sigma.
 void rate_noise(const float* HWY_RESTRICT residual,
@@ -358,8 +341,9 @@ void rate_noise(const float* HWY_RESTRICT residual,
                 int width,
                 float* HWY_RESTRICT noise_px,
                 float* HWY_RESTRICT sigma_px) {
+    constexpr Divisor kMaxNoise_px(static_cast<int>(kMaxNoisePerPixel_px));
     for (int u = 0; u < width; ++u) {
-        const bool textured = gradient[u] > residual[u] / kMaxNoisePerPixel_px;
+        const bool textured = gradient[u] > kMaxNoise_px.divide(residual[u]);
         const float slope = textured ? gradient[u] : 1.0F;
         const float noise = textured ? residual[u] / slope : kMaxNoisePerPixel_px;
         const float scatter_px = kSigmaGain * noise;
@@ -393,8 +377,8 @@ void rate_risk(const float* HWY_RESTRICT shift,
 void unknown_shares(const RateRow& row, int first, int count, float* HWY_RESTRICT shares) {
     const std::uint8_t* HWY_RESTRICT unknown = row.unknown_count + first;
     const int radius = row.unknown_radius_px;
-    const auto whole = static_cast<float>(row.unknown_rows * (2 * radius + 1));
-    for (int i = 0; i < count; ++i) shares[i] = static_cast<float>(unknown[i]) / whole;
+    const Divisor whole(row.unknown_rows * (2 * radius + 1));
+    for (int i = 0; i < count; ++i) shares[i] = whole.divide(static_cast<float>(unknown[i]));
     const auto cut_off = [&](int u) {
         const int area = row.unknown_rows * window_span(u, radius, row.width);
         shares[u - first] = static_cast<float>(row.unknown_count[u]) / static_cast<float>(area);

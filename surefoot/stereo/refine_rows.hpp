@@ -22,7 +22,6 @@ struct SmoothRow {
     const float* const* before = nullptr;
     const float* const* after = nullptr;
     int steps = 0;
-    int margin_per_step = 0;  ///< 1: the first and last k + 1 pixels have no partners there
     int width = 0;
     float same_surface_px = 0.0F;
     float* out = nullptr;

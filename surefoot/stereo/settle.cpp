@@ -10,33 +10,40 @@
 namespace surefoot::stereo {
 namespace {
 
-/// What the left pixels of a row say about one pixel of the right row: cost * 256 + disparity of
-/// the cheapest.
+/// What the left pixels of a row say about the pixels of the right row.
 class Claims {
   public:
-    explicit Claims(int width) : claims_(static_cast<std::size_t>(width + kOutside)) {}
+    explicit Claims(int width)
+        : width_(static_cast<std::size_t>(width)),
+          place_(width_),
+          offer_(width_),
+          best_(kOutside + width_) {}
 
-    void take(const std::uint8_t* disparity, const std::uint8_t* cost, int width) {
-        std::fill(claims_.begin(), claims_.end(), kNoClaim);
-        std::uint16_t* const claims = claims_.data() + kOutside;
-        for (int u = 0; u < width; ++u) {
-            const auto offer = static_cast<std::uint16_t>(256 * cost[u] + disparity[u]);
-            std::uint16_t& best = claims[u - disparity[u]];
-            best = std::min(best, offer);
+    /// With which disparity the right pixel of each left one is claimed most cheaply.
+    void look_up(const std::uint8_t* disparity, const std::uint8_t* cost, std::uint8_t* claimed) {
+        rows::claim(disparity, cost, static_cast<int>(width_), place_.data(), offer_.data());
+        std::fill(best_.begin(), best_.end(), kNoClaim);
+        // Copies: the compiler must assume that what is stored below changes the members.
+        const std::int32_t* const place = place_.data();
+        const std::uint16_t* const offer = offer_.data();
+        std::uint16_t* const best = best_.data() + kOutside;
+        const std::size_t width = width_;
+        for (std::size_t u = 0; u < width; ++u) {
+            const std::uint16_t before = best[place[u]];
+            best[place[u]] = before < offer[u] ? before : offer[u];
         }
-    }
-    /// With which disparity the right pixel of each left one was claimed.
-    void look_up(const std::uint8_t* disparity, int width, std::uint8_t* claimed) const {
-        const std::uint16_t* const claims = claims_.data() + kOutside;
-        for (int u = 0; u < width; ++u)
-            claimed[u] = static_cast<std::uint8_t>(claims[u - disparity[u]]);
+        for (std::size_t u = 0; u < width; ++u)
+            claimed[u] = static_cast<std::uint8_t>(best[place[u]]);
     }
 
   private:
     static constexpr std::uint16_t kNoClaim = 0xffff;
-    /// Left of the right row lie as many pixels as disparities reach: their claims do no harm.
-    static constexpr int kOutside = 256;
-    std::vector<std::uint16_t> claims_;
+    /// As far as disparities reach there are places left of the right row: nobody asks for them.
+    static constexpr std::size_t kOutside = 256;
+    std::size_t width_;
+    std::vector<std::int32_t> place_;
+    std::vector<std::uint16_t> offer_;
+    std::vector<std::uint16_t> best_;  ///< the lower byte is the disparity
 };
 
 }  // namespace
@@ -52,8 +59,7 @@ void settle(const SettleConfig& config,
         Claims claims(width);
         std::vector<std::uint8_t> claimed(static_cast<std::size_t>(width));
         for (int v = first; v < last; ++v) {
-            claims.take(winners.disparity.row(v), winners.cost.row(v), width);
-            claims.look_up(winners.disparity.row(v), width, claimed.data());
+            claims.look_up(winners.disparity.row(v), winners.cost.row(v), claimed.data());
             rows::settle({winners.disparity.row(v),
                           winners.cost.row(v),
                           winners.cost_below.row(v),
@@ -68,17 +74,11 @@ void settle(const SettleConfig& config,
     });
 }
 
-void median_filter(const Image<float>& in, Executor& executor, Image<float>& out) {
-    const int height = in.height();
-    out.resize(in.width(), height);
-    for_row_blocks(executor, height, [&](int first, int last) {
-        std::vector<float> scratch(3 * static_cast<std::size_t>(in.width() + 2));
-        for (int v = first; v < last; ++v) {
-            const float* const lines[3] = {
-                in.row(std::max(v - 1, 0)), in.row(v), in.row(std::min(v + 1, height - 1))};
-            rows::median(lines, in.width(), scratch.data(), out.row(v));
-        }
-    });
+void median_of_row(const Image<float>& in, int v, std::vector<float>& scratch, float* out) {
+    const float* const lines[3] = {
+        in.row(std::max(v - 1, 0)), in.row(v), in.row(std::min(v + 1, in.height() - 1))};
+    scratch.resize(3 * static_cast<std::size_t>(in.width() + 2));
+    rows::median(lines, in.width(), scratch.data(), out);
 }
 
 }  // namespace surefoot::stereo

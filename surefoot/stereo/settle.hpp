@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "surefoot/stereo/semi_global.hpp"
 
 namespace surefoot::stereo {
@@ -18,7 +20,8 @@ void settle(const SettleConfig& config,
             Executor& executor,
             Image<float>& disparity_px);
 
-/// Median of 3 x 3 pixels; a pixel stays or becomes unknown where five of the nine are.
-void median_filter(const Image<float>& in, Executor& executor, Image<float>& out);
+/// Row `v` of the median of 3 x 3 pixels; a pixel stays or becomes unknown where five of the nine
+/// are. `scratch` is kept for the next row.
+void median_of_row(const Image<float>& in, int v, std::vector<float>& scratch, float* out);
 
 }  // namespace surefoot::stereo
