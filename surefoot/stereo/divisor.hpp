@@ -26,9 +26,15 @@ class Divisor {
         return high * upper_ + (high * lower_ + (x - high) * inverse_);
     }
 
+    // For those who divide many numbers side by side.
+    static constexpr std::uint32_t kUpperHalf = 0xfffff000U;  ///< bits of a float
+    [[nodiscard]] constexpr float inverse() const noexcept { return inverse_; }
+    [[nodiscard]] constexpr float upper() const noexcept { return upper_; }
+    [[nodiscard]] constexpr float lower() const noexcept { return lower_; }
+
   private:
     static constexpr float upper_half(float x) noexcept {
-        return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0xfffff000U);
+        return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & kUpperHalf);
     }
     float inverse_;
     float upper_;

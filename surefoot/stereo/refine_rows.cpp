@@ -8,7 +8,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -300,119 +299,138 @@ void solve_row(const SolveRow& row) {
     }
 }
 
+/// Divisor::divide.
+template <class D>
+HWY_INLINE hn::Vec<D> divide(D d, const Divisor& by, hn::Vec<D> x) {
+    const hn::RebindToUnsigned<D> bits;
+    const auto upper = hn::Set(bits, Divisor::kUpperHalf);
+    const auto high = hn::BitCast(d, hn::And(hn::BitCast(bits, x), upper));
+    const auto rest = hn::Add(hn::Mul(high, hn::Set(d, by.lower())),
+                              hn::Mul(hn::Sub(x, high), hn::Set(d, by.inverse())));
+    return hn::Add(hn::Mul(high, hn::Set(d, by.upper())), rest);
+}
+
+/// c + x * y, rounded twice on every processor.
+template <class D>
+HWY_INLINE hn::Vec<D> plus_product(D d, float c, hn::Vec<D> x, hn::Vec<D> y) {
+    return hn::Add(hn::Set(d, c), hn::Mul(x, y));
+}
+
 /// ln x of a positive normal number: 2 atanh((m - 1) / (m + 1)) of its mantissa. Error < 1e-6.
-HWY_INLINE float log_of(float x) {
-    const auto bits = std::bit_cast<std::uint32_t>(x);
-    const bool large = (bits & 0x7fffffU) > 0x3504f3U;  // beyond sqrt 2
-    const std::uint32_t mantissa = (bits & 0x7fffffU) | (large ? 0x3f000000U : 0x3f800000U);
-    const auto exponent = static_cast<float>(static_cast<int>(bits >> 23) - (large ? 126 : 127));
-    const float m = std::bit_cast<float>(mantissa);
-    const float t = (m - 1.0F) / (m + 1.0F);
-    const float t2 = t * t;
-    const float series = 1.0F + t2 * (1.0F / 3.0F + t2 * (0.2F + t2 * (1.0F / 7.0F)));
-    return 0.69314718F * exponent + 2.0F * t * series;
+template <class D>
+HWY_INLINE hn::Vec<D> log_of(D d, hn::Vec<D> x) {
+    const hn::RebindToSigned<D> d32;
+    const auto one = hn::Set(d, 1.0F);
+    const auto bits = hn::BitCast(d32, x);
+    const auto fraction = hn::And(bits, hn::Set(d32, 0x7fffff));
+    const auto large = hn::Gt(fraction, hn::Set(d32, 0x3504f3));  // beyond sqrt 2
+    const auto scale = hn::IfThenElse(large, hn::Set(d32, 0x3f000000), hn::Set(d32, 0x3f800000));
+    const auto bias = hn::IfThenElse(large, hn::Set(d32, 126), hn::Set(d32, 127));
+    const auto exponent = hn::ConvertTo(d, hn::Sub(hn::ShiftRight<23>(bits), bias));
+    const auto m = hn::BitCast(d, hn::Or(fraction, scale));
+    const auto t = hn::Div(hn::Sub(m, one), hn::Add(m, one));
+    const auto t2 = hn::Mul(t, t);
+    auto series = plus_product(d, 0.2F, t2, hn::Set(d, 1.0F / 7.0F));
+    series = plus_product(d, 1.0F / 3.0F, t2, series);
+    series = plus_product(d, 1.0F, t2, series);
+    return hn::Add(hn::Mul(hn::Set(d, 0.69314718F), exponent),
+                   hn::Mul(hn::Mul(hn::Set(d, 2.0F), t), series));
 }
 
 /// e^x for |x| <= 80: 2^n times the series of the rest. Relative error < 1e-6.
-HWY_INLINE float exp_of(float x) {
+template <class D>
+HWY_INLINE hn::Vec<D> exp_of(D d, hn::Vec<D> x) {
     constexpr Divisor k720(720);
-    const float kept = std::min(std::max(x, -80.0F), 80.0F);
-    const int n = static_cast<int>(kept * 1.44269504F + 256.5F) - 256;
-    const float r = kept - static_cast<float>(n) * 0.69314718F;
-    const float series =
-        1.0F +
-        r * (1.0F + r * (0.5F + r * (1.0F / 6.0F +
-                                     r * (1.0F / 24.0F + r * (1.0F / 120.0F + k720.divide(r))))));
-    return series * std::bit_cast<float>(static_cast<std::uint32_t>(n + 127) << 23);
+    const hn::RebindToSigned<D> d32;
+    const auto kept = hn::Min(hn::Max(x, hn::Set(d, -80.0F)), hn::Set(d, 80.0F));
+    const auto shifted = plus_product(d, 256.5F, kept, hn::Set(d, 1.44269504F));
+    const auto n = hn::Sub(hn::ConvertTo(d32, shifted), hn::Set(d32, 256));
+    const auto r = hn::Sub(kept, hn::Mul(hn::ConvertTo(d, n), hn::Set(d, 0.69314718F)));
+    auto series = hn::Add(hn::Set(d, 1.0F / 120.0F), divide(d, k720, r));
+    for (const float next : {1.0F / 24.0F, 1.0F / 6.0F, 0.5F, 1.0F, 1.0F})
+        series = plus_product(d, next, r, series);
+    const auto power = hn::ShiftLeft<23>(hn::Add(n, hn::Set(d32, 127)));
+    return hn::Mul(series, hn::BitCast(d, power));
 }
 
-HWY_INLINE float nearness_to_jump(std::uint8_t distance_px) {
+// The formulae of confidence.cpp in two loops: in one, each step would wait for so many others that
+// no processor looks far enough ahead to fill the time.
+
+/// Sigma and score of the lanes from `u` on, whose windows of unknown pixels hold `area`. The score
+/// stands where the probability will.
+template <class D>
+HWY_INLINE void score_here(D d, const RateRow& row, const Divisor& area, int u) {
     constexpr Divisor kReach_px(static_cast<int>(kJumpReach_px));
-    const float far = 1.0F - kReach_px.divide(static_cast<float>(distance_px));
-    return far > 0.0F ? far : 0.0F;
-}
-
-/// Noise over texture slope, and sigma.
-void rate_noise(const float* HWY_RESTRICT residual,
-                const float* HWY_RESTRICT gradient,
-                const float* HWY_RESTRICT shift,
-                const std::uint8_t* HWY_RESTRICT jump_px,
-                const float* HWY_RESTRICT holes,
-                int width,
-                float* HWY_RESTRICT noise_px,
-                float* HWY_RESTRICT sigma_px) {
-    constexpr Divisor kMaxNoise_px(static_cast<int>(kMaxNoisePerPixel_px));
-    for (int u = 0; u < width; ++u) {
-        const bool textured = gradient[u] > kMaxNoise_px.divide(residual[u]);
-        const float slope = textured ? gradient[u] : 1.0F;
-        const float noise = textured ? residual[u] / slope : kMaxNoisePerPixel_px;
-        const float scatter_px = kSigmaGain * noise;
-        const float share_px = kSigmaShiftShare * shift[u];
-        const float jump = kSigmaJump_px * nearness_to_jump(jump_px[u]);
-        const float hole = kSigmaHole_px * holes[u];
-        const float sigma = std::sqrt(kSigmaFloor_px * kSigmaFloor_px + scatter_px * scatter_px +
-                                      share_px * share_px + jump * jump + hole * hole);
-        noise_px[u] = noise;
-        sigma_px[u] = sigma < kMaxSigma_px ? sigma : kMaxSigma_px;
-    }
-}
-
-/// `probability` holds the noise, and then what it is named after.
-void rate_risk(const float* HWY_RESTRICT shift,
-               const std::uint8_t* HWY_RESTRICT jump_px,
-               const float* HWY_RESTRICT holes,
-               int width,
-               float* HWY_RESTRICT probability) {
-    for (int u = 0; u < width; ++u) {
-        const float score = kScoreConstant + kScoreNearJump * nearness_to_jump(jump_px[u]) +
-                            kScoreNoise * log_of(probability[u]) +
-                            kScoreShift * std::abs(shift[u]) + kScoreUnknown * holes[u];
-        const float chance = 1.0F / (1.0F + exp_of(-score));
-        const float least = jump_px[u] <= kJumpZone_px ? kJumpOutlierProbability : 0.0F;
-        probability[u] = chance > least ? chance : least;
-    }
-}
-
-/// Share of unknown pixels in the windows of `count` columns from `first` on.
-void unknown_shares(const RateRow& row, int first, int count, float* HWY_RESTRICT shares) {
-    const std::uint8_t* HWY_RESTRICT unknown = row.unknown_count + first;
-    const int radius = row.unknown_radius_px;
-    const Divisor whole(row.unknown_rows * (2 * radius + 1));
-    for (int i = 0; i < count; ++i) shares[i] = whole.divide(static_cast<float>(unknown[i]));
-    const auto cut_off = [&](int u) {
-        const int area = row.unknown_rows * window_span(u, radius, row.width);
-        shares[u - first] = static_cast<float>(row.unknown_count[u]) / static_cast<float>(area);
+    constexpr Divisor kMaxNoise(static_cast<int>(kMaxNoisePerPixel_px));
+    const hn::RebindToSigned<D> d32;
+    const hn::Rebind<std::uint8_t, D> d8;
+    const auto set = [d](float value) { return hn::Set(d, value); };
+    const auto square = [](auto value) { return hn::Mul(value, value); };
+    const auto real = [&](const std::uint8_t* from) {
+        return hn::ConvertTo(d, hn::PromoteTo(d32, hn::LoadU(d8, from + u)));
     };
-    for (int u = first; u < std::min(first + count, radius); ++u) cut_off(u);
-    for (int u = std::max(first, row.width - radius); u < first + count; ++u) cut_off(u);
+    const auto jump_px = real(row.jump_distance_px);
+    const auto near = hn::Max(hn::Sub(set(1.0F), divide(d, kReach_px, jump_px)), hn::Zero(d));
+    const auto unknown = divide(d, area, real(row.unknown_count));
+    const auto residual = hn::LoadU(d, row.residual_grey + u);
+    const auto gradient = hn::LoadU(d, row.gradient_grey_px + u);
+    const auto shift = hn::LoadU(d, row.shift_px + u);
+
+    const auto textured = hn::Gt(gradient, divide(d, kMaxNoise, residual));
+    const auto noise =
+        hn::IfThenElse(textured,
+                       hn::Div(residual, hn::IfThenElse(textured, gradient, set(1.0F))),
+                       set(kMaxNoisePerPixel_px));
+    auto variance =
+        hn::Add(set(kSigmaFloor_px * kSigmaFloor_px), square(hn::Mul(set(kSigmaGain), noise)));
+    variance = hn::Add(variance, square(hn::Mul(set(kSigmaShiftShare), shift)));
+    variance = hn::Add(variance, square(hn::Mul(set(kSigmaJump_px), near)));
+    variance = hn::Add(variance, square(hn::Mul(set(kSigmaHole_px), unknown)));
+    const auto sigma = hn::Min(hn::Sqrt(variance), set(kMaxSigma_px));
+
+    auto score = plus_product(d, kScoreConstant, set(kScoreNearJump), near);
+    score = hn::Add(score, hn::Mul(set(kScoreNoise), log_of(d, noise)));
+    score = hn::Add(score, hn::Mul(set(kScoreShift), hn::Abs(shift)));
+    score = hn::Add(score, hn::Mul(set(kScoreUnknown), unknown));
+    const auto disparity = hn::LoadU(d, row.disparity_px + u);
+    const auto known = hn::Eq(disparity, disparity);
+    hn::StoreU(hn::IfThenElse(known, sigma, disparity), d, row.sigma_px + u);
+    hn::StoreU(score, d, row.outlier_probability + u);
+}
+
+/// Outlier probability of the lanes from `u` on.
+template <class D>
+HWY_INLINE void weigh_here(D d, const RateRow& row, int u) {
+    const hn::RebindToSigned<D> d32;
+    const hn::Rebind<std::uint8_t, D> d8;
+    const auto one = hn::Set(d, 1.0F);
+    const auto score = hn::LoadU(d, row.outlier_probability + u);
+    const auto chance = hn::Div(one, hn::Add(one, exp_of(d, hn::Neg(score))));
+    const auto jump_px = hn::PromoteTo(d32, hn::LoadU(d8, row.jump_distance_px + u));
+    const auto apart = hn::RebindMask(d, hn::Gt(jump_px, hn::Set(d32, kJumpZone_px)));
+    const auto least = hn::IfThenElse(apart, hn::Zero(d), hn::Set(d, kJumpOutlierProbability));
+    const auto disparity = hn::LoadU(d, row.disparity_px + u);
+    const auto known = hn::Eq(disparity, disparity);
+    hn::StoreU(hn::IfThenElse(known, hn::Max(chance, least), one), d, row.outlier_probability + u);
 }
 
 void rate_row(const RateRow& row) {
-    constexpr int kChunk = 256;
-    float shares[kChunk];
-    for (int first = 0; first < row.width; first += kChunk) {
-        const int count = std::min(kChunk, row.width - first);
-        const std::uint8_t* const jump_px = row.jump_distance_px + first;
-        const float* const shift_px = row.shift_px + first;
-        float* const sigma_px = row.sigma_px + first;
-        float* const probability = row.outlier_probability + first;
-        unknown_shares(row, first, count, shares);
-        rate_noise(row.residual_grey + first,
-                   row.gradient_grey_px + first,
-                   shift_px,
-                   jump_px,
-                   shares,
-                   count,
-                   probability,
-                   sigma_px);
-        rate_risk(shift_px, jump_px, shares, count, probability);
-        const float* HWY_RESTRICT d = row.disparity_px + first;
-        for (int i = 0; i < count; ++i) {
-            const bool known = d[i] == d[i];
-            sigma_px[i] = known ? sigma_px[i] : d[i];
-            probability[i] = known ? probability[i] : 1.0F;
-        }
-    }
+    const int radius = row.unknown_radius_px;
+    const int inner = std::max(radius, row.width - radius);
+    const auto beside_end = [&](int u) {
+        const Divisor area(row.unknown_rows * window_span(u, radius, row.width));
+        score_here(hn::CappedTag<float, 1>(), row, area, u);
+    };
+    for (int u = 0; u < std::min(radius, row.width); ++u) beside_end(u);
+    const Divisor whole(row.unknown_rows * (2 * radius + 1));
+    for_columns(radius, inner, [&](auto d, int u) { score_here(d, row, whole, u); });
+    for (int u = inner; u < row.width; ++u) beside_end(u);
+    // What has been weighed must not be weighed again.
+    const hn::ScalableTag<float> d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    int u = 0;
+    for (; u + lanes <= row.width; u += lanes) weigh_here(d, row, u);
+    for (; u < row.width; ++u) weigh_here(hn::CappedTag<float, 1>(), row, u);
 }
 
 }  // namespace
