@@ -13,6 +13,8 @@
 #include <limits>
 #include <utility>
 
+#include "surefoot/stereo/columns-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::stereo::rows::HWY_NAMESPACE {
 namespace {
@@ -56,21 +58,6 @@ void link_row(const float* disparity_px,
         known[u / kWord] = known_bits;
         linked[u / kWord] = linked_bits;
     }
-}
-
-/// Calls here(tag, u) for the columns from `first` to before `last` in whole registers, the last of
-/// which may do some columns again; one by one if there are fewer.
-template <class Here>
-HWY_INLINE void for_columns(int first, int last, const Here& here) {
-    const hn::ScalableTag<float> whole;
-    const hn::CappedTag<float, 1> single;
-    const int lanes = static_cast<int>(hn::Lanes(whole));
-    if (last - first < lanes) {
-        for (int u = first; u < last; ++u) here(single, u);
-        return;
-    }
-    for (int u = first; u < last - lanes; u += lanes) here(whole, u);
-    here(whole, last - lanes);
 }
 
 /// Known disparities, and less than all of them for an unknown one: they are positive.

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <limits>
 
+#include "surefoot/stereo/columns-inl.hpp"
 #include "surefoot/stereo/confidence.hpp"
 #include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/divisor.hpp"
@@ -51,21 +52,6 @@ void smooth_image_row(const std::uint8_t* const in[5],
             sum[u - 2] + sum[u + 2] + 4 * (sum[u - 1] + sum[u + 1]) + 6 * sum[u] + 8);
         out[u] = static_cast<std::int16_t>(total >> 4);
     }
-}
-
-/// Calls here(tag, u) for the columns from `first` to before `last` in whole registers, the last of
-/// which may do some columns again; one by one if there are fewer.
-template <class Here>
-HWY_INLINE void for_columns(int first, int last, const Here& here) {
-    const hn::ScalableTag<float> whole;
-    const hn::CappedTag<float, 1> single;
-    const int lanes = static_cast<int>(hn::Lanes(whole));
-    if (last - first < lanes) {
-        for (int u = first; u < last; ++u) here(single, u);
-        return;
-    }
-    for (int u = first; u < last - lanes; u += lanes) here(whole, u);
-    here(whole, last - lanes);
 }
 
 /// The lanes from `u` on, averaged with the neighbours of `steps` lines on either side.

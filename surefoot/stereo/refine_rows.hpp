@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <limits>
 
-/// The loops of SubpixelRefiner and of the confidence over one row of an image. Plain loops,
-/// compiled once for every instruction set and chosen at run time; all give the same bytes, because
-/// nothing in them may be re-ordered or contracted.
+/// The loops of SubpixelRefiner and of the confidence over one row of an image, compiled once for
+/// every instruction set and chosen at run time; all give the same bytes, because sums of floats
+/// are not re-ordered and nothing is contracted.
 namespace surefoot::stereo::rows {
 
 /// Binomial 1 4 6 4 1 in both directions, in 1/16 grey level. `in`: five rows around the one that
@@ -41,7 +41,8 @@ struct WarpRow {
     int jump_margin_px = 0;
     int width = 0;
     std::int32_t* evidence = nullptr;
-    // Scratch of the row: where in the right row (0: nowhere), and its four pixels there.
+    // Scratch of the row: where each pixel lies in the right row (0: nowhere), and the four pixels
+    // there, two to a word.
     std::int32_t* place = nullptr;
     float* fraction = nullptr;
     std::int32_t* pairs = nullptr;  ///< 2 width
