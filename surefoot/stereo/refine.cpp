@@ -20,10 +20,10 @@ constexpr int kSolvedRows = 64;
 void smooth_image_row(ImageView<const std::uint8_t> in,
                       int v,
                       std::vector<std::uint16_t>& scratch,
-                      std::vector<std::int16_t>& out) {
+                      std::int16_t* out) {
     const std::uint8_t* lines[5];
     for (int k = 0; k < 5; ++k) lines[k] = in.row(std::clamp(v + k - 2, 0, in.height - 1));
-    rows::smooth_image(lines, in.width, scratch.data(), out.data());
+    rows::smooth_image(lines, in.width, scratch.data(), out);
 }
 
 /// Sums of the columns of a window that slides down, and scratch for its way along the row.
@@ -106,13 +106,13 @@ void SubpixelRefiner::warp_block(int first,
     const auto columns = static_cast<std::size_t>(left.width);
     std::vector<std::uint16_t> sums(columns + 4);
     std::vector<std::int16_t> smooth_left(columns);
-    std::vector<std::int16_t> smooth_right(columns);
+    std::vector<std::int16_t> smooth_right(columns + 1);
     std::vector<std::int32_t> places(columns);
     std::vector<float> fractions(columns);
     std::vector<std::int32_t> pairs(2 * columns);
     rows::WarpRow row;
     row.left = smooth_left.data();
-    row.right = smooth_right.data();
+    row.right = smooth_right.data() + 1;
     row.jump_margin_px = config_.jump_margin_px;
     row.width = left.width;
     row.place = places.data();
@@ -121,8 +121,8 @@ void SubpixelRefiner::warp_block(int first,
     for (int v = first; v < last; ++v) {
         float* const disparity = disparity_px.row(v);
         smooth_down(horizontal_, v, config_.smooth_radius_px, config_.same_surface_px, disparity);
-        smooth_image_row(left, v, sums, smooth_left);
-        smooth_image_row(right, v, sums, smooth_right);
+        smooth_image_row(left, v, sums, smooth_left.data());
+        smooth_image_row(right, v, sums, smooth_right.data() + 1);
         row.disparity_px = disparity;
         row.jump_distance_px = jump_distance_px.row(v);
         row.evidence = evidence_.row(v);
