@@ -410,5 +410,34 @@ TEST(DepthFusion, NothingIsAllocatedOnceWarm) {
     EXPECT_EQ(allocations, 0);
 }
 
+TEST(DepthFusion, NothingIsAllocatedWhenHeightsAreAlignedEither) {
+    const camera::RectifiedRig rig = zed(336, 188);
+    ElevationConfig config;
+    config.height_drift.enabled = true;
+    config.height_drift.min_motions = 1;
+    config.height_drift.min_drift_m = 0.0;
+    config.height_drift.motion_sigmas = 1e9;
+    ElevationMap map(config);
+    const std::vector<camera::DepthImage> depths{render({}, rig, body_at(0)),
+                                                 render({1.2, 0.1}, rig, body_at(0))};
+    int moved = 0;
+    const auto frame = [&](int k) {
+        Pose T_odom_body = body_at(0.011 * k);
+        T_odom_body.translation_m.z() += k % 6 == 0 ? 0.05 : 0.0;
+        // While the first frames warm up, no motion makes a cell old.
+        map.follow(T_odom_body, Matrix6::Identity() * (k < 2 ? 0.0 : 1e-8));
+        map.add(rig, T_odom_body, depths[static_cast<std::size_t>(k % 2)], k);
+        moved += map.height_drift().reason == HeightDriftReason::moved ? 1 : 0;
+    };
+    for (int k = 0; k < 2; ++k) frame(k);
+    ASSERT_EQ(map.height_drift().reason, HeightDriftReason::no_old_ground);
+    allocations = 0;
+    counting_allocations = true;
+    for (int k = 2; k < 30; ++k) frame(k);
+    counting_allocations = false;
+    EXPECT_EQ(allocations, 0);
+    EXPECT_GT(moved, 0);
+}
+
 }  // namespace
 }  // namespace surefoot::elevation

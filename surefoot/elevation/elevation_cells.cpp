@@ -41,6 +41,9 @@ void ElevationCells::for_each_layer(const F& f) {
     f(layers_.confidence, kNan);
     f(layers_.density_ratio, kNan);
     f(settled_var_m2_, kNan);
+    f(aligned_var_m2_, kNan);
+    f(aligned_step_, std::uint32_t{0});
+    f(is_asked_, std::uint8_t{0});
     f(viewpoint_, ViewpointHistory::kNever);
     f(overhead_m_, kNan);
     f(overhead_trust_, std::uint8_t{0});
@@ -106,10 +109,31 @@ void ElevationCells::update(std::size_t cell,
         if (before_m - measured.z_m > hangs) see_above(cell, before_m, trust, true);
     }
     if (result.outcome == FusionOutcome::inflated) {
-        var_m2 = static_cast<float>(result.cell.var_m2);
+        const auto inflated_m2 = static_cast<float>(result.cell.var_m2);
+        aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;  // not the motion's
+        var_m2 = inflated_m2;
         if (measured.z_m - height_m > hangs)
             see_above(cell, measured.z_m, kOverheadSeen, seen.bottom_m - height_m > hangs);
     }
+}
+
+void ElevationCells::align(std::size_t cell) {
+    aligned_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
+    aligned_step_.data()[cell] = motions_;
+    is_asked_.data()[cell] = 0;
+}
+
+void ElevationCells::lift(std::size_t cell, double offset_m, double var_m2) {
+    const auto offset = static_cast<float>(offset_m);
+    layers_.height_m.data()[cell] += offset;
+    layers_.highest_m.data()[cell] += offset;
+    layers_.lowest_m.data()[cell] += offset;
+    bottom_m_.data()[cell] += offset;
+    overhead_m_.data()[cell] += offset;
+    layers_.height_var_m2.data()[cell] += static_cast<float>(var_m2);
+    settled_var_m2_.data()[cell] += static_cast<float>(var_m2);
+    set_clearance(cell);
+    align(cell);
 }
 
 bool ElevationCells::is_above(std::size_t cell, float line_z_m) const {
@@ -153,6 +177,7 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     layers_.density_ratio.data()[cell] = region.density_ratio.data()[from];
     layers_.free_above_m.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
+    align(cell);
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
     bottom_m_.data()[cell] = height_m;
     seen_through_.data()[cell] = 0;
@@ -236,6 +261,7 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
     layers_.density_ratio.data()[cell] = seen.density_ratio;
     layers_.free_above_m.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
+    align(cell);
     viewpoint_.data()[cell] = look.view;
     bottom_m_.data()[cell] = seen.bottom_m;
     seen_through_.data()[cell] = 0;
@@ -262,6 +288,7 @@ void ElevationCells::agree(std::size_t cell,
     } else {
         repeat(cell, measured, look);
     }
+    align(cell);
     ++layers_.count.data()[cell];
     layers_.seen_ns.data()[cell] = look.time_ns;
     layers_.horizontal_drift_m.data()[cell] = 0.0F;

@@ -8,6 +8,7 @@
 #include "surefoot/elevation/cell_reduction.hpp"
 #include "surefoot/elevation/elevation_config.hpp"
 #include "surefoot/elevation/elevation_layers.hpp"
+#include "surefoot/elevation/height_residuals.hpp"
 #include "surefoot/elevation/viewpoint_history.hpp"
 #include "surefoot/grid/map_region.hpp"
 
@@ -47,6 +48,15 @@ class ElevationCells {
         float* horizontal_drift_m;
     };
     [[nodiscard]] Memory memory_of_row(int iy) noexcept;
+    /// Call once for every uncertain motion.
+    void count_motion() noexcept { ++motions_; }
+    [[nodiscard]] std::uint32_t motions() const noexcept { return motions_; }
+    [[nodiscard]] CellAlignment alignment() noexcept {
+        return {aligned_var_m2_.data(), aligned_step_.data(), is_asked_.data()};
+    }
+    /// A known cell, and all that was seen in it, stands `offset_m` higher than it was thought to;
+    /// it is aligned with the present body. `var_m2`: of the offset.
+    void lift(std::size_t cell, double offset_m, double var_m2);
 
     /// Fuses a measurement.
     void update(std::size_t cell, const Seen& seen, const Look& look, FusionCounts& counts);
@@ -88,12 +98,17 @@ class ElevationCells {
     [[nodiscard]] int trust_in(std::size_t cell) const;
     void see_above(std::size_t cell, float z_m, int trust, bool hangs);
     void set_clearance(std::size_t cell);
+    void align(std::size_t cell);
 
     ElevationConfig config_;
     ElevationLayers layers_;
     /// Variance after the last fusion that brought new information; repeated views of the same
     /// errors never lower a cell's variance below it.
     ElevationLayers::Layer settled_var_m2_;
+    ElevationLayers::Layer aligned_var_m2_;  ///< see CellAlignment
+    grid::SlidingLayer<std::uint32_t> aligned_step_;
+    grid::SlidingLayer<std::uint8_t> is_asked_;
+    std::uint32_t motions_ = 0;
     grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
     /// Lowest surface seen above the height, and how far it is believed.
     ElevationLayers::Layer overhead_m_;

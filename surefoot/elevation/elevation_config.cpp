@@ -31,6 +31,7 @@ void ElevationConfig::describe(ConfigVisitor& visitor) {
     visitor.group("prefilter", prefilter);
     visitor.group("viewpoint", viewpoint);
     visitor.group("visibility", visibility);
+    visitor.group("height_drift", height_drift);
 }
 
 std::optional<std::string> ElevationConfig::problem() const {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "surefoot/elevation/cell_reduction.hpp"
+#include "surefoot/elevation/height_drift.hpp"
 #include "surefoot/elevation/height_fusion.hpp"
 #include "surefoot/elevation/pixel_filter.hpp"
 #include "surefoot/elevation/prefilter.hpp"
@@ -30,6 +31,7 @@ struct ElevationConfig {
     PrefilterConfig prefilter;
     ViewpointConfig viewpoint;
     VisibilityConfig visibility;
+    HeightDriftConfig height_drift;
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this config cannot be used, or nothing.

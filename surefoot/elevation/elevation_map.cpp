@@ -22,18 +22,27 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFaceDensity = 3.0F;
 constexpr int kBeside = 2;  ///< cells that vouch for one that was not seen lie this near
 
+/// Where the body looks, level; along x if it looks straight up or down.
+Eigen::Vector2d ahead_of(const Pose& T_odom_body) {
+    const Eigen::Vector2d ahead = T_odom_body.R().col(0).head<2>();
+    const double length = std::sqrt(ahead.squaredNorm());
+    return length > 1e-3 ? Eigen::Vector2d(ahead / length) : Eigen::Vector2d::UnitX();
+}
+
 }  // namespace
 
 ElevationMap::ElevationMap(const ElevationConfig& config)
     : config_(config),
       window_(config.length_m, config.resolution_m),
       views_(config.viewpoint),
-      cells_(config, geometry().nx, geometry().ny) {
+      cells_(config, geometry().nx, geometry().ny),
+      drift_(config.height_drift) {
     SUREFOOT_ASSERT(!config.problem());
 }
 
 void ElevationMap::clear() {
     cells_.clear();
+    residuals_.forget();
 }
 
 std::int64_t ElevationMap::known_cells() const noexcept {
@@ -54,6 +63,7 @@ void ElevationMap::follow(const Pose& T_odom_body, const Matrix6& relative_covar
 }
 
 void ElevationMap::inflate(const MotionNoise& noise, const Eigen::Vector3d& body_m) {
+    cells_.count_motion();
     for (int iy = 0; iy < geometry().ny; ++iy) {
         const Eigen::Vector2d first_m = geometry().center_m({0, iy}) - body_m.head<2>();
         const ElevationCells::Memory row = cells_.memory_of_row(iy);
@@ -158,9 +168,12 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
                                 FusionCounts& counts) {
     const int blocks = (geometry().ny + kBlockRows - 1) / kBlockRows;
     groups_.assign(samples_, layers().height_m.size());
-    measured_.resize(static_cast<std::size_t>(blocks) * static_cast<std::size_t>(geometry().nx));
     ends_.reset(geometry(), camera_m);
+    const bool aligns = config_.height_drift.enabled;
+    measured_.resize(static_cast<std::size_t>(aligns ? geometry().ny : blocks) *
+                     static_cast<std::size_t>(geometry().nx));
     block_counts_.assign(static_cast<std::size_t>(blocks), {});
+    if (aligns) align_heights(T_odom_body, camera_m, executor);
     struct Job {
         ElevationMap& map;
         const ExpectedPoints* expected = nullptr;
@@ -172,15 +185,76 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
     for (const FusionCounts& block : block_counts_) counts += block;
 }
 
+void ElevationMap::align_heights(const Pose& T_odom_body,
+                                 const Eigen::Vector3d& camera_m,
+                                 Executor& executor) {
+    executor.parallel_for(static_cast<int>(block_counts_.size()),
+                          [this](int block) { reduce_block(block); });
+    const CellAlignment alignment = cells_.alignment();
+    drift_.reserve(geometry());
+    height_drift_ = {};
+    height_drift_.reason = HeightDriftReason::no_old_ground;
+    const std::size_t more =
+        residuals_.gather({geometry(),
+                           layers(),
+                           alignment,
+                           measured_.data(),
+                           camera_m.head<2>(),
+                           ahead_of(T_odom_body),
+                           cells_.motions(),
+                           static_cast<std::uint32_t>(config_.height_drift.min_motions),
+                           static_cast<std::uint32_t>(config_.height_drift.kept_motions),
+                           config_.height_drift.level_m,
+                           config_.height_drift.min_drift_m});
+    if (more == 0) return;
+    const auto [report, last_step] = drift_.judge(residuals_.old(),
+                                                  residuals_.recent(),
+                                                  {geometry(),
+                                                   camera_m.z(),
+                                                   config_.reduction.systematic_sigma_m,
+                                                   config_.camera_tilt_sigma_rad,
+                                                   cells_.motions()});
+    height_drift_ = report;
+    if (report.reason != HeightDriftReason::moved) return;
+    residuals_.forget();
+    for (std::size_t cell = 0; cell < layers().height_m.size(); ++cell) {
+        if (std::isnan(layers().height_m.data()[cell]) || alignment.step[cell] > last_step)
+            continue;
+        const float motion_m2 =
+            motion_variance(layers().height_var_m2.data()[cell], alignment.var_m2[cell]);
+        // False for what is not finite.
+        if (!drift_.allows(report.offset_m, static_cast<double>(motion_m2))) continue;
+        cells_.lift(cell, report.offset_m, report.sigma_m * report.sigma_m);
+        ++height_drift_.moved_cells;
+    }
+}
+
+void ElevationMap::reduce_block(int block) {
+    const int first = block * kBlockRows;
+    const int last = std::min(first + kBlockRows, geometry().ny);
+    for (int iy = first; iy < last; ++iy) reduce_row(iy, measurements_of_row(iy));
+}
+
+void ElevationMap::reduce_row(int iy, CellMeasurement* measured) const {
+    const std::uint32_t* begin = groups_.begin() + static_cast<std::ptrdiff_t>(iy) * geometry().nx;
+    reduce_cells(
+        config_.reduction, begin, geometry().nx, groups_.z_m(), groups_.var_m2(), measured);
+}
+
+CellMeasurement* ElevationMap::measurements_of_row(int iy) {
+    const int row = config_.height_drift.enabled ? iy : iy / kBlockRows;
+    return measured_.data() + static_cast<std::ptrdiff_t>(row) * geometry().nx;
+}
+
 void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const Look& look) {
     const int nx = geometry().nx;
     const int first = block * kBlockRows;
     const int last = std::min(first + kBlockRows, geometry().ny);
-    CellMeasurement* measured = measured_.data() + static_cast<std::ptrdiff_t>(block) * nx;
     FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
     for (int iy = first; iy < last; ++iy) {
         const std::uint32_t* begin = groups_.begin() + static_cast<std::ptrdiff_t>(iy) * nx;
-        reduce_cells(config_.reduction, begin, nx, groups_.z_m(), groups_.var_m2(), measured);
+        CellMeasurement* measured = measurements_of_row(iy);
+        if (!config_.height_drift.enabled) reduce_row(iy, measured);
         for (int ix = 0; ix < nx; ++ix) {
             if (measured[ix].points == 0) continue;
             Seen seen{measured[ix], kNan, measured[ix].z_m};

@@ -76,6 +76,8 @@ class ElevationMap {
     [[nodiscard]] const ElevationLayers& layers() const noexcept { return cells_.layers(); }
     [[nodiscard]] const ElevationConfig& config() const noexcept { return config_; }
     [[nodiscard]] std::int64_t known_cells() const noexcept;
+    /// What the last frame said of the height drift.
+    [[nodiscard]] const HeightDriftReport& height_drift() const noexcept { return height_drift_; }
 
   private:
     /// Rows of cells that are one piece of work for the executor.
@@ -89,6 +91,14 @@ class ElevationMap {
                       std::int64_t time_ns,
                       Executor& executor,
                       FusionCounts& counts);
+    /// Moves old cells by what the height has drifted, if the frame can tell.
+    void align_heights(const Pose& T_odom_body,
+                       const Eigen::Vector3d& camera_m,
+                       Executor& executor);
+    void reduce_block(int block);
+    void reduce_row(int iy, CellMeasurement* measured) const;
+    /// Where a row is reduced to: its own place where heights are aligned, else its block's.
+    CellMeasurement* measurements_of_row(int iy);
     void fuse_block(int block, const ExpectedPoints* expected, const Look& look);
     /// What the frame's lines of sight say: things overhead that are gone, unknown ground below
     /// them, and (if so configured) remembered surfaces in their way, which are forgotten.
@@ -114,9 +124,13 @@ class ElevationMap {
     DepthSampler sampler_;
     CellSamples samples_;
     CellGroups groups_;
-    std::vector<CellMeasurement> measured_;  ///< a row of cells per block
+    /// A row of cells per block; all cells where heights are aligned.
+    std::vector<CellMeasurement> measured_;
     SightEnds ends_;
     std::vector<FusionCounts> block_counts_;  ///< per block
+    HeightResiduals residuals_;
+    HeightDrift drift_;
+    HeightDriftReport height_drift_;
     LinesOfSight lines_;
     std::vector<std::uint8_t> gone_;  ///< per cell: the frame's lines of sight say so
 };
