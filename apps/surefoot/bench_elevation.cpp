@@ -112,10 +112,14 @@ std::vector<BenchResult> bench_elevation(Executor& executor) {
     elevation::ElevationConfig without_lines;
     without_lines.visibility.drops = false;
     elevation::ElevationMap plain(without_lines);
+    elevation::ElevationConfig with_alignment;
+    with_alignment.height_drift.enabled = true;
+    elevation::ElevationMap aligned(with_alignment);
     elevation::ElevationMap map({});
     std::vector<BenchResult> results{
         {"terrain/fuse_672x376", timed(kRepeats, [&] { add_to(plain); })},
-        {"terrain/fuse_with_lines_672x376", timed(kRepeats, [&] { add_to(map); })}};
+        {"terrain/fuse_with_lines_672x376", timed(kRepeats, [&] { add_to(map); })},
+        {"terrain/fuse_with_height_drift_672x376", timed(kRepeats, [&] { add_to(aligned); })}};
     int moves = 0;
     results.push_back({"terrain/move_4_cells", timed(10 * kRepeats, [&] {
                            map.follow(body_at(0.1 * ++moves), Matrix6::Zero());

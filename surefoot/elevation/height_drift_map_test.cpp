@@ -89,6 +89,12 @@ class Walk {
                         covariance_);
         }
     }
+    /// 35 mm of height; afterwards the motion is sure.
+    void blur_by_blind_motion() {
+        covariance_(2, 2) = 1e-4;
+        go_blindly(12);
+        covariance_(2, 2) = 1e-8;
+    }
     void jump(double height_m) { drift_m_ += height_m; }
     void pitch(double error_rad) { pitch_rad_ = error_rad; }
     void expect(const Matrix6& covariance) { covariance_ = covariance; }
@@ -233,12 +239,7 @@ TEST(HeightDriftMap, GroundThatChangedMovesNothingElse) {
     for (std::size_t i = 0; i < changes.size(); ++i) {
         Walk walk(2, 0.0);
         walk.turn(2.0 * std::numbers::pi, 20);
-        Matrix6 covariance = Matrix6::Zero();
-        covariance(2, 2) = 1e-4;
-        walk.expect(covariance);
-        walk.go_blindly(12);  // (35 mm)^2
-        covariance(2, 2) = 1e-8;
-        walk.expect(covariance);
+        walk.blur_by_blind_motion();
         walk.frame(changes[i]);
         walk.turn(0.05, 4, changes[i]);
         EXPECT_EQ(walk.moves(), 0) << i;
@@ -246,14 +247,13 @@ TEST(HeightDriftMap, GroundThatChangedMovesNothingElse) {
 }
 
 TEST(HeightDriftMap, APitchErrorMovesNothing) {
-    for (const double pitch_rad : {0.004, -0.004, 0.01, -0.01, 0.02}) {
+    for (const double pitch_rad : {0.004, -0.004, 0.008, -0.008, 0.012, -0.012, 0.02, -0.02}) {
         Walk walk(3, 0.0);
-        Matrix6 covariance = Matrix6::Zero();
-        covariance(2, 2) = 1e-5;
-        walk.expect(covariance);
-        walk.turn(2.0 * std::numbers::pi, 40);
+        walk.turn(2.0 * std::numbers::pi, 20);
+        walk.blur_by_blind_motion();
         walk.pitch(pitch_rad);
-        walk.turn(2.0 * std::numbers::pi, 40);
+        walk.frame(flat);
+        walk.turn(0.5, 6);
         EXPECT_EQ(walk.moves(), 0) << pitch_rad;
     }
 }
@@ -308,6 +308,27 @@ TEST(HeightDriftMap, TheOrderOfBlocksDoesNotShow) {
     const std::size_t bytes = a.height_m.size() * sizeof(float);
     EXPECT_EQ(std::memcmp(a.height_m.data(), b.height_m.data(), bytes), 0);
     EXPECT_EQ(std::memcmp(a.height_var_m2.data(), b.height_var_m2.data(), bytes), 0);
+}
+
+TEST(HeightDriftMap, ALiftedCellIsAlignedAndTakesItsExtremesAlong) {
+    ElevationCells cells({}, 1, 1);
+    const ViewpointHistory views({});
+    FusionCounts counts;
+    cells.update(0, {{0.1F, 1e-4F, 0.12F, 0.09F, 5}, 1.0F}, {views, 1, 7}, counts);
+    cells.count_motion();
+    cells.memory_of_row(0).height_var_m2[0] += 4e-4F;
+    cells.alignment().is_asked[0] = 1;
+    EXPECT_FLOAT_EQ(cells.alignment().var_m2[0], 1e-4F);
+    EXPECT_EQ(cells.alignment().step[0], 0U);
+    cells.lift(0, 0.02, 1e-5);
+    EXPECT_FLOAT_EQ(cells.layers().height_m.data()[0], 0.12F);
+    EXPECT_FLOAT_EQ(cells.layers().highest_m.data()[0], 0.14F);
+    EXPECT_FLOAT_EQ(cells.layers().lowest_m.data()[0], 0.11F);
+    EXPECT_FLOAT_EQ(cells.layers().height_var_m2.data()[0], 5.1e-4F);
+    EXPECT_FLOAT_EQ(cells.alignment().var_m2[0], 5.1e-4F);
+    EXPECT_EQ(cells.alignment().step[0], 1U);
+    EXPECT_EQ(cells.alignment().is_asked[0], 0);
+    EXPECT_EQ(cells.layers().seen_ns.data()[0], 7) << "moved is not seen";
 }
 
 }  // namespace
