@@ -213,15 +213,28 @@ TEST_F(CleanUp, LinesOfSightSayHowDeepHiddenGroundLies) {
     EXPECT_TRUE(std::isnan(layers.free_above_m.at(cell->ix, cell->iy)));
 }
 
+/// Cells over which lines of sight say how deep hidden ground lies.
+std::int64_t looked_over(const ElevationMap& map) {
+    const float* free_m = map.layers().free_above_m.data();
+    return std::count_if(free_m, free_m + map.layers().free_above_m.size(), [](float z_m) {
+        return !std::isnan(z_m);
+    });
+}
+
+TEST_F(CleanUp, OneFrameAloneSaysNothingOfHiddenGround) {
+    frames({kPlatform}, 1);
+    EXPECT_EQ(looked_over(map_), 0) << "it may hold a wrong match";
+    frames({kPlatform}, 1);
+    EXPECT_GT(looked_over(map_), 200);
+}
+
 TEST_F(CleanUp, LinesOverUnknownGroundCanBeLeftOut) {
     ElevationConfig config;
     config.visibility.drops = false;
     ElevationMap map(config);
-    map.add(eye_, body_at(0), look(eye_, {kPlatform}, body_at(0), rng_), 1);
-    const float* free_m = map.layers().free_above_m.data();
-    EXPECT_TRUE(std::all_of(free_m, free_m + map.layers().free_above_m.size(), [](float z_m) {
-        return std::isnan(z_m);
-    }));
+    for (int time_ns = 1; time_ns <= 3; ++time_ns)
+        map.add(eye_, body_at(0), look(eye_, {kPlatform}, body_at(0), rng_), time_ns);
+    EXPECT_EQ(looked_over(map), 0);
 }
 
 TEST_F(CleanUp, IsOffByDefault) {

@@ -38,6 +38,7 @@ void ElevationCells::for_each_layer(const F& f) {
     f(layers_.lowest_m, kNan);
     f(layers_.clearance_m, kNan);
     f(layers_.free_above_m, kNan);
+    f(lowest_line_m_, kNan);
     f(layers_.confidence, kNan);
     f(layers_.density_ratio, kNan);
     f(settled_var_m2_, kNan);
@@ -154,8 +155,14 @@ bool ElevationCells::see_through(std::size_t cell) {
 }
 
 void ElevationCells::see_over(std::size_t cell, float line_z_m) {
-    float& lowest_m = layers_.free_above_m.data()[cell];
-    lowest_m = lowest_m < line_z_m ? lowest_m : line_z_m;
+    float& lowest_m = lowest_line_m_.data()[cell];
+    float& second_m = layers_.free_above_m.data()[cell];
+    if (!(lowest_m <= line_z_m)) {
+        second_m = lowest_m;
+        lowest_m = line_z_m;
+    } else if (!(second_m <= line_z_m)) {
+        second_m = line_z_m;
+    }
 }
 
 int ElevationCells::trust_in(std::size_t cell) const {
@@ -176,6 +183,7 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     set_confidence(cell, confidence >= 0.0F && confidence <= 1.0F ? confidence : kFirstLook);
     layers_.density_ratio.data()[cell] = region.density_ratio.data()[from];
     layers_.free_above_m.data()[cell] = kNan;
+    lowest_line_m_.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     align(cell);
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
@@ -260,6 +268,7 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
     set_confidence(cell, kFirstLook);
     layers_.density_ratio.data()[cell] = seen.density_ratio;
     layers_.free_above_m.data()[cell] = kNan;
+    lowest_line_m_.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     align(cell);
     viewpoint_.data()[cell] = look.view;

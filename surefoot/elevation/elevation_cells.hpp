@@ -110,6 +110,7 @@ class ElevationCells {
     grid::SlidingLayer<std::uint8_t> is_asked_;
     std::uint32_t motions_ = 0;
     grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
+    ElevationLayers::Layer lowest_line_m_;                ///< that passed over an unknown cell
     /// Lowest surface seen above the height, and how far it is believed.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;

@@ -22,8 +22,9 @@ struct ElevationLayers {
     Layer highest_m;           ///< robust extremes of all points in the cell since the height
     Layer lowest_m;            ///<   was first set: a wall or an edge spans more than a floor
     Layer clearance_m;         ///< from the height to the lowest thing seen above it; NaN = none
-    /// Of an unknown cell: lines of sight passed over it at this height, the lowest so far; ground
-    /// there lies lower. Evidence of drops that are never seen themselves. NaN = none passed.
+    /// Of an unknown cell: lines of sight passed over it at this height or lower, in two frames at
+    /// least (one may hold a wrong match); ground there lies lower. Evidence of drops that are
+    /// never seen themselves. NaN = none passed.
     Layer free_above_m;
     /// Share of the looks at the cell that agreed with its height, the last four or so; a height
     /// that was just set has 1/2.

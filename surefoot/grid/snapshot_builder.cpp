@@ -69,7 +69,8 @@ Status check(const SnapshotInput& input) {
         return refuse("the pose is not finite or farther than 100 km from the origin of odom");
     if (!has_size(input.height_m, g) || !has_size(input.variance_m2, g))
         return refuse("height and variance must have the size of the map");
-    for (const auto& layer : {input.drift_m, input.clearance_m, input.drop_evidence}) {
+    for (const auto& layer :
+         {input.drift_m, input.clearance_m, input.free_above_m, input.drop_evidence}) {
         if (!layer.empty() && !has_size(layer, g))
             return refuse("an optional layer does not have the size of the map");
     }
@@ -196,36 +197,72 @@ class Labeller {
     std::size_t size_ = 0;
 };
 
-/// Marks the upper cells of drops along one row or column; see build_snapshot().
-void mark_drops_on_line(MapSnapshot& out,
-                        std::size_t first,
-                        std::size_t stride,
-                        int count,
+/// A row or column of the snapshot in one direction.
+struct Line {
+    std::ptrdiff_t first = 0;
+    std::ptrdiff_t stride = 1;
+    int count = 0;
+};
+
+/// Heights that ground lies below at most: of known cells their own, of unknown ones that of the
+/// lines of sight over them; kUnknownHeight where nothing is known.
+class Ceilings {
+  public:
+    Ceilings(const SnapshotInput& input, const Window& window, const MapSnapshot& map)
+        : input_(input), window_(window), map_(map) {}
+    [[nodiscard]] std::int32_t at(std::ptrdiff_t cell) const {
+        const auto i = static_cast<std::size_t>(cell);
+        if (map_.source[i] == EvidenceSource::measured) return map_.height_tenth_mm[i];
+        if (input_.free_above_m.empty()) return MapSnapshot::kUnknownHeight;
+        const auto free_m = static_cast<double>(
+            input_.free_above_m.at(window_.x + static_cast<int>(cell % map_.nx),
+                                   window_.y + static_cast<int>(cell / map_.nx)));
+        if (!(std::abs(free_m) <= kHighestM)) return MapSnapshot::kUnknownHeight;
+        return static_cast<std::int32_t>(tenth_mm(free_m));
+    }
+
+  private:
+    const SnapshotInput& input_;
+    const Window& window_;
+    const MapSnapshot& map_;
+};
+
+/// Marks the upper cells of drops that begin along a line; see build_snapshot().
+void mark_drops_on_line(const Ceilings& ceilings,
+                        const Line& line,
                         std::int32_t step_tenth_mm,
-                        int reach_cells) {
-    int previous = -1;
-    for (int i = 0; i < count; ++i) {
-        const std::size_t at = first + static_cast<std::size_t>(i) * stride;
-        if (out.source[at] != EvidenceSource::measured) continue;
-        if (previous >= 0 && i - previous <= reach_cells) {
-            const std::size_t before = first + static_cast<std::size_t>(previous) * stride;
-            const std::int32_t rise = out.height_tenth_mm[at] - out.height_tenth_mm[before];
-            if (rise > step_tenth_mm) out.drop_evidence[at] = 255;
-            if (rise < -step_tenth_mm) out.drop_evidence[before] = 255;
+                        int reach_cells,
+                        MapSnapshot& out) {
+    std::ptrdiff_t upper = -1;
+    int upper_i = 0;
+    for (int i = 0; i < line.count; ++i) {
+        const std::ptrdiff_t cell = line.first + i * line.stride;
+        const std::int32_t ceiling = ceilings.at(cell);
+        if (upper >= 0 && i - upper_i <= reach_cells && ceiling != MapSnapshot::kUnknownHeight &&
+            ceiling - out.height_tenth_mm[static_cast<std::size_t>(upper)] < -step_tenth_mm) {
+            out.drop_evidence[static_cast<std::size_t>(upper)] = 255;
         }
-        previous = i;
+        if (out.source[static_cast<std::size_t>(cell)] != EvidenceSource::measured) continue;
+        upper = cell;
+        upper_i = i;
     }
 }
 
-void mark_drops(const SnapshotInput& input, MapSnapshot& out) {
+void mark_drops(const SnapshotInput& input, const Window& window, MapSnapshot& out) {
     const auto step = static_cast<std::int32_t>(tenth_mm(input.drop_step_m));
     const int reach = std::max(
         1, static_cast<int>(std::lround(input.drop_reach_m / input.geometry.resolution_m)));
-    const auto nx = static_cast<std::size_t>(out.nx);
-    for (int iy = 0; iy < out.ny; ++iy)
-        mark_drops_on_line(out, static_cast<std::size_t>(iy) * nx, 1, out.nx, step, reach);
-    for (int ix = 0; ix < out.nx; ++ix)
-        mark_drops_on_line(out, static_cast<std::size_t>(ix), nx, out.ny, step, reach);
+    const Ceilings ceilings(input, window, out);
+    const std::ptrdiff_t nx = out.nx;
+    const std::ptrdiff_t ny = out.ny;
+    for (std::ptrdiff_t iy = 0; iy < ny; ++iy) {
+        mark_drops_on_line(ceilings, {iy * nx, 1, out.nx}, step, reach, out);
+        mark_drops_on_line(ceilings, {iy * nx + nx - 1, -1, out.nx}, step, reach, out);
+    }
+    for (std::ptrdiff_t ix = 0; ix < nx; ++ix) {
+        mark_drops_on_line(ceilings, {ix, nx, out.ny}, step, reach, out);
+        mark_drops_on_line(ceilings, {ix + (ny - 1) * nx, -nx, out.ny}, step, reach, out);
+    }
 }
 
 }  // namespace
@@ -244,7 +281,7 @@ Status build_snapshot(const SnapshotInput& input, MapSnapshot& out) {
         for (int u = window.x; u < window.x + window.nx; ++u) write_cell(input, u, v, out, at++);
     }
     Labeller(out, static_cast<std::int32_t>(tenth_mm(input.connect_step_m))).label_all();
-    mark_drops(input, out);
+    mark_drops(input, window, out);
     out.checksum = snapshot_checksum(out);
     return {};
 }

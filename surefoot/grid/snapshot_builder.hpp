@@ -21,6 +21,8 @@ struct SnapshotInput {
     /// assumption.
     ImageView<const float> drift_m;
     ImageView<const float> clearance_m;  ///< optional: free height above the cell
+    /// Optional, of unknown cells: lines of sight passed at this height, ground lies lower.
+    ImageView<const float> free_above_m;
     ImageView<const float>
         drop_evidence;  ///< optional: 0..1 from rays that passed below the ground
     Pose T_odom_body;
@@ -48,8 +50,9 @@ struct SnapshotInput {
 ///   from 1 in order of their first cell; surfaces beyond 65535 get none.
 /// - `drop_evidence`: the upper cell of a drop that was measured. Along rows and columns the next
 ///   known cell behind an edge, across at most `drop_reach_m` of unknown shadow, is looked up; when
-///   it lies lower by more than `drop_step_m`, the *upper* cell gets 255. The evidence sits on the
-///   upper cell because "drop" depends on where one stands: the floor beside a table is no drop.
+///   it, or what lines of sight left for ground in the shadow, lies lower by more than
+///   `drop_step_m`, the *upper* cell gets 255. The evidence sits on the upper cell because "drop"
+///   depends on where one stands: the floor beside a table is no drop.
 [[nodiscard]] Status build_snapshot(const SnapshotInput& input, MapSnapshot& out);
 
 }  // namespace surefoot::grid

@@ -306,6 +306,22 @@ TEST(SnapshotBuilder, a_drop_marks_its_upper_edge_across_a_shadow_only) {
     for (const std::uint8_t evidence : level.build().drop_evidence) ASSERT_EQ(evidence, 0);
 }
 
+TEST(SnapshotBuilder, lines_of_sight_show_drops_whose_ground_was_never_seen) {
+    TestMap map({"55????555????55"});
+    Layer free_m(15, 1, kNaN);
+    free_m.at(2, 0) = 0.48F;
+    free_m.at(4, 0) = 0.44F;  // 60 mm below the edges on both sides
+    free_m.at(10, 0) = 0.46F;
+    free_m.at(1, 0) = -1.0F;  // of a known cell: says nothing
+    SnapshotInput input = map.input();
+    input.free_above_m = std::as_const(free_m).view();
+    ASSERT_TRUE(build_snapshot(input, *map.out).ok());
+    for (int ix = 0; ix < 15; ++ix)
+        EXPECT_EQ(map.out->drop_evidence[static_cast<std::size_t>(ix)],
+                  ix == 1 || ix == 6 ? 255 : 0)
+            << ix;
+}
+
 TEST(SnapshotBuilder, drops_are_found_in_all_four_directions) {
     TestMap map({"00000",  //
                  "05550",  //

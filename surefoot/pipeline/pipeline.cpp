@@ -318,6 +318,7 @@ Status Pipeline::snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) con
     input.variance_m2 = layers.height_var_m2.view();
     input.drift_m = layers.horizontal_drift_m.view();
     input.clearance_m = layers.clearance_m.view();
+    input.free_above_m = layers.free_above_m.view();
     input.T_odom_body = last_motion_.T_odom_body;
     input.frame_time_ns = last_fused_ns_;
     input.pose_time_ns = last_motion_.time_ns;
