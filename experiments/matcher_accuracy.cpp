@@ -180,7 +180,10 @@ Match census(const stereo::SemiGlobalConfig& penalties) {
         stereo::settle({}, winners, serial, settled_px);
         stereo::SpeckleFilter().remove(
             stereo::kSpeckleSize_px, stereo::kSpeckleRange_px, settled_px);
-        stereo::median_filter(settled_px, serial, disparity_px);
+        disparity_px.resize(settled_px.width(), settled_px.height());
+        std::vector<float> scratch;
+        for (int v = 0; v < settled_px.height(); ++v)
+            stereo::median_of_row(settled_px, v, scratch, disparity_px.row(v));
         return disparity_px;
     };
 }

@@ -57,6 +57,7 @@ bool same(const FusionCounts& a, const FusionCounts& b) {
 
 ElevationConfig config_of(Choices& choices) {
     ElevationConfig config;
+    config.visibility.cleanup = false;  // the plain map has none
     config.resolution_m = choices.yes() ? 0.05 : 0.025;
     constexpr int kSides[] = {1, 2, 15, 16, 17, 24};
     config.length_m = kSides[choices.below(6)] * config.resolution_m;

@@ -180,6 +180,10 @@ void PlainMap::fuse(const Samples& samples,
         if (!measured || !std::isfinite(measured->z_m) || !std::isfinite(measured->var_m2)) {
             continue;
         }
+        if (measured->z_m < lowest_z_m(config_.prefilter, T_odom_body)) {
+            counts.gated_height += static_cast<std::int64_t>(heights.z_m.size());
+            continue;
+        }
         const auto ix = static_cast<int>(index.second - first_ix_);
         const auto iy = static_cast<int>(index.first - first_iy_);
         Seen seen{*measured, kNan, measured->z_m};

@@ -111,6 +111,7 @@ std::vector<BenchResult> bench_elevation(Executor& executor) {
     };
     elevation::ElevationConfig without_lines;
     without_lines.visibility.drops = false;
+    without_lines.visibility.cleanup = false;
     elevation::ElevationMap plain(without_lines);
     elevation::ElevationConfig with_alignment;
     with_alignment.height_drift.enabled = true;

@@ -187,7 +187,6 @@ TEST(BadInput, TimeThatGoesBackIsJustATime) {
     for (const double scan_s : {0.0, 1.0}) {
         ElevationConfig config;
         config.fusion.scan_duration_s = scan_s;
-        config.visibility.cleanup = true;
         ElevationMap map(config);
         for (const std::int64_t time_ns : {100 * kSecond_ns, std::int64_t{0}, -100 * kSecond_ns}) {
             const FusionCounts counts = map.add_points(floor_ahead(), {}, body_at(0.0), time_ns);
@@ -203,7 +202,6 @@ TEST(BadInput, TimeThatGoesBackIsJustATime) {
 TEST(BadInput, AMapOfOneCellIsAMap) {
     ElevationConfig config;
     config.length_m = config.resolution_m;
-    config.visibility.cleanup = true;
     ASSERT_FALSE(config.problem());
     ElevationMap map(config);
     ASSERT_EQ(map.geometry().nx, 1);

@@ -132,7 +132,6 @@ class CleanUp : public ::testing::Test {
     ElevationMap map_{[] {
         ElevationConfig config;
         config.length_m = 5.0;
-        config.visibility.cleanup = true;
         return config;
     }()};
     camera::RectifiedRig eye_ = rig(336);
@@ -237,8 +236,10 @@ TEST_F(CleanUp, LinesOverUnknownGroundCanBeLeftOut) {
     EXPECT_EQ(looked_over(map), 0);
 }
 
-TEST_F(CleanUp, IsOffByDefault) {
-    ElevationMap map({});
+TEST_F(CleanUp, CanBeSwitchedOff) {
+    ElevationConfig config;
+    config.visibility.cleanup = false;
+    ElevationMap map(config);
     std::int64_t time_ns = 1;
     std::int64_t cleared = 0;
     for (int i = 0; i < 12; ++i) {

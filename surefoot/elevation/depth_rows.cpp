@@ -111,8 +111,7 @@ HWY_INLINE void add_pixels(const DepthFrame& f,
         kept, hn::And(hn::Ge(range, set(f.min_range_m)), hn::Le(range, set(f.max_range_m))));
     const V ray_up = ray_along(row, 2, x);
     const V z = hn::Add(set(f.camera_m[2]), hn::Mul(depth, ray_up));
-    const M in_height =
-        hn::And(in_range, hn::And(hn::Ge(z, set(f.min_z_m)), hn::Le(z, set(f.max_z_m))));
+    const M in_height = hn::And(in_range, hn::Le(z, set(f.max_z_m)));
     const V fx = hn::Mul(hn::Add(set(f.camera_m[0]), hn::Mul(depth, ray_along(row, 0, x))),
                          set(f.per_cell_m));
     const V fy = hn::Mul(hn::Add(set(f.camera_m[1]), hn::Mul(depth, ray_along(row, 1, x))),

@@ -20,7 +20,6 @@ struct DepthFrame {
     float camera_m[3] = {};
     float min_range_m = 0.0F;
     float max_range_m = 0.0F;
-    float min_z_m = 0.0F;
     float max_z_m = 0.0F;
     float max_outlier_probability = 0.0F;
     bool surface_check = true;

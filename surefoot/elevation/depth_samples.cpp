@@ -33,7 +33,6 @@ DepthFrame frame_of(const ElevationConfig& config,
     f.camera_m[2] = static_cast<float>(camera_m.z());
     f.min_range_m = static_cast<float>(cut.range ? cut.min_range_m : -kInfinity);
     f.max_range_m = static_cast<float>(cut.range ? cut.max_range_m : kInfinity);
-    f.min_z_m = static_cast<float>(cut.height ? body_z_m + cut.min_height_m : -kInfinity);
     f.max_z_m = static_cast<float>(cut.height ? body_z_m + cut.max_height_m : kInfinity);
     f.max_outlier_probability = static_cast<float>(config.pixels.max_outlier_probability);
     f.surface_check = config.pixels.surface_check;

@@ -169,6 +169,7 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
     const int blocks = (geometry().ny + kBlockRows - 1) / kBlockRows;
     groups_.assign(samples_, layers().height_m.size());
     ends_.reset(geometry(), camera_m);
+    lowest_z_m_ = lowest_z_m(config_.prefilter, T_odom_body);
     const bool aligns = config_.height_drift.enabled;
     measured_.resize(static_cast<std::size_t>(aligns ? geometry().ny : blocks) *
                      static_cast<std::size_t>(geometry().nx));
@@ -257,6 +258,13 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
         if (!config_.height_drift.enabled) reduce_row(iy, measured);
         for (int ix = 0; ix < nx; ++ix) {
             if (measured[ix].points == 0) continue;
+            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
+                              static_cast<std::size_t>(ix);
+            if (measured[ix].z_m < lowest_z_m_) {
+                counts.gated_height += begin[ix + 1] - begin[ix];
+                if (std::isnan(layers().height_m.data()[cell])) cells_.see_over(cell, lowest_z_m_);
+                continue;
+            }
             Seen seen{measured[ix], kNan, measured[ix].z_m};
             if (expected != nullptr) {
                 const auto points = static_cast<float>(begin[ix + 1] - begin[ix]);
@@ -266,8 +274,6 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
                 if (points > kFaceDensity * expected->at(ix, iy, lowest_m))
                     seen.bottom_m = std::min(lowest_m, measured[ix].z_m);
             }
-            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
-                              static_cast<std::size_t>(ix);
             ends_.set(cell, seen.measured, seen.bottom_m);
             cells_.update(cell, seen, look, counts);
         }

@@ -127,6 +127,7 @@ class ElevationMap {
     /// A row of cells per block; all cells where heights are aligned.
     std::vector<CellMeasurement> measured_;
     SightEnds ends_;
+    float lowest_z_m_ = 0.0F;                 ///< of this frame: the lower height cut in odom
     std::vector<FusionCounts> block_counts_;  ///< per block
     HeightResiduals residuals_;
     HeightDrift drift_;

@@ -231,6 +231,24 @@ TEST(ElevationMap, CountsWhatIsLeftOutAndWhy) {
     EXPECT_EQ(counts.cells_measured, 16);
 }
 
+TEST(ElevationMap, GroundBelowTheHeightCutIsADropAndNoHeight) {
+    ElevationMap map(exact_config());
+    const Pose T_odom_body = body_at(0, 0);
+    const auto deep = flat_patch(T_odom_body, 1.0, 0.0, -2.5);  // 3.5 m below base_link
+    const FusionCounts counts = map.add_points(deep, {}, T_odom_body, 0);
+    EXPECT_EQ(counts.gated_height, 400);
+    EXPECT_EQ(counts.cells_measured, 0);
+    EXPECT_TRUE(std::isnan(at(map, map.layers().free_above_m, 1.01, 0.01))) << "one frame alone";
+    map.add_points(deep, {}, T_odom_body, 1);
+    EXPECT_EQ(map.known_cells(), 0);
+    EXPECT_EQ(at(map, map.layers().free_above_m, 1.01, 0.01), -2.0F);
+    // What is known stays known: the map does not take a mirrored lamp for a pit.
+    map.add_points(flat_patch(T_odom_body, 1.0, 0.0, 0.0), {}, T_odom_body, 2);
+    for (int time_ns = 3; time_ns < 9; ++time_ns) map.add_points(deep, {}, T_odom_body, time_ns);
+    EXPECT_EQ(height_at(map, 1.01, 0.01), 0.0F);
+    EXPECT_TRUE(std::isnan(at(map, map.layers().free_above_m, 1.01, 0.01)));
+}
+
 /// Collects every key, and checks that defaults lie within their own ranges.
 class KeyCollector : public ConfigVisitor {
   public:

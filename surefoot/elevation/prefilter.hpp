@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "surefoot/core/config.hpp"
+#include "surefoot/core/pose.hpp"
 #include "surefoot/elevation/cell_groups.hpp"
 
 namespace surefoot::elevation {
@@ -17,7 +19,9 @@ struct PrefilterConfig {
     double min_range_m = 0.3;
     double max_range_m = 20.0;
     bool height = true;
-    double min_height_m = -3.0;  ///< of the point over base_link; the floor lies near -1
+    /// Over base_link; the floor lies near -1. Ground below it has no height in the map, but is
+    /// evidence of a drop (`free_above_m`).
+    double min_height_m = -3.0;
     double max_height_m = 1.0;   ///< lintels and ceilings are no ground
     bool down_sampling = false;  ///< not needed where cells reduce their points
     double sampling_m = 0.01;
@@ -32,10 +36,16 @@ struct PrefilterConfig {
 [[nodiscard]] inline bool is_in_range(const PrefilterConfig& config, double range_m) noexcept {
     return !config.range || (range_m >= config.min_range_m && range_m <= config.max_range_m);
 }
-/// Height cut on the height of a point over base_link; NaN does not pass.
+/// The lower height cut in odom.
+[[nodiscard]] inline float lowest_z_m(const PrefilterConfig& config,
+                                      const Pose& T_odom_body) noexcept {
+    return config.height ? static_cast<float>(T_odom_body.translation_m.z() + config.min_height_m)
+                         : -std::numeric_limits<float>::infinity();
+}
+/// Upper height cut on the height of a point over base_link; NaN does not pass. The lower one is
+/// for the heights of cells: where many points are too deep, there is a drop.
 [[nodiscard]] inline bool is_in_height(const PrefilterConfig& config, double over_body_m) noexcept {
-    return !config.height ||
-           (over_body_m >= config.min_height_m && over_body_m <= config.max_height_m);
+    return !config.height || over_body_m <= config.max_height_m;
 }
 
 /// The two filters that look at a cloud as a whole. Points count from the corner of a grid that

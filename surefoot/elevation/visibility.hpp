@@ -14,9 +14,7 @@ namespace surefoot::elevation {
 /// When a remembered surface that lines of sight pass through is gone. ASSUMPTION, all of them;
 /// what they lead to: docs/accuracy.md.
 struct VisibilityConfig {
-    /// Off: a table top seen edge-on over floor that is seen under it is still taken for gone too
-    /// often (docs/safety.md, known gaps).
-    bool cleanup = false;
+    bool cleanup = true;
     /// Lines of sight that pass over unknown cells say how deep the ground there must lie.
     bool drops = true;
     double margin_m = 0.05;  ///< lines this far below a height contradict it ...

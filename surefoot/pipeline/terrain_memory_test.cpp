@@ -145,7 +145,6 @@ class Terrain {
   private:
     static elevation::ElevationConfig config() {
         elevation::ElevationConfig config;
-        config.visibility.cleanup = true;
         return config;
     }
 
