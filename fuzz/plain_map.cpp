@@ -194,7 +194,7 @@ void PlainMap::fuse(const Samples& samples,
             if (points > kFaceDensity * expected->at(ix, iy, measured->lowest_m))
                 seen.bottom_m = std::min(measured->lowest_m, measured->z_m);
         }
-        ends.set(static_cast<std::size_t>(iy * geometry_.nx + ix), *measured, seen.bottom_m);
+        ends.set(static_cast<std::size_t>(iy * geometry_.nx + ix), measured->z_m, seen.bottom_m);
         update(cells_[index], seen, time_ns, counts);
     }
     look_overhead(ends);

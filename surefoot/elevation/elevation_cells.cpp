@@ -38,13 +38,14 @@ void ElevationCells::for_each_layer(const F& f) {
     f(layers_.lowest_m, kNan);
     f(layers_.clearance_m, kNan);
     f(layers_.free_above_m, kNan);
-    f(lowest_line_m_, kNan);
     f(layers_.confidence, kNan);
     f(layers_.density_ratio, kNan);
     f(settled_var_m2_, kNan);
-    f(aligned_var_m2_, kNan);
-    f(aligned_step_, std::uint32_t{0});
-    f(is_asked_, std::uint8_t{0});
+    if (aligns()) {
+        f(aligned_var_m2_, kNan);
+        f(aligned_step_, std::uint32_t{0});
+        f(is_asked_, std::uint8_t{0});
+    }
     f(viewpoint_, ViewpointHistory::kNever);
     f(overhead_m_, kNan);
     f(overhead_trust_, std::uint8_t{0});
@@ -111,7 +112,7 @@ void ElevationCells::update(std::size_t cell,
     }
     if (result.outcome == FusionOutcome::inflated) {
         const auto inflated_m2 = static_cast<float>(result.cell.var_m2);
-        aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;  // not the motion's
+        if (aligns()) aligned_var_m2_.data()[cell] += inflated_m2 - var_m2;  // not the motion's
         var_m2 = inflated_m2;
         if (measured.z_m - height_m > hangs)
             see_above(cell, measured.z_m, kOverheadSeen, seen.bottom_m - height_m > hangs);
@@ -119,6 +120,7 @@ void ElevationCells::update(std::size_t cell,
 }
 
 void ElevationCells::align(std::size_t cell) {
+    if (!aligns()) return;
     aligned_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     aligned_step_.data()[cell] = motions_;
     is_asked_.data()[cell] = 0;
@@ -155,7 +157,7 @@ bool ElevationCells::see_through(std::size_t cell) {
 }
 
 void ElevationCells::see_over(std::size_t cell, float line_z_m) {
-    float& lowest_m = lowest_line_m_.data()[cell];
+    float& lowest_m = bottom_m_.data()[cell];
     float& second_m = layers_.free_above_m.data()[cell];
     if (!(lowest_m <= line_z_m)) {
         second_m = lowest_m;
@@ -183,7 +185,6 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     set_confidence(cell, confidence >= 0.0F && confidence <= 1.0F ? confidence : kFirstLook);
     layers_.density_ratio.data()[cell] = region.density_ratio.data()[from];
     layers_.free_above_m.data()[cell] = kNan;
-    lowest_line_m_.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     align(cell);
     viewpoint_.data()[cell] = ViewpointHistory::kNever;
@@ -268,7 +269,6 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
     set_confidence(cell, kFirstLook);
     layers_.density_ratio.data()[cell] = seen.density_ratio;
     layers_.free_above_m.data()[cell] = kNan;
-    lowest_line_m_.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
     align(cell);
     viewpoint_.data()[cell] = look.view;

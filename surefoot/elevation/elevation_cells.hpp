@@ -99,22 +99,24 @@ class ElevationCells {
     void see_above(std::size_t cell, float z_m, int trust, bool hangs);
     void set_clearance(std::size_t cell);
     void align(std::size_t cell);
+    [[nodiscard]] bool aligns() const noexcept { return config_.height_drift.enabled; }
 
     ElevationConfig config_;
     ElevationLayers layers_;
     /// Variance after the last fusion that brought new information; repeated views of the same
     /// errors never lower a cell's variance below it.
     ElevationLayers::Layer settled_var_m2_;
-    ElevationLayers::Layer aligned_var_m2_;  ///< see CellAlignment
+    // See CellAlignment; empty unless the height drift is looked after.
+    ElevationLayers::Layer aligned_var_m2_;
     grid::SlidingLayer<std::uint32_t> aligned_step_;
     grid::SlidingLayer<std::uint8_t> is_asked_;
     std::uint32_t motions_ = 0;
     grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
-    ElevationLayers::Layer lowest_line_m_;                ///< that passed over an unknown cell
     /// Lowest surface seen above the height, and how far it is believed.
     ElevationLayers::Layer overhead_m_;
     grid::SlidingLayer<std::uint8_t> overhead_trust_;
     grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: it stands on the ground
+    /// Of a known cell, see `Seen`; of an unknown one the lowest line of sight over it.
     ElevationLayers::Layer bottom_m_;
     /// A surface seen in a share s of the looks is missed in n of them by chance with (1 - s)^n: so
     /// that 1/s times as many frames are asked of it before it counts as gone.

@@ -274,7 +274,7 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
                 if (points > kFaceDensity * expected->at(ix, iy, lowest_m))
                     seen.bottom_m = std::min(lowest_m, measured[ix].z_m);
             }
-            ends_.set(cell, seen.measured, seen.bottom_m);
+            ends_.set(cell, seen.measured.z_m, seen.bottom_m);
             cells_.update(cell, seen, look, counts);
         }
     }

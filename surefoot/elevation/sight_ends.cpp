@@ -25,13 +25,6 @@ void SightEnds::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d&
         static_cast<std::size_t>(geometry.nx) * static_cast<std::size_t>(geometry.ny);
     z_m_.assign(cells, kNan);
     bottom_m_.resize(cells);
-    top_m_.resize(cells);
-}
-
-void SightEnds::set(std::size_t cell, const CellMeasurement& measured, float bottom_m) noexcept {
-    z_m_[cell] = measured.z_m;
-    bottom_m_[cell] = bottom_m;
-    top_m_[cell] = bottom_m < measured.z_m ? measured.highest_m : measured.z_m;
 }
 
 bool SightEnds::passed_through(grid::Cell cell, float low_m, float high_m) const {
@@ -58,7 +51,7 @@ bool SightEnds::passed(grid::Cell cell, float z_m) const {
                        static_cast<std::size_t>(at.x());
         if (std::isnan(z_m_[i])) continue;
         const float line_z_m = z_m - steps * fall_m;
-        if (line_z_m > top_m_[i] + rounding_m) continue;
+        if (line_z_m > z_m_[i] + rounding_m) continue;
         // It met this surface, or is below it: then what it met was not seen.
         return line_z_m >= bottom_m_[i] - rounding_m;
     }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "surefoot/core/views.hpp"
-#include "surefoot/elevation/cell_reduction.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 
 namespace surefoot::elevation {
@@ -22,7 +21,10 @@ class SightEnds {
     void reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m);
     /// A cell was seen: its highest surface, and the face below it down to `bottom_m`, if it is
     /// one. Different cells may be set side by side.
-    void set(std::size_t cell, const CellMeasurement& measured, float bottom_m) noexcept;
+    void set(std::size_t cell, float z_m, float bottom_m) noexcept {
+        z_m_[cell] = z_m;
+        bottom_m_[cell] = bottom_m;
+    }
     /// Height of what was seen in the cells of a row; NaN = nothing.
     [[nodiscard]] const float* z_m_row(int iy) const noexcept {
         return z_m_.data() + static_cast<std::ptrdiff_t>(iy) * geometry_.nx;
@@ -40,7 +42,6 @@ class SightEnds {
     float camera_z_m_ = 0.0F;
     std::vector<float> z_m_;  ///< per cell: the highest surface
     std::vector<float> bottom_m_;
-    std::vector<float> top_m_;
 };
 
 }  // namespace surefoot::elevation

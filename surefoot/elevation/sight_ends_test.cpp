@@ -41,10 +41,7 @@ SightEnds seen(const Look& look, const Eigen::Vector3d& camera_m = kCamera_m) {
             const Eigen::Vector2d at = g.center_m({ix, iy});
             const Seen cell = look(at.x(), at.y());
             if (std::isnan(cell.z_m)) continue;
-            CellMeasurement measured;
-            measured.z_m = measured.highest_m = cell.z_m;
-            measured.lowest_m = cell.bottom_m;
-            ends.set(static_cast<std::size_t>(iy * g.nx + ix), measured, cell.bottom_m);
+            ends.set(static_cast<std::size_t>(iy * g.nx + ix), cell.z_m, cell.bottom_m);
         }
     }
     return ends;
