@@ -301,6 +301,27 @@ void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& ou
     pool.give_back(sums);
 }
 
+kernels::WinnerRows winners_at(Winners& out, int u, int v) {
+    return {out.disparity.row(v) + u,
+            out.cost.row(v) + u,
+            out.cost_below.row(v) + u,
+            out.cost_above.row(v) + u,
+            out.second_cost.row(v) + u};
+}
+
+/// One row of a block, of which `count` columns lie in the image.
+void follow_row(const kernels::ColumnStep& step, const kernels::WinnerRows& out, int count) {
+    if (count == kLanes) return kernels::follow_columns(step, out);
+    std::uint8_t rows[5][kLanes];  // all of it is written. NOLINT(*-member-init)
+    kernels::follow_columns(step, {rows[0], rows[1], rows[2], rows[3], rows[4]});
+    const auto size = static_cast<std::size_t>(count);
+    std::memcpy(out.disparity, rows[0], size);
+    std::memcpy(out.cost, rows[1], size);
+    std::memcpy(out.cost_below, rows[2], size);
+    std::memcpy(out.cost_above, rows[3], size);
+    std::memcpy(out.second_cost, rows[4], size);
+}
+
 /// Path from above and winners of a block.
 void SemiGlobalSearch::Workspace::follow_columns(int strip,
                                                  int block,
@@ -313,8 +334,7 @@ void SemiGlobalSearch::Workspace::follow_columns(int strip,
     step.least = path.least;
     step.disparities = config.disparities;
     step.penalties = penalties;
-    const auto count = static_cast<std::size_t>(std::min(kLanes, width - u));
-    kernels::WinnerRows winners;  // all of it is written. NOLINT(*-member-init)
+    const int count = std::min(kLanes, width - u);
     for (int v = strip * kLanes; v < std::min(height, (strip + 1) * kLanes); ++v) {
         for (int byte = 0; byte < kCensusBytes; ++byte) {
             step.left[byte] = left_census.row(byte, v) + u;
@@ -323,12 +343,7 @@ void SemiGlobalSearch::Workspace::follow_columns(int strip,
         step.grey = left.row(v) + u;
         step.grey_above = left.row(std::max(v - 1, 0)) + u;
         step.sums = sums + (v - strip * kLanes) * sums_stride;
-        kernels::follow_columns(step, winners);
-        std::memcpy(out.disparity.row(v) + u, winners.disparity, count);
-        std::memcpy(out.cost.row(v) + u, winners.cost, count);
-        std::memcpy(out.cost_below.row(v) + u, winners.cost_below, count);
-        std::memcpy(out.cost_above.row(v) + u, winners.cost_above, count);
-        std::memcpy(out.second_cost.row(v) + u, winners.second_cost, count);
+        follow_row(step, winners_at(out, u, v), count);
     }
 }
 

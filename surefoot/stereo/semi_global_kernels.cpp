@@ -6,6 +6,7 @@
 #define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/stereo/semi_global_kernels.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -165,6 +166,10 @@ HWY_INLINE Word word_at(const std::uint8_t* place) {
 
 enum class Sums : std::uint8_t { left_alone, written, added_to };
 
+/// Sums are written where nothing was read before: their lines are called this many places ahead,
+/// or the processor would wait for each of them.
+constexpr std::ptrdiff_t kCalledAhead = 16 * kLanes;
+
 /// One path through the block, in the lanes from `lane`.
 template <Sums kSums>
 void follow(const RowBlock& block, int lane) {
@@ -192,7 +197,10 @@ void follow(const RowBlock& block, int lane) {
             const Bytes best = hn::Min(hn::Min(neighbour, here), jump);
             const Bytes cost = hn::Add(hn::Sub(best, least), distance(left, word_at(right)));
             hn::Store(cost, kBytes, state + d * kLanes);
-            if constexpr (kSums == Sums::written) hn::Store(cost, kBytes, sums + d * kLanes);
+            if constexpr (kSums == Sums::written) {
+                hwy::Prefetch(sums + d * kLanes + kCalledAhead);
+                hn::Store(cost, kBytes, sums + d * kLanes);
+            }
             if constexpr (kSums == Sums::added_to) {
                 const Bytes before = hn::Load(kBytes, sums + d * kLanes);
                 hn::Store(hn::Add(cost, before), kBytes, sums + d * kLanes);
@@ -233,7 +241,7 @@ HWY_INLINE Word word_of(const std::uint8_t* const bytes[kCensusBytes], std::ptrd
 /// One step of the path from above, and the winner of all three paths on the way. Second best so
 /// far: `second` holds what is at least two away from the best of all d so far, `older` the least
 /// of all that is at least two before the next d.
-void follow_lanes(const ColumnStep& step, int lane, WinnerRows& out) {
+void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     const Bytes slope = hn::Set(kBytes, step.penalties.slope);
     const Bytes none = hn::Set(kBytes, std::uint8_t{255});
     const Bytes one = hn::Set(kBytes, std::uint8_t{1});
@@ -276,7 +284,7 @@ void follow_lanes(const ColumnStep& step, int lane, WinnerRows& out) {
         const auto is_best = hn::Lt(sum, best_cost);
         const Bytes rest = hn::IfThenElse(was_best, second, hn::Min(second, sum));
         second = hn::IfThenElse(is_best, older, rest);
-        cost_above = hn::IfThenElse(is_best, none, hn::IfThenElse(was_best, sum, cost_above));
+        cost_above = hn::IfThenElse(was_best, sum, cost_above);
         cost_below = hn::IfThenElse(is_best, sum_before, cost_below);
         best = hn::IfThenElse(is_best, disparity, best);
         best_cost = hn::Min(best_cost, sum);
@@ -289,11 +297,11 @@ void follow_lanes(const ColumnStep& step, int lane, WinnerRows& out) {
     hn::StoreU(best, kBytes, out.disparity + lane);
     hn::StoreU(best_cost, kBytes, out.cost + lane);
     hn::StoreU(cost_below, kBytes, out.cost_below + lane);
-    hn::StoreU(cost_above, kBytes, out.cost_above + lane);
+    hn::StoreU(hn::IfThenElse(was_best, none, cost_above), kBytes, out.cost_above + lane);
     hn::StoreU(second, kBytes, out.second_cost + lane);
 }
 
-void follow_columns_here(const ColumnStep& step, WinnerRows& out) {
+void follow_columns_here(const ColumnStep& step, const WinnerRows& out) {
     for (int lane = 0; lane < kLanes; lane += lanes()) follow_lanes(step, lane, out);
 }
 
@@ -338,7 +346,7 @@ void follow_right(const RowBlock& block) {
 void follow_left(const RowBlock& block) {
     HWY_DYNAMIC_DISPATCH(follow_left_here)(block);
 }
-void follow_columns(const ColumnStep& step, WinnerRows& out) {
+void follow_columns(const ColumnStep& step, const WinnerRows& out) {
     HWY_DYNAMIC_DISPATCH(follow_columns_here)(step, out);
 }
 

@@ -60,13 +60,13 @@ void follow_right(const RowBlock& block);
 /// comes to lie at sums[v * sums_stride + d * kLanes + u].
 void follow_left(const RowBlock& block);
 
-/// Where winners of 64 columns go.
+/// Where winners of 64 columns go: kLanes each, at any address.
 struct WinnerRows {
-    std::uint8_t disparity[kLanes];
-    std::uint8_t cost[kLanes];
-    std::uint8_t cost_below[kLanes];
-    std::uint8_t cost_above[kLanes];
-    std::uint8_t second_cost[kLanes];
+    std::uint8_t* disparity = nullptr;
+    std::uint8_t* cost = nullptr;
+    std::uint8_t* cost_below = nullptr;
+    std::uint8_t* cost_above = nullptr;
+    std::uint8_t* second_cost = nullptr;
 };
 /// One row of 64 columns, side by side in the lanes.
 struct ColumnStep {
@@ -80,6 +80,6 @@ struct ColumnStep {
     int disparities = 0;
     Penalties penalties;
 };
-void follow_columns(const ColumnStep& step, WinnerRows& out);
+void follow_columns(const ColumnStep& step, const WinnerRows& out);
 
 }  // namespace surefoot::stereo::kernels
