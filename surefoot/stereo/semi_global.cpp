@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "surefoot/core/assert.hpp"
-#include "surefoot/stereo/row_blocks.hpp"
 #include "surefoot/stereo/semi_global_kernels.hpp"
 
 namespace surefoot::stereo {
@@ -174,13 +173,12 @@ struct SemiGlobalSearch::Workspace {
     CensusPlanes right_census;
     Strip strips[kStrips];
     BlockPool pool;
-    std::ptrdiff_t sums_stride = 0;
     PathStates from_above;  ///< per 64 columns
 
     [[nodiscard]] int column_blocks() const { return padded(width) / kLanes; }
 
     void resize();
-    void take_census(Executor& executor);
+    void take_census(int strip);
     void turn_strip(int strip);
     void pass_strip(int strip);
     void follow_block(int strip, int block, Winners& out);
@@ -191,9 +189,8 @@ struct SemiGlobalSearch::Workspace {
 void SemiGlobalSearch::Workspace::resize() {
     left_census.resize(width, height, 0);
     right_census.resize(width, height, config.disparities);
-    // One more row than needed: places 4 KiB apart would share their lines of the cache.
-    sums_stride = static_cast<std::ptrdiff_t>(config.disparities) * kLanes + kLanes;
-    pool.resize(kStrips, static_cast<std::size_t>(kLanes * sums_stride));
+    const int groups = (config.disparities + kernels::kGroup - 1) / kernels::kGroup;
+    pool.resize(kStrips, static_cast<std::size_t>(groups) * kernels::kSumsGroup);
     const auto columns = static_cast<std::size_t>(padded(width));
     const auto front = static_cast<std::size_t>(padded(config.disparities));
     for (Strip& strip : strips) {
@@ -210,13 +207,11 @@ void SemiGlobalSearch::Workspace::resize() {
     }
 }
 
-void SemiGlobalSearch::Workspace::take_census(Executor& executor) {
-    for_row_blocks(executor, height, [&](int first, int last) {
-        for (int v = first; v < last; ++v) {
-            left_census.make_row(left, width, v);
-            right_census.make_row(right, width, v);
-        }
-    });
+void SemiGlobalSearch::Workspace::take_census(int strip) {
+    for (int v = strip * kLanes; v < std::min(height, (strip + 1) * kLanes); ++v) {
+        left_census.make_row(left, width, v);
+        right_census.make_row(right, width, v);
+    }
 }
 
 /// Census words and grey levels of a strip, the rows in the lanes.
@@ -254,13 +249,13 @@ kernels::RowBlock SemiGlobalSearch::Workspace::row_block(int strip, int block) c
     rows.columns = std::min(kLanes, width - u);
     rows.disparities = config.disparities;
     rows.penalties = penalties;
-    rows.sums_stride = sums_stride;
     return rows;
 }
 
 /// Follows the paths from the left once to note how they enter each block: their costs of a whole
 /// strip would not fit into a cache.
 void SemiGlobalSearch::Workspace::pass_strip(int strip) {
+    take_census(strip);
     turn_strip(strip);
     const Strip& s = strips[strip % kStrips];
     const PathState start = s.from_left.at(0);
@@ -342,7 +337,7 @@ void SemiGlobalSearch::Workspace::follow_columns(int strip,
         }
         step.grey = left.row(v) + u;
         step.grey_above = left.row(std::max(v - 1, 0)) + u;
-        step.sums = sums + (v - strip * kLanes) * sums_stride;
+        step.sums = sums + (v - strip * kLanes) * kernels::kSumsColumn;
         follow_row(step, winners_at(out, u, v), count);
     }
 }
@@ -372,7 +367,6 @@ void SemiGlobalSearch::search(ImageView<const std::uint8_t> left,
     work.right.copy(right);
     work.resize();
     out.resize(left.width, left.height);
-    work.take_census(executor);
     const int strips = padded(work.height) / kLanes;
     const int blocks = work.column_blocks();
     for (int first = 0; first < strips; first += kStrips) {

@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstring>
 
 HWY_BEFORE_NAMESPACE();
@@ -166,10 +167,6 @@ HWY_INLINE Word word_at(const std::uint8_t* place) {
 
 enum class Sums : std::uint8_t { left_alone, written, added_to };
 
-/// Sums are written where nothing was read before: their lines are called this many places ahead,
-/// or the processor would wait for each of them.
-constexpr std::ptrdiff_t kCalledAhead = 16 * kLanes;
-
 /// One path through the block, in the lanes from `lane`.
 template <Sums kSums>
 void follow(const RowBlock& block, int lane) {
@@ -187,28 +184,33 @@ void follow(const RowBlock& block, int lane) {
         grey_before = grey;
         const Word left = word_at(block.left + u * kCensusRow + lane);
         const std::uint8_t* right = block.right + u * kCensusRow + lane;
-        std::uint8_t* const sums = block.sums + u * block.sums_stride + lane;
+        std::uint8_t* sums = block.sums + u * kSumsColumn + lane;
         Bytes below = none;
         Bytes here = hn::Load(kBytes, state);
         Bytes new_least = none;
-        for (int d = 0; d < disparities; ++d) {
-            const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
-            const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
-            const Bytes best = hn::Min(hn::Min(neighbour, here), jump);
-            const Bytes cost = hn::Add(hn::Sub(best, least), distance(left, word_at(right)));
-            hn::Store(cost, kBytes, state + d * kLanes);
-            if constexpr (kSums == Sums::written) {
-                hwy::Prefetch(sums + d * kLanes + kCalledAhead);
-                hn::Store(cost, kBytes, sums + d * kLanes);
+        for (int first = 0; first < disparities; first += kGroup) {
+            const int last = std::min(first + kGroup, disparities);
+            for (int d = first; d < last; ++d) {
+                const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
+                const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
+                const Bytes best = hn::Min(hn::Min(neighbour, here), jump);
+                const Bytes cost = hn::Add(hn::Sub(best, least), distance(left, word_at(right)));
+                hn::Store(cost, kBytes, state + d * kLanes);
+                if constexpr (kSums == Sums::written) {
+                    // Nothing read these places before: without a call each of them is waited for.
+                    hwy::Prefetch(sums + (d - first) * kLanes + 2 * kSumsGroup);
+                    hn::Store(cost, kBytes, sums + (d - first) * kLanes);
+                }
+                if constexpr (kSums == Sums::added_to) {
+                    const Bytes before = hn::Load(kBytes, sums + (d - first) * kLanes);
+                    hn::Store(hn::Add(cost, before), kBytes, sums + (d - first) * kLanes);
+                }
+                new_least = hn::Min(new_least, cost);
+                below = here;
+                here = above;
+                right -= kCensusRow;
             }
-            if constexpr (kSums == Sums::added_to) {
-                const Bytes before = hn::Load(kBytes, sums + d * kLanes);
-                hn::Store(hn::Add(cost, before), kBytes, sums + d * kLanes);
-            }
-            new_least = hn::Min(new_least, cost);
-            below = here;
-            here = above;
-            right -= kCensusRow;
+            sums += kSumsGroup;
         }
         least = new_least;
     }
@@ -226,8 +228,8 @@ void follow_right_here(const RowBlock& block) {
 void follow_left_here(const RowBlock& block) {
     for (int lane = 0; lane < kLanes; lane += lanes()) follow<Sums::added_to>(block, lane);
     for (int d = 0; d < block.disparities; ++d) {
-        std::uint8_t* const plane = block.sums + d * kLanes;
-        transpose_block(plane, block.sums_stride, plane, block.sums_stride);
+        std::uint8_t* const plane = block.sums + d / kGroup * kSumsGroup + d % kGroup * kLanes;
+        transpose_block(plane, kSumsColumn, plane, kSumsColumn);
     }
 }
 
@@ -255,7 +257,7 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     // Copies: the compiler must assume that what is stored below changes `step`.
     const std::uint8_t* const right[kCensusBytes] = {
         step.right[0] + lane, step.right[1] + lane, step.right[2] + lane, step.right[3] + lane};
-    const std::uint8_t* const sums = step.sums + lane;
+    const std::uint8_t* sums = step.sums + lane;
     const int disparities = step.disparities;
     Bytes below = none;
     Bytes here = hn::Load(kBytes, state);
@@ -270,28 +272,32 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     Bytes sum_before = none;
     Bytes disparity = hn::Zero(kBytes);
     auto was_best = hn::Lt(none, none);
-    for (std::ptrdiff_t d = 0; d < disparities; ++d) {
-        const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
-        const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
-        const Bytes path = hn::Min(hn::Min(neighbour, here), jump);
-        const Bytes cost = hn::Add(hn::Sub(path, least), distance(left, word_of(right, -d)));
-        hn::Store(cost, kBytes, state + d * kLanes);
-        new_least = hn::Min(new_least, cost);
-        below = here;
-        here = above;
+    for (int first = 0; first < disparities; first += kGroup) {
+        const int last = std::min(first + kGroup, disparities);
+        for (std::ptrdiff_t d = first; d < last; ++d) {
+            const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
+            const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
+            const Bytes path = hn::Min(hn::Min(neighbour, here), jump);
+            const Bytes cost = hn::Add(hn::Sub(path, least), distance(left, word_of(right, -d)));
+            hn::Store(cost, kBytes, state + d * kLanes);
+            new_least = hn::Min(new_least, cost);
+            below = here;
+            here = above;
 
-        const Bytes sum = hn::Add(cost, hn::Load(kBytes, sums + d * kLanes));
-        const auto is_best = hn::Lt(sum, best_cost);
-        const Bytes rest = hn::IfThenElse(was_best, second, hn::Min(second, sum));
-        second = hn::IfThenElse(is_best, older, rest);
-        cost_above = hn::IfThenElse(was_best, sum, cost_above);
-        cost_below = hn::IfThenElse(is_best, sum_before, cost_below);
-        best = hn::IfThenElse(is_best, disparity, best);
-        best_cost = hn::Min(best_cost, sum);
-        older = hn::Min(older, sum_before);
-        sum_before = sum;
-        was_best = is_best;
-        disparity = hn::Add(disparity, one);
+            const Bytes sum = hn::Add(cost, hn::Load(kBytes, sums + (d - first) * kLanes));
+            const auto is_best = hn::Lt(sum, best_cost);
+            const Bytes rest = hn::IfThenElse(was_best, second, hn::Min(second, sum));
+            second = hn::IfThenElse(is_best, older, rest);
+            cost_above = hn::IfThenElse(was_best, sum, cost_above);
+            cost_below = hn::IfThenElse(is_best, sum_before, cost_below);
+            best = hn::IfThenElse(is_best, disparity, best);
+            best_cost = hn::Min(best_cost, sum);
+            older = hn::Min(older, sum_before);
+            sum_before = sum;
+            was_best = is_best;
+            disparity = hn::Add(disparity, one);
+        }
+        sums += kSumsGroup;
     }
     hn::Store(new_least, kBytes, step.least + lane);
     hn::StoreU(best, kBytes, out.disparity + lane);

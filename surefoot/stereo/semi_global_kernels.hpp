@@ -14,6 +14,14 @@ inline constexpr int kLanes = 64;
 /// Census bytes of one place in a strip, lane by lane: kCensusBytes rows of kLanes.
 inline constexpr int kCensusRow = kCensusBytes * kLanes;
 
+/// The sums of 64 x 64 pixels: groups of disparities, column by column (row by row once they are
+/// turned). So whoever walks along the disparities and whoever turns a group both stay on a few
+/// pages.
+inline constexpr int kGroup = 8;
+inline constexpr int kSumsColumn = kGroup * kLanes;
+/// One column more than needed: places 4 KiB apart would share their lines of the cache.
+inline constexpr int kSumsGroup = (kLanes + 1) * kSumsColumn;
+
 struct Penalties {
     std::uint8_t slope = 0;
     std::uint8_t jump = 0;
@@ -43,8 +51,7 @@ struct RowBlock {
     const std::uint8_t* grey_before = nullptr;
     std::uint8_t* state = nullptr;  ///< of the path: (disparities + 1) * kLanes, kept
     std::uint8_t* least = nullptr;  ///< its least cost: kLanes, kept
-    std::uint8_t* sums = nullptr;   ///< [column] sums_stride: [d] kLanes
-    std::ptrdiff_t sums_stride = 0;
+    std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [column] kSumsColumn: [d] kLanes
     int columns = 0;
     int disparities = 0;
     Penalties penalties;
