@@ -172,7 +172,8 @@ struct SemiGlobalSearch::Workspace {
     CensusPlanes left_census;
     CensusPlanes right_census;
     Strip strips[kStrips];
-    BlockPool pool;
+    BlockPool pool;  ///< sums, and as many matching costs behind them
+    std::ptrdiff_t sums_size = 0;
     PathStates from_above;  ///< per 64 columns
 
     [[nodiscard]] int column_blocks() const { return padded(width) / kLanes; }
@@ -190,7 +191,8 @@ void SemiGlobalSearch::Workspace::resize() {
     left_census.resize(width, height, 0);
     right_census.resize(width, height, config.disparities);
     const int groups = (config.disparities + kernels::kGroup - 1) / kernels::kGroup;
-    pool.resize(kStrips, static_cast<std::size_t>(groups) * kernels::kSumsGroup);
+    sums_size = static_cast<std::ptrdiff_t>(groups) * kernels::kSumsGroup;
+    pool.resize(kStrips, static_cast<std::size_t>(2 * sums_size));
     const auto columns = static_cast<std::size_t>(padded(width));
     const auto front = static_cast<std::size_t>(padded(config.disparities));
     for (Strip& strip : strips) {
@@ -281,6 +283,7 @@ void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& ou
     std::uint8_t* const sums = pool.take();
     kernels::RowBlock rows = row_block(strip, block);
     rows.sums = sums;
+    rows.match = sums + sums_size;
     rows.grey_before = rows.grey - (block > 0 ? kLanes : 0);
     const PathState from_left = s.from_left.at(block);
     rows.state = from_left.costs;
@@ -338,6 +341,7 @@ void SemiGlobalSearch::Workspace::follow_columns(int strip,
         step.grey = left.row(v) + u;
         step.grey_above = left.row(std::max(v - 1, 0)) + u;
         step.sums = sums + (v - strip * kLanes) * kernels::kSumsColumn;
+        step.match = step.sums + sums_size;
         follow_row(step, winners_at(out, u, v), count);
     }
 }

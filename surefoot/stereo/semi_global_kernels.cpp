@@ -165,71 +165,100 @@ HWY_INLINE Word word_at(const std::uint8_t* place) {
             hn::Load(kBytes, place + 3 * kLanes)};
 }
 
+/// Without population counts of bytes a matching cost takes longer than everything else of a step.
+/// Then the costs are kept when the first path has found them, and turned with the sums.
+constexpr bool kMatchKept = HWY_TARGET > HWY_AVX3_DL;
+
+/// What is written to where nothing was read before is called this far ahead: otherwise every line
+/// is waited for.
+constexpr std::ptrdiff_t kCalledAhead = std::ptrdiff_t{2} * kSumsGroup;
+
 enum class Sums : std::uint8_t { left_alone, written, added_to };
 
-/// One path through the block, in the lanes from `lane`.
+/// The next column `u` of a path, in the lanes from `lane`.
 template <Sums kSums>
-void follow(const RowBlock& block, int lane) {
-    constexpr bool kRightwards = kSums != Sums::added_to;
+HWY_INLINE void follow_column(const RowBlock& block,
+                              std::ptrdiff_t u,
+                              const std::uint8_t* grey_before,
+                              std::ptrdiff_t lane) {
     const Bytes slope = hn::Set(kBytes, block.penalties.slope);
     const Bytes none = hn::Set(kBytes, std::uint8_t{255});
-    std::uint8_t* const state = block.state + lane;
+    const Bytes least = hn::Load(kBytes, block.least + lane);
+    const Bytes jump = hn::Add(least,
+                               jump_penalty(block.penalties,
+                                            hn::Load(kBytes, block.grey + u * kLanes + lane),
+                                            hn::Load(kBytes, grey_before + lane)));
+    const Word left = word_at(block.left + u * kCensusRow + lane);
+    const std::uint8_t* right = block.right + u * kCensusRow + lane;
+    std::uint8_t* state = block.state + lane;
+    std::uint8_t* sums = block.sums + u * kSumsColumn + lane;
+    const std::ptrdiff_t to_match = block.match - block.sums;
     const int disparities = block.disparities;
-    Bytes least = hn::Load(kBytes, block.least + lane);
-    Bytes grey_before = hn::Load(kBytes, block.grey_before + lane);
-    for (int i = 0; i < block.columns; ++i) {
-        const std::ptrdiff_t u = kRightwards ? i : block.columns - 1 - i;
-        const Bytes grey = hn::Load(kBytes, block.grey + u * kLanes + lane);
-        const Bytes jump = hn::Add(least, jump_penalty(block.penalties, grey, grey_before));
-        grey_before = grey;
-        const Word left = word_at(block.left + u * kCensusRow + lane);
-        const std::uint8_t* right = block.right + u * kCensusRow + lane;
-        std::uint8_t* sums = block.sums + u * kSumsColumn + lane;
-        Bytes below = none;
-        Bytes here = hn::Load(kBytes, state);
-        Bytes new_least = none;
-        for (int first = 0; first < disparities; first += kGroup) {
-            const int last = std::min(first + kGroup, disparities);
-            for (int d = first; d < last; ++d) {
-                const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
-                const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
-                const Bytes best = hn::Min(hn::Min(neighbour, here), jump);
-                const Bytes cost = hn::Add(hn::Sub(best, least), distance(left, word_at(right)));
-                hn::Store(cost, kBytes, state + d * kLanes);
-                if constexpr (kSums == Sums::written) {
-                    // Nothing read these places before: without a call each of them is waited for.
-                    hwy::Prefetch(sums + (d - first) * kLanes + 2 * kSumsGroup);
-                    hn::Store(cost, kBytes, sums + (d - first) * kLanes);
+    Bytes below = none;
+    Bytes here = hn::Load(kBytes, state);
+    Bytes new_least = none;
+    for (int first = 0; first < disparities; first += kGroup) {
+        const int last = std::min(first + kGroup, disparities);
+        std::uint8_t* place = sums;
+        for (int d = first; d < last; ++d) {
+            const Bytes above = hn::Load(kBytes, state + kLanes);
+            const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
+            const Bytes best = hn::Min(hn::Min(neighbour, here), jump);
+            const Bytes match = kMatchKept && kSums == Sums::added_to
+                                    ? hn::Load(kBytes, place + to_match)
+                                    : distance(left, word_at(right));
+            const Bytes cost = hn::Add(hn::Sub(best, least), match);
+            hn::Store(cost, kBytes, state);
+            if constexpr (kSums == Sums::written) {
+                hwy::Prefetch(place + kCalledAhead);
+                hn::Store(cost, kBytes, place);
+                if constexpr (kMatchKept) {
+                    hwy::Prefetch(place + to_match + kCalledAhead);
+                    hn::Store(match, kBytes, place + to_match);
                 }
-                if constexpr (kSums == Sums::added_to) {
-                    const Bytes before = hn::Load(kBytes, sums + (d - first) * kLanes);
-                    hn::Store(hn::Add(cost, before), kBytes, sums + (d - first) * kLanes);
-                }
-                new_least = hn::Min(new_least, cost);
-                below = here;
-                here = above;
-                right -= kCensusRow;
             }
-            sums += kSumsGroup;
+            if constexpr (kSums == Sums::added_to)
+                hn::Store(hn::Add(cost, hn::Load(kBytes, place)), kBytes, place);
+            new_least = hn::Min(new_least, cost);
+            below = here;
+            here = above;
+            state += kLanes;
+            place += kLanes;
+            right -= kCensusRow;
         }
-        least = new_least;
+        sums += kSumsGroup;
     }
-    hn::Store(least, kBytes, block.least + lane);
+    hn::Store(new_least, kBytes, block.least + lane);
+}
+
+template <Sums kSums>
+void follow(const RowBlock& block) {
+    const std::uint8_t* grey_before = block.grey_before;
+    for (int i = 0; i < block.columns; ++i) {
+        const std::ptrdiff_t u = kSums == Sums::added_to ? block.columns - 1 - i : i;
+        for (int lane = 0; lane < kLanes; lane += lanes())
+            follow_column<kSums>(block, u, grey_before, lane);
+        grey_before = block.grey + u * kLanes;
+    }
 }
 
 void pass_right_here(const RowBlock& block) {
-    for (int lane = 0; lane < kLanes; lane += lanes()) follow<Sums::left_alone>(block, lane);
+    follow<Sums::left_alone>(block);
 }
 
 void follow_right_here(const RowBlock& block) {
-    for (int lane = 0; lane < kLanes; lane += lanes()) follow<Sums::written>(block, lane);
+    follow<Sums::written>(block);
 }
 
 void follow_left_here(const RowBlock& block) {
-    for (int lane = 0; lane < kLanes; lane += lanes()) follow<Sums::added_to>(block, lane);
+    follow<Sums::added_to>(block);
     for (int d = 0; d < block.disparities; ++d) {
-        std::uint8_t* const plane = block.sums + d / kGroup * kSumsGroup + d % kGroup * kLanes;
-        transpose_block(plane, kSumsColumn, plane, kSumsColumn);
+        const std::ptrdiff_t plane = d / kGroup * kSumsGroup + d % kGroup * kLanes;
+        const auto turn = [&](std::uint8_t* at) {
+            transpose_block(at, kSumsColumn, at, kSumsColumn);
+        };
+        turn(block.sums + plane);
+        if constexpr (kMatchKept) turn(block.match + plane);
     }
 }
 
@@ -258,6 +287,7 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     const std::uint8_t* const right[kCensusBytes] = {
         step.right[0] + lane, step.right[1] + lane, step.right[2] + lane, step.right[3] + lane};
     const std::uint8_t* sums = step.sums + lane;
+    const std::ptrdiff_t to_match = step.match - step.sums;
     const int disparities = step.disparities;
     Bytes below = none;
     Bytes here = hn::Load(kBytes, state);
@@ -278,7 +308,10 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
             const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
             const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
             const Bytes path = hn::Min(hn::Min(neighbour, here), jump);
-            const Bytes cost = hn::Add(hn::Sub(path, least), distance(left, word_of(right, -d)));
+            const Bytes match = kMatchKept
+                                    ? hn::Load(kBytes, sums + (d - first) * kLanes + to_match)
+                                    : distance(left, word_of(right, -d));
+            const Bytes cost = hn::Add(hn::Sub(path, least), match);
             hn::Store(cost, kBytes, state + d * kLanes);
             new_least = hn::Min(new_least, cost);
             below = here;

@@ -52,6 +52,7 @@ struct RowBlock {
     std::uint8_t* state = nullptr;  ///< of the path: (disparities + 1) * kLanes, kept
     std::uint8_t* least = nullptr;  ///< its least cost: kLanes, kept
     std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [column] kSumsColumn: [d] kLanes
+    std::uint8_t* match = nullptr;  ///< matching costs, laid out like the sums
     int columns = 0;
     int disparities = 0;
     Penalties penalties;
@@ -59,12 +60,13 @@ struct RowBlock {
 /// How a path begins: nothing is owed, and nothing is worse than what lies beyond the last
 /// disparity.
 void begin_path(int disparities, std::uint8_t* state, std::uint8_t* least);
-/// Follows the path from the left through the block; `sums` stay as they are.
+/// Follows the path from the left through the block; `sums` and `match` stay as they are.
 void pass_right(const RowBlock& block);
-/// The same, and `sums` become its costs.
+/// The same, and `sums` become its costs. `match` is for the two that come next: what they find
+/// there depends on the processor.
 void follow_right(const RowBlock& block);
 /// Follows the path from the right, adds its costs to `sums` and turns them: column u of row v
-/// comes to lie at sums[v * sums_stride + d * kLanes + u].
+/// comes to lie where row u of column v was.
 void follow_left(const RowBlock& block);
 
 /// Where winners of 64 columns go: kLanes each, at any address.
@@ -81,9 +83,10 @@ struct ColumnStep {
     const std::uint8_t* right[kCensusBytes] = {};  ///< at the column of disparity 0
     const std::uint8_t* grey = nullptr;
     const std::uint8_t* grey_above = nullptr;
-    const std::uint8_t* sums = nullptr;  ///< [d] kLanes, of the paths along the row
-    std::uint8_t* state = nullptr;       ///< path from above: (disparities + 1) * kLanes, kept
-    std::uint8_t* least = nullptr;       ///< least cost of that path, kLanes, kept
+    const std::uint8_t* sums = nullptr;   ///< [d / kGroup] kSumsGroup: [d] kLanes, paths along rows
+    const std::uint8_t* match = nullptr;  ///< laid out like the sums
+    std::uint8_t* state = nullptr;        ///< path from above: (disparities + 1) * kLanes, kept
+    std::uint8_t* least = nullptr;        ///< least cost of that path, kLanes, kept
     int disparities = 0;
     Penalties penalties;
 };
