@@ -301,7 +301,7 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     Bytes older = none;
     Bytes sum_before = none;
     Bytes disparity = hn::Zero(kBytes);
-    auto was_best = hn::Lt(none, none);
+    auto was_kept = hn::Eq(none, none);  // is the best of all d so far older than the last d?
     for (int first = 0; first < disparities; first += kGroup) {
         const int last = std::min(first + kGroup, disparities);
         for (std::ptrdiff_t d = first; d < last; ++d) {
@@ -318,16 +318,17 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
             here = above;
 
             const Bytes sum = hn::Add(cost, hn::Load(kBytes, sums + (d - first) * kLanes));
-            const auto is_best = hn::Lt(sum, best_cost);
-            const Bytes rest = hn::IfThenElse(was_best, second, hn::Min(second, sum));
-            second = hn::IfThenElse(is_best, older, rest);
-            cost_above = hn::IfThenElse(was_best, sum, cost_above);
-            cost_below = hn::IfThenElse(is_best, sum_before, cost_below);
-            best = hn::IfThenElse(is_best, disparity, best);
-            best_cost = hn::Min(best_cost, sum);
+            const Bytes lower = hn::Min(best_cost, sum);
+            const auto kept = hn::Eq(lower, best_cost);  // bytes are slower to put in order
+            const Bytes rest = hn::IfThenElse(was_kept, hn::Min(second, sum), second);
+            second = hn::IfThenElse(kept, rest, older);
+            cost_above = hn::IfThenElse(was_kept, cost_above, sum);
+            cost_below = hn::IfThenElse(kept, cost_below, sum_before);
+            best = hn::IfThenElse(kept, best, disparity);
+            best_cost = lower;
             older = hn::Min(older, sum_before);
             sum_before = sum;
-            was_best = is_best;
+            was_kept = kept;
             disparity = hn::Add(disparity, one);
         }
         sums += kSumsGroup;
@@ -336,7 +337,7 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     hn::StoreU(best, kBytes, out.disparity + lane);
     hn::StoreU(best_cost, kBytes, out.cost + lane);
     hn::StoreU(cost_below, kBytes, out.cost_below + lane);
-    hn::StoreU(hn::IfThenElse(was_best, none, cost_above), kBytes, out.cost_above + lane);
+    hn::StoreU(hn::IfThenElse(was_kept, cost_above, none), kBytes, out.cost_above + lane);
     hn::StoreU(second, kBytes, out.second_cost + lane);
 }
 
