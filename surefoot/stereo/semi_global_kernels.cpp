@@ -173,7 +173,28 @@ constexpr bool kMatchKept = HWY_TARGET > HWY_AVX3_DL;
 /// is waited for.
 constexpr std::ptrdiff_t kCalledAhead = std::ptrdiff_t{2} * kSumsGroup;
 
+/// Before matching: stay, change by one, or jump. Saturated: beyond the last disparity stands 255.
+HWY_INLINE Bytes cheapest(Bytes below, Bytes here, Bytes above, Bytes slope, Bytes jump) {
+    const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
+    return hn::Min(hn::Min(neighbour, here), jump);
+}
+
 enum class Sums : std::uint8_t { left_alone, written, added_to };
+
+/// `sum` and `match` are places of one disparity of one column.
+template <Sums kSums>
+HWY_INLINE void put_down(Bytes cost, Bytes matching, std::uint8_t* sum, std::uint8_t* match) {
+    if constexpr (kSums == Sums::written) {
+        hwy::Prefetch(sum + kCalledAhead);
+        hn::Store(cost, kBytes, sum);
+        if constexpr (kMatchKept) {
+            hwy::Prefetch(match + kCalledAhead);
+            hn::Store(matching, kBytes, match);
+        }
+    }
+    if constexpr (kSums == Sums::added_to)
+        hn::Store(hn::Add(cost, hn::Load(kBytes, sum)), kBytes, sum);
+}
 
 /// The next column `u` of a path, in the lanes from `lane`.
 template <Sums kSums>
@@ -191,42 +212,29 @@ HWY_INLINE void follow_column(const RowBlock& block,
     const Word left = word_at(block.left + u * kCensusRow + lane);
     const std::uint8_t* right = block.right + u * kCensusRow + lane;
     std::uint8_t* state = block.state + lane;
-    std::uint8_t* sums = block.sums + u * kSumsColumn + lane;
-    const std::ptrdiff_t to_match = block.match - block.sums;
-    const int disparities = block.disparities;
     Bytes below = none;
     Bytes here = hn::Load(kBytes, state);
     Bytes new_least = none;
-    for (int first = 0; first < disparities; first += kGroup) {
-        const int last = std::min(first + kGroup, disparities);
-        std::uint8_t* place = sums;
-        for (int d = first; d < last; ++d) {
+    for (int first = 0; first < block.disparities; first += kGroup) {
+        const int count = std::min(kGroup, block.disparities - first);
+        const std::ptrdiff_t place = first / kGroup * kSumsGroup + u * kSumsColumn + lane;
+        std::uint8_t* const sums = block.sums + place;
+        std::uint8_t* const matches = block.match + place;
+        for (std::ptrdiff_t at = 0; at < count * kLanes; at += kLanes) {
             const Bytes above = hn::Load(kBytes, state + kLanes);
-            const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
-            const Bytes best = hn::Min(hn::Min(neighbour, here), jump);
             const Bytes match = kMatchKept && kSums == Sums::added_to
-                                    ? hn::Load(kBytes, place + to_match)
+                                    ? hn::Load(kBytes, matches + at)
                                     : distance(left, word_at(right));
-            const Bytes cost = hn::Add(hn::Sub(best, least), match);
+            const Bytes cost =
+                hn::Add(hn::Sub(cheapest(below, here, above, slope, jump), least), match);
             hn::Store(cost, kBytes, state);
-            if constexpr (kSums == Sums::written) {
-                hwy::Prefetch(place + kCalledAhead);
-                hn::Store(cost, kBytes, place);
-                if constexpr (kMatchKept) {
-                    hwy::Prefetch(place + to_match + kCalledAhead);
-                    hn::Store(match, kBytes, place + to_match);
-                }
-            }
-            if constexpr (kSums == Sums::added_to)
-                hn::Store(hn::Add(cost, hn::Load(kBytes, place)), kBytes, place);
+            put_down<kSums>(cost, match, sums + at, matches + at);
             new_least = hn::Min(new_least, cost);
             below = here;
             here = above;
             state += kLanes;
-            place += kLanes;
             right -= kCensusRow;
         }
-        sums += kSumsGroup;
     }
     hn::Store(new_least, kBytes, block.least + lane);
 }
@@ -254,11 +262,9 @@ void follow_left_here(const RowBlock& block) {
     follow<Sums::added_to>(block);
     for (int d = 0; d < block.disparities; ++d) {
         const std::ptrdiff_t plane = d / kGroup * kSumsGroup + d % kGroup * kLanes;
-        const auto turn = [&](std::uint8_t* at) {
-            transpose_block(at, kSumsColumn, at, kSumsColumn);
-        };
-        turn(block.sums + plane);
-        if constexpr (kMatchKept) turn(block.match + plane);
+        transpose_block(block.sums + plane, kSumsColumn, block.sums + plane, kSumsColumn);
+        if constexpr (kMatchKept)
+            transpose_block(block.match + plane, kSumsColumn, block.match + plane, kSumsColumn);
     }
 }
 
@@ -269,14 +275,54 @@ HWY_INLINE Word word_of(const std::uint8_t* const bytes[kCensusBytes], std::ptrd
             hn::LoadU(kBytes, bytes[3] + at)};
 }
 
-/// One step of the path from above, and the winner of all three paths on the way. Second best so
-/// far: `second` holds what is at least two away from the best of all d so far, `older` the least
-/// of all that is at least two before the next d.
+/// The winner of what has been seen so far, disparity by disparity from 0.
+struct Winner {
+    Bytes disparity, cost, cost_below, cost_above;
+    Bytes second;  ///< best of those at least two away from the winner
+    Bytes older;   ///< best of all but the last
+    Bytes last;
+    Bytes next;                            ///< disparity that is seen next
+    hn::Mask<decltype(kBytes)> older_won;  ///< the last one is not the winner
+
+    HWY_INLINE explicit Winner(Bytes none)
+        : disparity(hn::Zero(kBytes)),
+          cost(none),
+          cost_below(none),
+          cost_above(none),
+          second(none),
+          older(none),
+          last(none),
+          next(hn::Zero(kBytes)),
+          older_won(hn::Eq(none, none)) {}
+
+    HWY_INLINE void see(Bytes sum) {
+        const Bytes least = hn::Min(cost, sum);
+        const auto stays = hn::Eq(least, cost);  // bytes are slower to put in order
+        const Bytes rest = hn::IfThenElse(older_won, hn::Min(second, sum), second);
+        second = hn::IfThenElse(stays, rest, older);
+        cost_above = hn::IfThenElse(older_won, cost_above, sum);
+        cost_below = hn::IfThenElse(stays, cost_below, last);
+        disparity = hn::IfThenElse(stays, disparity, next);
+        cost = least;
+        older = hn::Min(older, last);
+        last = sum;
+        older_won = stays;
+        next = hn::Add(next, hn::Set(kBytes, std::uint8_t{1}));
+    }
+    HWY_INLINE void store(const WinnerRows& out, int lane, Bytes none) const {
+        hn::StoreU(disparity, kBytes, out.disparity + lane);
+        hn::StoreU(cost, kBytes, out.cost + lane);
+        hn::StoreU(cost_below, kBytes, out.cost_below + lane);
+        hn::StoreU(hn::IfThenElse(older_won, cost_above, none), kBytes, out.cost_above + lane);
+        hn::StoreU(second, kBytes, out.second_cost + lane);
+    }
+};
+
+/// One step of the path from above, and the winner of all three paths on the way.
 void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     const Bytes slope = hn::Set(kBytes, step.penalties.slope);
     const Bytes none = hn::Set(kBytes, std::uint8_t{255});
-    const Bytes one = hn::Set(kBytes, std::uint8_t{1});
-    std::uint8_t* const state = step.state + lane;
+    std::uint8_t* state = step.state + lane;
     const Bytes least = hn::Load(kBytes, step.least + lane);
     const Bytes jump = hn::Add(least,
                                jump_penalty(step.penalties,
@@ -286,59 +332,33 @@ void follow_lanes(const ColumnStep& step, int lane, const WinnerRows& out) {
     // Copies: the compiler must assume that what is stored below changes `step`.
     const std::uint8_t* const right[kCensusBytes] = {
         step.right[0] + lane, step.right[1] + lane, step.right[2] + lane, step.right[3] + lane};
-    const std::uint8_t* sums = step.sums + lane;
-    const std::ptrdiff_t to_match = step.match - step.sums;
     const int disparities = step.disparities;
     Bytes below = none;
     Bytes here = hn::Load(kBytes, state);
     Bytes new_least = none;
-
-    Bytes best_cost = none;
-    Bytes best = hn::Zero(kBytes);
-    Bytes cost_below = none;
-    Bytes cost_above = none;
-    Bytes second = none;
-    Bytes older = none;
-    Bytes sum_before = none;
-    Bytes disparity = hn::Zero(kBytes);
-    auto was_kept = hn::Eq(none, none);  // is the best of all d so far older than the last d?
+    Winner winner(none);
     for (int first = 0; first < disparities; first += kGroup) {
         const int last = std::min(first + kGroup, disparities);
+        const std::uint8_t* sum = step.sums + first / kGroup * kSumsGroup + lane;
+        const std::uint8_t* kept = step.match + first / kGroup * kSumsGroup + lane;
         for (std::ptrdiff_t d = first; d < last; ++d) {
-            const Bytes above = hn::Load(kBytes, state + (d + 1) * kLanes);
-            const Bytes neighbour = hn::SaturatedAdd(hn::Min(below, above), slope);
-            const Bytes path = hn::Min(hn::Min(neighbour, here), jump);
-            const Bytes match = kMatchKept
-                                    ? hn::Load(kBytes, sums + (d - first) * kLanes + to_match)
-                                    : distance(left, word_of(right, -d));
-            const Bytes cost = hn::Add(hn::Sub(path, least), match);
-            hn::Store(cost, kBytes, state + d * kLanes);
+            const Bytes above = hn::Load(kBytes, state + kLanes);
+            const Bytes match =
+                kMatchKept ? hn::Load(kBytes, kept) : distance(left, word_of(right, -d));
+            const Bytes cost =
+                hn::Add(hn::Sub(cheapest(below, here, above, slope, jump), least), match);
+            hn::Store(cost, kBytes, state);
+            winner.see(hn::Add(cost, hn::Load(kBytes, sum)));
             new_least = hn::Min(new_least, cost);
             below = here;
             here = above;
-
-            const Bytes sum = hn::Add(cost, hn::Load(kBytes, sums + (d - first) * kLanes));
-            const Bytes lower = hn::Min(best_cost, sum);
-            const auto kept = hn::Eq(lower, best_cost);  // bytes are slower to put in order
-            const Bytes rest = hn::IfThenElse(was_kept, hn::Min(second, sum), second);
-            second = hn::IfThenElse(kept, rest, older);
-            cost_above = hn::IfThenElse(was_kept, cost_above, sum);
-            cost_below = hn::IfThenElse(kept, cost_below, sum_before);
-            best = hn::IfThenElse(kept, best, disparity);
-            best_cost = lower;
-            older = hn::Min(older, sum_before);
-            sum_before = sum;
-            was_kept = kept;
-            disparity = hn::Add(disparity, one);
+            state += kLanes;
+            sum += kLanes;
+            kept += kLanes;
         }
-        sums += kSumsGroup;
     }
     hn::Store(new_least, kBytes, step.least + lane);
-    hn::StoreU(best, kBytes, out.disparity + lane);
-    hn::StoreU(best_cost, kBytes, out.cost + lane);
-    hn::StoreU(cost_below, kBytes, out.cost_below + lane);
-    hn::StoreU(hn::IfThenElse(was_kept, cost_above, none), kBytes, out.cost_above + lane);
-    hn::StoreU(second, kBytes, out.second_cost + lane);
+    winner.store(out, lane, none);
 }
 
 void follow_columns_here(const ColumnStep& step, const WinnerRows& out) {
