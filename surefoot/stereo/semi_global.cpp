@@ -160,6 +160,27 @@ class BlockPool {
 /// Strips of 64 rows that are worked on together: as many threads have something to do.
 constexpr int kStrips = 6;
 
+kernels::WinnerRows winners_at(Winners& out, int u, int v) {
+    return {out.disparity.row(v) + u,
+            out.cost.row(v) + u,
+            out.cost_below.row(v) + u,
+            out.cost_above.row(v) + u,
+            out.second_cost.row(v) + u};
+}
+
+/// One row of a block, of which `count` columns lie in the image.
+void follow_row(const kernels::ColumnStep& step, const kernels::WinnerRows& out, int count) {
+    if (count == kLanes) return kernels::follow_columns(step, out);
+    std::uint8_t rows[5][kLanes];  // all of it is written. NOLINT(*-member-init)
+    kernels::follow_columns(step, {rows[0], rows[1], rows[2], rows[3], rows[4]});
+    const auto size = static_cast<std::size_t>(count);
+    std::memcpy(out.disparity, rows[0], size);
+    std::memcpy(out.cost, rows[1], size);
+    std::memcpy(out.cost_below, rows[2], size);
+    std::memcpy(out.cost_above, rows[3], size);
+    std::memcpy(out.second_cost, rows[4], size);
+}
+
 }  // namespace
 
 struct SemiGlobalSearch::Workspace {
@@ -297,27 +318,6 @@ void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& ou
     kernels::follow_left(rows);
     follow_columns(strip, block, sums, out);
     pool.give_back(sums);
-}
-
-kernels::WinnerRows winners_at(Winners& out, int u, int v) {
-    return {out.disparity.row(v) + u,
-            out.cost.row(v) + u,
-            out.cost_below.row(v) + u,
-            out.cost_above.row(v) + u,
-            out.second_cost.row(v) + u};
-}
-
-/// One row of a block, of which `count` columns lie in the image.
-void follow_row(const kernels::ColumnStep& step, const kernels::WinnerRows& out, int count) {
-    if (count == kLanes) return kernels::follow_columns(step, out);
-    std::uint8_t rows[5][kLanes];  // all of it is written. NOLINT(*-member-init)
-    kernels::follow_columns(step, {rows[0], rows[1], rows[2], rows[3], rows[4]});
-    const auto size = static_cast<std::size_t>(count);
-    std::memcpy(out.disparity, rows[0], size);
-    std::memcpy(out.cost, rows[1], size);
-    std::memcpy(out.cost_below, rows[2], size);
-    std::memcpy(out.cost_above, rows[3], size);
-    std::memcpy(out.second_cost, rows[4], size);
 }
 
 /// Path from above and winners of a block.

@@ -62,8 +62,8 @@ struct RowBlock {
 void begin_path(int disparities, std::uint8_t* state, std::uint8_t* least);
 /// Follows the path from the left through the block; `sums` and `match` stay as they are.
 void pass_right(const RowBlock& block);
-/// The same, and `sums` become its costs. `match` is for the two that come next: what they find
-/// there depends on the processor.
+/// The same, and `sums` become its costs. `match` is handed on to the two that come next;
+/// processors that count bits quickly leave it alone.
 void follow_right(const RowBlock& block);
 /// Follows the path from the right, adds its costs to `sums` and turns them: column u of row v
 /// comes to lie where row u of column v was.
