@@ -146,22 +146,27 @@ struct TrulySafe {
     eval::CellMask alone;  ///< by those for what lies under the foot itself; see `foot_alone`
 };
 
-bool is_missed(traversability::Foothold call, std::uint8_t truly_safe, std::uint8_t visible) {
-    return visible != 0 && truly_safe == 0 && call == traversability::Foothold::safe;
+/// Truly unsafe cells in view that are called safe.
+eval::CellMask missed_cells(const Image<traversability::Foothold>& found,
+                            const eval::CellMask& truly_safe,
+                            const eval::CellMask& visible) {
+    eval::CellMask missed(found.width(), found.height(), 0);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const bool truly_unsafe = visible.data()[i] != 0 && truly_safe.data()[i] == 0;
+        if (truly_unsafe && found.data()[i] == traversability::Foothold::safe) missed.data()[i] = 1;
+    }
+    return missed;
 }
 
 Missed count_missed(const Image<traversability::Foothold>& found,
                     const eval::CellMask& truly_safe,
                     const eval::CellMask& visible) {
     Missed missed;
-    eval::CellMask where(found.width(), found.height(), 0);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        if (visible.data()[i] == 0 || truly_safe.data()[i] != 0) continue;
-        ++missed.truly_unsafe;
-        where.data()[i] = is_missed(found.data()[i], 0, 1) ? 1 : 0;
-        missed.called_safe += where.data()[i];
-    }
-    missed.cluster = largest_cluster(std::move(where));
+    for (std::size_t i = 0; i < found.size(); ++i)
+        missed.truly_unsafe += visible.data()[i] != 0 && truly_safe.data()[i] == 0 ? 1 : 0;
+    eval::CellMask cells = missed_cells(found, truly_safe, visible);
+    missed.called_safe = static_cast<int>(std::count(cells.data(), cells.data() + cells.size(), 1));
+    missed.cluster = largest_cluster(std::move(cells));
     return missed;
 }
 
@@ -227,12 +232,15 @@ Status measure(const Case& now, const io::MachineFile& machine, Executor& execut
     const sim::SceneTruth& truth = (*source)->truth();
     const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kRange_m}, executor);
     const elevation::ElevationLayers& layers = pipeline->map().layers();
-    const auto heights = eval::elevation_errors(
-        layers.height_m,
-        sim::dem_below_overhead(
-            truth.scene, lattice, layers.height_m.view(), layers.clearance_m.view()),
-        visible,
-        settings->maps);
+    const auto heights =
+        eval::elevation_errors(layers.height_m,
+                               sim::dem_below_overhead(sim::dem(truth.scene, lattice),
+                                                       truth.scene,
+                                                       lattice,
+                                                       layers.height_m.view(),
+                                                       layers.clearance_m.view()),
+                               visible,
+                               settings->maps);
     const auto found = pipeline->footholds();
     const TrulySafe truly_safe{
         safe_at_all_yaws(truth, machine.machine, lattice, executor),
@@ -254,8 +262,9 @@ Status measure(const Case& now, const io::MachineFile& machine, Executor& execut
         print(compare(found, truly_safe, where), out.cases);
     out.cases.print("\n");
     out.cases.flush();
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        if (!is_missed(found.data()[i], truly_safe.all.data()[i], visible.data()[i])) continue;
+    const eval::CellMask missed = missed_cells(found, truly_safe.all, visible);
+    for (std::size_t i = 0; i < missed.size(); ++i) {
+        if (missed.data()[i] == 0) continue;
         const auto nx = static_cast<std::size_t>(geometry.nx);
         const Eigen::Vector2d at =
             geometry.center_m({static_cast<int>(i % nx), static_cast<int>(i / nx)});

@@ -21,7 +21,6 @@ namespace {
 
 using namespace surefoot;
 using namespace surefoot::elevation;
-using fuzz::Backwards;
 using fuzz::Choices;
 using fuzz::OnTarget;
 using fuzz::PlainMap;

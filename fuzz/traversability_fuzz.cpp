@@ -19,7 +19,6 @@ namespace {
 
 using namespace surefoot;
 using namespace surefoot::traversability;
-using fuzz::Backwards;
 using fuzz::Choices;
 using fuzz::OnTarget;
 

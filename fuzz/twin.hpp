@@ -5,20 +5,11 @@
 
 #include <bit>
 #include <cstdint>
-#include <functional>
 
-#include "surefoot/core/executor.hpp"
+#include "surefoot/core/executors_for_test.hpp"
 
 /// How a second computation differs from the first that must have the same bytes.
 namespace surefoot::fuzz {
-
-/// Last block first.
-class Backwards final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        for (int index = count - 1; index >= 0; --index) work(index);
-    }
-};
 
 /// Holds the dispatch of Highway on one of the instruction sets while it lives.
 class OnTarget {

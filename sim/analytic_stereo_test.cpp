@@ -391,8 +391,8 @@ TEST(AnalyticStereoTest, SameBytesForAnyExecutorAndOtherNoiseInAnotherFrame) {
     const AnalyticStereo stereo =
         AnalyticStereo::make(scene, mounted_rig(), AnalyticStereoConfig{}, 3).value();
     Serial serial;
-    test::Backwards backwards;
-    test::ThreeThreads threads;
+    Backwards backwards;
+    Threads threads(3);
     camera::DepthImage a;
     camera::DepthImage b;
     camera::DepthImage c;

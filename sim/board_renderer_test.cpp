@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/test_executors.hpp"
+#include "surefoot/core/executors_for_test.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -144,7 +144,7 @@ TEST(BoardRenderer, SameSeedSameBytesForEveryExecutor) {
     look.blur_sigma_px = 0.7;
     const Pose T_camera_sheet{exp_so3({0.3, -0.2, 0.1}), {0.0, 0.0, 1.0}};
     Serial serial;
-    test::Threads threads(2);
+    Threads threads(2);
     const GreyImage one = render_board(one_disc(0.1), fisheye(), T_camera_sheet, look, 7, serial);
     EXPECT_EQ(one, render_board(one_disc(0.1), fisheye(), T_camera_sheet, look, 7, threads));
     EXPECT_NE(one, render_board(one_disc(0.1), fisheye(), T_camera_sheet, look, 8, serial));

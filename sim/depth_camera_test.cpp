@@ -270,8 +270,8 @@ TEST(DepthCameraTest, SameBytesForAnyExecutorAndOtherNoiseForAnotherFrame) {
             .value();
     const Pose T = test::level_camera(1.0);
     Serial serial;
-    test::Backwards backwards;
-    test::ThreeThreads threads;
+    Backwards backwards;
+    Threads threads(3);
     DepthFrame a;
     DepthFrame b;
     DepthFrame c;

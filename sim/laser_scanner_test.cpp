@@ -218,8 +218,8 @@ TEST(LaserScannerTest, SameBytesForAnyExecutorAndOtherNoiseFromAnotherStation) {
     const Scene scene = test::scene_with_box();
     LaserScannerConfig config = window(30.0, 0.5);
     config.elevation_min_deg = -60.0;
-    test::Backwards backwards;
-    test::ThreeThreads threads;
+    Backwards backwards;
+    Threads threads(3);
     const auto a = scanned(scene, config, station());
     const auto b = scanned(scene, config, station(), 0, &backwards);
     const auto c = scanned(scene, config, station(), 0, &threads);

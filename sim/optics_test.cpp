@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/test_executors.hpp"
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
@@ -65,7 +65,7 @@ TEST(OpticsTest, SmearingIsAConvolutionWithTheSpot) {
         }
     }
     Image<float> backwards = before;
-    test::Backwards executor;
+    Backwards executor;
     smear(kernel, executor, backwards);
     EXPECT_EQ(after, backwards);
 }

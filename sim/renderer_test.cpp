@@ -9,7 +9,7 @@
 #include "sim/ray_caster.hpp"
 #include "sim/scenes.hpp"
 #include "sim/test_cameras.hpp"
-#include "sim/test_executors.hpp"
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
@@ -233,8 +233,8 @@ TEST(RendererTest, SameBytesForAnyExecutor) {
     Serial serial;
     RenderedPair reference;
     renderer.render(body_at(0.5), 3, serial, reference);
-    test::Backwards backwards;
-    test::Threads threads(3);
+    Backwards backwards;
+    Threads threads(3);
     for (Executor* executor :
          {static_cast<Executor*>(&backwards), static_cast<Executor*>(&threads)}) {
         RenderedPair other;

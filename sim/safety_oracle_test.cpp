@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <thread>
 
 #include "sim/safety_testing.hpp"
+#include "surefoot/core/executors_for_test.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -311,23 +311,11 @@ TEST(SafetyOracleTest, AnotherStoreyIsToldApartByTheHeightOfThePose) {
     EXPECT_TRUE(ask(world, kForward, standing(0.0, 0.0, 0.0, 2.8)).safe);
 }
 
-/// Runs every index on one of two threads.
-class TwoThreads final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        std::thread odd([&] {
-            for (int k = 1; k < count; k += 2) work(k);
-        });
-        for (int k = 0; k < count; k += 2) work(k);
-        odd.join();
-    }
-};
-
 TEST(SafetyOracleTest, ManyAnswersAreTheSameOnTwoThreadsAndInOrder) {
     const World world = World().floor().box({0.9, 2.0}, {-0.5, 0.5}, {0.0, 0.1});
     const std::vector<Pose> poses{standing(0.0, 0.0, 0.0), standing(0.4, 0.1, 0.3)};
     Serial serial;
-    TwoThreads two;
+    Threads two(2);
     const auto a = judge_all(world.scene, rex(), poses, kCommands, serial);
     const auto b = judge_all(world.scene, rex(), poses, kCommands, two);
     ASSERT_EQ(a.size(), poses.size() * kCommands.size());

@@ -236,7 +236,7 @@ TEST(SceneSourceTest, TheAnalyticSensorBringsDepthAndMotionAndNoImage) {
     options.analytic.stride = 2;
     options.frames = 30;
     options.faults.planned = {{20, ImageFault::dropped, 0}};
-    test::Backwards backwards;
+    Backwards backwards;
     auto source = open_scene(options).value();
     auto other = open_scene(options, &backwards).value();
     EXPECT_TRUE(source->info().modelled_depth);

@@ -3,11 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <cstring>
-#include <thread>
 #include <vector>
 
 #include "sim/scene.hpp"
-#include "surefoot/core/executor.hpp"
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/views.hpp"
 
@@ -59,28 +58,6 @@ inline Scene scene_with_box() {
     scene.add(make_box({1.6, 0.1}, {0.4, 0.5}, 0.0, 0.3, 0.4), 0, Label::object);
     return scene;
 }
-
-/// Last index first: results must not depend on the order.
-class Backwards final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        for (int index = count - 1; index >= 0; --index) work(index);
-    }
-};
-
-class ThreeThreads final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        std::vector<std::thread> threads;
-        threads.reserve(3);
-        for (int first = 0; first < 3; ++first) {
-            threads.emplace_back([&, first] {
-                for (int index = first; index < count; index += 3) work(index);
-            });
-        }
-        for (std::thread& thread : threads) thread.join();
-    }
-};
 
 /// Also where both are NaN.
 inline bool same_bytes(const Image<float>& a, const Image<float>& b) {

@@ -9,7 +9,7 @@
 
 #include "sim/scenes.hpp"
 #include "sim/test_cameras.hpp"
-#include "sim/test_executors.hpp"
+#include "surefoot/core/executors_for_test.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -232,9 +232,9 @@ TEST(ShutterTest, SameBytesForAnyExecutor) {
     };
     Serial serial;
     const RenderedPair reference = render(serial);
-    test::Backwards backwards;
-    test::Threads two(2);
-    test::Threads three(3);
+    Backwards backwards;
+    Threads two(2);
+    Threads three(3);
     for (Executor* executor : {static_cast<Executor*>(&backwards),
                                static_cast<Executor*>(&two),
                                static_cast<Executor*>(&three)}) {

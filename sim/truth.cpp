@@ -113,24 +113,24 @@ Image<float> dem(const Scene& scene, const Lattice& lattice, DemReduce reduce) {
     return heights_m;
 }
 
-Image<float> dem_below_overhead(const Scene& scene,
+Image<float> dem_below_overhead(Image<float> dem_m,
+                                const Scene& scene,
                                 const Lattice& lattice,
                                 ImageView<const float> height_m,
                                 ImageView<const float> clearance_m) {
-    Image<float> truth_m = dem(scene, lattice);
     for (int iy = 0; iy < lattice.ny; ++iy) {
         for (int ix = 0; ix < lattice.nx; ++ix) {
             if (std::isnan(clearance_m.at(ix, iy))) continue;
             const float live_m = height_m.at(ix, iy);
             const Eigen::Vector2d center_m = lattice.center_m(ix, iy);
-            float& nearest_m = truth_m.at(ix, iy);
+            float& nearest_m = dem_m.at(ix, iy);
             for (const SurfaceHeight& surface : scene.surfaces_at(center_m.x(), center_m.y())) {
                 const auto z_m = static_cast<float>(surface.z_m);
                 if (std::abs(z_m - live_m) < std::abs(nearest_m - live_m)) nearest_m = z_m;
             }
         }
     }
-    return truth_m;
+    return dem_m;
 }
 
 Image<Label> labels(const Scene& scene, const Lattice& lattice) {

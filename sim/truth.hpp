@@ -49,9 +49,10 @@ enum class DemReduce : std::uint8_t {
                                const Lattice& lattice,
                                DemReduce reduce = DemReduce::highest);
 
-/// For a map that tells a surface from what hangs over it: the dem, but where `clearance_m` is
+/// For a map that tells a surface from what hangs over it: `dem_m`, but where `clearance_m` is
 /// known the surface at the centre of the cell that is nearest to `height_m` [m, world].
-[[nodiscard]] Image<float> dem_below_overhead(const Scene& scene,
+[[nodiscard]] Image<float> dem_below_overhead(Image<float> dem_m,
+                                              const Scene& scene,
                                               const Lattice& lattice,
                                               ImageView<const float> height_m,
                                               ImageView<const float> clearance_m);

@@ -161,8 +161,11 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     const double odom_z_m = odom_height_m(pipeline, truth, frames);
     grid::Layer live_world_m = live_m;
     lift(live_world_m, odom_z_m);
-    maps.compared_m = sim::dem_below_overhead(
-        truth.scene, lattice, live_world_m.view(), pipeline.map().layers().clearance_m.view());
+    maps.compared_m = sim::dem_below_overhead(maps.truth_m,
+                                              truth.scene,
+                                              lattice,
+                                              live_world_m.view(),
+                                              pipeline.map().layers().clearance_m.view());
     for (grid::Layer* true_m : {&maps.truth_m, &maps.compared_m}) lift(*true_m, -odom_z_m);
     maps.truth_traversability = rated(pipeline, maps.truth_m);
     maps.trajectory = trajectory_of(frames);

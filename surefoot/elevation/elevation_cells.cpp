@@ -191,12 +191,7 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     bottom_m_.data()[cell] = height_m;
     seen_through_.data()[cell] = 0;
     // As when a height is first measured: what this run saw hang here stays, unless this is it.
-    const auto hangs = static_cast<float>(config_.min_overhead_m);
-    if (!(overhead_m_.data()[cell] - height_m > hangs)) {
-        overhead_m_.data()[cell] = kNan;
-        overhead_trust_.data()[cell] = 0;
-        overhead_hangs_.data()[cell] = 0;
-    }
+    forget_overhead_near(cell);
     const float clearance_m = region.clearance_m.data()[from];
     if (!std::isnan(clearance_m)) see_above(cell, height_m + clearance_m, kOverheadMost, true);
     set_clearance(cell);
@@ -216,9 +211,7 @@ void ElevationCells::forget(std::size_t cell) {
     layers_.clearance_m.data()[cell] = kNan;
     layers_.confidence.data()[cell] = kNan;
     layers_.density_ratio.data()[cell] = kNan;
-    overhead_m_.data()[cell] = kNan;
-    overhead_trust_.data()[cell] = 0;
-    overhead_hangs_.data()[cell] = 0;
+    forget_overhead(cell);
     seen_through_.data()[cell] = 0;
     // What stood here may have been a thing that one sees under. Until lines of sight have passed
     // through it a few times, it bounds the clearance.
@@ -238,11 +231,19 @@ void ElevationCells::see_no_more_above(std::size_t cell) {
     std::uint8_t& believed = overhead_trust_.data()[cell];
     if (believed == 0) return;
     --believed;
-    if (believed == 0) {
-        overhead_m_.data()[cell] = kNan;
-        overhead_hangs_.data()[cell] = 0;
-    }
+    if (believed == 0) forget_overhead(cell);
     set_clearance(cell);
+}
+
+void ElevationCells::forget_overhead(std::size_t cell) {
+    overhead_m_.data()[cell] = kNan;
+    overhead_trust_.data()[cell] = 0;
+    overhead_hangs_.data()[cell] = 0;
+}
+
+void ElevationCells::forget_overhead_near(std::size_t cell) {
+    const float over_m = overhead_m_.data()[cell] - layers_.height_m.data()[cell];
+    if (!(over_m > static_cast<float>(config_.min_overhead_m))) forget_overhead(cell);
 }
 
 void ElevationCells::set_clearance(std::size_t cell) {
@@ -275,12 +276,7 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
     bottom_m_.data()[cell] = seen.bottom_m;
     seen_through_.data()[cell] = 0;
     // What hangs over an unknown cell stays there, unless this is it.
-    const auto hangs = static_cast<float>(config_.min_overhead_m);
-    if (!(overhead_m_.data()[cell] - measured.z_m > hangs)) {
-        overhead_m_.data()[cell] = kNan;
-        overhead_trust_.data()[cell] = 0;
-        overhead_hangs_.data()[cell] = 0;
-    }
+    forget_overhead_near(cell);
     set_clearance(cell);
 }
 

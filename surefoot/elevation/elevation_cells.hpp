@@ -97,6 +97,9 @@ class ElevationCells {
     /// In the height of a cell, should it turn out to hang over ground.
     [[nodiscard]] int trust_in(std::size_t cell) const;
     void see_above(std::size_t cell, float z_m, int trust, bool hangs);
+    void forget_overhead(std::size_t cell);
+    /// If it does not hang over the height of the cell, but is that surface, or below it.
+    void forget_overhead_near(std::size_t cell);
     void set_clearance(std::size_t cell);
     void align(std::size_t cell);
     [[nodiscard]] bool aligns() const noexcept { return config_.height_drift.enabled; }

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "surefoot/core/time.hpp"
 #include "surefoot/elevation/depth_points.hpp"
 #include "surefoot/elevation/map_region.hpp"
 #include "surefoot/elevation/reduce_cells.hpp"
+#include "surefoot/elevation/row_blocks.hpp"
 
 namespace surefoot::elevation {
 namespace {
@@ -20,7 +20,6 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 /// face, seen from the side. Floor under a table top and the top together bring twice as many at
 /// most. ASSUMPTION.
 constexpr float kFaceDensity = 3.0F;
-constexpr int kBeside = 2;  ///< cells that vouch for one that was not seen lie this near
 
 /// Where the body looks, level; along x if it looks straight up or down.
 Eigen::Vector2d ahead_of(const Pose& T_odom_body) {
@@ -36,6 +35,7 @@ ElevationMap::ElevationMap(const ElevationConfig& config)
       window_(config.length_m, config.resolution_m),
       views_(config.viewpoint),
       cells_(config, geometry().nx, geometry().ny),
+      sight_(config),
       drift_(config.height_drift) {
     SUREFOOT_ASSERT(!config.problem());
 }
@@ -96,7 +96,7 @@ FusionCounts ElevationMap::add(const camera::RectifiedRig& rig,
     const ExpectedPoints expected(rig, T_odom_body, geometry());
     const Eigen::Vector3d camera_m = (T_odom_body * rig.T_body_camera).translation_m;
     fuse_samples(T_odom_body, camera_m, &expected, time_ns, executor, counts);
-    look_along_lines(camera_m, time_ns, executor, counts);
+    counts.cells_cleared += sight_.apply(time_ns, executor, cells_);
     return counts;
 }
 
@@ -112,7 +112,7 @@ FusionCounts ElevationMap::add_points(std::span<const MeasuredPoint> points,
     sample_points(counts);
     const Eigen::Vector3d sensor_m = (T_odom_body * T_body_sensor).translation_m;
     fuse_samples(T_odom_body, sensor_m, nullptr, time_ns, executor, counts);
-    look_along_lines(sensor_m, time_ns, executor, counts);
+    counts.cells_cleared += sight_.apply(time_ns, executor, cells_);
     return counts;
 }
 
@@ -166,14 +166,14 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
                                 std::int64_t time_ns,
                                 Executor& executor,
                                 FusionCounts& counts) {
-    const int blocks = (geometry().ny + kBlockRows - 1) / kBlockRows;
+    const RowBlocks rows(geometry());
     groups_.assign(samples_, layers().height_m.size());
-    ends_.reset(geometry(), camera_m);
+    sight_.reset(geometry(), camera_m);
     lowest_z_m_ = lowest_z_m(config_.prefilter, T_odom_body);
     const bool aligns = config_.height_drift.enabled;
-    measured_.resize(static_cast<std::size_t>(aligns ? geometry().ny : blocks) *
+    measured_.resize(static_cast<std::size_t>(aligns ? geometry().ny : rows.count()) *
                      static_cast<std::size_t>(geometry().nx));
-    block_counts_.assign(static_cast<std::size_t>(blocks), {});
+    block_counts_.assign(static_cast<std::size_t>(rows.count()), {});
     if (aligns) align_heights(T_odom_body, camera_m, executor);
     struct Job {
         ElevationMap& map;
@@ -181,7 +181,7 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
         Look look;
     } job{*this, expected, {views_, views_.look_from(T_odom_body), time_ns}};
     // One reference, so that std::function needs no memory for it.
-    executor.parallel_for(blocks,
+    executor.parallel_for(rows.count(),
                           [&job](int block) { job.map.fuse_block(block, job.expected, job.look); });
     for (const FusionCounts& block : block_counts_) counts += block;
 }
@@ -231,9 +231,9 @@ void ElevationMap::align_heights(const Pose& T_odom_body,
 }
 
 void ElevationMap::reduce_block(int block) {
-    const int first = block * kBlockRows;
-    const int last = std::min(first + kBlockRows, geometry().ny);
-    for (int iy = first; iy < last; ++iy) reduce_row(iy, measurements_of_row(iy));
+    const RowBlocks rows(geometry());
+    for (int iy = rows.first(block); iy < rows.last(block); ++iy)
+        reduce_row(iy, measurements_of_row(iy));
 }
 
 void ElevationMap::reduce_row(int iy, CellMeasurement* measured) const {
@@ -243,16 +243,15 @@ void ElevationMap::reduce_row(int iy, CellMeasurement* measured) const {
 }
 
 CellMeasurement* ElevationMap::measurements_of_row(int iy) {
-    const int row = config_.height_drift.enabled ? iy : iy / kBlockRows;
+    const int row = config_.height_drift.enabled ? iy : RowBlocks::of_row(iy);
     return measured_.data() + static_cast<std::ptrdiff_t>(row) * geometry().nx;
 }
 
 void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const Look& look) {
     const int nx = geometry().nx;
-    const int first = block * kBlockRows;
-    const int last = std::min(first + kBlockRows, geometry().ny);
+    const RowBlocks rows(geometry());
     FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
-    for (int iy = first; iy < last; ++iy) {
+    for (int iy = rows.first(block); iy < rows.last(block); ++iy) {
         const std::uint32_t* begin = groups_.begin() + static_cast<std::ptrdiff_t>(iy) * nx;
         CellMeasurement* measured = measurements_of_row(iy);
         if (!config_.height_drift.enabled) reduce_row(iy, measured);
@@ -274,132 +273,8 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
                 if (points > kFaceDensity * expected->at(ix, iy, lowest_m))
                     seen.bottom_m = std::min(lowest_m, measured[ix].z_m);
             }
-            ends_.set(cell, seen.measured.z_m, seen.bottom_m);
+            sight_.ended(cell, seen.measured.z_m, seen.bottom_m);
             cells_.update(cell, seen, look, counts);
-        }
-    }
-}
-
-void ElevationMap::look_along_lines(const Eigen::Vector3d& camera_m,
-                                    std::int64_t time_ns,
-                                    Executor& executor,
-                                    FusionCounts& counts) {
-    const VisibilityConfig& visibility = config_.visibility;
-    const auto blocks = static_cast<int>(block_counts_.size());
-    executor.parallel_for(blocks, [this](int block) { look_overhead_in_block(block); });
-    if (!visibility.drops && !visibility.cleanup) return;
-    lines_.reset(geometry(), camera_m);
-    for (int iy = 0; iy < geometry().ny; ++iy) {
-        const float* seen_z_m = ends_.z_m_row(iy);
-        for (int ix = 0; ix < geometry().nx; ++ix) {
-            if (!std::isnan(seen_z_m[ix])) lines_.add({ix, iy}, seen_z_m[ix]);
-        }
-    }
-    lines_.finish();
-    if (visibility.drops)
-        executor.parallel_for(blocks, [this](int block) { look_over_block(block); });
-    if (visibility.cleanup) clean_up(time_ns, executor, counts);
-}
-
-void ElevationMap::clean_up(std::int64_t time_ns, Executor& executor, FusionCounts& counts) {
-    const auto blocks = static_cast<int>(block_counts_.size());
-    block_counts_.assign(block_counts_.size(), {});
-    gone_.assign(layers().height_m.size(), 0);
-    struct Job {
-        ElevationMap& map;
-        std::int64_t time_ns;
-    } job{*this, time_ns};
-    executor.parallel_for(blocks,
-                          [&job](int block) { job.map.clean_up_block(block, job.time_ns); });
-    for (const FusionCounts& block : block_counts_) counts += block;
-    // Not before all have been asked: neighbours vouch for each other.
-    for (std::size_t cell = 0; cell < gone_.size(); ++cell) {
-        if (gone_[cell] != 0) cells_.forget(cell);
-    }
-}
-
-bool ElevationMap::passed_through(grid::Cell cell, float z_m) const {
-    const auto margin_m = static_cast<float>(config_.visibility.margin_m);
-    return ends_.passed_through(cell, z_m - margin_m, z_m + margin_m);
-}
-
-void ElevationMap::look_overhead_in_block(int block) {
-    const int nx = geometry().nx;
-    const int first = block * kBlockRows;
-    const int last = std::min(first + kBlockRows, geometry().ny);
-    for (int iy = first; iy < last; ++iy) {
-        for (int ix = 0; ix < nx; ++ix) {
-            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
-                              static_cast<std::size_t>(ix);
-            const float overhead_m = cells_.overhead_m(cell);
-            if (std::isnan(overhead_m) || !passed_through({ix, iy}, overhead_m)) continue;
-            cells_.see_no_more_above(cell);
-        }
-    }
-}
-
-void ElevationMap::look_over_block(int block) {
-    const int nx = geometry().nx;
-    const int first = block * kBlockRows;
-    const int last = std::min(first + kBlockRows, geometry().ny);
-    for (int iy = first; iy < last; ++iy) {
-        const float* height_m = layers().height_m.row(iy);
-        for (int ix = 0; ix < nx; ++ix) {
-            if (!std::isnan(height_m[ix])) continue;
-            const float line_z_m = lines_.lowest_over({ix, iy});
-            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
-                              static_cast<std::size_t>(ix);
-            if (line_z_m < std::numeric_limits<float>::infinity()) cells_.see_over(cell, line_z_m);
-        }
-    }
-}
-
-bool ElevationMap::stands_beside(grid::Cell cell, std::int64_t time_ns) const {
-    // Cells on an edge, or seen edge-on, are often missed. What they belong to is not.
-    const auto margin_m = static_cast<float>(config_.visibility.margin_m);
-    const std::int64_t since_ns = time_ns - ns_from_seconds(config_.visibility.neighbour_s);
-    const float height_m = layers().height_m.row(cell.iy)[cell.ix];
-    const int last_iy = std::min(cell.iy + kBeside, geometry().ny - 1);
-    const int last_ix = std::min(cell.ix + kBeside, geometry().nx - 1);
-    for (int iy = std::max(cell.iy - kBeside, 0); iy <= last_iy; ++iy) {
-        const float* other_m = layers().height_m.row(iy);
-        const std::int64_t* agreed_ns = layers().seen_ns.row(iy);
-        for (int ix = std::max(cell.ix - kBeside, 0); ix <= last_ix; ++ix) {
-            if (agreed_ns[ix] >= since_ns && std::abs(other_m[ix] - height_m) < margin_m) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-void ElevationMap::clean_up_block(int block, std::int64_t time_ns) {
-    const int nx = geometry().nx;
-    const int first = block * kBlockRows;
-    const int last = std::min(first + kBlockRows, geometry().ny);
-    FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
-    const auto hangs_m = static_cast<float>(config_.min_overhead_m);
-    for (int iy = first; iy < last; ++iy) {
-        const float* height_m = layers().height_m.row(iy);
-        const std::int64_t* agreed_ns = layers().seen_ns.row(iy);
-        const std::uint32_t* count = layers().count.row(iy);
-        const float* seen_z_m = ends_.z_m_row(iy);
-        for (int ix = 0; ix < nx; ++ix) {
-            if (std::isnan(height_m[ix]) || agreed_ns[ix] == time_ns) continue;
-            // A look that ended here, below the height, has passed by it as well.
-            const float line_z_m = lines_.lowest_over({ix, iy});
-            const float lowest_m = seen_z_m[ix] < line_z_m ? seen_z_m[ix] : line_z_m;
-            const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
-                              static_cast<std::size_t>(ix);
-            if (!cells_.is_above(cell, lowest_m)) continue;
-            // What stands on the ground is in the way of all lines below its height, what hangs of
-            // those alone that meet it. What one look alone showed may be a wrong match.
-            const bool stands = cells_.bottom_m(cell) - lowest_m <= hangs_m || count[ix] == 1;
-            if (!stands && !passed_through({ix, iy}, height_m[ix])) continue;
-            if (cells_.see_through(cell) && !stands_beside({ix, iy}, time_ns)) {
-                gone_[cell] = 1;
-                ++counts.cells_cleared;
-            }
         }
     }
 }

@@ -20,9 +20,8 @@
 #include "surefoot/elevation/expected_points.hpp"
 #include "surefoot/elevation/motion_update.hpp"
 #include "surefoot/elevation/prefilter.hpp"
-#include "surefoot/elevation/sight_ends.hpp"
+#include "surefoot/elevation/sight_check.hpp"
 #include "surefoot/elevation/viewpoint_history.hpp"
-#include "surefoot/elevation/visibility.hpp"
 #include "surefoot/grid/map_region.hpp"
 #include "surefoot/grid/moving_window.hpp"
 
@@ -80,9 +79,6 @@ class ElevationMap {
     [[nodiscard]] const HeightDriftReport& height_drift() const noexcept { return height_drift_; }
 
   private:
-    /// Rows of cells that are one piece of work for the executor.
-    static constexpr int kBlockRows = 16;
-
     void inflate(const MotionNoise& noise, const Eigen::Vector3d& body_m);
     void sample_points(FusionCounts& counts);
     void fuse_samples(const Pose& T_odom_body,
@@ -100,20 +96,6 @@ class ElevationMap {
     /// Where a row is reduced to: its own place where heights are aligned, else its block's.
     CellMeasurement* measurements_of_row(int iy);
     void fuse_block(int block, const ExpectedPoints* expected, const Look& look);
-    /// What the frame's lines of sight say: things overhead that are gone, unknown ground below
-    /// them, and (if so configured) remembered surfaces in their way, which are forgotten.
-    void look_along_lines(const Eigen::Vector3d& camera_m,
-                          std::int64_t time_ns,
-                          Executor& executor,
-                          FusionCounts& counts);
-    void look_overhead_in_block(int block);
-    /// Lines of sight passed through a surface at that height.
-    [[nodiscard]] bool passed_through(grid::Cell cell, float z_m) const;
-    /// A look agreed with the height of the cell, or of one beside it that is as high, just now.
-    [[nodiscard]] bool stands_beside(grid::Cell cell, std::int64_t time_ns) const;
-    void look_over_block(int block);
-    void clean_up(std::int64_t time_ns, Executor& executor, FusionCounts& counts);
-    void clean_up_block(int block, std::int64_t time_ns);
 
     ElevationConfig config_;
     grid::MovingWindow window_;
@@ -126,14 +108,12 @@ class ElevationMap {
     CellGroups groups_;
     /// A row of cells per block; all cells where heights are aligned.
     std::vector<CellMeasurement> measured_;
-    SightEnds ends_;
+    SightCheck sight_;
     float lowest_z_m_ = 0.0F;                 ///< of this frame: the lower height cut in odom
     std::vector<FusionCounts> block_counts_;  ///< per block
     HeightResiduals residuals_;
     HeightDrift drift_;
     HeightDriftReport height_drift_;
-    LinesOfSight lines_;
-    std::vector<std::uint8_t> gone_;  ///< per cell: the frame's lines of sight say so
 };
 
 }  // namespace surefoot::elevation

@@ -4,11 +4,11 @@
 
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 
@@ -30,13 +30,6 @@ double flat(double, double) {
 struct Memory {
     double rms_m = 0.0;
     int cells = 0;
-};
-
-class Backwards final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        for (int index = count - 1; index >= 0; --index) work(index);
-    }
 };
 
 class Walk {
@@ -311,7 +304,9 @@ TEST(HeightDriftMap, TheOrderOfBlocksDoesNotShow) {
 }
 
 TEST(HeightDriftMap, ALiftedCellIsAlignedAndTakesItsExtremesAlong) {
-    ElevationCells cells({}, 1, 1);
+    ElevationConfig config;
+    config.height_drift.enabled = true;
+    ElevationCells cells(config, 1, 1);
     const ViewpointHistory views({});
     FusionCounts counts;
     cells.update(0, {{0.1F, 1e-4F, 0.12F, 0.09F, 5}, 1.0F}, {views, 1, 7}, counts);

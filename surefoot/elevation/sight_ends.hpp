@@ -25,10 +25,8 @@ class SightEnds {
         z_m_[cell] = z_m;
         bottom_m_[cell] = bottom_m;
     }
-    /// Height of what was seen in the cells of a row; NaN = nothing.
-    [[nodiscard]] const float* z_m_row(int iy) const noexcept {
-        return z_m_.data() + static_cast<std::ptrdiff_t>(iy) * geometry_.nx;
-    }
+    /// Height of what was seen in a cell; NaN = nothing.
+    [[nodiscard]] float z_m(std::size_t cell) const noexcept { return z_m_[cell]; }
     /// Lines of sight passed both at `low_m` and at `high_m` over the middle of a cell and ended at
     /// something that lies beyond it: there is nothing between. In front of a surface's near edge a
     /// line just below it, and behind its far edge a line just above it, passes; inside neither.

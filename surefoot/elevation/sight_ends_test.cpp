@@ -25,6 +25,11 @@ grid::GridGeometry geometry() {
     return geometry;
 }
 
+std::size_t index_of(const grid::GridGeometry& g, grid::Cell cell) {
+    return static_cast<std::size_t>(cell.iy) * static_cast<std::size_t>(g.nx) +
+           static_cast<std::size_t>(cell.ix);
+}
+
 struct Seen {
     float z_m = kNan;
     float bottom_m = kNan;
@@ -41,7 +46,7 @@ SightEnds seen(const Look& look, const Eigen::Vector3d& camera_m = kCamera_m) {
             const Eigen::Vector2d at = g.center_m({ix, iy});
             const Seen cell = look(at.x(), at.y());
             if (std::isnan(cell.z_m)) continue;
-            ends.set(static_cast<std::size_t>(iy * g.nx + ix), cell.z_m, cell.bottom_m);
+            ends.set(index_of(g, {ix, iy}), cell.z_m, cell.bottom_m);
         }
     }
     return ends;
@@ -85,7 +90,7 @@ TEST(SightEnds, FloorSeenUnderATableDoesNotContradictItsTop) {
     const grid::GridGeometry g = geometry();
     for (int ix = 0; ix < g.nx; ++ix) {
         const Eigen::Vector2d at = g.center_m({ix, 60});
-        under += is_table(at.x(), at.y()) && !std::isnan(ends.z_m_row(60)[ix]);
+        under += is_table(at.x(), at.y()) && !std::isnan(ends.z_m(index_of(g, {ix, 60})));
     }
     ASSERT_GT(under, 15) << "cells of a row in which floor is seen";
     EXPECT_LE(contradicted(ends), kCorners);
@@ -145,8 +150,8 @@ End march(const SightEnds& ends, grid::Cell cell, double z_m) {
         const double margin =
             std::min({beside_m.x(), beside_m.y(), g.nx - beside_m.x(), g.ny - beside_m.y()});
         if (margin < 0.0) return End::outside;
-        const auto ground_m = static_cast<double>(
-            ends.z_m_row(static_cast<int>(beside_m.y()))[static_cast<int>(beside_m.x())]);
+        const auto ground_m = static_cast<double>(ends.z_m(
+            index_of(g, {static_cast<int>(beside_m.x()), static_cast<int>(beside_m.y())})));
         if (z_m - fall * s_m > ground_m) continue;
         return margin > 3.0 ? End::inside : End::near_the_border;
     }

@@ -19,7 +19,7 @@ TEST(CornerDetector, SpreadsCornersAndKeepsItsDistance) {
     CornerConfig config;
     config.most = 200;
     Serial serial;
-    testing::Backwards backwards;
+    Backwards backwards;
     std::vector<Eigen::Vector2d> corners;
     std::vector<Eigen::Vector2d> again;
     const std::vector<Eigen::Vector2d> occupied{{100.0, 100.0}, {200.0, 50.0}};
@@ -61,7 +61,7 @@ TEST(KltTracker, FollowsAKnownShiftForAnyExecutor) {
         requests.push_back({at, at});
     }
     Serial serial;
-    testing::Backwards backwards;
+    Backwards backwards;
     std::vector<KltResult> results;
     std::vector<KltResult> again;
     track_points(from, to, requests, {}, serial, results);

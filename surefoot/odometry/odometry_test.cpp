@@ -8,7 +8,6 @@
 namespace surefoot::odometry {
 namespace {
 
-using testing::Backwards;
 using testing::render_frame;
 
 constexpr double kNoise_grey = 2.0;

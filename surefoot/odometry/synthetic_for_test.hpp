@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "surefoot/camera/rectifier.hpp"
-#include "surefoot/core/executor.hpp"
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/frame.hpp"
 #include "surefoot/core/rng.hpp"
 
@@ -147,13 +147,5 @@ inline StereoFrame render_frame(const camera::StereoRig& rig,
     }
     return frame;
 }
-
-/// Another order of work than Serial: results must not depend on it.
-class Backwards final : public Executor {
-  public:
-    void parallel_for(int count, const std::function<void(int)>& work) override {
-        for (int index = count - 1; index >= 0; --index) work(index);
-    }
-};
 
 }  // namespace surefoot::odometry::testing

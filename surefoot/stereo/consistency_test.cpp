@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/rng.hpp"
-#include "surefoot/stereo/test_executors.hpp"
 #include "surefoot/stereo/test_targets.hpp"
 
 namespace surefoot::stereo {
@@ -130,7 +130,7 @@ TEST(MarkJumps, FollowsTheRuleOnEveryProcessorAndThread) {
         for (int v = 0; v < height; ++v) mark_line(in.row(v), expected.row(v), width, 1);
         for (int u = 0; u < width; ++u)
             mark_line(in.data() + u, expected.data() + u, height, width);
-        test::TwoThreads threads;
+        Threads threads(2);
         for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
             hwy::SetSupportedTargetsForTest(target);
             EXPECT_EQ(jumps_of(in), expected) << hwy::TargetName(target) << " " << width;
@@ -166,7 +166,7 @@ TEST(DistanceToMarks, IsTheChessboardDistanceOnEveryProcessorAndThread) {
         for (int v = 0; v < height; ++v) {
             for (int u = 0; u < width; ++u) expected.at(u, v) = distance_plainly(marks, u, v);
         }
-        test::TwoThreads threads;
+        Threads threads(2);
         for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
             hwy::SetSupportedTargetsForTest(target);
             Image<std::uint8_t> distance;

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/stereo/confidence.hpp"
-#include "surefoot/stereo/test_executors.hpp"
 #include "surefoot/stereo/test_scene.hpp"
 
 namespace surefoot::stereo {
@@ -299,7 +299,7 @@ TEST_P(EveryMatcher, SameBytesForEveryExecutorThreadCountAndCall) {
     const test::SyntheticPair& pair = scene();
     const int threads = cv::getNumThreads();
     Serial serial;
-    test::TwoThreads two;
+    Threads two(2);
     camera::DepthImage a, b;
     const auto matcher = make_matcher(config());
     cv::setNumThreads(1);

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/rng.hpp"
-#include "surefoot/stereo/test_executors.hpp"
 #include "surefoot/stereo/test_scene.hpp"
 #include "surefoot/stereo/test_targets.hpp"
 
@@ -388,8 +388,8 @@ TEST(SubpixelRefiner, IsTheDefinitionOnEveryProcessor) {
 
 TEST(SubpixelRefiner, SameBytesForEveryExecutor) {
     Serial serial;
-    test::Backwards backwards;
-    test::TwoThreads two;
+    Backwards backwards;
+    Threads two(2);
     const test::SyntheticPair& pair = plane();
     Image<float> start = pair.disparity_px;
     for (std::size_t i = 0; i < start.size(); ++i)

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/stereo/census_window.hpp"
-#include "surefoot/stereo/test_executors.hpp"
 #include "surefoot/stereo/test_targets.hpp"
 
 namespace surefoot::stereo {
@@ -89,8 +89,8 @@ TEST(SemiGlobal, SameBytesForEveryExecutorAndAfterAnotherSize) {
     Winners expected;
     SemiGlobalSearch(config).search(left.view(), right.view(), serial, expected);
     SemiGlobalSearch search(config);
-    test::Backwards backwards;
-    test::TwoThreads two;
+    Backwards backwards;
+    Threads two(2);
     for (Executor* executor : {static_cast<Executor*>(&backwards), static_cast<Executor*>(&two)}) {
         Winners found;
         search.search(small_left.view(), small_right.view(), *executor, found);

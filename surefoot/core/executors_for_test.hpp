@@ -6,9 +6,10 @@
 
 #include "surefoot/core/executor.hpp"
 
-namespace surefoot::sim::test {
+/// Other orders of work than Serial's: results must not depend on them.
+namespace surefoot {
 
-/// Last index first: results must not depend on the order.
+/// Last index first.
 class Backwards final : public Executor {
   public:
     void parallel_for(int count, const std::function<void(int)>& work) override {
@@ -35,4 +36,4 @@ class Threads final : public Executor {
     int threads_;
 };
 
-}  // namespace surefoot::sim::test
+}  // namespace surefoot
