@@ -35,6 +35,7 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "eval/maps.hpp"
+#include "experiments/seen_by.hpp"
 #include "io/text.hpp"
 #include "sim/cell_safety.hpp"
 #include "sim/scene_source.hpp"
@@ -48,17 +49,10 @@ constexpr int kYaws = 8;
 constexpr double kRange_m = 2.5;
 constexpr double kNear_m = 0.7;
 
-/// How the scene is seen.
-struct Camera {
-    std::string name;
-    sim::CameraProfile profile = sim::CameraProfile::ideal;
-    bool calibrated = false;  ///< the profile's error of calibration is taken away
-};
-
 struct Case {
     std::string scene;
     std::uint64_t seed = 1;
-    Camera camera;
+    std::string profile;  ///< see see_by
 };
 
 /// Truly unsafe cells, those of them that were called safe and the largest group of these.
@@ -207,14 +201,7 @@ Status measure(const Case& now, const io::MachineFile& machine, Executor& execut
     sim::SceneOptions& sim = settings->sim;
     sim.scene = now.scene;
     sim.seed = now.seed;
-    sim.profile = now.camera.profile;
-    if (now.camera.calibrated) {
-        const sim::CalibrationError error = sim::figures_of(now.camera.profile).calibration;
-        sim.calibration_error = {.right_roll_rad = -error.right_roll_rad,
-                                 .right_pitch_rad = -error.right_pitch_rad,
-                                 .right_yaw_rad = -error.right_yaw_rad,
-                                 .right_focal_share = -error.right_focal_share};
-    }
+    if (Status seen = experiments::see_by(now.profile, sim); !seen) return seen.error();
     sim.known_motion = true;
     sim.drift = {0.0, 0.0};
     auto source = sim::open_scene(sim, &executor);
@@ -251,7 +238,7 @@ Status measure(const Case& now, const io::MachineFile& machine, Executor& execut
     out.cases.print("{},{},{},{:.2f},{:.2f},{:.4f},{:.4f},{:.4f},{:.4f}",
                     now.scene,
                     now.seed,
-                    now.camera.name,
+                    now.profile,
                     1e3 * heights.median_abs_m,
                     1e3 * heights.p90_abs_m,
                     record.truth->coverage_within_2_5_m,
@@ -271,22 +258,13 @@ Status measure(const Case& now, const io::MachineFile& machine, Executor& execut
         out.missed.print("{},{},{},{:.4f},{:.4f},{}\n",
                          now.scene,
                          now.seed,
-                         now.camera.name,
+                         now.profile,
                          at.x(),
                          at.y(),
                          truly_safe.alone.data()[i] == 0 ? 1 : 0);
     }
     out.missed.flush();
     return {};
-}
-
-Result<Camera> camera_named(const std::string& name) {
-    if (name == "zed_calibrated") return Camera{name, sim::CameraProfile::zed, true};
-    for (int i = 0; i < static_cast<int>(std::size(sim::kCameraProfileNames)); ++i) {
-        if (name == sim::kCameraProfileNames[i])
-            return Camera{name, static_cast<sim::CameraProfile>(i), false};
-    }
-    return usage_error("there is no profile " + name);
 }
 
 int measure_all(const std::vector<std::string>& words) {
@@ -316,13 +294,11 @@ int measure_all(const std::vector<std::string>& words) {
     }
     out.cases.print("\n");
     const std::string profiles = words.size() > 4 ? words[4] : "ideal,zed";
-    for (const std::string_view name : io::split(profiles, ",")) {
-        const auto camera = camera_named(std::string(name));
-        if (!camera) return report(camera.error());
+    for (const std::string_view profile : io::split(profiles, ",")) {
         for (const std::string_view scene : io::split(words[1], ",")) {
             for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
                 if (const auto done =
-                        measure({std::string(scene), seed, *camera}, **machine, *executor, out);
+                        measure({std::string(scene), seed, std::string(profile)}, **machine, *executor, out);
                     !done)
                     return report(done.error());
             }

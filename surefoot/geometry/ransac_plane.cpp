@@ -2,7 +2,10 @@
 #include "surefoot/geometry/ransac_plane.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+
+#include "surefoot/core/assert.hpp"
 
 namespace surefoot::geometry {
 namespace {
@@ -47,26 +50,40 @@ std::optional<Plane> draw_plane(Points points, const std::vector<int>& finite, R
     return plane_through(a, b, c);  // the same point twice spans no plane
 }
 
-std::size_t count_inliers(Points points,
-                          const std::vector<int>& finite,
-                          const Plane& plane,
-                          double tolerance_m) {
-    std::size_t count = 0;
+bool is_inlier(Points points, int index, const Plane& plane, const RansacPlaneOptions& options) {
+    const auto i = static_cast<std::size_t>(index);
+    const double tolerance_m =
+        options.tolerance_of_m.empty() ? options.tolerance_m : options.tolerance_of_m[i];
+    return std::abs(plane.signed_distance_m(points[i])) <= tolerance_m;
+}
+
+/// What speaks for a plane: its inliers, and where each point has its own tolerance, how near they
+/// are (MSAC, Torr and Zisserman 2000): planes across two levels have many at the rim.
+double support(Points points,
+               const std::vector<int>& finite,
+               const Plane& plane,
+               const RansacPlaneOptions& options) {
+    double sum = 0.0;
     for (const int index : finite) {
-        const auto& p = points[static_cast<std::size_t>(index)];
-        count += std::abs(plane.signed_distance_m(p)) <= tolerance_m ? 1U : 0U;
+        const auto i = static_cast<std::size_t>(index);
+        const double distance_m = plane.signed_distance_m(points[i]);
+        if (options.tolerance_of_m.empty()) {
+            sum += std::abs(distance_m) <= options.tolerance_m ? 1.0 : 0.0;
+        } else {
+            const double share = distance_m / options.tolerance_of_m[i];
+            sum += std::max(1.0 - share * share, 0.0);
+        }
     }
-    return count;
+    return sum;
 }
 
 std::vector<int> inliers_of(Points points,
                             const std::vector<int>& finite,
                             const Plane& plane,
-                            double tolerance_m) {
+                            const RansacPlaneOptions& options) {
     std::vector<int> inliers;
     for (const int index : finite) {
-        const auto& p = points[static_cast<std::size_t>(index)];
-        if (std::abs(plane.signed_distance_m(p)) <= tolerance_m) inliers.push_back(index);
+        if (is_inlier(points, index, plane, options)) inliers.push_back(index);
     }
     return inliers;
 }
@@ -82,7 +99,7 @@ Search search(Points points,
               const Admissible& is_admissible,
               Rng& rng) {
     Search result;
-    std::size_t best_count = 0;
+    double best = 0.0;
     double hit = 0.0;     // chance that a triple is all inliers of the best plane so far
     double missed = 1.0;  // chance that all triples so far contained an outlier
     while (result.iterations < options.max_iterations && missed > 1.0 - options.confidence) {
@@ -90,11 +107,11 @@ Search search(Points points,
         missed *= 1.0 - hit;
         const auto plane = draw_plane(points, finite, rng);
         if (!plane || !is_admissible(plane->normal)) continue;
-        const std::size_t count = count_inliers(points, finite, *plane, options.tolerance_m);
-        if (count <= best_count) continue;
-        best_count = count;
+        const double sum = support(points, finite, *plane, options);
+        if (sum <= best) continue;
+        best = sum;
         result.best = plane;
-        const double ratio = static_cast<double>(count) / static_cast<double>(finite.size());
+        const double ratio = sum / static_cast<double>(finite.size());
         hit = ratio * ratio * ratio;
     }
     return result;
@@ -105,6 +122,8 @@ Search search(Points points,
 std::optional<RansacPlane> ransac_plane(Points points,
                                         const RansacPlaneOptions& options,
                                         Rng& rng) {
+    SUREFOOT_ASSERT(options.tolerance_of_m.empty() ||
+                    options.tolerance_of_m.size() == points.size());
     std::vector<int> finite;
     finite.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -118,12 +137,12 @@ std::optional<RansacPlane> ransac_plane(Points points,
 
     RansacPlane result;
     result.iterations = found.iterations;
-    result.inliers = inliers_of(points, finite, *found.best, options.tolerance_m);
+    result.inliers = inliers_of(points, finite, *found.best, options);
     for (int round = 0; round <= options.max_refinements; ++round) {
         const auto fit = fit_plane(points, result.inliers);
         if (!fit || !is_admissible(fit->plane.normal)) return std::nullopt;
         result.fit = *fit;
-        auto inliers = inliers_of(points, finite, fit->plane, options.tolerance_m);
+        auto inliers = inliers_of(points, finite, fit->plane, options);
         if (round == options.max_refinements || inliers == result.inliers) break;
         result.inliers = std::move(inliers);
     }

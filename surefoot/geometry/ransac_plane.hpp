@@ -19,7 +19,9 @@ struct NormalCone {
 };
 
 struct RansacPlaneOptions {
-    double tolerance_m = 0.05;   ///< a point within this distance of the plane is an inlier
+    double tolerance_m = 0.05;  ///< a point within this distance of the plane is an inlier
+    /// Distance for each point instead, and near ones count more; empty = `tolerance_m` for all.
+    std::span<const double> tolerance_of_m;
     double confidence = 0.9999;  ///< of having drawn three inliers at least once; ends the search
     int max_iterations = 1000;
     int max_refinements = 8;  ///< refits on the inliers until these stay the same

@@ -144,5 +144,31 @@ TEST(RansacPlane, CleanDataEndEarly) {
     EXPECT_LE(hard->iterations, RansacPlaneOptions{}.max_iterations);
 }
 
+TEST(RansacPlane, PointsMayHaveTolerancesOfTheirOwn) {
+    // Two levels 60 mm apart, the far one noisy. Under one tolerance for all a slope between them
+    // has the most inliers.
+    Rng rng(9);
+    Points points;
+    std::vector<double> tolerances_m;
+    for (int i = 0; i < 900; ++i) {
+        const bool is_near = i % 3 != 0;
+        const double sigma_m = is_near ? 0.003 : 0.01;
+        points.emplace_back(rng.uniform(is_near ? 0.0 : 1.0, is_near ? 1.0 : 2.0),
+                            rng.uniform(-1.0, 1.0),
+                            (is_near ? 0.0 : 0.06) + sigma_m * rng.normal());
+        tolerances_m.push_back(3.0 * sigma_m);
+    }
+    RansacPlaneOptions options;
+    options.tolerance_m = 0.06;
+    const auto across = ransac_plane(points, options, rng);
+    ASSERT_TRUE(across);
+    EXPECT_GT(across->fit.plane.normal.head<2>().norm(), 0.02);
+    options.tolerance_of_m = tolerances_m;
+    const auto own = ransac_plane(points, options, rng);
+    ASSERT_TRUE(own);
+    EXPECT_LT(own->fit.plane.normal.head<2>().norm(), 0.01);
+    EXPECT_NEAR(own->fit.plane.offset_m, 0.0, 0.004);
+}
+
 }  // namespace
 }  // namespace surefoot::geometry

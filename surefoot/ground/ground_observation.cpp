@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "surefoot/geometry/plane_fit.hpp"
 #include "surefoot/geometry/ransac_plane.hpp"
+#include "surefoot/ground/near_side.hpp"
+#include "surefoot/ground/settle_plane.hpp"
 #include "surefoot/ground/thinning.hpp"
 
 namespace surefoot::ground {
@@ -18,36 +21,52 @@ namespace {
 using Points = std::vector<Eigen::Vector3d>;
 
 constexpr int kMaxPlanes = 5;  // floor, ramp, table, seat, step: more are not the ground
+constexpr int kMaxLevels = 3;  // across which one plane may lie: pavement, kerb stone, road
 constexpr std::size_t kMinPoints = 20;
+/// Levels this far apart are kerbs, treads, platforms; tables are higher. ASSUMPTION.
+constexpr double kHighestStep_m = 0.35;
+constexpr double kSearchSigmas = 3.0;        ///< a point so far off may be on the plane ...
+constexpr double kNoisiest = 0.67;           ///< share of the band that a point's sigma may have
+constexpr double kLeastTolerance_m = 0.005;  ///< ... and one so near always is
+
+/// Points about the sensor.
+struct Cloud {
+    Points points;
+    std::vector<double> inverse_range_sigma;         ///< see FramePoints; empty = not known
+    std::vector<double> tolerance_m;                 ///< of each point, where its noise is known
+    double band_m = 0.0;                             ///< what is farther off is not on a plane
+    Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< whose height over the ground is asked
+
+    [[nodiscard]] bool knows_noise() const { return !inverse_range_sigma.empty(); }
+};
 
 /// A plane that might be the ground. Points are relative to the sensor.
 struct Candidate {
-    geometry::PlaneFit fit;  ///< normal up
+    geometry::Plane plane;        ///< normal up
+    std::vector<NearSide> sides;  ///< where it is
+    geometry::PlaneFit extent;    ///< of the points within the tolerance
     double inlier_ratio = 0.0;
     double area_m2 = 0.0;
     double begin_m = 0.0;   ///< horizontal distance of the nearest inliers
     double contrast = 0.0;  ///< points within the tolerance per point within it and twice it
+    double height_m = 0.0;  ///< of the base
     GroundReason reason = GroundReason::accepted;
-
-    [[nodiscard]] double height_m() const { return fit.plane.offset_m; }
 };
 
 /// Narrows the inliers to the measured noise: a ramp or a kerb that begins within the search
 /// tolerance would tilt the plane otherwise.
-geometry::PlaneFit narrowed(const Points& points,
-                            const geometry::PlaneFit& start,
-                            double tolerance_m) {
+geometry::Plane narrowed(const Points& points, const geometry::Plane& start, double tolerance_m) {
     constexpr double kSigmas = 3.0;
     constexpr double kSigmaPerMedian = 1.4826;  // of a normal distribution
     constexpr double kFloor_m = 0.005;          // numerical floor of the band
-    geometry::PlaneFit fit = start;
+    geometry::Plane plane = start;
     double band_m = tolerance_m;
     std::vector<double> residuals_m;
     std::vector<int> inliers;
     for (int round = 0; round < 3; ++round) {
         residuals_m.clear();
         for (const auto& p : points) {
-            const double residual_m = std::abs(fit.plane.signed_distance_m(p));
+            const double residual_m = std::abs(plane.signed_distance_m(p));
             if (residual_m <= band_m) residuals_m.push_back(residual_m);
         }
         if (residuals_m.empty()) break;
@@ -57,34 +76,36 @@ geometry::PlaneFit narrowed(const Points& points,
         band_m = std::clamp(kSigmas * kSigmaPerMedian * *middle, kFloor_m, tolerance_m);
         inliers.clear();
         for (std::size_t i = 0; i < points.size(); ++i) {
-            if (std::abs(fit.plane.signed_distance_m(points[i])) <= band_m) {
+            if (std::abs(plane.signed_distance_m(points[i])) <= band_m) {
                 inliers.push_back(static_cast<int>(i));
             }
         }
         const auto refit = geometry::fit_plane(points, inliers);
         if (!refit) break;
-        fit = *refit;
-        fit.plane = fit.plane.facing(start.plane.normal);
+        plane = refit->plane.facing(start.normal);
     }
-    return fit;
+    return plane;
 }
 
-/// The plane in `points` with the most inliers. A search with the wide tolerance lays one plane
-/// across the floor and the ramp that follows it; a second one with a third of it, among the points
-/// near that plane, settles on one of the two.
-std::optional<geometry::PlaneFit> search(const Points& points,
-                                         geometry::RansacPlaneOptions options,
-                                         Rng& rng) {
-    const auto wide = geometry::ransac_plane(points, options, rng);
+/// The plane with the most inliers. A point's noise says how far off it may be. Where that is not
+/// known a search with the wide tolerance lays one plane across the floor and the ramp that follows
+/// it; a second one with a third of it, among the points near that plane, settles on one of the
+/// two.
+std::optional<geometry::Plane> search(const Cloud& cloud,
+                                      geometry::RansacPlaneOptions options,
+                                      Rng& rng) {
+    options.tolerance_of_m = cloud.tolerance_m;
+    const auto wide = geometry::ransac_plane(cloud.points, options, rng);
     if (!wide) return std::nullopt;
+    if (cloud.knows_noise()) return wide->fit.plane;
     Points near;
-    for (const auto& p : points) {
+    for (const auto& p : cloud.points) {
         if (std::abs(wide->fit.plane.signed_distance_m(p)) <= 2.0 * options.tolerance_m)
             near.push_back(p);
     }
     options.tolerance_m /= 3.0;
     const auto sharp = geometry::ransac_plane(near, options, rng);
-    return sharp ? sharp->fit : wide->fit;
+    return sharp ? sharp->fit.plane : wide->fit.plane;
 }
 
 /// Horizontal distance from the sensor within which the nearest twentieth of the points lies.
@@ -100,35 +121,74 @@ double begin_of(const Points& inliers, const Eigen::Vector3d& up) {
 GroundReason judge(const GroundConfig& config, const Candidate& candidate) {
     if (candidate.inlier_ratio < config.min_inlier_ratio) return GroundReason::few_inliers;
     if (candidate.area_m2 < config.min_area_m2) return GroundReason::small;
-    if (candidate.fit.narrow_sigma_m < config.min_extent_m) return GroundReason::small;
+    if (candidate.extent.narrow_sigma_m < config.min_extent_m) return GroundReason::small;
     // A slab cut out of gravel or clutter goes on beyond its tolerance; a surface ends.
     constexpr double kMinContrast = 3.0;  // an even slab has at most 2
-    if (candidate.fit.rms_m > config.max_rms_m) return GroundReason::rough;
+    if (candidate.extent.rms_m > config.max_rms_m) return GroundReason::rough;
     if (candidate.contrast < kMinContrast) return GroundReason::rough;
     return GroundReason::accepted;
 }
 
+/// Leaves out what lies on the other side.
+void keep(const NearSide& side, Cloud& cloud) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        if (!side.contains(cloud.points[i])) continue;
+        cloud.points[kept] = cloud.points[i];
+        cloud.inverse_range_sigma[kept] = cloud.inverse_range_sigma[i];
+        ++kept;
+    }
+    cloud.points.resize(kept);
+    cloud.inverse_range_sigma.resize(kept);
+}
+
+geometry::Plane settle(const Cloud& cloud, const geometry::Plane& start) {
+    return settle_plane(cloud.points, cloud.inverse_range_sigma, start, cloud.band_m)
+        .value_or(start);
+}
+
+/// The plane at the points about it, by what is known of their noise. Where it lies across several
+/// levels, the nearest one: `sides` says where that is, and the other points are left out.
+geometry::Plane settled(const GroundConfig& config,
+                        const geometry::Plane& found,
+                        Cloud& cloud,
+                        std::vector<NearSide>& sides) {
+    if (!cloud.knows_noise()) return narrowed(cloud.points, found, config.tolerance_m);
+    geometry::Plane plane = settle(cloud, found);
+    for (int level = 1; level < kMaxLevels; ++level) {
+        const auto side = near_side(cloud.points, cloud.inverse_range_sigma, plane, cloud.band_m);
+        if (!side) break;
+        sides.push_back(*side);
+        keep(*side, cloud);
+        plane = settle(cloud, side->plane);
+    }
+    return plane;
+}
+
 Candidate measured(const GroundConfig& config,
-                   const Points& points,
-                   const geometry::PlaneFit& found,
+                   Cloud cloud,
+                   std::size_t all_points,
+                   const geometry::Plane& found,
                    const Eigen::Vector3d& up) {
     Candidate candidate;
-    candidate.fit = narrowed(points, found, config.tolerance_m);
+    candidate.plane = settled(config, found, cloud, candidate.sides);
+    const Points& points = cloud.points;
     Points inliers;
     int fringe = 0;
     for (const auto& p : points) {
-        const double distance_m = std::abs(candidate.fit.plane.signed_distance_m(p));
-        if (distance_m <= config.tolerance_m) {
+        const double distance_m = std::abs(candidate.plane.signed_distance_m(p));
+        if (distance_m <= cloud.band_m) {
             inliers.push_back(p);
-        } else if (distance_m <= 2.0 * config.tolerance_m) {
+        } else if (distance_m <= 2.0 * cloud.band_m) {
             ++fringe;
         }
     }
     candidate.contrast = static_cast<double>(inliers.size()) / std::max(fringe, 1);
-    candidate.inlier_ratio =
-        static_cast<double>(inliers.size()) / static_cast<double>(points.size());
-    candidate.area_m2 = covered_area_m2(inliers, candidate.fit.plane.normal, 2.0 * config.voxel_m);
+    candidate.inlier_ratio = static_cast<double>(inliers.size()) / static_cast<double>(all_points);
+    candidate.area_m2 = covered_area_m2(inliers, candidate.plane.normal, 2.0 * config.voxel_m);
     candidate.begin_m = inliers.empty() ? 0.0 : begin_of(inliers, up);
+    candidate.extent = geometry::fit_plane(inliers).value_or(geometry::PlaneFit{});
+    candidate.height_m = candidate.plane.signed_distance_m(cloud.base);
     candidate.reason = judge(config, candidate);
     return candidate;
 }
@@ -136,17 +196,18 @@ Candidate measured(const GroundConfig& config,
 /// Whether `a` is the better ground of two accepted planes.
 bool is_more_ground(const GroundConfig& config, const Candidate& a, const Candidate& b) {
     if (config.expected_height_m > 0.0) {
-        const double a_off_m = std::abs(a.height_m() - config.expected_height_m);
-        const double b_off_m = std::abs(b.height_m() - config.expected_height_m);
+        const double a_off_m = std::abs(a.height_m - config.expected_height_m);
+        const double b_off_m = std::abs(b.height_m - config.expected_height_m);
         // Planes that fit about equally well (a ramp that begins at the feet) differ by the rules
         // below.
         if (std::abs(a_off_m - b_off_m) > config.max_disagreement_m) return a_off_m < b_off_m;
     }
-    const double a_at_b =
-        -a.fit.plane.signed_distance_m(b.fit.centroid_m);  // of plane a above b's points
-    const double b_at_a = -b.fit.plane.signed_distance_m(a.fit.centroid_m);
-    if (a_at_b < 0.0 && b_at_a > 0.0) return true;  // a passes below b wherever points are
-    if (a_at_b > 0.0 && b_at_a < 0.0) return false;
+    const double a_at_b = -a.plane.signed_distance_m(b.extent.centroid_m);  // a above b's points
+    const double b_at_a = -b.plane.signed_distance_m(a.extent.centroid_m);
+    const bool a_below = a_at_b < 0.0 && b_at_a > 0.0;  // a passes below b wherever points are
+    const bool b_below = a_at_b > 0.0 && b_at_a < 0.0;
+    // The upper one of two that lie a step apart is what the machine stands on if it begins nearer.
+    if ((a_below || b_below) && std::abs(a.height_m - b.height_m) > kHighestStep_m) return a_below;
     return a.begin_m < b.begin_m;
 }
 
@@ -156,29 +217,143 @@ bool is_better(const GroundConfig& config, const Candidate& a, const Candidate& 
     return b.reason != GroundReason::accepted || is_more_ground(config, a, b);
 }
 
+/// Takes away what lies on a plane; twice the tolerance takes its noisy fringe, too.
+void erase_near(const geometry::Plane& plane, double tolerance_m, Cloud& cloud) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        const double own_m = cloud.knows_noise() ? cloud.tolerance_m[i] : tolerance_m;
+        if (std::abs(plane.signed_distance_m(cloud.points[i])) <= 2.0 * own_m) continue;
+        cloud.points[kept] = cloud.points[i];
+        if (cloud.knows_noise()) {
+            cloud.inverse_range_sigma[kept] = cloud.inverse_range_sigma[i];
+            cloud.tolerance_m[kept] = cloud.tolerance_m[i];
+        }
+        ++kept;
+    }
+    cloud.points.resize(kept);
+    if (!cloud.knows_noise()) return;
+    cloud.inverse_range_sigma.resize(kept);
+    cloud.tolerance_m.resize(kept);
+}
+
 /// One plane after the other, largest first, each without the points of those before it.
 std::optional<Candidate> best_plane(const GroundConfig& config,
-                                    const Points& points,
+                                    const Cloud& cloud,
                                     const Eigen::Vector3d& up,
                                     Rng& rng) {
     geometry::RansacPlaneOptions options;
     options.tolerance_m = config.tolerance_m;
     options.cone = geometry::NormalCone{up, config.max_tilt_deg * std::numbers::pi / 180.0};
     std::optional<Candidate> best;
-    Points rest = points;
-    for (int plane = 0; plane < kMaxPlanes && rest.size() >= kMinPoints; ++plane) {
+    Cloud rest = cloud;
+    for (int plane = 0; plane < kMaxPlanes && rest.points.size() >= kMinPoints; ++plane) {
         const auto found = search(rest, options, rng);
         if (!found) break;
-        const Candidate candidate = measured(config, points, *found, up);
-        const bool height_fits = candidate.height_m() >= config.min_height_m &&
-                                 candidate.height_m() <= config.max_height_m;
+        // Where the noise is known what lies on another level is told apart and speaks against
+        // none.
+        const Candidate candidate =
+            measured(config, cloud.knows_noise() ? rest : cloud, cloud.points.size(), *found, up);
+        const bool height_fits = candidate.plane.offset_m >= config.min_height_m &&
+                                 candidate.plane.offset_m <= config.max_height_m;
         if (height_fits && (!best || is_better(config, candidate, *best))) best = candidate;
-        // Twice the tolerance takes the noisy fringe of this plane away too.
-        std::erase_if(rest, [&](const Eigen::Vector3d& p) {
-            return std::abs(found->plane.signed_distance_m(p)) <= 2.0 * config.tolerance_m;
-        });
+        erase_near(*found, config.tolerance_m, rest);
     }
     return best;
+}
+
+/// What is seen about `sensor`.
+Cloud cloud_of(std::span<const Eigen::Vector3d> points,
+               std::span<const double> inverse_range_sigma,
+               const Eigen::Vector3d& sensor,
+               std::span<const std::size_t> chosen) {
+    Cloud cloud;
+    cloud.points.reserve(chosen.size());
+    cloud.inverse_range_sigma.reserve(inverse_range_sigma.empty() ? 0 : chosen.size());
+    for (const std::size_t i : chosen) {
+        cloud.points.emplace_back(points[i] - sensor);
+        if (!inverse_range_sigma.empty())
+            cloud.inverse_range_sigma.push_back(inverse_range_sigma[i]);
+    }
+    return cloud;
+}
+
+/// How far off a level plane each point may be. Where the sensor allows, levels half of the
+/// tolerance apart are told apart: points that are too noisy for that are left out.
+void judge_noise(const GroundConfig& config, const Eigen::Vector3d& up, Cloud& cloud) {
+    std::vector<double> across_m(cloud.points.size());
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        const Eigen::Vector3d& p = cloud.points[i];
+        across_m[i] = std::abs(up.dot(p)) * p.norm() * cloud.inverse_range_sigma[i];
+    }
+    std::vector<double> sorted_m = across_m;
+    const auto tenth = sorted_m.begin() + static_cast<std::ptrdiff_t>(sorted_m.size() / 10);
+    std::nth_element(sorted_m.begin(), tenth, sorted_m.end());
+    cloud.band_m = std::max(0.5 * config.tolerance_m, kSearchSigmas * *tenth);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        if (across_m[i] > kNoisiest * cloud.band_m) continue;
+        cloud.points[kept] = cloud.points[i];
+        cloud.inverse_range_sigma[kept] = cloud.inverse_range_sigma[i];
+        cloud.tolerance_m.push_back(
+            std::clamp(kSearchSigmas * across_m[i], kLeastTolerance_m, cloud.band_m));
+        ++kept;
+    }
+    cloud.points.resize(kept);
+    cloud.inverse_range_sigma.resize(kept);
+}
+
+/// See `sight_ground` and `observe_ground`; without sigmas the noise is not known.
+GroundSighting sight(const GroundConfig& config,
+                     std::span<const Eigen::Vector3d> points,
+                     std::span<const double> inverse_range_sigma,
+                     const Eigen::Vector3d& sensor,
+                     const Eigen::Vector3d& base,
+                     const Eigen::Vector3d& up_hint,
+                     std::uint64_t seed) {
+    GroundSighting sighting;
+    const double hint_length = up_hint.norm();
+    if (!(hint_length > 0.0) || !std::isfinite(hint_length)) {
+        sighting.reason = GroundReason::no_hint;
+        return sighting;
+    }
+    const Eigen::Vector3d up = up_hint / hint_length;
+    const auto chosen = thin(points,
+                             sensor,
+                             config.max_range_m,
+                             config.voxel_m,
+                             static_cast<std::size_t>(config.max_points));
+    if (chosen.size() < kMinPoints) return sighting;
+    Cloud cloud = cloud_of(points, inverse_range_sigma, sensor, chosen);
+    cloud.base = base - sensor;
+    cloud.band_m = config.tolerance_m;
+    if (cloud.knows_noise()) judge_noise(config, up, cloud);
+
+    Rng rng(seed);
+    auto best = best_plane(config, cloud, up, rng);
+    if (!best) {
+        sighting.reason = GroundReason::no_plane;
+        return sighting;
+    }
+    if (cloud.knows_noise()) {
+        // All points, not one of each cube: their noise averages out.
+        std::vector<std::size_t> all(points.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        Cloud whole = cloud_of(points, inverse_range_sigma, sensor, all);
+        whole.band_m = cloud.band_m;
+        for (const NearSide& side : best->sides) keep(side, whole);
+        best->plane = settle(whole, best->plane);
+        best->height_m = best->plane.signed_distance_m(cloud.base);
+    }
+    const Eigen::Vector3d& normal = best->plane.normal;
+    sighting.reason = best->reason;
+    sighting.tilt_rad = std::atan2(normal.cross(up).norm(), normal.dot(up));
+    sighting.area_m2 = best->area_m2;
+    sighting.observation = {best->reason == GroundReason::accepted,
+                            normal,
+                            best->height_m,
+                            best->inlier_ratio,
+                            best->extent.rms_m};
+    return sighting;
 }
 
 }  // namespace
@@ -201,43 +376,20 @@ GroundSighting sight_ground(const GroundConfig& config,
                             const Eigen::Vector3d& up_hint,
                             const Eigen::Vector3d& sensor_origin,
                             std::uint64_t seed) {
-    GroundSighting sighting;
-    const double hint_length = up_hint.norm();
-    if (!(hint_length > 0.0) || !std::isfinite(hint_length)) {
-        sighting.reason = GroundReason::no_hint;
-        return sighting;
-    }
-    const Eigen::Vector3d up = up_hint / hint_length;
-    const Points thinned = thin(points,
-                                sensor_origin,
-                                config.max_range_m,
-                                config.voxel_m,
-                                static_cast<std::size_t>(config.max_points));
-    if (thinned.size() < kMinPoints) return sighting;
-
-    Rng rng(seed);
-    const auto best = best_plane(config, thinned, up, rng);
-    if (!best) {
-        sighting.reason = GroundReason::no_plane;
-        return sighting;
-    }
-    const Eigen::Vector3d& normal = best->fit.plane.normal;
-    sighting.reason = best->reason;
-    sighting.tilt_rad = std::atan2(normal.cross(up).norm(), normal.dot(up));
-    sighting.area_m2 = best->area_m2;
-    sighting.observation = {best->reason == GroundReason::accepted,
-                            normal,
-                            best->height_m(),
-                            best->inlier_ratio,
-                            best->fit.rms_m};
-    return sighting;
+    return sight(config, points, {}, sensor_origin, sensor_origin, up_hint, seed);
 }
 
 GroundObservation observe_ground(const GroundConfig& config,
-                                 std::span<const Eigen::Vector3d> points_body,
+                                 const FramePoints& seen,
                                  const Eigen::Vector3d& up_hint_body,
                                  std::uint64_t seed) {
-    return sight_ground(config, points_body, up_hint_body, Eigen::Vector3d::Zero(), seed)
+    return sight(config,
+                 seen.points_body_m,
+                 seen.inverse_range_sigma,
+                 seen.camera_body_m,
+                 Eigen::Vector3d::Zero(),
+                 up_hint_body,
+                 seed)
         .observation;
 }
 

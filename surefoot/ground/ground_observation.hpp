@@ -7,6 +7,7 @@
 
 #include "surefoot/core/report.hpp"
 #include "surefoot/ground/ground_config.hpp"
+#include "surefoot/ground/sample_points.hpp"
 
 namespace surefoot::ground {
 
@@ -35,7 +36,8 @@ struct GroundSighting {
 /// *below*: every supported plane is considered, and the lowest wins even if a table top has more
 /// points, unless the height of the sensor is known (`expected_height_m`): then the plane that fits
 /// it wins, a platform over a lower floor. Where two planes cross between their points (a ramp and
-/// the floor before it), the one that begins nearer to the sensor wins.
+/// the floor before it), or lie no more than a high step apart (a kerb, a landing over treads), the
+/// one that begins nearer to the sensor wins.
 ///
 /// `points` in any frame (not finite = left out), `up_hint` roughly up in that frame,
 /// `sensor_origin` in that frame: heights are distances from it. The same input and seed give the
@@ -46,9 +48,11 @@ struct GroundSighting {
                                           const Eigen::Vector3d& sensor_origin,
                                           std::uint64_t seed);
 
-/// The same for points in the body frame, with the height of the body's origin.
+/// The same for what a frame saw, with the height of base_link. The noise of the points is known:
+/// levels closer together than `tolerance_m` are told apart, and the plane is as true as all points
+/// together (`settle_plane`).
 [[nodiscard]] GroundObservation observe_ground(const GroundConfig& config,
-                                               std::span<const Eigen::Vector3d> points_body,
+                                               const FramePoints& seen,
                                                const Eigen::Vector3d& up_hint_body,
                                                std::uint64_t seed);
 

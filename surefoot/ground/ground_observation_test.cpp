@@ -11,6 +11,8 @@
 
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/ground/frames_for_test.hpp"
+#include "surefoot/ground/ground_calibration.hpp"
 
 namespace surefoot::ground {
 namespace {
@@ -161,19 +163,89 @@ TEST(GroundObservation, FloorWinsOverATableTopWithMorePoints) {
 }
 
 TEST(GroundObservation, OfTwoFloorsTheOneThatFitsTheKnownHeightWins) {
-    // The machine stands on a platform 0.17 m above the floor ahead; the floor has more points.
-    const Points points =
-        Scene(31)
-            .patch({0.5, -1.5, -kSensorHeight_m}, {1.0, 0, 0}, {0, 3.0, 0}, 1500)
-            .patch({1.7, -1.5, -kSensorHeight_m - 0.17}, {3.0, 0, 0}, {0, 3.0, 0}, 4500)
-            .seen_by(Eigen::Quaterniond::Identity());
-    GroundConfig config;
-    const auto unknown = observe_ground(config, points, Eigen::Vector3d::UnitZ(), 1);
-    EXPECT_NEAR(unknown.height_m, kSensorHeight_m + 0.17, kHeightLimit_m) << "the lowest plane";
-    config.expected_height_m = kSensorHeight_m + 0.04;  // as far as a mount is known
-    const auto known = observe_ground(config, points, Eigen::Vector3d::UnitZ(), 1);
-    ASSERT_TRUE(known.accepted);
-    EXPECT_NEAR(known.height_m, kSensorHeight_m, kHeightLimit_m);
+    // The machine stands on a platform over the floor ahead; the floor has more points.
+    for (const double rise_m : {0.17, 0.6}) {
+        const Points points =
+            Scene(31)
+                .patch({0.5, -1.5, -kSensorHeight_m}, {1.0, 0, 0}, {0, 3.0, 0}, 1500)
+                .patch({1.7, -1.5, -kSensorHeight_m - rise_m}, {3.0, 0, 0}, {0, 3.0, 0}, 4500)
+                .points();
+        const bool is_step = rise_m < 0.35;
+        GroundConfig config;
+        EXPECT_NEAR(sight(points, config).observation.height_m,
+                    kSensorHeight_m + (is_step ? 0.0 : rise_m),
+                    kHeightLimit_m)
+            << "the lowest plane; a step lower, it is not what the machine stands on";
+        config.expected_height_m = kSensorHeight_m + 0.04;  // as far as a mount is known
+        const auto known = sight(points, config).observation;
+        ASSERT_TRUE(known.accepted);
+        EXPECT_NEAR(known.height_m, kSensorHeight_m, kHeightLimit_m);
+    }
+}
+
+/// Frames of a camera whose noise is known, after the limits.
+void expect_ground(const std::vector<test::Surface>& surfaces,
+                   double tilt_limit_deg,
+                   double height_limit_m) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const auto ground = observe_ground(
+            {}, test::seen(surfaces, {.seed = seed}), Eigen::Vector3d::UnitZ(), seed);
+        ASSERT_TRUE(ground.accepted) << "seed " << seed;
+        EXPECT_LE(angle_rad(ground.normal, Eigen::Vector3d::UnitZ()), tilt_limit_deg * kDeg)
+            << "seed " << seed;
+        EXPECT_NEAR(ground.height_m, kSensorHeight_m, height_limit_m) << "seed " << seed;
+    }
+}
+
+TEST(GroundObservation, BareFloorOfANoisyCamera) {
+    expect_ground({{}}, 0.15, 0.003);
+}
+
+TEST(GroundObservation, OneLevelOfAKerb) {
+    for (const double kerb_m : {0.075, -0.075, 0.1, -0.1, 0.15, -0.15}) {
+        for (const double at_m : {1.1, 1.4, 2.0}) {
+            SCOPED_TRACE(std::to_string(kerb_m) + " at " + std::to_string(at_m));
+            expect_ground({{.max_x_m = at_m}, {.z_m = kerb_m, .min_x_m = at_m}}, 0.3, 0.005);
+        }
+    }
+}
+
+TEST(GroundObservation, StairsAndATableBeforeANoisyCamera) {
+    std::vector<test::Surface> up{{.max_x_m = 1.2}};
+    std::vector<test::Surface> down{{.max_x_m = 1.2}};
+    for (int i = 1; i <= 5; ++i) {
+        const double from_m = 1.2 + 0.28 * (i - 1);
+        const double to_m = i == 5 ? 10.0 : from_m + 0.28;
+        up.push_back({.z_m = 0.17 * i, .min_x_m = from_m, .max_x_m = to_m});
+        down.push_back({.z_m = -0.17 * i, .min_x_m = from_m, .max_x_m = to_m});
+    }
+    expect_ground(up, 0.3, 0.005);
+    expect_ground(down, 0.3, 0.005);
+    // Its top fills more of the view than the floor does.
+    expect_ground(
+        {{}, {.z_m = 0.55, .min_x_m = 0.45, .max_x_m = 1.2, .min_y_m = -0.35, .max_y_m = 0.8}},
+        0.3,
+        0.005);
+}
+
+TEST(GroundObservation, FramesOfANoisyCameraAgreeOnTheFloorBeforeARamp) {
+    // The ramp's first decimetre lies within the noise: a single frame may lay its plane across.
+    for (const double rise : {1.0 / 12.0, -1.0 / 12.0, 0.125, -0.125}) {
+        SCOPED_TRACE(rise);
+        GroundCalibration calibration({});
+        for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+            calibration.add(observe_ground(
+                {},
+                test::seen({{.max_x_m = 1.4}, {.z_m = -1.4 * rise, .min_x_m = 1.4, .rise = rise}},
+                           {.seed = seed}),
+                Eigen::Vector3d::UnitZ(),
+                seed));
+        }
+        const GroundAlignment alignment = calibration.alignment();
+        EXPECT_TRUE(alignment.accepted);
+        EXPECT_LE(alignment.tilt_rad, 0.5 * kDeg);
+        EXPECT_NEAR(alignment.height_m, kSensorHeight_m, 0.008);
+    }
 }
 
 TEST(GroundObservation, FloorWinsOverTheRampThatStartsAhead) {
@@ -264,10 +336,10 @@ TEST(GroundObservation, HeightIsTakenFromTheSensorInAnyFrame) {
 }
 
 TEST(GroundObservation, SameSeedGivesTheSameBytesAndAnotherSeedTheSameGround) {
-    const Points points = Scene(13).floor(2000).table(3000).clutter(1000).points();
-    const auto first = observe_ground({}, points, Eigen::Vector3d::UnitZ(), 1);
-    const auto again = observe_ground({}, points, Eigen::Vector3d::UnitZ(), 1);
-    const auto other = observe_ground({}, points, Eigen::Vector3d::UnitZ(), 2);
+    const FramePoints seen = test::seen({{}, {.z_m = 0.5, .min_x_m = 1.0}});
+    const auto first = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 1);
+    const auto again = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 1);
+    const auto other = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 2);
     ASSERT_TRUE(first.accepted && other.accepted);
     EXPECT_EQ(first.normal, again.normal);
     EXPECT_EQ(first.height_m, again.height_m);

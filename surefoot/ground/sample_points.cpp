@@ -10,20 +10,27 @@ namespace surefoot::ground {
 void sample_points(const camera::RectifiedRig& rig,
                    const camera::DepthImage& depth,
                    int step_px,
-                   std::vector<Eigen::Vector3d>& points_body,
+                   FramePoints& seen,
                    float max_outlier_probability) {
     SUREFOOT_ASSERT(step_px > 0);
-    points_body.clear();
+    seen.camera_body_m = rig.T_body_camera.translation_m;
+    seen.points_body_m.clear();
+    seen.inverse_range_sigma.clear();
     const Eigen::Matrix3d R_body_camera = rig.T_body_camera.R();
     for (int v = step_px / 2; v < depth.disparity_px.height(); v += step_px) {
         const float* disparity = depth.disparity_px.row(v);
+        const float* sigma = depth.sigma_px.row(v);
         const float* outlier = depth.outlier_probability.row(v);
         for (int u = step_px / 2; u < depth.disparity_px.width(); u += step_px) {
-            const float d_px = disparity[u];
-            if (!(d_px > 0.0F && std::isfinite(d_px))) continue;
+            const auto d_px = static_cast<double>(disparity[u]);
+            const auto sigma_px = static_cast<double>(sigma[u]);
+            if (!(d_px > 0.0 && std::isfinite(d_px))) continue;
+            if (!(sigma_px > 0.0 && std::isfinite(sigma_px))) continue;
             if (!(outlier[u] <= max_outlier_probability)) continue;
-            points_body.emplace_back(R_body_camera * rig.point(u, v, static_cast<double>(d_px)) +
-                                     rig.T_body_camera.translation_m);
+            const Eigen::Vector3d p_camera_m = rig.point(u, v, d_px);
+            seen.points_body_m.emplace_back(R_body_camera * p_camera_m + seen.camera_body_m);
+            // 1 / range is proportional to the disparity along a ray.
+            seen.inverse_range_sigma.push_back(sigma_px / (d_px * p_camera_m.norm()));
         }
     }
 }

@@ -9,13 +9,21 @@
 
 namespace surefoot::ground {
 
-/// Replaces `points_body` by the points in base_link of every `step_px`-th pixel of every
-/// `step_px`-th row whose disparity is known and whose outlier probability is at most
-/// `max_outlier_probability`.
+/// What one frame of a depth camera saw, in base_link.
+struct FramePoints {
+    Eigen::Vector3d camera_body_m = Eigen::Vector3d::Zero();  ///< optical centre
+    std::vector<Eigen::Vector3d> points_body_m;
+    /// One sigma [1/m] of the inverse of the distance between each point and the camera. In it the
+    /// disparity's noise is linear, and so is a plane (`settle_plane`).
+    std::vector<double> inverse_range_sigma;
+};
+
+/// Replaces `seen` by every `step_px`-th pixel of every `step_px`-th row whose disparity and its
+/// sigma are known and whose outlier probability is at most `max_outlier_probability`.
 void sample_points(const camera::RectifiedRig& rig,
                    const camera::DepthImage& depth,
                    int step_px,
-                   std::vector<Eigen::Vector3d>& points_body,
+                   FramePoints& seen,
                    float max_outlier_probability = 0.2F);
 
 }  // namespace surefoot::ground

@@ -53,25 +53,48 @@ camera::DepthImage floor_depth(const camera::RectifiedRig& rig) {
 
 TEST(SamplePoints, FloorPixelsLieOnTheFloorOfTheBody) {
     const camera::RectifiedRig rig = tilted_rig();
-    std::vector<Eigen::Vector3d> points(3, Eigen::Vector3d::Zero());
-    sample_points(rig, floor_depth(rig), 4, points);
-    ASSERT_GT(points.size(), 500U);
-    for (const auto& p : points) {
+    FramePoints seen;
+    seen.points_body_m.resize(3);
+    sample_points(rig, floor_depth(rig), 4, seen);
+    EXPECT_EQ(seen.camera_body_m, rig.T_body_camera.translation_m);
+    ASSERT_GT(seen.points_body_m.size(), 500U);
+    for (const auto& p : seen.points_body_m) {
         // Float disparities: a relative error of 6e-8 of up to 20 m.
         EXPECT_NEAR(p.z(), 0.0, 5e-6) << p.transpose();
         EXPECT_GT(p.x(), 0.4);
     }
 }
 
+TEST(SamplePoints, SigmaIsThatOfTheInverseRangeByTheDisparity) {
+    const camera::RectifiedRig rig = tilted_rig();
+    const camera::DepthImage depth = floor_depth(rig);
+    camera::DepthImage wrong = depth;
+    for (std::size_t i = 0; i < wrong.disparity_px.size(); ++i)
+        wrong.disparity_px.data()[i] += depth.sigma_px.data()[i];
+    FramePoints seen;
+    FramePoints off;
+    sample_points(rig, depth, 4, seen);
+    sample_points(rig, wrong, 4, off);
+    ASSERT_EQ(seen.points_body_m.size(), off.points_body_m.size());
+    for (std::size_t i = 0; i < seen.points_body_m.size(); ++i) {
+        const auto inverse = [](const FramePoints& frame, std::size_t k) {
+            return 1.0 / (frame.points_body_m[k] - frame.camera_body_m).norm();
+        };
+        const double one_sigma = inverse(off, i) - inverse(seen, i);
+        EXPECT_NEAR(seen.inverse_range_sigma[i], one_sigma, 1e-5 * one_sigma);
+    }
+}
+
 TEST(SamplePoints, FeedsTheGroundObservation) {
     const camera::RectifiedRig rig = tilted_rig();
-    std::vector<Eigen::Vector3d> points;
-    sample_points(rig, floor_depth(rig), 2, points);
-    const auto sighting =
-        sight_ground({}, points, Eigen::Vector3d::UnitZ(), rig.T_body_camera.translation_m, 1);
-    ASSERT_TRUE(sighting.observation.accepted) << to_string(sighting.reason);
-    EXPECT_NEAR(sighting.observation.height_m, kCameraHeight_m, 1e-5);
-    EXPECT_NEAR(sighting.tilt_rad, 0.0, 1e-5);
+    FramePoints seen;
+    sample_points(rig, floor_depth(rig), 2, seen);
+    GroundConfig config;
+    config.min_height_m = 0.0;  // base_link is at the floor
+    const auto ground = observe_ground(config, seen, Eigen::Vector3d::UnitZ(), 1);
+    ASSERT_TRUE(ground.accepted);
+    EXPECT_NEAR(ground.height_m, 0.0, 1e-5) << "of base_link";
+    EXPECT_NEAR(ground.normal.z(), 1.0, 1e-9);
 }
 
 TEST(SamplePoints, MatchingNoiseLeavesTheGroundAccurate) {
@@ -84,35 +107,40 @@ TEST(SamplePoints, MatchingNoiseLeavesTheGroundAccurate) {
         for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
             depth.disparity_px.data()[i] += static_cast<float>(0.06 * rng.normal());
         }
-        std::vector<Eigen::Vector3d> points;
-        sample_points(rig, depth, 1, points);
-        const auto sighting = sight_ground(
-            {}, points, Eigen::Vector3d::UnitZ(), rig.T_body_camera.translation_m, seed);
-        ASSERT_TRUE(sighting.observation.accepted)
-            << "seed " << seed << ' ' << to_string(sighting.reason);
-        EXPECT_NEAR(sighting.observation.height_m, kCameraHeight_m, 0.01) << "seed " << seed;
-        EXPECT_LE(sighting.tilt_rad, 0.5 * std::numbers::pi / 180.0) << "seed " << seed;
+        FramePoints seen;
+        sample_points(rig, depth, 1, seen);
+        const auto ground = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), seed);
+        ASSERT_TRUE(ground.accepted) << "seed " << seed;
+        EXPECT_NEAR(ground.height_m, 0.0, 0.003) << "seed " << seed;
+        EXPECT_LE(std::acos(std::min(ground.normal.z(), 1.0)), 0.15 * std::numbers::pi / 180.0)
+            << "seed " << seed;
     }
 }
 
 TEST(SamplePoints, UnknownUnlikelyAndImpossiblePixelsAreLeftOut) {
     const camera::RectifiedRig rig = tilted_rig();
     camera::DepthImage depth;
-    depth.resize(6, 1);
+    depth.resize(9, 1);
     depth.disparity_px.fill(10.0F);
+    depth.sigma_px.fill(0.2F);
     depth.outlier_probability.fill(0.0F);
     depth.disparity_px.at(0, 0) = kNaN;
     depth.disparity_px.at(1, 0) = 0.0F;
     depth.disparity_px.at(2, 0) = std::numeric_limits<float>::infinity();
     depth.outlier_probability.at(3, 0) = 0.9F;
     depth.outlier_probability.at(4, 0) = kNaN;
-    std::vector<Eigen::Vector3d> points;
-    sample_points(rig, depth, 1, points);
-    EXPECT_EQ(points.size(), 1U);
-    sample_points(rig, depth, 1, points, 1.0F);
-    EXPECT_EQ(points.size(), 2U);
-    sample_points(rig, camera::DepthImage{}, 1, points);
-    EXPECT_TRUE(points.empty());
+    depth.sigma_px.at(5, 0) = kNaN;
+    depth.sigma_px.at(6, 0) = 0.0F;
+    depth.sigma_px.at(7, 0) = std::numeric_limits<float>::infinity();
+    FramePoints seen;
+    sample_points(rig, depth, 1, seen);
+    EXPECT_EQ(seen.points_body_m.size(), 1U);
+    EXPECT_EQ(seen.inverse_range_sigma.size(), 1U);
+    sample_points(rig, depth, 1, seen, 1.0F);
+    EXPECT_EQ(seen.points_body_m.size(), 2U);
+    sample_points(rig, camera::DepthImage{}, 1, seen);
+    EXPECT_TRUE(seen.points_body_m.empty());
+    EXPECT_TRUE(seen.inverse_range_sigma.empty());
 }
 
 }  // namespace

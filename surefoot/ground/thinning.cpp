@@ -36,11 +36,11 @@ std::vector<std::size_t> first_of_each(std::vector<Voxel>& voxels) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> thin(std::span<const Eigen::Vector3d> points,
-                                  const Eigen::Vector3d& sensor_origin,
-                                  double max_range_m,
-                                  double voxel_m,
-                                  std::size_t max_points) {
+std::vector<std::size_t> thin(std::span<const Eigen::Vector3d> points,
+                              const Eigen::Vector3d& sensor_origin,
+                              double max_range_m,
+                              double voxel_m,
+                              std::size_t max_points) {
     std::vector<Voxel> voxels;
     voxels.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -51,11 +51,9 @@ std::vector<Eigen::Vector3d> thin(std::span<const Eigen::Vector3d> points,
     }
     const std::vector<std::size_t> kept = first_of_each(voxels);
     const std::size_t every = std::max<std::size_t>(1, (kept.size() + max_points - 1) / max_points);
-    std::vector<Eigen::Vector3d> result;
+    std::vector<std::size_t> result;
     result.reserve(kept.size() / every + 1);
-    for (std::size_t i = 0; i < kept.size(); i += every) {
-        result.push_back(points[kept[i]] - sensor_origin);
-    }
+    for (std::size_t i = 0; i < kept.size(); i += every) result.push_back(kept[i]);
     return result;
 }
 

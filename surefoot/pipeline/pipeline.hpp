@@ -14,6 +14,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/ground/sample_points.hpp"
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/pipeline/camera_monitor.hpp"
@@ -121,7 +122,7 @@ class Pipeline {
     std::optional<camera::ImuMount> imu_mount_;
     camera::RectifiedPair pair_;
     camera::DepthImage depth_;
-    std::vector<Eigen::Vector3d> ground_points_;
+    ground::FramePoints ground_points_;
     MotionEstimate last_motion_;
     CameraMonitor camera_monitor_;
     std::int64_t last_fused_ns_ = 0;

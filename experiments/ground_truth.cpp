@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// How true is the ground plane, that which places odom and those of the single frames?
+// Usage: ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES]]]]
+//   ground_truth out/ground.csv floor,demo_stairs 20001 3 ideal,zed
+//
+// Profiles: see seen_by.hpp. One line a scene, seed and profile:
+//   source                                    what placed odom: plane, imu or assumed
+//   tilt_deg, height_mm                       error of odom's z axis, and of the height of base_link
+//                                             over the ground, from the first ten frames
+//   frames, accepted                          frames after them, with a plane that was accepted
+//   tilt_p50_deg, tilt_p90_deg, height_p50_mm, height_p90_mm  errors of these, about the ground
+//                                             under base_link
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
+#include "experiments/seen_by.hpp"
+#include "io/text.hpp"
+#include "sim/ray_caster.hpp"
+#include "sim/scene_source.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr const char* kSources[] = {"assumed", "plane", "imu"};  // as GravitySource
+
+struct Case {
+    std::string scene;
+    std::uint64_t seed = 1;
+    std::string profile;
+    int frames = 0;
+};
+
+double between_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi;
+}
+
+double quantile(std::vector<double> values, double share) {
+    if (values.empty()) return std::nan("");
+    const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(
+        values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+    return values[at];
+}
+
+/// World up in base_link, and how far below base_link the ground is, along gravity.
+struct Truth {
+    Eigen::Vector3d up_body;
+    double height_m = 0.0;
+};
+
+Truth truth_of(const sim::SceneTruth& truth, const Pose& T_world_body) {
+    const sim::Lattice under{T_world_body.translation_m.head<2>() - Eigen::Vector2d::Constant(0.05),
+                             3,
+                             3,
+                             0.1 / 3.0};
+    const auto dem_m = sim::dem(truth.scene, under);
+    return {T_world_body.rotation.conjugate() * Eigen::Vector3d::UnitZ(),
+            T_world_body.translation_m.z() - static_cast<double>(dem_m.at(1, 1))};
+}
+
+Status measure(const Case& now, Executor& executor, fmt::ostream& out) {
+    auto settings = load_settings({});
+    if (!settings) return settings.error();
+    sim::SceneOptions& sim = settings->sim;
+    sim.scene = now.scene;
+    sim.seed = now.seed;
+    if (Status seen = experiments::see_by(now.profile, sim); !seen) return seen.error();
+    sim.frames = now.frames;
+    auto source = sim::open_scene(sim, &executor);
+    if (!source) return source.error();
+    auto pipeline = pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor);
+    if (!pipeline) return pipeline.error();
+
+    const sim::SceneTruth& truth = (*source)->truth();
+    std::vector<StereoFrame> first;
+    std::vector<double> tilts_deg;
+    std::vector<double> heights_mm;
+    int frames = 0;
+    for (std::size_t i = 0; i < truth.trajectory.size(); ++i) {
+        auto frame = (*source)->next();
+        if (!frame) return frame.error();
+        if (!*frame) break;
+        if (first.size() < pipeline::Pipeline::kAlignmentFrames) {
+            first.push_back(std::move(**frame));
+            if (first.size() < pipeline::Pipeline::kAlignmentFrames) continue;
+            pipeline->align(first);
+            for (const StereoFrame& each : first)
+                static_cast<void>(pipeline->process(each, Work::full));
+            continue;
+        }
+        const FrameReport report = pipeline->process(**frame, Work::full);
+        const Truth here = truth_of(truth, truth.trajectory[i].T_world_body);
+        ++frames;
+        if (!report.ground.accepted) continue;
+        tilts_deg.push_back(between_deg(report.ground.normal, here.up_body));
+        heights_mm.push_back(1e3 * std::abs(report.ground.height_m - here.height_m));
+    }
+    const pipeline::Alignment& alignment = pipeline->alignment();
+    const Truth start = truth_of(truth, truth.trajectory.front().T_world_body);
+    out.print("{},{},{},{},{:.3f},{:.2f},{},{},{:.3f},{:.3f},{:.2f},{:.2f}\n",
+              now.scene,
+              now.seed,
+              now.profile,
+              kSources[static_cast<int>(alignment.gravity_source)],
+              between_deg(alignment.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ(),
+                          start.up_body),
+              1e3 * (alignment.ground_height_m - start.height_m),
+              frames,
+              tilts_deg.size(),
+              quantile(tilts_deg, 0.5),
+              quantile(tilts_deg, 0.9),
+              quantile(heights_mm, 0.5),
+              quantile(heights_mm, 0.9));
+    out.flush();
+    return {};
+}
+
+int measure_all(const std::vector<std::string>& words) {
+    if (words.size() < 2)
+        return report(
+            usage_error("ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES]]]]"));
+    const std::uint64_t first = words.size() > 2 ? std::strtoull(words[2].c_str(), nullptr, 10) : 1;
+    const std::uint64_t seeds = words.size() > 3 ? std::strtoull(words[3].c_str(), nullptr, 10) : 1;
+    const std::string profiles = words.size() > 4 ? words[4] : "ideal,zed";
+    const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
+    const auto executor = make_executor({});
+    auto out = fmt::output_file(words[0]);
+    out.print(
+        "scene,seed,profile,source,tilt_deg,height_mm,frames,accepted,tilt_p50_deg,tilt_p90_deg,"
+        "height_p50_mm,height_p90_mm\n");
+    for (const std::string_view profile : io::split(profiles, ",")) {
+        for (const std::string_view scene : io::split(words[1], ",")) {
+            for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
+                if (const auto done =
+                        measure({std::string(scene), seed, std::string(profile), frames},
+                                *executor,
+                                out);
+                    !done)
+                    return report(done.error());
+            }
+        }
+    }
+    return kExitOk;
+}
+
+}  // namespace
+}  // namespace surefoot::app
+
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    return surefoot::app::measure_all({argv + 1, argv + argc});
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "surefoot/geometry/plane_fit.hpp"
+
+namespace surefoot::ground {
+
+/// The plane near `start` through points seen from the origin, each with one sigma of its inverse
+/// range [1/m].
+///
+/// A plane n . p + h = 0 is seen along the unit ray r at the inverse range w = -(n . r) / h: linear
+/// in m = -n / h, as v-disparity is (Labayrade et al. 2002). Stereo errs in w, alike at all
+/// distances, so that this least squares problem has no bias by distance and weights far points as
+/// little as they deserve; three unknowns, solved again with weights after Tukey (biweight) until
+/// they settle. Points farther than `band_m` from the plane take no part, nor do those whose noise
+/// across it is too large to tell.
+///
+/// Nothing if too few points are near or they do not fix a plane in front of the camera.
+[[nodiscard]] std::optional<geometry::Plane> settle_plane(
+    std::span<const Eigen::Vector3d> points,
+    std::span<const double> inverse_range_sigma,
+    const geometry::Plane& start,
+    double band_m);
+
+/// A point seen from the origin, beside the place where its ray meets a plane.
+struct Sighting {
+    Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
+    double inverse_range = 0.0;                     ///< [1/m]
+    double expected_inverse_range = 0.0;            ///< of the plane; 0 = the ray does not meet it
+    /// Distance from the plane and its one sigma, to first order in the inverse range: symmetric in
+    /// the noise, so that what is left out by them pulls to neither side.
+    double off_m = 0.0;
+    double sigma_m = 0.0;
+
+    /// Its noise is small enough to say whether it lies within a band, and it does.
+    [[nodiscard]] bool is_within(double band_m) const {
+        constexpr double kTells = 0.67;  ///< a band that cuts the noise holds the plane in place
+        return expected_inverse_range > 0.0 && std::abs(off_m) <= band_m &&
+               sigma_m <= kTells * band_m;
+    }
+};
+
+[[nodiscard]] inline Sighting sighting_of(const Eigen::Vector3d& p,
+                                          double inverse_range_sigma,
+                                          const geometry::Plane& plane) {
+    Sighting sighting;
+    const double range_m = p.norm();
+    if (!(range_m > 0.0) || !std::isfinite(range_m)) return sighting;
+    sighting.ray = p / range_m;
+    sighting.inverse_range = 1.0 / range_m;
+    const double fall = -plane.normal.dot(sighting.ray);
+    if (!(fall > 0.0) || !(plane.offset_m > 0.0)) return sighting;
+    sighting.expected_inverse_range = fall / plane.offset_m;
+    const double m_per_inverse = plane.offset_m / sighting.expected_inverse_range;
+    sighting.off_m = m_per_inverse * (sighting.inverse_range - sighting.expected_inverse_range);
+    sighting.sigma_m = m_per_inverse * inverse_range_sigma;
+    return sighting;
+}
+
+}  // namespace surefoot::ground
