@@ -193,7 +193,7 @@ struct SemiGlobalSearch::Workspace {
     CensusPlanes left_census;
     CensusPlanes right_census;
     Strip strips[kStrips];
-    BlockPool pool;  ///< sums, and as many matching costs behind them
+    BlockPool pool;  ///< sums, and as many matching costs behind them; a free group before each
     std::ptrdiff_t sums_size = 0;
     PathStates from_above;  ///< per 64 columns
 
@@ -212,7 +212,7 @@ void SemiGlobalSearch::Workspace::resize() {
     left_census.resize(width, height, 0);
     right_census.resize(width, height, config.disparities);
     const int groups = (config.disparities + kernels::kGroup - 1) / kernels::kGroup;
-    sums_size = static_cast<std::ptrdiff_t>(groups) * kernels::kSumsGroup;
+    sums_size = static_cast<std::ptrdiff_t>(groups + 1) * kernels::kSumsGroup;
     pool.resize(kStrips, static_cast<std::size_t>(2 * sums_size));
     const auto columns = static_cast<std::size_t>(padded(width));
     const auto front = static_cast<std::size_t>(padded(config.disparities));
@@ -303,8 +303,8 @@ void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& ou
     const Strip& s = strips[strip % kStrips];
     std::uint8_t* const sums = pool.take();
     kernels::RowBlock rows = row_block(strip, block);
-    rows.sums = sums;
-    rows.match = sums + sums_size;
+    rows.sums = sums + kernels::kSumsGroup;
+    rows.match = rows.sums + sums_size;
     rows.grey_before = rows.grey - (block > 0 ? kLanes : 0);
     const PathState from_left = s.from_left.at(block);
     rows.state = from_left.costs;

@@ -48,23 +48,39 @@ void census_row(const std::uint8_t* grey,
 }
 
 #if HWY_TARGET == HWY_SCALAR
-void transpose_block(const std::uint8_t* in,
+HWY_INLINE void turn(const std::uint8_t* in,
                      std::ptrdiff_t in_stride,
                      std::uint8_t* out,
                      std::ptrdiff_t out_stride) {
-    std::uint8_t rows[kLanes][kLanes];
-    for (int y = 0; y < kLanes; ++y) std::memcpy(rows[y], in + y * in_stride, kLanes);
     for (int x = 0; x < kLanes; ++x) {
-        for (int y = 0; y < kLanes; ++y) out[x * out_stride + y] = rows[y][x];
+        for (int y = 0; y < kLanes; ++y) out[x * out_stride + y] = in[y * in_stride + x];
     }
 }
 #else
-/// Four rounds of interleaving row i with row i + 8 turn 16 rows into columns, in every 16 lanes
-/// apart: column x of these rows comes to lie in row x % 16, lanes from x / 16 * 16.
-HWY_INLINE void turn_sixteen(const std::uint8_t* in, std::ptrdiff_t stride, std::uint8_t* turned) {
+/// Lanes 16 b to 16 b + 15 of the result are the 16 bytes at from + 16 b stride. Loads that repeat
+/// 16 bytes and choices between them are no shuffles, of which wide registers do one at a time.
+HWY_INLINE Bytes load_pieces(const std::uint8_t* from, std::ptrdiff_t stride) {
+#if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4
+    return static_cast<void>(stride), hn::LoadU(kBytes, from);
+#else
+    const auto piece = [&](int b) { return hn::LoadDup128(kBytes, from + 16 * b * stride); };
+#if HWY_TARGET == HWY_AVX2
+    return hn::ConcatUpperLower(kBytes, piece(1), piece(0));
+#else
+    return hn::ConcatUpperLower(
+        kBytes, hn::OddEvenBlocks(piece(3), piece(2)), hn::OddEvenBlocks(piece(1), piece(0)));
+#endif
+#endif
+}
+
+/// Four rounds of interleaving row i with row i + 8 turn 16 columns of `lanes()` rows into rows.
+HWY_INLINE void turn_sixteen(const std::uint8_t* in,
+                             std::ptrdiff_t in_stride,
+                             std::uint8_t* out,
+                             std::ptrdiff_t out_stride) {
     Bytes rows[16];
     Bytes mixed[16];
-    for (int i = 0; i < 16; ++i) rows[i] = hn::LoadU(kBytes, in + i * stride);
+    for (int i = 0; i < 16; ++i) rows[i] = load_pieces(in + i * in_stride, in_stride);
     for (int round = 0; round < 2; ++round) {
         for (int i = 0; i < 8; ++i) {
             mixed[2 * i] = hn::InterleaveLower(kBytes, rows[i], rows[i + 8]);
@@ -75,58 +91,31 @@ HWY_INLINE void turn_sixteen(const std::uint8_t* in, std::ptrdiff_t stride, std:
             rows[2 * i + 1] = hn::InterleaveUpper(kBytes, mixed[i], mixed[i + 8]);
         }
     }
-    for (int i = 0; i < 16; ++i) hn::Store(rows[i], kBytes, turned + i * kLanes);
+    for (int i = 0; i < 16; ++i) hn::Store(rows[i], kBytes, out + i * out_stride);
 }
+
+HWY_INLINE void turn(const std::uint8_t* in,
+                     std::ptrdiff_t in_stride,
+                     std::uint8_t* out,
+                     std::ptrdiff_t out_stride) {
+    for (int x = 0; x < kLanes; x += 16) {
+        for (int y = 0; y < kLanes; y += lanes())
+            turn_sixteen(in + y * in_stride + x, in_stride, out + x * out_stride + y, out_stride);
+    }
+}
+#endif
 
 void transpose_block(const std::uint8_t* in,
                      std::ptrdiff_t in_stride,
                      std::uint8_t* out,
                      std::ptrdiff_t out_stride) {
-    HWY_ALIGN std::uint8_t turned[4][16 * kLanes];  // of rows 0-15, 16-31, 32-47, 48-63
-    for (int group = 0; group < 4; ++group) {
-        for (int x = 0; x < kLanes; x += lanes())
-            turn_sixteen(in + 16 * group * in_stride + x, in_stride, turned[group] + x);
-    }
-    for (int i = 0; i < 16; ++i) {
-        for (int x = 0; x < kLanes; x += lanes()) {
-            const auto rows = [&](int group) {
-                return hn::Load(kBytes, turned[group] + i * kLanes + x);
-            };
-            std::uint8_t* const to = out + (x + i) * out_stride;
-#if HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4
-            for (int group = 0; group < 4; ++group) hn::Store(rows(group), kBytes, to + 16 * group);
-#elif HWY_TARGET == HWY_AVX2
-            for (int half = 0; half < 2; ++half) {
-                const Bytes upper = rows(2 * half);
-                const Bytes lower = rows(2 * half + 1);
-                hn::Store(hn::ConcatLowerLower(kBytes, lower, upper), kBytes, to + 32 * half);
-                hn::Store(hn::ConcatUpperUpper(kBytes, lower, upper),
-                          kBytes,
-                          to + 16 * out_stride + 32 * half);
-            }
-#else
-            const auto even = [](Bytes upper, Bytes lower) {
-                return hn::OddEvenBlocks(hn::SwapAdjacentBlocks(lower), upper);
-            };
-            const auto odd = [](Bytes upper, Bytes lower) {
-                return hn::OddEvenBlocks(lower, hn::SwapAdjacentBlocks(upper));
-            };
-            const Bytes even_upper = even(rows(0), rows(1));
-            const Bytes even_lower = even(rows(2), rows(3));
-            const Bytes odd_upper = odd(rows(0), rows(1));
-            const Bytes odd_lower = odd(rows(2), rows(3));
-            hn::Store(hn::ConcatLowerLower(kBytes, even_lower, even_upper), kBytes, to);
-            hn::Store(
-                hn::ConcatLowerLower(kBytes, odd_lower, odd_upper), kBytes, to + 16 * out_stride);
-            hn::Store(
-                hn::ConcatUpperUpper(kBytes, even_lower, even_upper), kBytes, to + 32 * out_stride);
-            hn::Store(
-                hn::ConcatUpperUpper(kBytes, odd_lower, odd_upper), kBytes, to + 48 * out_stride);
-#endif
-        }
-    }
+    turn(in, in_stride, out, out_stride);
 }
-#endif
+
+/// Apart from transpose_block: with strides that the compiler knows, places cost no arithmetic.
+HWY_NOINLINE void turn_sums(std::uint8_t* plane) {
+    turn(plane, kSumsColumn, plane - kSumsGroup, kSumsColumn);
+}
 
 /// Bytes have no shift of their own.
 HWY_INLINE Bytes shift_right(Bytes value, int shift) {
@@ -262,9 +251,8 @@ void follow_left_here(const RowBlock& block) {
     follow<Sums::added_to>(block);
     for (int d = 0; d < block.disparities; ++d) {
         const std::ptrdiff_t plane = d / kGroup * kSumsGroup + d % kGroup * kLanes;
-        transpose_block(block.sums + plane, kSumsColumn, block.sums + plane, kSumsColumn);
-        if constexpr (kMatchKept)
-            transpose_block(block.match + plane, kSumsColumn, block.match + plane, kSumsColumn);
+        turn_sums(block.sums + plane);
+        if constexpr (kMatchKept) turn_sums(block.match + plane);
     }
 }
 

@@ -18,8 +18,9 @@ inline constexpr int kCensusRow = kCensusBytes * kLanes;
 /// turned). So whoever walks along the disparities and whoever turns a group both stay on a few
 /// pages.
 inline constexpr int kGroup = 8;
-inline constexpr int kSumsColumn = kGroup * kLanes;
-/// One column more than needed: places 4 KiB apart would share their lines of the cache.
+/// One disparity and one column more than needed: places a power of two apart share their lines of
+/// the cache.
+inline constexpr int kSumsColumn = (kGroup + 1) * kLanes;
 inline constexpr int kSumsGroup = (kLanes + 1) * kSumsColumn;
 
 struct Penalties {
@@ -36,7 +37,7 @@ void census(const std::uint8_t* grey,
             int width,
             std::uint8_t* const out[kCensusBytes]);
 
-/// out[x][y] = in[y][x], 64 x 64 bytes; may turn a block in its place.
+/// out[x][y] = in[y][x], 64 x 64 bytes.
 void transpose(const std::uint8_t* in,
                std::ptrdiff_t in_stride,
                std::uint8_t* out,
@@ -66,7 +67,8 @@ void pass_right(const RowBlock& block);
 /// processors that count bits quickly leave it alone.
 void follow_right(const RowBlock& block);
 /// Follows the path from the right, adds its costs to `sums` and turns them: column u of row v
-/// comes to lie where row u of column v was.
+/// comes to lie where row u of column v was, but one group of disparities before it (as `match`
+/// does): the first group needs room before `sums`.
 void follow_left(const RowBlock& block);
 
 /// Where winners of 64 columns go: kLanes each, at any address.
