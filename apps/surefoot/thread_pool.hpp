@@ -24,6 +24,9 @@ class ThreadPool final : public Executor {
     ThreadPool& operator=(const ThreadPool&) = delete;
 
     void parallel_for(int count, const std::function<void(int)>& work) override;
+    [[nodiscard]] int threads() const noexcept override {
+        return static_cast<int>(workers_.size()) + 1;
+    }
 
   private:
     void run_worker();

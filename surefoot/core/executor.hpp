@@ -13,6 +13,9 @@ class Executor {
     virtual ~Executor() = default;
     /// Calls `work(index)` once for each index in [0, count) and returns when all are done.
     virtual void parallel_for(int count, const std::function<void(int)>& work) = 0;
+    /// How many pieces may run at the same time: says how much work to lay out at once, where less
+    /// stays in the caches better.
+    [[nodiscard]] virtual int threads() const noexcept { return 1; }
 };
 
 /// One after the other, in order, on the calling thread.

@@ -9,9 +9,10 @@
 /// Other orders of work than Serial's: results must not depend on them.
 namespace surefoot {
 
-/// Last index first.
+/// Last index first; says that it has more threads than most work has pieces.
 class Backwards final : public Executor {
   public:
+    [[nodiscard]] int threads() const noexcept override { return 5; }
     void parallel_for(int count, const std::function<void(int)>& work) override {
         for (int index = count - 1; index >= 0; --index) work(index);
     }
@@ -21,6 +22,7 @@ class Backwards final : public Executor {
 class Threads final : public Executor {
   public:
     explicit Threads(int threads) : threads_(threads) {}
+    [[nodiscard]] int threads() const noexcept override { return threads_; }
     void parallel_for(int count, const std::function<void(int)>& work) override {
         std::vector<std::thread> threads;
         threads.reserve(static_cast<std::size_t>(threads_));

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <mutex>
 #include <new>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -157,8 +158,9 @@ class BlockPool {
     std::vector<std::uint8_t*> free_;
 };
 
-/// Strips of 64 rows that are worked on together: as many threads have something to do.
-constexpr int kStrips = 6;
+/// Strips of 64 rows that are worked on together, at most. One for each thread: what is made of a
+/// strip stays in the cache until it has been used.
+constexpr int kMaxStrips = 6;
 
 kernels::WinnerRows winners_at(Winners& out, int u, int v) {
     return {out.disparity.row(v) + u,
@@ -192,7 +194,8 @@ struct SemiGlobalSearch::Workspace {
     Bordered right;
     CensusPlanes left_census;
     CensusPlanes right_census;
-    Strip strips[kStrips];
+    int strips_at_once = 0;
+    Strip strips[kMaxStrips];
     BlockPool pool;  ///< sums, and as many matching costs behind them; a free group before each
     std::ptrdiff_t sums_size = 0;
     PathStates from_above;  ///< per 64 columns
@@ -213,10 +216,10 @@ void SemiGlobalSearch::Workspace::resize() {
     right_census.resize(width, height, config.disparities);
     const int groups = (config.disparities + kernels::kGroup - 1) / kernels::kGroup;
     sums_size = static_cast<std::ptrdiff_t>(groups + 1) * kernels::kSumsGroup;
-    pool.resize(kStrips, static_cast<std::size_t>(2 * sums_size));
+    pool.resize(static_cast<std::size_t>(strips_at_once), static_cast<std::size_t>(2 * sums_size));
     const auto columns = static_cast<std::size_t>(padded(width));
     const auto front = static_cast<std::size_t>(padded(config.disparities));
-    for (Strip& strip : strips) {
+    for (Strip& strip : std::span(strips).first(static_cast<std::size_t>(strips_at_once))) {
         strip.left.resize(columns * kernels::kCensusRow);
         strip.right.resize((columns + front) * kernels::kCensusRow);
         strip.grey.resize(columns * kLanes);
@@ -239,7 +242,7 @@ void SemiGlobalSearch::Workspace::take_census(int strip) {
 
 /// Census words and grey levels of a strip, the rows in the lanes.
 void SemiGlobalSearch::Workspace::turn_strip(int strip) {
-    const Strip& s = strips[strip % kStrips];
+    const Strip& s = strips[strip % strips_at_once];
     const int v = strip * kLanes;
     const int front = right_census.front;
     const auto turn = [&](const std::uint8_t* rows, std::ptrdiff_t stride, std::uint8_t* out) {
@@ -263,7 +266,7 @@ void SemiGlobalSearch::Workspace::turn_strip(int strip) {
 }
 
 kernels::RowBlock SemiGlobalSearch::Workspace::row_block(int strip, int block) const {
-    const Strip& s = strips[strip % kStrips];
+    const Strip& s = strips[strip % strips_at_once];
     const int u = block * kLanes;
     kernels::RowBlock rows;
     rows.left = s.left.data() + u * kernels::kCensusRow;
@@ -280,7 +283,7 @@ kernels::RowBlock SemiGlobalSearch::Workspace::row_block(int strip, int block) c
 void SemiGlobalSearch::Workspace::pass_strip(int strip) {
     take_census(strip);
     turn_strip(strip);
-    const Strip& s = strips[strip % kStrips];
+    const Strip& s = strips[strip % strips_at_once];
     const PathState start = s.from_left.at(0);
     kernels::begin_path(config.disparities, start.costs, start.least);
     for (int block = 0; block < column_blocks(); ++block) {
@@ -300,7 +303,7 @@ void SemiGlobalSearch::Workspace::pass_strip(int strip) {
 /// All three paths and the winners of 64 x 64 pixels. Needs the block to the right of it and the
 /// one above.
 void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& out) {
-    const Strip& s = strips[strip % kStrips];
+    const Strip& s = strips[strip % strips_at_once];
     std::uint8_t* const sums = pool.take();
     kernels::RowBlock rows = row_block(strip, block);
     rows.sums = sums + kernels::kSumsGroup;
@@ -367,14 +370,15 @@ void SemiGlobalSearch::search(ImageView<const std::uint8_t> left,
     Workspace& work = *workspace_;
     work.width = left.width;
     work.height = left.height;
+    const int strips = padded(work.height) / kLanes;
+    work.strips_at_once = std::clamp(executor.threads(), 1, std::min(strips, kMaxStrips));
     work.left.copy(left);
     work.right.copy(right);
     work.resize();
     out.resize(left.width, left.height);
-    const int strips = padded(work.height) / kLanes;
     const int blocks = work.column_blocks();
-    for (int first = 0; first < strips; first += kStrips) {
-        const int count = std::min(kStrips, strips - first);
+    for (int first = 0; first < strips; first += work.strips_at_once) {
+        const int count = std::min(work.strips_at_once, strips - first);
         executor.parallel_for(count, [&](int k) { work.pass_strip(first + k); });
         // From the right to the left, every strip one block behind the one above it.
         for (int wave = 0; wave < blocks + count - 1; ++wave) {
