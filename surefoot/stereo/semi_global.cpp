@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/stereo/semi_global.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cstring>
 #include <mutex>
@@ -208,6 +210,7 @@ struct SemiGlobalSearch::Workspace {
     void pass_strip(int strip);
     void follow_block(int strip, int block, Winners& out);
     void follow_columns(int strip, int block, const std::uint8_t* sums, Winners& out);
+    void call_row(int u, int v, Winners& out) const;
     [[nodiscard]] kernels::RowBlock row_block(int strip, int block) const;
 };
 
@@ -323,6 +326,23 @@ void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& ou
     pool.give_back(sums);
 }
 
+/// Calls what one row of a block reads and writes: rows lie too far apart for a processor to guess
+/// the next one.
+void SemiGlobalSearch::Workspace::call_row(int u, int v, Winners& out) const {
+    hwy::Prefetch(left.row(v) + u);
+    for (int byte = 0; byte < kCensusBytes; ++byte) {
+        hwy::Prefetch(left_census.row(byte, v) + u);
+        for (int d = 0; d <= config.disparities; d += kLanes)
+            hwy::Prefetch(right_census.row(byte, v) + u - d);
+    }
+    const auto [disparity, cost, cost_below, cost_above, second_cost] = winners_at(out, u, v);
+    const int last = std::min(kLanes, width - u) - 1;
+    for (std::uint8_t* const row : {disparity, cost, cost_below, cost_above, second_cost}) {
+        hwy::Prefetch(row);
+        hwy::Prefetch(row + last);
+    }
+}
+
 /// Path from above and winners of a block.
 void SemiGlobalSearch::Workspace::follow_columns(int strip,
                                                  int block,
@@ -336,7 +356,9 @@ void SemiGlobalSearch::Workspace::follow_columns(int strip,
     step.disparities = config.disparities;
     step.penalties = penalties;
     const int count = std::min(kLanes, width - u);
-    for (int v = strip * kLanes; v < std::min(height, (strip + 1) * kLanes); ++v) {
+    const int end = std::min(height, (strip + 1) * kLanes);
+    for (int v = strip * kLanes; v < end; ++v) {
+        call_row(u, std::min(v + 1, end - 1), out);
         for (int byte = 0; byte < kCensusBytes; ++byte) {
             step.left[byte] = left_census.row(byte, v) + u;
             step.right[byte] = right_census.row(byte, v) + u;
