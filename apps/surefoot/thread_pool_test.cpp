@@ -19,6 +19,7 @@ std::vector<int> calls_per_index(Executor& executor, int count) {
 TEST(ThreadPool, CallsEachIndexOnce) {
     for (const int threads : {1, 2, 5}) {
         ThreadPool pool(threads);
+        EXPECT_EQ(pool.threads(), threads);
         for (const int count : {0, 1, 2, 3, 1000})
             EXPECT_EQ(calls_per_index(pool, count),
                       std::vector<int>(static_cast<std::size_t>(count), 1))
