@@ -30,8 +30,9 @@ struct Penalties {
     int contrast_shift = 0;
 };
 
-/// Census bytes of one row. `grey` points at its first pixel in an image with a border of
-/// kCensusReach; `out[byte]` receives `width` values.
+/// Census bytes of one row, arranged as the processor counts their differences best. `grey` points
+/// at its first pixel in an image with a border of kCensusReach; `out[byte]` receives `width`
+/// values.
 void census(const std::uint8_t* grey,
             std::ptrdiff_t stride,
             int width,
