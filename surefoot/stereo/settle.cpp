@@ -28,10 +28,17 @@ class Claims {
         const std::uint16_t* const offer = offer_.data();
         std::uint16_t* const best = best_.data() + kOutside;
         const std::size_t width = width_;
-        for (std::size_t u = 0; u < width; ++u) {
+        const auto claim = [=](std::size_t u) {
             const std::uint16_t before = best[place[u]];
             best[place[u]] = before < offer[u] ? before : offer[u];
+        };
+        // Neighbours want the same places and wait for each other: two at a time, far apart.
+        const std::size_t half = width / 2;
+        for (std::size_t u = 0; u < half; ++u) {
+            claim(u);
+            claim(u + half);
         }
+        for (std::size_t u = 2 * half; u < width; ++u) claim(u);
         for (std::size_t u = 0; u < width; ++u)
             claimed[u] = static_cast<std::uint8_t>(best[place[u]]);
     }
