@@ -107,8 +107,9 @@ Pose ground_error(const camera::RectifiedRig& rig,
                   const camera::DepthImage& depth,
                   const Pose& T_world_body) {
     constexpr int kStep_px = 4;
-    std::vector<Eigen::Vector3d> points;
-    ground::sample_points(rig, depth, kStep_px, points, 0.5F);
+    ground::FramePoints seen;
+    ground::sample_points(rig, depth, kStep_px, seen, 0.5F);
+    std::vector<Eigen::Vector3d>& points = seen.points_body_m;
     for (Eigen::Vector3d& point : points) point = T_world_body * point;
     geometry::RansacPlaneOptions options;
     options.tolerance_m = kPlaneTolerance_m;

@@ -13,6 +13,7 @@
 
 #include "apps/surefoot/bench_result.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/traversability/foothold.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"
 #include "surefoot/traversability/reachability.hpp"
@@ -104,6 +105,24 @@ Timing time_confidence(const TraversabilityConfig& config,
     });
 }
 
+/// Where the whole foot may stand; every known cell counts as reachable.
+Timing time_footholds(const grid::Layer& height_m, Executor& executor) {
+    const grid::Layer var_m2(kSide, kSide, 9e-6F);
+    const grid::Layer nothing_above(kSide, kSide, std::numeric_limits<float>::quiet_NaN());
+    traversability::FootholdFinder finder({});
+    Image<traversability::Foothold> found;
+    return timed(kRepeats, [&] {
+        finder.find({height_m.view(),
+                     var_m2.view(),
+                     nothing_above.view(),
+                     nothing_above.view(),
+                     {},
+                     kResolution_m},
+                    executor,
+                    found);
+    });
+}
+
 /// A query alone is shorter than the clock resolves.
 template <typename Query>
 Timing time_query(const Query& query) {
@@ -188,6 +207,7 @@ Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common, Exec
         {"terrain/rate_rex_zed_changed_60x60", time_change(thesis, ground, executor)});
     results.push_back({"terrain/reach_240x240", time_reach({}, ground)});
     results.push_back({"terrain/confidence_240x240", time_confidence({}, ground, executor)});
+    results.push_back({"terrain/footholds_240x240", time_footholds(ground, executor)});
     const auto footprints = bench_footprints();
     if (!footprints) return footprints.error();
     results.insert(results.end(), footprints->begin(), footprints->end());

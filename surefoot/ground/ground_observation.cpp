@@ -246,7 +246,11 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
     options.cone = geometry::NormalCone{up, config.max_tilt_deg * std::numbers::pi / 180.0};
     std::optional<Candidate> best;
     Cloud rest = cloud;
-    for (int plane = 0; plane < kMaxPlanes && rest.points.size() >= kMinPoints; ++plane) {
+    // Fewer than this are no plane that would be accepted.
+    const auto least = std::max(kMinPoints,
+                                static_cast<std::size_t>(config.min_inlier_ratio *
+                                                         static_cast<double>(rest.points.size())));
+    for (int plane = 0; plane < kMaxPlanes && rest.points.size() >= least; ++plane) {
         const auto found = search(rest, options, rng);
         if (!found) break;
         // Where the noise is known what lies on another level is told apart and speaks against

@@ -10,6 +10,7 @@ namespace surefoot::ground {
 namespace {
 
 constexpr int kRounds = 8;
+constexpr double kSettled_m = 2e-5;  // a metre away
 constexpr std::size_t kLeastPoints = 20;
 constexpr double kTukey = 4.685;            // sigmas: 95 % efficient for normal noise
 constexpr double kSigmaPerMedian = 1.4826;  // of a normal distribution
@@ -73,7 +74,11 @@ std::optional<geometry::Plane> settle_plane(std::span<const Eigen::Vector3d> poi
         const Eigen::Vector3d m = ldlt.solve(right);
         const double length = m.norm();
         if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
-        plane = {-m / length, 1.0 / length};
+        const geometry::Plane next{-m / length, 1.0 / length};
+        const double moved_m =
+            (next.normal - plane.normal).norm() + std::abs(next.offset_m - plane.offset_m);
+        plane = next;
+        if (moved_m < kSettled_m) break;
     }
     return plane;
 }

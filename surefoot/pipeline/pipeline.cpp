@@ -261,7 +261,7 @@ void Pipeline::measure_depth(const StereoFrame& frame) {
 GroundObservation Pipeline::observe_ground(const Pose& T_level_body,
                                            const Eigen::Vector3d& up_level) {
     // The plane is looked for in base_link: its height is that of the machine, not of odom.
-    constexpr int kStep_px = 4;
+    constexpr int kStep_px = 6;  // the matcher's errors hang together over more
     ground::sample_points(rectifier_->rig(), depth_, kStep_px, ground_points_);
     const Eigen::Vector3d up_body = T_level_body.rotation.conjugate() * up_level;
     return ground::observe_ground(config_.ground, ground_points_, up_body, kGroundSeed);
