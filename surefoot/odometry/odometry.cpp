@@ -17,9 +17,10 @@ constexpr std::uint64_t kSeed = 0x5afef007;
 constexpr double kCoastTime_s = 0.15;   ///< the predicted velocity of a lost camera decays with it
 constexpr double kKeyframeShare = 0.7;  ///< keyframe when fewer of the last one's points are seen
 constexpr double kKeyframeParallax =
-    0.035;                            ///< or when they moved by this share of the image width
-constexpr int kKeyframePeriod = 12;   ///< or after so many frames of motion
-constexpr double kFewFollowed = 0.5;  ///< share below which points are followed a second time
+    0.035;                                ///< or when they moved by this share of the image width
+constexpr int kKeyframePeriod = 12;       ///< or after so many frames of motion
+constexpr double kLeastNewErrors = 1e-3;  ///< of poses a moment apart
+constexpr double kFewFollowed = 0.5;      ///< share below which points are followed a second time
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {
     FrontEndConfig front;
@@ -78,7 +79,10 @@ struct Odometry::Impl {
     [[nodiscard]] bool wants_keyframe() const;
     Pose make_keyframe(const Pose& T, Executor& executor);
     bool seed_landmarks(Executor& executor);
-    MotionEstimate publish(const Pose& T_camera, const Matrix6& covariance, const Matrix6& extra);
+    MotionEstimate publish(const Pose& T_camera,
+                           const Matrix6& covariance,
+                           const Matrix6& extra,
+                           double share = 1.0);
     [[nodiscard]] Pose body_from(const Pose& T_camera) const {
         return T_camera * rectifier.rig().T_body_camera.inverse();
     }
@@ -250,10 +254,16 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
     front.keep();
     velocity = dt_s > 0.0 ? Vector6(difference(T_odom_good, T) / dt_s) : Vector6::Zero();
     if (standing) covariance_camera.setZero();
+    // Poses that see the same landmarks share their errors.
+    const double new_errors =
+        standing ? 1.0 : std::clamp(dt_s / config.landmark_s, kLeastNewErrors, 1.0);
     const Matrix6 systematic = systematic_covariance(T_odom_good, T, evidence.scene_depth_m);
     const Pose& T_body_camera = rectifier.rig().T_body_camera;
     MotionEstimate estimate =
-        publish(T, covariance, lost_body + camera_to_body_covariance(systematic, T_body_camera));
+        publish(T,
+                covariance,
+                lost_body + camera_to_body_covariance(systematic, T_body_camera),
+                new_errors);
     lost_body.setZero();
     T_odom_good = T;
     good_time_ns = frame.time_ns;
@@ -322,19 +332,21 @@ Pose Odometry::Impl::make_keyframe(const Pose& T, Executor& executor) {
     return map.newest().T_odom_camera;
 }
 
-/// The estimate of a frame at `T_camera`, which becomes the previous one. `extra` is added to the
-/// covariance of the relative motion, in body axes.
+/// The estimate of a frame at `T_camera`, which becomes the previous one. `share` of what both
+/// poses err is an error of the motion between them; `extra` is added to its covariance, in body
+/// axes.
 MotionEstimate Odometry::Impl::publish(const Pose& T_camera,
                                        const Matrix6& covariance,
-                                       const Matrix6& extra) {
+                                       const Matrix6& extra,
+                                       double share) {
     MotionEstimate estimate;
     estimate.T_odom_body = body_from(T_camera);
     estimate.T_previous_body = body_from(T_odom_camera).inverse() * estimate.T_odom_body;
     const Pose& T_body_camera = rectifier.rig().T_body_camera;
     estimate.relative_covariance =
-        compose_covariance(camera_to_body_covariance(covariance_camera, T_body_camera),
-                           estimate.T_previous_body,
-                           camera_to_body_covariance(covariance, T_body_camera)) +
+        share * compose_covariance(camera_to_body_covariance(covariance_camera, T_body_camera),
+                                   estimate.T_previous_body,
+                                   camera_to_body_covariance(covariance, T_body_camera)) +
         extra;
     T_odom_camera = T_camera;
     covariance_camera = covariance;

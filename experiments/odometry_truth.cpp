@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// How true is the odometry, and does it know how true?
+// Usage: odometry_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [KEY=VALUE...]]]]]
+//   odometry_truth out/odometry.csv floor,walk_floor 20001 30 ideal,zed 100
+//   odometry.imu.enabled=false
+//
+// Profiles: see seen_by.hpp; FRAMES 0 = to the end of the way. Images and odometry alone, no map.
+// Motions over one second, one after the other, against the true ones. Where the machine stood
+// (less than 5 mm and 0.5 deg in that second) the odometry holds its pose, and says so with next
+// to no covariance: those count apart.
+// One line a scene, seed and profile:
+//   path_m, end_mm, end_deg   length of the true way; error at its end, about the first pose
+//   moving, nees              motions, and the mean of error^T covariance^-1 error: 6 for a
+//                             covariance that is true
+//   rpe_mm, rpe_deg           rms error of these motions
+//   standing, held_mm         motions of a machine that stood; largest error of one
+//   jump_mm                   largest error of the motion from one frame to the next
+//   ok, degraded, lost        frames
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
+#include "experiments/seen_by.hpp"
+#include "io/text.hpp"
+#include "sim/scene_source.hpp"
+#include "surefoot/core/time.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr double kWindow_s = 1.0;
+constexpr double kStill_m = 0.005;
+constexpr double kStill_rad = 0.5 * std::numbers::pi / 180.0;
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+struct Plan {
+    std::string file;
+    std::vector<std::string> scenes;
+    std::uint64_t first_seed = 1;
+    std::uint64_t seeds = 1;
+    std::vector<std::string> profiles{"ideal", "zed"};
+    int frames = 0;
+    std::vector<std::string> settings;
+};
+
+struct Case {
+    std::string scene;
+    std::uint64_t seed = 1;
+    std::string profile;
+};
+
+/// What one run has shown so far.
+class Tally {
+  public:
+    void add(const MotionEstimate& motion, const Pose& T_world_body) {
+        ++health_[static_cast<std::size_t>(motion.health)];
+        if (frames_++ == 0) {
+            first_true_ = last_true_ = window_true_ = T_world_body;
+            first_ = last_ = motion;
+            window_start_ns_ = motion.time_ns;
+            return;
+        }
+        const Pose T_step_true = last_true_.inverse() * T_world_body;
+        path_m_ += T_step_true.translation_m.norm();
+        const Vector6 step = difference(T_step_true, motion.T_previous_body);
+        jump_m_ = std::max(jump_m_, step.head<3>().norm());
+        window_covariance_ = compose_covariance(
+            window_covariance_, motion.T_previous_body, motion.relative_covariance);
+        T_window_ = T_window_ * motion.T_previous_body;
+        last_true_ = T_world_body;
+        last_ = motion;
+        if (seconds_from_ns(motion.time_ns - window_start_ns_) >= kWindow_s - 1e-3) close_window();
+    }
+
+    void print(fmt::ostream& out) const {
+        const Pose T_true = first_true_.inverse() * last_true_;
+        const Pose T_found = first_.T_odom_body.inverse() * last_.T_odom_body;
+        const Vector6 end = difference(T_true, T_found);
+        const auto rms = [&](double sum) { return std::sqrt(sum / std::max(moving_, 1)); };
+        out.print("{:.3f},{:.2f},{:.3f},{},{:.2f},{:.2f},{:.4f},{},{:.3f},{:.2f},{},{},{}",
+                  path_m_,
+                  1e3 * end.head<3>().norm(),
+                  kDegPerRad * end.tail<3>().norm(),
+                  moving_,
+                  nees_ / std::max(moving_, 1),
+                  1e3 * rms(error_m2_),
+                  kDegPerRad * rms(error_rad2_),
+                  standing_,
+                  1e3 * held_m_,
+                  1e3 * jump_m_,
+                  health_[static_cast<std::size_t>(Health::ok)],
+                  health_[static_cast<std::size_t>(Health::degraded)],
+                  health_[static_cast<std::size_t>(Health::lost)]);
+    }
+
+  private:
+    void close_window() {
+        const Pose T_true = window_true_.inverse() * last_true_;
+        const Vector6 error = difference(T_true, T_window_);
+        const Vector6 motion = difference(Pose{}, T_true);
+        if (motion.head<3>().norm() < kStill_m && motion.tail<3>().norm() < kStill_rad) {
+            ++standing_;
+            held_m_ = std::max(held_m_, error.head<3>().norm());
+        } else {
+            ++moving_;
+            nees_ += error.dot(window_covariance_.ldlt().solve(error));
+            error_m2_ += error.head<3>().squaredNorm();
+            error_rad2_ += error.tail<3>().squaredNorm();
+        }
+        window_true_ = last_true_;
+        T_window_ = Pose{};
+        window_covariance_.setZero();
+        window_start_ns_ = last_.time_ns;
+    }
+
+    int frames_ = 0;
+    Pose first_true_;
+    Pose last_true_;
+    Pose window_true_;
+    MotionEstimate first_;
+    MotionEstimate last_;
+    Pose T_window_;
+    Matrix6 window_covariance_ = Matrix6::Zero();
+    std::int64_t window_start_ns_ = 0;
+    double path_m_ = 0.0;
+    double jump_m_ = 0.0;
+    double held_m_ = 0.0;
+    int moving_ = 0;
+    int standing_ = 0;
+    double nees_ = 0.0;
+    double error_m2_ = 0.0;
+    double error_rad2_ = 0.0;
+    std::array<int, 3> health_{};
+};
+
+Status measure(const Case& now, const Plan& plan, Executor& executor, fmt::ostream& out) {
+    CommonOptions common;
+    common.settings = plan.settings;
+    auto settings = load_settings(common);
+    if (!settings) return settings.error();
+    sim::SceneOptions& sim = settings->sim;
+    sim.scene = now.scene;
+    sim.seed = now.seed;
+    if (Status seen = experiments::see_by(now.profile, sim); !seen) return seen.error();
+    sim.frames = plan.frames;
+    auto source = sim::open_scene(sim, &executor);
+    if (!source) return source.error();
+    auto pipeline = pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor);
+    if (!pipeline) return pipeline.error();
+
+    const sim::SceneTruth& truth = (*source)->truth();
+    const auto true_pose = [&](std::int64_t time_ns) {
+        const auto at = std::lower_bound(
+            truth.trajectory.begin(),
+            truth.trajectory.end(),
+            time_ns,
+            [](const StampedPose& pose, std::int64_t stamp) { return pose.time_ns < stamp; });
+        return (at == truth.trajectory.end() ? truth.trajectory.back() : *at).T_world_body;
+    };
+    Tally tally;
+    const auto follow = [&](const StereoFrame& frame) {
+        const FrameReport report = pipeline->process(frame, Work::odometry);
+        tally.add(report.motion, true_pose(frame.time_ns));
+    };
+    std::vector<StereoFrame> first;
+    bool aligned = false;
+    while (true) {
+        auto frame = (*source)->next();
+        if (!frame) return frame.error();
+        if (*frame && !aligned) first.push_back(std::move(**frame));
+        if (!aligned && (!*frame || first.size() == pipeline::Pipeline::kAlignmentFrames)) {
+            pipeline->align(first);
+            for (const StereoFrame& each : first) follow(each);
+            aligned = true;
+        } else if (*frame && aligned) {
+            follow(**frame);
+        }
+        if (!*frame) break;
+    }
+    out.print("{},{},{},", now.scene, now.seed, now.profile);
+    tally.print(out);
+    out.print("\n");
+    out.flush();
+    return {};
+}
+
+std::vector<std::string> words_of(const std::string& list) {
+    std::vector<std::string> words;
+    for (const std::string_view word : io::split(list, ",")) words.emplace_back(word);
+    return words;
+}
+
+Result<Plan> plan_of(const std::vector<std::string>& words) {
+    if (words.size() < 2)
+        return usage_error(
+            "odometry_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES "
+            "[KEY=VALUE...]]]]]");
+    Plan plan;
+    plan.file = words[0];
+    plan.scenes = words_of(words[1]);
+    if (words.size() > 2) plan.first_seed = std::strtoull(words[2].c_str(), nullptr, 10);
+    if (words.size() > 3) plan.seeds = std::strtoull(words[3].c_str(), nullptr, 10);
+    if (words.size() > 4) plan.profiles = words_of(words[4]);
+    if (words.size() > 5) plan.frames = std::atoi(words[5].c_str());
+    if (words.size() > 6) plan.settings.assign(words.begin() + 6, words.end());
+    return plan;
+}
+
+int measure_all(const std::vector<std::string>& words) {
+    const auto plan = plan_of(words);
+    if (!plan) return report(plan.error());
+    const auto executor = make_executor({});
+    auto out = fmt::output_file(plan->file);
+    out.print(
+        "scene,seed,profile,path_m,end_mm,end_deg,moving,nees,rpe_mm,rpe_deg,standing,held_mm,"
+        "jump_mm,ok,degraded,lost\n");
+    for (const std::string& profile : plan->profiles) {
+        for (const std::string& scene : plan->scenes) {
+            for (std::uint64_t k = 0; k < plan->seeds; ++k) {
+                const auto done =
+                    measure({scene, plan->first_seed + k, profile}, *plan, *executor, out);
+                if (!done) return report(done.error());
+            }
+        }
+    }
+    return kExitOk;
+}
+
+}  // namespace
+}  // namespace surefoot::app
+
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    return surefoot::app::measure_all({argv + 1, argv + argc});
+}
