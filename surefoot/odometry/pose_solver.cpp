@@ -54,24 +54,61 @@ double huber_weight(double norm_sigmas, double limit_sigmas) {
     return norm_sigmas <= limit_sigmas ? 1.0 : limit_sigmas / norm_sigmas;
 }
 
-/// Normal equations over all matches at one pose.
-struct NormalEquations {
-    Matrix6 H = Matrix6::Zero();
-    Vector6 b = Vector6::Zero();
-    double cost = 0.0;       ///< robust
-    double chi2 = 0.0;       ///< of the gated-in residuals, not robust
-    double square_px = 0.0;  ///< of their pixel components
-    int rows = 0;
-    int inliers = 0;
-};
+/// True when the information fixes all six directions, judged without units.
+bool well_conditioned(const Matrix6& H) {
+    const Vector6 diagonal = H.diagonal();
+    if (!(diagonal.minCoeff() > 0.0)) return false;
+    const Vector6 scale = diagonal.cwiseSqrt().cwiseInverse();
+    const Matrix6 scaled = scale.asDiagonal() * H * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(scaled, Eigen::EigenvaluesOnly);
+    return eigen.info() == Eigen::Success &&
+           eigen.eigenvalues().minCoeff() > kMinConditioning * eigen.eigenvalues().maxCoeff();
+}
 
-NormalEquations build(const camera::RectifiedRig& rig,
-                      const PoseSolverConfig& config,
-                      std::span<const PointMatch> matches,
-                      const Pose& T,
-                      double gate_sigmas,
-                      std::vector<std::uint8_t>& inlier) {
-    NormalEquations normal;
+/// Levenberg-Marquardt at a fixed gate; false when the points do not fix the pose.
+bool iterate(const camera::RectifiedRig& rig,
+             const PoseSolverConfig& config,
+             std::span<const PointMatch> matches,
+             double gate_sigmas,
+             Pose& T,
+             std::vector<std::uint8_t>& inlier) {
+    std::vector<std::uint8_t> trial_inlier(matches.size());
+    VisualNormalEquations normal =
+        visual_normal_equations(rig, config, matches, T, gate_sigmas, inlier);
+    double damping = 1e-6;
+    for (int iteration = 0; iteration < config.iterations; ++iteration) {
+        if (normal.inliers < kMinimalPoseMatches) return false;
+        Matrix6 damped = normal.H;
+        damped.diagonal() *= 1.0 + damping;
+        const Vector6 step = damped.ldlt().solve(normal.b);
+        if (!step.allFinite()) return false;
+        const Pose trial = perturbed(T, step);
+        const VisualNormalEquations next =
+            visual_normal_equations(rig, config, matches, trial, gate_sigmas, trial_inlier);
+        if (next.cost <= normal.cost) {
+            const bool converged = normal.cost - next.cost <= 1e-9 * normal.cost;
+            T = trial;
+            normal = next;
+            inlier.swap(trial_inlier);
+            damping *= 0.1;
+            if (converged) break;
+        } else {
+            damping = std::max(damping, 1e-6) * 20.0;
+            if (damping > 1e4) break;
+        }
+    }
+    return normal.inliers >= kMinimalPoseMatches;
+}
+
+}  // namespace
+
+VisualNormalEquations visual_normal_equations(const camera::RectifiedRig& rig,
+                                              const PoseSolverConfig& config,
+                                              std::span<const PointMatch> matches,
+                                              const Pose& T,
+                                              double gate_sigmas,
+                                              std::span<std::uint8_t> inlier) {
+    VisualNormalEquations normal;
     const Eigen::Matrix3d R_camera_world = T.R().transpose();
     for (std::size_t i = 0; i < matches.size(); ++i) {
         inlier[i] = 0;
@@ -99,52 +136,6 @@ NormalEquations build(const camera::RectifiedRig& rig,
     return normal;
 }
 
-/// True when the information fixes all six directions, judged without units.
-bool well_conditioned(const Matrix6& H) {
-    const Vector6 diagonal = H.diagonal();
-    if (!(diagonal.minCoeff() > 0.0)) return false;
-    const Vector6 scale = diagonal.cwiseSqrt().cwiseInverse();
-    const Matrix6 scaled = scale.asDiagonal() * H * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(scaled, Eigen::EigenvaluesOnly);
-    return eigen.info() == Eigen::Success &&
-           eigen.eigenvalues().minCoeff() > kMinConditioning * eigen.eigenvalues().maxCoeff();
-}
-
-/// Levenberg-Marquardt at a fixed gate; false when the points do not fix the pose.
-bool iterate(const camera::RectifiedRig& rig,
-             const PoseSolverConfig& config,
-             std::span<const PointMatch> matches,
-             double gate_sigmas,
-             Pose& T,
-             std::vector<std::uint8_t>& inlier) {
-    std::vector<std::uint8_t> trial_inlier(matches.size());
-    NormalEquations normal = build(rig, config, matches, T, gate_sigmas, inlier);
-    double damping = 1e-6;
-    for (int iteration = 0; iteration < config.iterations; ++iteration) {
-        if (normal.inliers < kMinimalPoseMatches) return false;
-        Matrix6 damped = normal.H;
-        damped.diagonal() *= 1.0 + damping;
-        const Vector6 step = damped.ldlt().solve(normal.b);
-        if (!step.allFinite()) return false;
-        const Pose trial = perturbed(T, step);
-        const NormalEquations next = build(rig, config, matches, trial, gate_sigmas, trial_inlier);
-        if (next.cost <= normal.cost) {
-            const bool converged = normal.cost - next.cost <= 1e-9 * normal.cost;
-            T = trial;
-            normal = next;
-            inlier.swap(trial_inlier);
-            damping *= 0.1;
-            if (converged) break;
-        } else {
-            damping = std::max(damping, 1e-6) * 20.0;
-            if (damping > 1e4) break;
-        }
-    }
-    return normal.inliers >= kMinimalPoseMatches;
-}
-
-}  // namespace
-
 PoseSolution refine_pose(const camera::RectifiedRig& rig,
                          const PoseSolverConfig& config,
                          std::span<const PointMatch> matches,
@@ -157,8 +148,8 @@ PoseSolution refine_pose(const camera::RectifiedRig& rig,
         if (!iterate(rig, config, matches, widening * config.gate_sigmas, T, solution.inlier))
             return solution;
     }
-    const NormalEquations normal =
-        build(rig, config, matches, T, config.gate_sigmas, solution.inlier);
+    const VisualNormalEquations normal =
+        visual_normal_equations(rig, config, matches, T, config.gate_sigmas, solution.inlier);
     if (normal.inliers < kMinimalPoseMatches || !well_conditioned(normal.H)) return solution;
     solution.residual_scale = std::sqrt(normal.chi2 / std::max(normal.rows - 6, 1));
     const double scale = std::max(solution.residual_scale, kMinResidualScale);

@@ -63,6 +63,26 @@ inline constexpr int kMinimalPoseMatches = 5;
                                        std::span<const PointMatch> matches,
                                        const Pose& T_world_camera_start);
 
+/// Normal equations of all matches at one pose, H step = b for a perturbation of the camera pose.
+struct VisualNormalEquations {
+    Matrix6 H = Matrix6::Zero();
+    Vector6 b = Vector6::Zero();
+    double cost = 0.0;       ///< robust
+    double chi2 = 0.0;       ///< of the gated-in residuals, not robust
+    double square_px = 0.0;  ///< of their pixel components
+    int rows = 0;
+    int inliers = 0;
+};
+
+/// One step of `refine_pose`, for solvers that know more than the points; `inlier` has one entry
+/// per match and is overwritten.
+[[nodiscard]] VisualNormalEquations visual_normal_equations(const camera::RectifiedRig& rig,
+                                                            const PoseSolverConfig& config,
+                                                            std::span<const PointMatch> matches,
+                                                            const Pose& T_world_camera,
+                                                            double gate_sigmas,
+                                                            std::span<std::uint8_t> inlier);
+
 /// The covariance shrinks with small residuals down to this share of the configured sigmas only.
 inline constexpr double kMinResidualScale = 0.5;
 
