@@ -26,14 +26,15 @@ enum class Health : std::uint8_t { ok, degraded, lost };
 /// Why the health is not ok; the first that applies is the reason reported.
 enum class HealthReason : std::uint8_t {
     none,
-    first_frame,     ///< nothing to compare with yet
-    few_tracks,      ///< too few points agree on one motion
-    poor_geometry,   ///< points too clustered to fix all six degrees of freedom
-    blur,            ///< image too blurred or too dark for corners
-    large_residual,  ///< tracks disagree with the motion more than their noise allows
-    time_gap,        ///< the source skipped longer than the tracker can bridge
-    repeated_image,  ///< the same image once more: nothing was seen at this instant
-    torn_image,      ///< parts of two images in one
+    first_frame,       ///< nothing to compare with yet
+    few_tracks,        ///< too few points agree on one motion
+    poor_geometry,     ///< points too clustered to fix all six degrees of freedom
+    blur,              ///< image too blurred or too dark for corners
+    large_residual,    ///< tracks disagree with the motion more than their noise allows
+    time_gap,          ///< the source skipped longer than the tracker can bridge
+    repeated_image,    ///< the same image once more: nothing was seen at this instant
+    torn_image,        ///< parts of two images in one
+    imu_disagreement,  ///< the IMU contradicts what is seen; vision goes on alone
 };
 [[nodiscard]] const char* to_string(HealthReason reason) noexcept;
 

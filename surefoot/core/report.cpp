@@ -25,6 +25,7 @@ const char* to_string(HealthReason reason) noexcept {
         case HealthReason::time_gap: return "time_gap";
         case HealthReason::repeated_image: return "repeated_image";
         case HealthReason::torn_image: return "torn_image";
+        case HealthReason::imu_disagreement: return "imu_disagreement";
     }
     return "unknown";
 }

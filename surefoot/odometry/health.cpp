@@ -33,6 +33,7 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
     if (e.residual_px > config.ok_residual_px)
         return {Health::degraded, because(HealthReason::large_residual)};
     if (gap) return {Health::degraded, HealthReason::time_gap};
+    if (e.imu_disagrees) return {Health::degraded, HealthReason::imu_disagreement};
     return {Health::ok, HealthReason::none};
 }
 

@@ -17,6 +17,7 @@ struct HealthEvidence {
     double translation_sigma_m = 0.0;  ///< weakest direction
     double rotation_sigma_rad = 0.0;   ///< weakest direction
     double scene_depth_m = 0.0;        ///< median of the inliers; 0 = unknown
+    bool imu_disagrees = false;        ///< for some time
 };
 
 struct HealthVerdict {

@@ -193,25 +193,25 @@ struct PointsFactor {
     }
 };
 
-struct StandingFactor {
-    const StandingEvidence& standing;
+struct PoseFactor {
+    const PoseEvidence& known;
+    Matrix6 information = inverse_of<6>(known.covariance);
 
     void add_to(const Pair& at, Normal& n) const {
-        const Vector6 error = difference(standing.T_odom_imu, at.present.T_odom_imu);
-        Eigen::Matrix<double, 9, 1> residual;
-        residual << error, at.present.velocity_m_s;
-        Eigen::Matrix<double, 9, kAll> J = Eigen::Matrix<double, 9, kAll>::Zero();
+        const Vector6 error = difference(known.T_odom_imu, at.present.T_odom_imu);
+        Eigen::Matrix<double, 6, kAll> J = Eigen::Matrix<double, 6, kAll>::Zero();
         J.block<3, 3>(0, kPresent) =
-            (standing.T_odom_imu.rotation.conjugate() * at.present.T_odom_imu.rotation)
+            (known.T_odom_imu.rotation.conjugate() * at.present.T_odom_imu.rotation)
                 .toRotationMatrix();
         J.block<3, 3>(3, kPresent + 3) = inverse_right_jacobian_so3(error.tail<3>());
-        J.block<3, 3>(6, kPresent + kVelocityAt).setIdentity();
-        Vector9 sigma;
-        sigma.head<3>().setConstant(standing.translation_sigma_m);
-        sigma.segment<3>(3).setConstant(standing.rotation_sigma_rad);
-        sigma.tail<3>().setConstant(standing.speed_sigma_m_s);
-        const Matrix9 information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
-        n.add<9>(residual, J, information);
+        n.add<6>(error, J, information);
+        if (!known.standing_sigma_m_s) return;
+        const double weight = 1.0 / (*known.standing_sigma_m_s * *known.standing_sigma_m_s);
+        const Eigen::Vector3d& velocity = at.present.velocity_m_s;
+        constexpr int kAt = kPresent + kVelocityAt;
+        n.H.diagonal().segment<3>(kAt).array() += weight;
+        n.b.segment<3>(kAt) -= weight * velocity;
+        n.cost += weight * velocity.squaredNorm();
     }
 };
 
@@ -372,10 +372,10 @@ InertialSolution fuse(const InertialModel& model,
 InertialSolution fuse(const InertialModel& model,
                       const InertialBelief& before,
                       const ImuMotion& motion,
-                      const StandingEvidence& standing) {
+                      const PoseEvidence& known) {
     constexpr int kIterations = 8;  // all but linear
-    StandingFactor factor{standing};
-    return solve(model, before, motion, standing.T_odom_imu, kIterations, factor);
+    PoseFactor factor{known};
+    return solve(model, before, motion, known.T_odom_imu, kIterations, factor);
 }
 
 InertialBelief with_vision_counted_once(const InertialBelief& belief,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -56,12 +57,11 @@ struct VisualEvidence {
     double residual_scale = 1.0;  ///< the pixel noise is this many times the configured one
 };
 
-/// The machine stands: the pose is one that was known already and nothing moves.
-struct StandingEvidence {
+/// A pose that is known by itself, and the speed where the machine stands.
+struct PoseEvidence {
     Pose T_odom_imu;
-    double translation_sigma_m = 2e-4;
-    double rotation_sigma_rad = 1e-4;
-    double speed_sigma_m_s = 5e-3;
+    Matrix6 covariance = Matrix6::Zero();
+    std::optional<double> standing_sigma_m_s;  ///< the velocity is zero up to this
 };
 
 struct InertialSolution {
@@ -91,11 +91,11 @@ struct InertialSolution {
                                     const ImuMotion& motion,
                                     const VisualEvidence& seen,
                                     const Pose& T_odom_camera_start);
-/// The same with the knowledge that the machine stands: this observes the gyroscope's bias.
+/// The same with a pose instead of points; one that stands shows the gyroscope's bias.
 [[nodiscard]] InertialSolution fuse(const InertialModel& model,
                                     const InertialBelief& before,
                                     const ImuMotion& motion,
-                                    const StandingEvidence& standing);
+                                    const PoseEvidence& known);
 
 /// The belief to go on with after a frame whose vision alone knows the pose up to
 /// `visual_covariance` (of the IMU's pose). Neighbouring frames see the same landmarks with the

@@ -354,6 +354,34 @@ TEST(InertialSolver, BeliefsAreHonest) {
     EXPECT_NEAR(nees_blind_pose, 6.0, 1.2);
 }
 
+/// A pose with the information of the points is as good as the points, robust weights apart.
+TEST(InertialSolver, APoseWithItsCovarianceIsAsGoodAsItsPoints) {
+    TwoFrames f(21, 60);
+    f.config.huber_sigmas = f.config.gate_sigmas = 20.0;
+    f.config.iterations = 60;
+    const Pose T_start = f.truth_after.T_odom_imu * f.model.T_imu_camera;
+    const auto visual = refine_pose(f.rig, f.config, f.matches, T_start);
+    ASSERT_TRUE(visual.found);
+    const Pose T_camera_imu = f.model.T_imu_camera.inverse();
+    const double scale = std::max(visual.residual_scale, kMinResidualScale);
+    const auto points =
+        fuse(f.model, f.before, f.motion, {f.rig, f.config, f.matches, scale}, T_start);
+    const auto pose = fuse(f.model,
+                           f.before,
+                           f.motion,
+                           PoseEvidence{visual.T_world_camera * T_camera_imu,
+                                        carried_covariance(visual.covariance, T_camera_imu),
+                                        std::nullopt});
+    ASSERT_TRUE(points.found && pose.found);
+    const Vector17 sigma = points.belief.covariance.diagonal().cwiseSqrt();
+    const Vector17 off = difference(points.belief.state, pose.belief.state).cwiseQuotient(sigma);
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 0.03) << off.transpose();
+    const Matrix17 change = sigma.cwiseInverse().asDiagonal() *
+                            (points.belief.covariance - pose.belief.covariance) *
+                            sigma.cwiseInverse().asDiagonal();
+    EXPECT_LT(change.cwiseAbs().maxCoeff(), 0.03);
+}
+
 TEST(InertialSolver, StandingShowsTheBiasOfTheGyroscope) {
     const InertialModel model = test_model();
     Rng rng(3);
@@ -370,11 +398,14 @@ TEST(InertialSolver, StandingShowsTheBiasOfTheGyroscope) {
     InertialBelief belief;
     belief.covariance = (3.0 * usual_sigmas()).cwiseAbs2().asDiagonal();
     belief.state.T_odom_imu = truth.T_odom_imu;
+    Vector6 sigma_held;
+    sigma_held << 2e-4, 2e-4, 2e-4, 1e-4, 1e-4, 1e-4;
+    const Matrix6 held = sigma_held.cwiseAbs2().asDiagonal();
     for (int frame = 0; frame < 40; ++frame) {
         const auto solution = fuse(model,
                                    belief,
                                    motion_of(samples, frame, model.noise, belief.state.bias),
-                                   StandingEvidence{truth.T_odom_imu});
+                                   PoseEvidence{truth.T_odom_imu, held, 5e-3});
         ASSERT_TRUE(solution.found);
         belief = solution.belief;
     }

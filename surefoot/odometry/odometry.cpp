@@ -8,6 +8,7 @@
 #include "surefoot/core/time.hpp"
 #include "surefoot/odometry/front_end.hpp"
 #include "surefoot/odometry/health.hpp"
+#include "surefoot/odometry/inertial_tracker.hpp"
 #include "surefoot/odometry/still_detector.hpp"
 
 namespace surefoot::odometry {
@@ -49,7 +50,9 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 struct Odometry::Impl {
-    Impl(const OdometryConfig& c, const camera::Rectifier& r)
+    Impl(const OdometryConfig& c,
+         const camera::Rectifier& r,
+         const std::optional<camera::ImuMount>& imu)
         : config(c),
           rectifier(r),
           front(front_end_config(c, r.rig()), r),
@@ -57,6 +60,8 @@ struct Odometry::Impl {
           still(c.still_parallax_px) {
         solver.sigma_px = config.sigma_px;
         T_odom_camera = r.rig().T_body_camera;
+        if (imu && config.imu.enabled)
+            inertial.emplace(config.imu, imu->T_body_imu.inverse() * r.rig().T_body_camera);
     }
 
     MotionEstimate update(const StereoFrame& frame, Executor& executor);
@@ -68,8 +73,11 @@ struct Odometry::Impl {
     MotionEstimate lost(const StereoFrame& frame,
                         const HealthEvidence& evidence,
                         Executor& executor);
+    [[nodiscard]] Matrix6 unseen_since_last(const CameraFix& reckoned) const;
     PoseSolution solve(const Pose& predicted, Executor& executor);
     PoseSolution rough_pose(const Pose& predicted, Executor& executor);
+    /// What the IMU makes of the pose that vision found; the tracks are its inliers.
+    CameraFix improved(const PoseSolution& visual, double scene_depth_m);
     [[nodiscard]] HealthEvidence examine(const StereoFrame& frame, const PoseSolution& pose) const;
     [[nodiscard]] double scene_depth_m(const PoseSolution& pose) const;
     [[nodiscard]] Pose predict(double dt_s) const;
@@ -92,6 +100,7 @@ struct Odometry::Impl {
     FrontEnd front;
     LandmarkMap map;
     StillDetector still;
+    std::optional<InertialTracker> inertial;
     PoseSolverConfig solver;
 
     Pose T_odom_camera;                           ///< as published last
@@ -108,8 +117,10 @@ struct Odometry::Impl {
     int keyframe_tracks = 0;
 };
 
-Odometry::Odometry(const OdometryConfig& config, const camera::Rectifier& rectifier)
-    : impl_(std::make_unique<Impl>(config, rectifier)) {}
+Odometry::Odometry(const OdometryConfig& config,
+                   const camera::Rectifier& rectifier,
+                   const std::optional<camera::ImuMount>& imu)
+    : impl_(std::make_unique<Impl>(config, rectifier, imu)) {}
 Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 Odometry& Odometry::operator=(Odometry&&) noexcept = default;
@@ -128,6 +139,7 @@ MotionEstimate Odometry::update(const StereoFrame& frame, Executor& executor) {
 
 MotionEstimate Odometry::Impl::update(const StereoFrame& frame, Executor& executor) {
     const bool loaded = front.load(frame, executor);
+    if (inertial) inertial->advance(frame.imu, frame.time_ns);
     if (loaded && !started) return begin(frame, executor);
     PoseSolution pose;
     if (loaded && !map.empty())
@@ -142,6 +154,7 @@ MotionEstimate Odometry::Impl::begin(const StereoFrame& frame, Executor& executo
     started = true;
     T_odom_good = T_odom_camera;
     good_time_ns = frame.time_ns;
+    if (inertial) inertial->stand({T_odom_camera, Matrix6::Zero()});
     sharpness = front.left().sharpness();
     const bool seeded = seed_landmarks(executor);
     MotionEstimate estimate = publish(T_odom_camera, Matrix6::Zero(), Matrix6::Zero());
@@ -167,6 +180,8 @@ bool Odometry::Impl::seed_landmarks(Executor& executor) {
 }
 
 Pose Odometry::Impl::predict(double dt_s) const {
+    if (inertial)
+        if (const auto predicted = inertial->predicted()) return *predicted;
     if (!(dt_s > 0.0 && dt_s <= config.max_gap_s)) return T_odom_camera;
     return perturbed(T_odom_camera, velocity * dt_s);
 }
@@ -208,6 +223,7 @@ HealthEvidence Odometry::Impl::examine(const StereoFrame& frame, const PoseSolut
     evidence.tracks = static_cast<int>(front.tracks().size());
     evidence.gap_s = seconds_from_ns(frame.time_ns - time_ns);
     evidence.sharpness_ratio = front.left().sharpness() / std::max(sharpness, 1e-9);
+    evidence.imu_disagrees = inertial && inertial->disagrees();
     if (!pose.found) return evidence;
     evidence.inliers = pose.inliers;
     evidence.residual_px = pose.residual_px;
@@ -236,7 +252,6 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
                                      const HealthEvidence& evidence,
                                      Executor& executor) {
     const double dt_s = seconds_from_ns(frame.time_ns - good_time_ns);
-    front.select(pose.inlier);
     Pose T = pose.T_world_camera;
     Matrix6 covariance = pose.covariance;
     const bool standing =
@@ -245,12 +260,18 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
         T = still.T_odom_camera();
         // The error of a held pose is one error, not one per frame: 1/n^2 adds up to 1.64 of it.
         covariance /= static_cast<double>(still.held()) * still.held();
+        if (inertial) inertial->stand({T, pose.covariance});
+    } else if (inertial) {
+        const CameraFix fix = improved(pose, evidence.scene_depth_m);
+        T = fix.T_odom_camera;
+        covariance = fix.covariance;
     }
     frames_since_keyframe += standing ? 0 : 1;
     if (wants_keyframe()) {
         const Pose adjusted = make_keyframe(T, executor);
         if (!standing) T = adjusted;
     }
+    if (inertial) inertial->place(T);
     front.keep();
     velocity = dt_s > 0.0 ? Vector6(difference(T_odom_good, T) / dt_s) : Vector6::Zero();
     if (standing) covariance_camera.setZero();
@@ -277,17 +298,31 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
     return estimate;
 }
 
+CameraFix Odometry::Impl::improved(const PoseSolution& visual, double scene_depth_m) {
+    const double scale = std::max(visual.residual_scale, kMinResidualScale);
+    const VisualEvidence seen{rectifier.rig(), solver, front.matches(map), scale};
+    const Matrix6 unmodelled =
+        systematic_covariance(T_odom_good, visual.T_world_camera, scene_depth_m);
+    return inertial->see(seen, visual, unmodelled)
+        .value_or(CameraFix{visual.T_world_camera, visual.covariance});
+}
+
 MotionEstimate Odometry::Impl::lost(const StereoFrame& frame,
                                     const HealthEvidence& evidence,
                                     Executor& executor) {
     const double before_s = std::max(seconds_from_ns(time_ns - good_time_ns), 0.0);
     const double after_s = std::max(seconds_from_ns(frame.time_ns - good_time_ns), before_s);
-    const Matrix6 unseen = lost_covariance(config, before_s, after_s);
-    lost_body += unseen;
-    // Coast: the velocity decays, the pose comes to a halt.
     const double dt_s = after_s - before_s;
-    const Pose T = predict(dt_s);
-    velocity *= std::exp(-dt_s / kCoastTime_s);
+    const std::optional<CameraFix> reckoned = inertial ? inertial->reckon() : std::nullopt;
+    const Matrix6 unseen =
+        reckoned ? unseen_since_last(*reckoned) : lost_covariance(config, before_s, after_s);
+    lost_body += unseen;
+    const Pose T = reckoned ? reckoned->T_odom_camera : predict(dt_s);
+    if (reckoned && dt_s > 0.0) {
+        velocity = difference(T_odom_camera, T) / dt_s;
+    } else {  // coast: the velocity decays, the pose comes to a halt
+        velocity *= std::exp(-dt_s / kCoastTime_s);
+    }
     covariance_camera.setZero();
     MotionEstimate estimate = publish(T, Matrix6::Zero(), unseen);
     const HealthVerdict verdict = judge(config, evidence);
@@ -297,6 +332,16 @@ MotionEstimate Odometry::Impl::lost(const StereoFrame& frame,
     estimate.inliers = evidence.inliers;
     if ((after_s > config.bridge_s || map.empty()) && front.loaded()) seed_landmarks(executor);
     return estimate;
+}
+
+/// What the last frame's motion adds to `lost_body` when the motion since the last good frame is as
+/// sure as `reckoned` says.
+Matrix6 Odometry::Impl::unseen_since_last(const CameraFix& reckoned) const {
+    const Matrix6 added =
+        camera_to_body_covariance(reckoned.covariance, rectifier.rig().T_body_camera) - lost_body;
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(added);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+           eigen.eigenvectors().transpose();
 }
 
 bool Odometry::Impl::wants_keyframe() const {

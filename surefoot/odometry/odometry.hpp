@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/config.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/frame.hpp"
+#include "surefoot/odometry/inertial_config.hpp"
 
 namespace surefoot::odometry {
 
@@ -31,6 +33,7 @@ struct OdometryConfig {
     double landmark_s = 1.0;
     double lost_speed_m_s = 0.5;
     double lost_turn_rad_s = 0.5;
+    InertialConfig imu;
     void describe(ConfigVisitor& visitor);
 };
 
@@ -43,11 +46,19 @@ struct OdometryConfig {
 /// camera stopped keeps that pose. While lost the pose coasts to a halt with growing covariance,
 /// and the landmarks are kept for `bridge_s` to find the way back; then they are seeded anew.
 ///
+/// With an IMU the frames' samples predict the motion, and every pose comes from the points and the
+/// preintegrated readings together (`inertial_solver`), the first second apart, from which gravity,
+/// velocity and the gyroscope's bias are found. Odom is not turned by what the IMU says about
+/// gravity. While lost the IMU carries the pose for `imu.dead_reckoning_s`. When it contradicts
+/// vision for some time, vision goes on alone and the health is degraded.
+///
 /// `update` is serial apart from what it gives to the executor; any executor gives the same bytes.
 class Odometry {
   public:
-    /// `rectifier` must outlive the odometry.
-    Odometry(const OdometryConfig& config, const camera::Rectifier& rectifier);
+    /// `rectifier` must outlive the odometry. Without `imu` the frames' samples are not used.
+    Odometry(const OdometryConfig& config,
+             const camera::Rectifier& rectifier,
+             const std::optional<camera::ImuMount>& imu = std::nullopt);
     ~Odometry();
     Odometry(Odometry&&) noexcept;
     Odometry& operator=(Odometry&&) noexcept;

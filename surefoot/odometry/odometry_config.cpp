@@ -47,6 +47,59 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                    0.01,
                    100.0,
                    "one sigma of the unseen turn rate while lost");
+    visitor.group("imu", imu);
+}
+
+void InertialConfig::describe(ConfigVisitor& visitor) {
+    visitor.boolean("enabled", enabled, "use the IMU where there is one");
+    visitor.number("gyro_density_rad_s_sqrt_hz",
+                   noise.gyro_density_rad_s_sqrt_hz,
+                   1e-6,
+                   1.0,
+                   "white noise of the gyroscope, with what else is wrong with it on a machine");
+    visitor.number("accel_density_m_s2_sqrt_hz",
+                   noise.accel_density_m_s2_sqrt_hz,
+                   1e-5,
+                   10.0,
+                   "white noise of the accelerometer, as above");
+    visitor.number("gyro_walk_rad_s2_sqrt_hz",
+                   noise.gyro_walk_rad_s2_sqrt_hz,
+                   1e-7,
+                   1.0,
+                   "random walk of the gyroscope's bias");
+    visitor.number("accel_walk_m_s3_sqrt_hz",
+                   noise.accel_walk_m_s3_sqrt_hz,
+                   1e-6,
+                   10.0,
+                   "random walk of the accelerometer's bias");
+    visitor.number("gyro_range_rad_s",
+                   limits.gyro_range_rad_s,
+                   0.0,
+                   1e3,
+                   "readings at it are not used; 0 = unknown");
+    visitor.number("accel_range_m_s2",
+                   limits.accel_range_m_s2,
+                   0.0,
+                   1e4,
+                   "readings at it are not used; 0 = unknown");
+    visitor.number("max_gap_s", limits.max_gap_s, 1e-3, 1.0, "longest time without a sample");
+    visitor.number("gravity_m_s2", gravity_m_s2, 9.7, 9.9, "its magnitude where the machine is");
+    visitor.number("gyro_bias_sigma_rad_s",
+                   gyro_bias_sigma_rad_s,
+                   1e-5,
+                   1.0,
+                   "what the start leaves open of the gyroscope's bias");
+    visitor.number("accel_bias_sigma_m_s2",
+                   accel_bias_sigma_m_s2,
+                   1e-4,
+                   5.0,
+                   "bias of the accelerometer when it starts");
+    visitor.number("start_s", start_s, 0.2, 10.0, "time of vision from which the IMU starts");
+    visitor.number("dead_reckoning_s",
+                   dead_reckoning_s,
+                   0.0,
+                   5.0,
+                   "how long the IMU alone carries the pose while lost");
 }
 
 }  // namespace surefoot::odometry

@@ -104,7 +104,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
       clock_(clock),
       nominal_rig_(rig),
       rectifier_(std::move(rectifier)),
-      odometry_(config.odometry, *rectifier_),
+      odometry_(config.odometry, *rectifier_, rig.imu),
       matcher_(stereo::make_matcher(config.stereo)),
       map_(config.elevation),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
@@ -173,7 +173,7 @@ void Pipeline::trim_right_eye(std::span<const StereoFrame> frames) {
         if (!better) return;
         trim_ = found;
         rectifier_ = std::make_unique<camera::Rectifier>(std::move(better).value());
-        odometry_ = odometry::Odometry(config_.odometry, *rectifier_);
+        odometry_ = odometry::Odometry(config_.odometry, *rectifier_, imu_mount_);
     }
 }
 
