@@ -257,6 +257,30 @@ TEST(InertialOdometry, BadSamplesAreLeftOut) {
     }
 }
 
+/// Frames that the camera repeated or tore are not tracked, but their samples count.
+TEST(InertialOdometry, SkippedFramesLeaveTheirSamples) {
+    double error_m[2] = {0.0, 0.0};
+    for (const bool told : {false, true}) {
+        Machine machine;
+        Follower run(machine, true);
+        Serial serial;
+        for (int i = 0; i < 49; ++i) {
+            StereoFrame frame = machine.frame(i);
+            if (i == 40 || i == 41) {
+                if (told) run.odometry.skip(frame);
+                continue;
+            }
+            if (i > 43) blacken(frame);  // before another start would be over
+            const auto m = run.odometry.update(frame, serial);
+            error_m[told ? 1 : 0] = run.error_m(m, machine.truth(i));
+        }
+    }
+    std::printf(
+        "after skipping: %.1f mm, samples lost %.1f mm\n", 1e3 * error_m[1], 1e3 * error_m[0]);
+    EXPECT_LT(error_m[1], 0.005);
+    EXPECT_GT(error_m[0], 2.0 * error_m[1]);
+}
+
 /// Where there are no samples, or the IMU is switched off, an IMU's mount changes no byte.
 TEST(InertialOdometry, WithoutSamplesNothingChanges) {
     Machine machine;

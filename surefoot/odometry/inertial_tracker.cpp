@@ -22,6 +22,8 @@ constexpr double kMostDiscord_rad = 0.01;
 constexpr double kDiscordShare = 0.05;    ///< of a frame in what is known of it
 constexpr double kStartSpeed_m_s = 0.05;  ///< sigma of the first velocity
 constexpr double kStartTilt_rad = 0.005;  ///< sigma of gravity's direction, the bias apart
+/// Two seconds of a fast IMU; an interval that needs more has a gap.
+constexpr int kMostSamples = 4000;
 /// Sigma [m, rad] of a pose that is exact by definition.
 constexpr double kExact = 1e-6;
 /// Of a camera that stands: its pose may still creep by what the detector of standing lets pass.
@@ -38,8 +40,15 @@ double squared_distance(const Vector6& off, const Matrix6& covariance) {
 InertialTracker::InertialTracker(const InertialConfig& config, const Pose& T_imu_camera)
     : config_(config), model_{T_imu_camera, config.noise, config.gravity_m_s2} {}
 
-void InertialTracker::advance(std::span<const ImuSample> samples, std::int64_t time_ns) {
+void InertialTracker::keep(std::span<const ImuSample> samples) {
     samples_.insert(samples_.end(), samples.begin(), samples.end());
+    // A camera that hangs for good must not fill the memory.
+    if (std::ssize(samples_) > kMostSamples)
+        samples_.erase(samples_.begin(), samples_.end() - kMostSamples);
+}
+
+void InertialTracker::advance(std::span<const ImuSample> samples, std::int64_t time_ns) {
+    keep(samples);
     step_ = {};
     if (has_time_) {
         const ImuBias bias = belief_ ? belief_->state.bias : ImuBias{};

@@ -32,6 +32,8 @@ class InertialTracker {
 
     /// Takes the samples up to a frame at `time_ns`.
     void advance(std::span<const ImuSample> samples, std::int64_t time_ns);
+    /// Takes samples of a frame that will not be asked about.
+    void keep(std::span<const ImuSample> samples);
     /// Where the IMU says the camera is in this frame; nothing before the start.
     [[nodiscard]] std::optional<Pose> predicted() const;
     /// The pose from vision and the IMU together; nothing when vision has to do alone. `seen` holds

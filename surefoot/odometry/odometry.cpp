@@ -137,6 +137,10 @@ MotionEstimate Odometry::update(const StereoFrame& frame, Executor& executor) {
     return estimate;
 }
 
+void Odometry::skip(const StereoFrame& frame) {
+    if (impl_->inertial) impl_->inertial->keep(frame.imu);
+}
+
 MotionEstimate Odometry::Impl::update(const StereoFrame& frame, Executor& executor) {
     const bool loaded = front.load(frame, executor);
     if (inertial) inertial->advance(frame.imu, frame.time_ns);

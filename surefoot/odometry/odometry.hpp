@@ -67,6 +67,9 @@ class Odometry {
     void start_at(const Pose& T_odom_body);
     /// Follows the frame. Never throws, never jumps; health and reason say what happened.
     [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
+    /// Instead of `update` for a frame whose images are not worth it (repeated, torn): keeps its
+    /// inertial samples for the next one.
+    void skip(const StereoFrame& frame);
 
   private:
     struct Impl;

@@ -186,6 +186,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     report.camera = camera_monitor_.add(frame.arrival);
     if (!frame.arrival.is_new_and_whole()) {
         report.work = Work::odometry;
+        odometry_.skip(frame);
         report.motion = unseen(frame);
         report.known_cells = map_.known_cells();
         return report;
