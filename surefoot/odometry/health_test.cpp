@@ -55,6 +55,11 @@ TEST(Health, EveryReasonHasItsCause) {
     e.gap_s = 1.5;
     expect(e, Health::degraded, HealthReason::time_gap);
     e = good();
+    e.imu_disagrees = true;
+    expect(e, Health::degraded, HealthReason::imu_disagreement);
+    e.residual_px = 2.0;  // what vision says of itself comes first
+    expect(e, Health::degraded, HealthReason::large_residual);
+    e = good();
     e.sharpness_ratio = 0.2;
     expect(e, Health::degraded, HealthReason::blur);
     e.pose_found = false;
