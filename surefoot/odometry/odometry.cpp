@@ -256,6 +256,7 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
                                      const HealthEvidence& evidence,
                                      Executor& executor) {
     const double dt_s = seconds_from_ns(frame.time_ns - good_time_ns);
+    front.select(pose.inlier);
     Pose T = pose.T_world_camera;
     Matrix6 covariance = pose.covariance;
     const bool standing =
