@@ -5,7 +5,8 @@
 //
 // Profiles: see seen_by.hpp. One line a scene, seed and profile:
 //   source                                    what placed odom: plane, imu or assumed
-//   tilt_deg, height_mm                       error of odom's z axis, and of the height of base_link
+//   tilt_deg, height_mm                       error of odom's z axis, and of the height of
+//   base_link
 //                                             over the ground, from the first ten frames
 //   frames, accepted                          frames after them, with a plane that was accepted
 //   tilt_p50_deg, tilt_p90_deg, height_p50_mm, height_p90_mm  errors of these, about the ground
@@ -61,10 +62,8 @@ struct Truth {
 };
 
 Truth truth_of(const sim::SceneTruth& truth, const Pose& T_world_body) {
-    const sim::Lattice under{T_world_body.translation_m.head<2>() - Eigen::Vector2d::Constant(0.05),
-                             3,
-                             3,
-                             0.1 / 3.0};
+    const sim::Lattice under{
+        T_world_body.translation_m.head<2>() - Eigen::Vector2d::Constant(0.05), 3, 3, 0.1 / 3.0};
     const auto dem_m = sim::dem(truth.scene, under);
     return {T_world_body.rotation.conjugate() * Eigen::Vector3d::UnitZ(),
             T_world_body.translation_m.z() - static_cast<double>(dem_m.at(1, 1))};
@@ -143,10 +142,8 @@ int measure_all(const std::vector<std::string>& words) {
     for (const std::string_view profile : io::split(profiles, ",")) {
         for (const std::string_view scene : io::split(words[1], ",")) {
             for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
-                if (const auto done =
-                        measure({std::string(scene), seed, std::string(profile), frames},
-                                *executor,
-                                out);
+                if (const auto done = measure(
+                        {std::string(scene), seed, std::string(profile), frames}, *executor, out);
                     !done)
                     return report(done.error());
             }

@@ -297,8 +297,10 @@ int measure_all(const std::vector<std::string>& words) {
     for (const std::string_view profile : io::split(profiles, ",")) {
         for (const std::string_view scene : io::split(words[1], ",")) {
             for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
-                if (const auto done =
-                        measure({std::string(scene), seed, std::string(profile)}, **machine, *executor, out);
+                if (const auto done = measure({std::string(scene), seed, std::string(profile)},
+                                              **machine,
+                                              *executor,
+                                              out);
                     !done)
                     return report(done.error());
             }
