@@ -111,14 +111,14 @@ void step(const ImuNoise& noise, const ImuSample& from, const ImuSample& to, Imu
     const Eigen::Vector3d acceleration = R_half * force;
 
     // Errors of the rotation after the whole and after half a step:
-    // phi' = T phi + G n_gyro,  phi_half = T_half phi + G_half n_gyro.
+    // phi' = T phi + G n_gyro,  phi_half = T_half phi + J_half n_gyro.
     const Eigen::Matrix3d T = exp_so3(turn_rad).conjugate().toRotationMatrix();
     const Eigen::Matrix3d T_half = exp_so3(0.5 * turn_rad).conjugate().toRotationMatrix();
     const Eigen::Matrix3d G = dt_s * right_jacobian_so3(turn_rad);
-    const Eigen::Matrix3d G_half = 0.5 * dt_s * right_jacobian_so3(0.5 * turn_rad);
+    const Eigen::Matrix3d J_half = 0.5 * dt_s * right_jacobian_so3(0.5 * turn_rad);
     const Eigen::Matrix3d tilt = -R_half * skew(force);  // of the acceleration by phi_half
     const Eigen::Matrix3d by_phi = tilt * T_half;
-    const Eigen::Matrix3d by_gyro = tilt * G_half;
+    const Eigen::Matrix3d by_gyro = tilt * J_half;
 
     Matrix9 A = Matrix9::Identity();
     A.block<3, 3>(0, 0) = T;
