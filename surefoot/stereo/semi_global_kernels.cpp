@@ -157,7 +157,7 @@ struct Word {
 /// Bits set in a, b, c and d, given odd = a ^ b ^ c: of each three bits `odd` holds whether one or
 /// three are set, `pair` whether two or three. A look-up regards bits 0 to 3 and wants bit 7 to be
 /// clear: d needs no mask, whatever the shift moves in from the next byte.
-HWY_INLINE Bytes count_bits(Bytes a, Bytes b, Bytes odd, Bytes d) {
+[[maybe_unused]] HWY_INLINE Bytes count_bits(Bytes a, Bytes b, Bytes odd, Bytes d) {
     HWY_ALIGN static constexpr std::uint8_t kCounts[16] = {
         0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
     const Bytes counts = hn::LoadDup128(kBytes, kCounts);
