@@ -11,6 +11,7 @@
 
 #include "surefoot/geometry/plane_fit.hpp"
 #include "surefoot/geometry/ransac_plane.hpp"
+#include "surefoot/ground/cloud.hpp"
 #include "surefoot/ground/near_side.hpp"
 #include "surefoot/ground/settle_plane.hpp"
 #include "surefoot/ground/thinning.hpp"
@@ -25,20 +26,6 @@ constexpr int kMaxLevels = 3;  // across which one plane may lie: pavement, kerb
 constexpr std::size_t kMinPoints = 20;
 /// Levels this far apart are kerbs, treads, platforms; tables are higher. ASSUMPTION.
 constexpr double kHighestStep_m = 0.35;
-constexpr double kSearchSigmas = 3.0;        ///< a point so far off may be on the plane ...
-constexpr double kNoisiest = 0.67;           ///< share of the band that a point's sigma may have
-constexpr double kLeastTolerance_m = 0.005;  ///< ... and one so near always is
-
-/// Points about the sensor.
-struct Cloud {
-    Points points;
-    std::vector<double> inverse_range_sigma;         ///< see FramePoints; empty = not known
-    std::vector<double> tolerance_m;                 ///< of each point, where its noise is known
-    double band_m = 0.0;                             ///< what is farther off is not on a plane
-    Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< whose height over the ground is asked
-
-    [[nodiscard]] bool knows_noise() const { return !inverse_range_sigma.empty(); }
-};
 
 /// A plane that might be the ground. Points are relative to the sensor.
 struct Candidate {
@@ -131,15 +118,7 @@ GroundReason judge(const GroundConfig& config, const Candidate& candidate) {
 
 /// Leaves out what lies on the other side.
 void keep(const NearSide& side, Cloud& cloud) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-        if (!side.contains(cloud.points[i])) continue;
-        cloud.points[kept] = cloud.points[i];
-        cloud.inverse_range_sigma[kept] = cloud.inverse_range_sigma[i];
-        ++kept;
-    }
-    cloud.points.resize(kept);
-    cloud.inverse_range_sigma.resize(kept);
+    cloud.keep_if([&](std::size_t i) { return side.contains(cloud.points[i]); });
 }
 
 geometry::Plane settle(const Cloud& cloud, const geometry::Plane& start) {
@@ -219,21 +198,10 @@ bool is_better(const GroundConfig& config, const Candidate& a, const Candidate& 
 
 /// Takes away what lies on a plane; twice the tolerance takes its noisy fringe, too.
 void erase_near(const geometry::Plane& plane, double tolerance_m, Cloud& cloud) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    cloud.keep_if([&](std::size_t i) {
         const double own_m = cloud.knows_noise() ? cloud.tolerance_m[i] : tolerance_m;
-        if (std::abs(plane.signed_distance_m(cloud.points[i])) <= 2.0 * own_m) continue;
-        cloud.points[kept] = cloud.points[i];
-        if (cloud.knows_noise()) {
-            cloud.inverse_range_sigma[kept] = cloud.inverse_range_sigma[i];
-            cloud.tolerance_m[kept] = cloud.tolerance_m[i];
-        }
-        ++kept;
-    }
-    cloud.points.resize(kept);
-    if (!cloud.knows_noise()) return;
-    cloud.inverse_range_sigma.resize(kept);
-    cloud.tolerance_m.resize(kept);
+        return !(std::abs(plane.signed_distance_m(cloud.points[i])) <= 2.0 * own_m);
+    });
 }
 
 /// One plane after the other, largest first, each without the points of those before it.
@@ -263,47 +231,6 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
         erase_near(*found, config.tolerance_m, rest);
     }
     return best;
-}
-
-/// What is seen about `sensor`.
-Cloud cloud_of(std::span<const Eigen::Vector3d> points,
-               std::span<const double> inverse_range_sigma,
-               const Eigen::Vector3d& sensor,
-               std::span<const std::size_t> chosen) {
-    Cloud cloud;
-    cloud.points.reserve(chosen.size());
-    cloud.inverse_range_sigma.reserve(inverse_range_sigma.empty() ? 0 : chosen.size());
-    for (const std::size_t i : chosen) {
-        cloud.points.emplace_back(points[i] - sensor);
-        if (!inverse_range_sigma.empty())
-            cloud.inverse_range_sigma.push_back(inverse_range_sigma[i]);
-    }
-    return cloud;
-}
-
-/// How far off a level plane each point may be. Where the sensor allows, levels half of the
-/// tolerance apart are told apart: points that are too noisy for that are left out.
-void judge_noise(const GroundConfig& config, const Eigen::Vector3d& up, Cloud& cloud) {
-    std::vector<double> across_m(cloud.points.size());
-    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-        const Eigen::Vector3d& p = cloud.points[i];
-        across_m[i] = std::abs(up.dot(p)) * p.norm() * cloud.inverse_range_sigma[i];
-    }
-    std::vector<double> sorted_m = across_m;
-    const auto tenth = sorted_m.begin() + static_cast<std::ptrdiff_t>(sorted_m.size() / 10);
-    std::nth_element(sorted_m.begin(), tenth, sorted_m.end());
-    cloud.band_m = std::max(0.5 * config.tolerance_m, kSearchSigmas * *tenth);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-        if (across_m[i] > kNoisiest * cloud.band_m) continue;
-        cloud.points[kept] = cloud.points[i];
-        cloud.inverse_range_sigma[kept] = cloud.inverse_range_sigma[i];
-        cloud.tolerance_m.push_back(
-            std::clamp(kSearchSigmas * across_m[i], kLeastTolerance_m, cloud.band_m));
-        ++kept;
-    }
-    cloud.points.resize(kept);
-    cloud.inverse_range_sigma.resize(kept);
 }
 
 /// See `sight_ground` and `observe_ground`; without sigmas the noise is not known.

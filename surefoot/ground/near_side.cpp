@@ -139,20 +139,15 @@ std::optional<NearSide> near_side(std::span<const Eigen::Vector3d> points,
     if (samples.all.size() < 2 * static_cast<std::size_t>(kLeastPoints)) return std::nullopt;
     Sums sums;
     for (const Sample& sample : samples.all) sums += sample.sums;
-    const double rest = sums.rest();
     std::optional<NearSide> side;
-    double least = rest / (1.0 + kLeastGain);
+    double least = sums.rest() / (1.0 + kLeastGain);
     for (const int axis : {0, 1}) {
         const Split split = best_split(samples.all, axis);
-        const Eigen::Vector3d m = split.m - plane.normal / plane.offset_m;
-        const double length = m.norm();
-        const bool is_plane = length > 0.0 && std::isfinite(length);
-        if (!(split.rest > 0.0) || !(split.rest < least) || !is_plane) continue;
+        const auto nearer = plane_of(split.m - plane.normal / plane.offset_m);
+        if (!(split.rest > 0.0) || !(split.rest < least) || !nearer) continue;
         least = split.rest;
-        side = NearSide{{-m / length, 1.0 / length},
-                        samples.axes[static_cast<std::size_t>(axis)],
-                        split.from_m,
-                        split.to_m};
+        side = NearSide{
+            *nearer, samples.axes[static_cast<std::size_t>(axis)], split.from_m, split.to_m};
     }
     return side;
 }

@@ -48,6 +48,12 @@ double scatter(const std::vector<Sample>& samples) {
 
 }  // namespace
 
+std::optional<geometry::Plane> plane_of(const Eigen::Vector3d& m) {
+    const double length = m.norm();
+    if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
+    return geometry::Plane{-m / length, 1.0 / length};
+}
+
 std::optional<geometry::Plane> settle_plane(std::span<const Eigen::Vector3d> points,
                                             std::span<const double> inverse_range_sigma,
                                             const geometry::Plane& start,
@@ -71,13 +77,11 @@ std::optional<geometry::Plane> settle_plane(std::span<const Eigen::Vector3d> poi
         constexpr double kSingular = 1e-12;
         const Eigen::Vector3d pivots = ldlt.vectorD();
         if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff())) return std::nullopt;
-        const Eigen::Vector3d m = ldlt.solve(right);
-        const double length = m.norm();
-        if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
-        const geometry::Plane next{-m / length, 1.0 / length};
+        const auto next = plane_of(ldlt.solve(right));
+        if (!next) return std::nullopt;
         const double moved_m =
-            (next.normal - plane.normal).norm() + std::abs(next.offset_m - plane.offset_m);
-        plane = next;
+            (next->normal - plane.normal).norm() + std::abs(next->offset_m - plane.offset_m);
+        plane = *next;
         if (moved_m < kSettled_m) break;
     }
     return plane;

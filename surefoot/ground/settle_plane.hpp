@@ -27,6 +27,13 @@ namespace surefoot::ground {
     const geometry::Plane& start,
     double band_m);
 
+/// The plane n . p + h = 0 in front of the camera with -n / h = m; nothing where m is none.
+[[nodiscard]] std::optional<geometry::Plane> plane_of(const Eigen::Vector3d& m);
+
+/// A band that cuts the noise of a point holds the plane in place: points with a sigma of more than
+/// this share of it take no part.
+inline constexpr double kNoisiest = 0.67;
+
 /// A point seen from the origin, beside the place where its ray meets a plane.
 struct Sighting {
     Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
@@ -39,9 +46,8 @@ struct Sighting {
 
     /// Its noise is small enough to say whether it lies within a band, and it does.
     [[nodiscard]] bool is_within(double band_m) const {
-        constexpr double kTells = 0.67;  ///< a band that cuts the noise holds the plane in place
         return expected_inverse_range > 0.0 && std::abs(off_m) <= band_m &&
-               sigma_m <= kTells * band_m;
+               sigma_m <= kNoisiest * band_m;
     }
 };
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "surefoot/ground/ground_config.hpp"
+
+namespace surefoot::ground {
+
+/// Points about the sensor.
+struct Cloud {
+    std::vector<Eigen::Vector3d> points;
+    std::vector<double> inverse_range_sigma;         ///< see FramePoints; empty = not known
+    std::vector<double> tolerance_m;                 ///< of each point, see `judge_noise`, or empty
+    double band_m = 0.0;                             ///< what is farther off is not on a plane
+    Eigen::Vector3d base = Eigen::Vector3d::Zero();  ///< whose height over the ground is asked
+
+    [[nodiscard]] bool knows_noise() const { return !inverse_range_sigma.empty(); }
+
+    /// Leaves out the points for which `wanted(index)` is false.
+    template <typename Wanted>
+    void keep_if(const Wanted& wanted) {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (!wanted(i)) continue;
+            points[kept] = points[i];
+            if (!inverse_range_sigma.empty()) inverse_range_sigma[kept] = inverse_range_sigma[i];
+            if (!tolerance_m.empty()) tolerance_m[kept] = tolerance_m[i];
+            ++kept;
+        }
+        points.resize(kept);
+        if (!inverse_range_sigma.empty()) inverse_range_sigma.resize(kept);
+        if (!tolerance_m.empty()) tolerance_m.resize(kept);
+    }
+};
+
+/// The chosen points as seen from `sensor`, with their sigmas where there are any.
+[[nodiscard]] Cloud cloud_of(std::span<const Eigen::Vector3d> points,
+                             std::span<const double> inverse_range_sigma,
+                             const Eigen::Vector3d& sensor,
+                             std::span<const std::size_t> chosen);
+
+/// Sets the band, and how far off a level plane each point may be. Where the sensor allows, levels
+/// half of the tolerance apart are told apart: points that are too noisy for that are left out.
+/// For clouds whose noise is known.
+void judge_noise(const GroundConfig& config, const Eigen::Vector3d& up, Cloud& cloud);
+
+}  // namespace surefoot::ground
