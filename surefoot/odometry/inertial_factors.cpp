@@ -97,16 +97,6 @@ void MotionFactor::add_bias_walk(const Pair& at, Normal& n) const {
     }
 }
 
-Matrix6 carry(const Pose& T_b_c) {
-    const Pose T_c_b = T_b_c.inverse();
-    const Eigen::Matrix3d R = T_c_b.R();
-    Matrix6 J = Matrix6::Zero();
-    J.topLeftCorner<3, 3>() = R;
-    J.topRightCorner<3, 3>() = skew(T_c_b.translation_m) * R;
-    J.bottomRightCorner<3, 3>() = R;
-    return J;
-}
-
 void PointsFactor::add_to(const Pair& at, Normal& n) {
     const Pose T_odom_camera = at.present.T_odom_imu * T_imu_camera;
     const VisualNormalEquations v = visual_normal_equations(

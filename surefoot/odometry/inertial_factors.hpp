@@ -75,14 +75,11 @@ struct MotionFactor {
     void add_bias_walk(const Pair& at, Normal& n) const;
 };
 
-/// Adjoint: how a perturbation of T_a_b moves T_a_b * T_b_c.
-[[nodiscard]] Matrix6 carry(const Pose& T_b_c);
-
 /// The points of the present frame.
 struct PointsFactor {
     const VisualEvidence& seen;
     const Pose& T_imu_camera;
-    Matrix6 camera_by_imu = carry(T_imu_camera);
+    Matrix6 camera_by_imu = adjoint(T_imu_camera.inverse());
     std::vector<std::uint8_t> inlier = std::vector<std::uint8_t>(seen.matches.size());
     int inliers = 0;
     double residual_px = 0.0;

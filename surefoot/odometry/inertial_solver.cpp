@@ -11,7 +11,6 @@
 namespace surefoot::odometry {
 namespace {
 
-using inertial::carry;
 using inertial::inverse_of;
 using inertial::kFrame;
 using inertial::MatrixAll;
@@ -185,18 +184,21 @@ InertialSolution fuse(const InertialModel& model,
 InertialBelief with_vision_counted_once(const InertialBelief& belief,
                                         const Matrix6& visual_covariance) {
     InertialBelief result = belief;
-    const Matrix6 shared = visual_covariance - belief.covariance.topLeftCorner<6, 6>();
     // Vision is part of the belief, so that the difference has no negative direction, but for
     // robust weights at two slightly different poses: those directions stay as they are.
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(shared);
-    result.covariance.topLeftCorner<6, 6>() += eigen.eigenvectors() *
-                                               eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-                                               eigen.eigenvectors().transpose();
+    result.covariance.topLeftCorner<6, 6>() +=
+        positive_part(visual_covariance - belief.covariance.topLeftCorner<6, 6>());
     return result;
 }
 
+Matrix6 positive_part(const Matrix6& symmetric) {
+    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(symmetric);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+           eigen.eigenvectors().transpose();
+}
+
 Matrix6 carried_covariance(const Matrix6& covariance_ab, const Pose& T_b_c) {
-    const Matrix6 J = carry(T_b_c);
+    const Matrix6 J = adjoint(T_b_c.inverse());
     return J * covariance_ab * J.transpose();
 }
 

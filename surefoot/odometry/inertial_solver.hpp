@@ -106,6 +106,9 @@ struct InertialSolution {
 [[nodiscard]] InertialBelief with_vision_counted_once(const InertialBelief& belief,
                                                       const Matrix6& visual_covariance);
 
+/// Of a difference of covariances what is not negative in any direction.
+[[nodiscard]] Matrix6 positive_part(const Matrix6& symmetric);
+
 /// Covariance of T_a_c = T_a_b * T_b_c for a fixed T_b_c.
 [[nodiscard]] Matrix6 carried_covariance(const Matrix6& covariance_ab, const Pose& T_b_c);
 

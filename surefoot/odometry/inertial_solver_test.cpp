@@ -9,23 +9,13 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/odometry/synthetic_for_test.hpp"
 
 namespace surefoot::odometry {
 namespace {
 
 constexpr double kRate_hz = 200.0;
 constexpr double kFrame_s = 0.05;
-
-camera::RectifiedRig test_rig() {
-    camera::RectifiedRig rig;
-    rig.width = 672;
-    rig.height = 376;
-    rig.fx_px = rig.fy_px = 350.0;
-    rig.cx_px = 336.0;
-    rig.cy_px = 188.0;
-    rig.baseline_m = 0.12;
-    return rig;
-}
 
 InertialModel test_model() {
     InertialModel model;
@@ -100,7 +90,7 @@ std::vector<PointMatch> points_seen(const Pose& T_odom_camera,
         const double x_m = rng.uniform(-0.8, 0.8) * z_m;
         const Eigen::Vector3d p(x_m, rng.uniform(-0.45, 0.45) * z_m, z_m);
         match.p_world_m = T_odom_camera * p;
-        match.pixel_px = project_stereo(test_rig(), p) + random3(rng, sigma_px);
+        match.pixel_px = project_stereo(testing::rectified_rig(), p) + random3(rng, sigma_px);
     }
     return matches;
 }
@@ -118,7 +108,7 @@ Vector17 usual_sigmas() {
 /// A previous frame that is believed with errors, a noisy motion, and points.
 struct TwoFrames {
     InertialModel model = test_model();
-    camera::RectifiedRig rig = test_rig();
+    camera::RectifiedRig rig = testing::rectified_rig();
     PoseSolverConfig config;
     InertialState truth;
     InertialBelief before;
@@ -315,7 +305,7 @@ TEST(InertialSolver, BeliefsAreHonest) {
         spoil(samples, model.noise, truth.bias, rng);
         PoseSolverConfig config;
         config.sigma_px = 0.4;
-        const auto rig = test_rig();
+        const auto rig = testing::rectified_rig();
         for (int frame = 0; frame < kSeen + kBlind; ++frame) {
             truth = moved_by(truth, motion_of(clean, frame, model.noise, {}));
             const ImuMotion motion = motion_of(samples, frame, model.noise, belief.state.bias);

@@ -57,10 +57,10 @@ void InertialTracker::advance(std::span<const ImuSample> samples, std::int64_t t
     time_ns_ = time_ns;
     has_time_ = true;
     // Of the past, the last sample at or before the frame is needed again.
-    auto keep =
+    auto needed =
         std::ranges::find_if(samples_, [&](const ImuSample& s) { return s.time_ns > time_ns; });
-    if (keep != samples_.begin()) --keep;
-    samples_.erase(samples_.begin(), keep);
+    if (needed != samples_.begin()) --needed;
+    samples_.erase(samples_.begin(), needed);
     if (step_.problem == ImuProblem::stamps) samples_.clear();
 
     present_.reset();

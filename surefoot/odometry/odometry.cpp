@@ -342,11 +342,8 @@ MotionEstimate Odometry::Impl::lost(const StereoFrame& frame,
 /// What the last frame's motion adds to `lost_body` when the motion since the last good frame is as
 /// sure as `reckoned` says.
 Matrix6 Odometry::Impl::unseen_since_last(const CameraFix& reckoned) const {
-    const Matrix6 added =
-        camera_to_body_covariance(reckoned.covariance, rectifier.rig().T_body_camera) - lost_body;
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(added);
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-           eigen.eigenvectors().transpose();
+    return positive_part(
+        camera_to_body_covariance(reckoned.covariance, rectifier.rig().T_body_camera) - lost_body);
 }
 
 bool Odometry::Impl::wants_keyframe() const {

@@ -162,14 +162,19 @@ PoseSolution refine_pose(const camera::RectifiedRig& rig,
     return solution;
 }
 
-Matrix6 camera_to_body_covariance(const Matrix6& covariance_camera, const Pose& T_body_camera) {
-    // A camera perturbation D moves the body by X D X^-1 with X = T_body_camera:
-    // theta_b = R theta_c, dp_b = R dp_c + [t]x R theta_c.
+Matrix6 adjoint(const Pose& T_a_b) {
+    // A perturbation D of b is X D X^-1 of a with X = T_a_b:
+    // theta_a = R theta_b, dp_a = R dp_b + [t]x R theta_b.
     Matrix6 J = Matrix6::Zero();
-    const Eigen::Matrix3d R = T_body_camera.R();
+    const Eigen::Matrix3d R = T_a_b.R();
     J.topLeftCorner<3, 3>() = R;
-    J.topRightCorner<3, 3>() = skew(T_body_camera.translation_m) * R;
+    J.topRightCorner<3, 3>() = skew(T_a_b.translation_m) * R;
     J.bottomRightCorner<3, 3>() = R;
+    return J;
+}
+
+Matrix6 camera_to_body_covariance(const Matrix6& covariance_camera, const Pose& T_body_camera) {
+    const Matrix6 J = adjoint(T_body_camera);
     return J * covariance_camera * J.transpose();
 }
 

@@ -86,6 +86,9 @@ struct VisualNormalEquations {
 /// The covariance shrinks with small residuals down to this share of the configured sigmas only.
 inline constexpr double kMinResidualScale = 0.5;
 
+/// How a perturbation of T_x_b moves T_x_a = T_x_b * T_b_a, given T_a_b (both on the right).
+[[nodiscard]] Matrix6 adjoint(const Pose& T_a_b);
+
 /// Covariance of T_a_body = T_a_camera * T_body_camera^-1 from that of T_a_camera.
 [[nodiscard]] Matrix6 camera_to_body_covariance(const Matrix6& covariance_camera,
                                                 const Pose& T_body_camera);

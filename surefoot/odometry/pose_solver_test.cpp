@@ -8,26 +8,17 @@
 #include <Eigen/Cholesky>
 #include <limits>
 
+#include "surefoot/odometry/synthetic_for_test.hpp"
+
 namespace surefoot::odometry {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-camera::RectifiedRig test_rig() {
-    camera::RectifiedRig rig;
-    rig.width = 672;
-    rig.height = 376;
-    rig.fx_px = rig.fy_px = 350.0;
-    rig.cx_px = 336.0;
-    rig.cy_px = 188.0;
-    rig.baseline_m = 0.12;
-    return rig;
-}
-
 /// Points in the view of a stereo camera that moved by `T_world_camera` since it stood at the
 /// origin and measured them there.
 struct World {
-    camera::RectifiedRig rig = test_rig();
+    camera::RectifiedRig rig = testing::rectified_rig();
     PoseSolverConfig config;
     Pose T_world_camera;
     std::vector<PointMatch> matches;

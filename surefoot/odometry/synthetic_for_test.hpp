@@ -15,6 +15,18 @@
 
 namespace surefoot::odometry::testing {
 
+/// A ZED at 672x376, rectified; its camera is the body.
+inline camera::RectifiedRig rectified_rig() {
+    camera::RectifiedRig rig;
+    rig.width = 672;
+    rig.height = 376;
+    rig.fx_px = rig.fy_px = 350.0;
+    rig.cx_px = 336.0;
+    rig.cy_px = 188.0;
+    rig.baseline_m = 0.12;
+    return rig;
+}
+
 /// Random numbers in [0, 1) on a lattice that repeats every 256 steps.
 class Lattice {
   public:
