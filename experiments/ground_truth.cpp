@@ -3,7 +3,7 @@
 // Usage: ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES]]]]
 //   ground_truth out/ground.csv floor,demo_stairs 20001 3 ideal,zed
 //
-// Profiles: see seen_by.hpp. One line a scene, seed and profile:
+// Profiles: see scene_cases.hpp. One line a scene, seed and profile:
 //   source                                    what placed odom: plane, imu or assumed
 //   tilt_deg, height_mm                       error of odom's z axis, and of the height of
 //   base_link
@@ -19,14 +19,12 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
-#include "experiments/seen_by.hpp"
-#include "io/text.hpp"
+#include "experiments/scene_cases.hpp"
 #include "sim/ray_caster.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
@@ -36,12 +34,7 @@ namespace {
 
 constexpr const char* kSources[] = {"assumed", "plane", "imu"};  // as GravitySource
 
-struct Case {
-    std::string scene;
-    std::uint64_t seed = 1;
-    std::string profile;
-    int frames = 0;
-};
+using experiments::SceneCase;
 
 double between_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi;
@@ -69,14 +62,12 @@ Truth truth_of(const sim::SceneTruth& truth, const Pose& T_world_body) {
             T_world_body.translation_m.z() - static_cast<double>(dem_m.at(1, 1))};
 }
 
-Status measure(const Case& now, Executor& executor, fmt::ostream& out) {
+Status measure(const SceneCase& now, int frames, Executor& executor, fmt::ostream& out) {
     auto settings = load_settings({});
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
-    sim.scene = now.scene;
-    sim.seed = now.seed;
-    if (Status seen = experiments::see_by(now.profile, sim); !seen) return seen.error();
-    sim.frames = now.frames;
+    if (Status seen = now.put_into(sim); !seen) return seen.error();
+    sim.frames = frames;
     auto source = sim::open_scene(sim, &executor);
     if (!source) return source.error();
     auto pipeline = pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor);
@@ -86,7 +77,7 @@ Status measure(const Case& now, Executor& executor, fmt::ostream& out) {
     std::vector<StereoFrame> first;
     std::vector<double> tilts_deg;
     std::vector<double> heights_mm;
-    int frames = 0;
+    int judged = 0;
     for (std::size_t i = 0; i < truth.trajectory.size(); ++i) {
         auto frame = (*source)->next();
         if (!frame) return frame.error();
@@ -101,7 +92,7 @@ Status measure(const Case& now, Executor& executor, fmt::ostream& out) {
         }
         const FrameReport report = pipeline->process(**frame, Work::full);
         const Truth here = truth_of(truth, truth.trajectory[i].T_world_body);
-        ++frames;
+        ++judged;
         if (!report.ground.accepted) continue;
         tilts_deg.push_back(between_deg(report.ground.normal, here.up_body));
         heights_mm.push_back(1e3 * std::abs(report.ground.height_m - here.height_m));
@@ -116,7 +107,7 @@ Status measure(const Case& now, Executor& executor, fmt::ostream& out) {
               between_deg(alignment.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ(),
                           start.up_body),
               1e3 * (alignment.ground_height_m - start.height_m),
-              frames,
+              judged,
               tilts_deg.size(),
               quantile(tilts_deg, 0.5),
               quantile(tilts_deg, 0.9),
@@ -130,24 +121,15 @@ int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2)
         return report(
             usage_error("ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES]]]]"));
-    const std::uint64_t first = words.size() > 2 ? std::strtoull(words[2].c_str(), nullptr, 10) : 1;
-    const std::uint64_t seeds = words.size() > 3 ? std::strtoull(words[3].c_str(), nullptr, 10) : 1;
-    const std::string profiles = words.size() > 4 ? words[4] : "ideal,zed";
     const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
     const auto executor = make_executor({});
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,source,tilt_deg,height_mm,frames,accepted,tilt_p50_deg,tilt_p90_deg,"
         "height_p50_mm,height_p90_mm\n");
-    for (const std::string_view profile : io::split(profiles, ",")) {
-        for (const std::string_view scene : io::split(words[1], ",")) {
-            for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
-                if (const auto done = measure(
-                        {std::string(scene), seed, std::string(profile), frames}, *executor, out);
-                    !done)
-                    return report(done.error());
-            }
-        }
+    for (const SceneCase& now : experiments::scene_cases({words.begin() + 1, words.end()})) {
+        const auto done = measure(now, frames, *executor, out);
+        if (!done) return report(done.error());
     }
     return kExitOk;
 }

@@ -4,8 +4,8 @@
 //   odometry_truth out/odometry.csv floor,walk_floor 20001 30 ideal,zed 100
 //   odometry.imu.enabled=false
 //
-// Profiles: see seen_by.hpp; FRAMES 0 = to the end of the way. Images and odometry alone, no map.
-// Motions over one second, one after the other, against the true ones. Where the machine stood
+// Profiles: see scene_cases.hpp; FRAMES 0 = to the end of the way. Images and odometry alone, no
+// map. Motions over one second, one after the other, against the true ones. Where the machine stood
 // (less than 5 mm and 0.5 deg in that second) the odometry holds its pose, and says so with next
 // to no covariance: those count apart.
 // One line a scene, seed and profile:
@@ -26,14 +26,12 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
-#include "experiments/seen_by.hpp"
-#include "io/text.hpp"
+#include "experiments/scene_cases.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
@@ -46,21 +44,7 @@ constexpr double kStill_m = 0.005;
 constexpr double kStill_rad = 0.5 * std::numbers::pi / 180.0;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-struct Plan {
-    std::string file;
-    std::vector<std::string> scenes;
-    std::uint64_t first_seed = 1;
-    std::uint64_t seeds = 1;
-    std::vector<std::string> profiles{"ideal", "zed"};
-    int frames = 0;
-    std::vector<std::string> settings;
-};
-
-struct Case {
-    std::string scene;
-    std::uint64_t seed = 1;
-    std::string profile;
-};
+using experiments::SceneCase;
 
 /// What one run has shown so far.
 class Tally {
@@ -146,16 +130,16 @@ class Tally {
     std::array<int, 3> health_{};
 };
 
-Status measure(const Case& now, const Plan& plan, Executor& executor, fmt::ostream& out) {
-    CommonOptions common;
-    common.settings = plan.settings;
+Status measure(const SceneCase& now,
+               int frames,
+               const CommonOptions& common,
+               Executor& executor,
+               fmt::ostream& out) {
     auto settings = load_settings(common);
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
-    sim.scene = now.scene;
-    sim.seed = now.seed;
-    if (Status seen = experiments::see_by(now.profile, sim); !seen) return seen.error();
-    sim.frames = plan.frames;
+    if (Status seen = now.put_into(sim); !seen) return seen.error();
+    sim.frames = frames;
     auto source = sim::open_scene(sim, &executor);
     if (!source) return source.error();
     auto pipeline = pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor);
@@ -197,44 +181,22 @@ Status measure(const Case& now, const Plan& plan, Executor& executor, fmt::ostre
     return {};
 }
 
-std::vector<std::string> words_of(const std::string& list) {
-    std::vector<std::string> words;
-    for (const std::string_view word : io::split(list, ",")) words.emplace_back(word);
-    return words;
-}
-
-Result<Plan> plan_of(const std::vector<std::string>& words) {
-    if (words.size() < 2)
-        return usage_error(
-            "odometry_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES "
-            "[KEY=VALUE...]]]]]");
-    Plan plan;
-    plan.file = words[0];
-    plan.scenes = words_of(words[1]);
-    if (words.size() > 2) plan.first_seed = std::strtoull(words[2].c_str(), nullptr, 10);
-    if (words.size() > 3) plan.seeds = std::strtoull(words[3].c_str(), nullptr, 10);
-    if (words.size() > 4) plan.profiles = words_of(words[4]);
-    if (words.size() > 5) plan.frames = std::atoi(words[5].c_str());
-    if (words.size() > 6) plan.settings.assign(words.begin() + 6, words.end());
-    return plan;
-}
-
 int measure_all(const std::vector<std::string>& words) {
-    const auto plan = plan_of(words);
-    if (!plan) return report(plan.error());
+    if (words.size() < 2)
+        return report(
+            usage_error("odometry_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES "
+                        "[KEY=VALUE...]]]]]"));
+    const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
+    CommonOptions common;
+    if (words.size() > 6) common.settings.assign(words.begin() + 6, words.end());
     const auto executor = make_executor({});
-    auto out = fmt::output_file(plan->file);
+    auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,path_m,end_mm,end_deg,moving,nees,rpe_mm,rpe_deg,standing,held_mm,"
         "jump_mm,ok,degraded,lost\n");
-    for (const std::string& profile : plan->profiles) {
-        for (const std::string& scene : plan->scenes) {
-            for (std::uint64_t k = 0; k < plan->seeds; ++k) {
-                const auto done =
-                    measure({scene, plan->first_seed + k, profile}, *plan, *executor, out);
-                if (!done) return report(done.error());
-            }
-        }
+    for (const SceneCase& now : experiments::scene_cases({words.begin() + 1, words.end()})) {
+        const auto done = measure(now, frames, common, *executor, out);
+        if (!done) return report(done.error());
     }
     return kExitOk;
 }

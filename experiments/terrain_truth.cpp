@@ -27,7 +27,6 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
@@ -35,8 +34,7 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "eval/maps.hpp"
-#include "experiments/seen_by.hpp"
-#include "io/text.hpp"
+#include "experiments/scene_cases.hpp"
 #include "sim/cell_safety.hpp"
 #include "sim/scene_source.hpp"
 #include "sim/truth.hpp"
@@ -49,11 +47,7 @@ constexpr int kYaws = 8;
 constexpr double kRange_m = 2.5;
 constexpr double kNear_m = 0.7;
 
-struct Case {
-    std::string scene;
-    std::uint64_t seed = 1;
-    std::string profile;  ///< see see_by
-};
+using experiments::SceneCase;
 
 /// Truly unsafe cells, those of them that were called safe and the largest group of these.
 struct Missed {
@@ -195,13 +189,14 @@ struct Results {
     fmt::ostream missed;
 };
 
-Status measure(const Case& now, const io::MachineFile& machine, Executor& executor, Results& out) {
+Status measure(const SceneCase& now,
+               const io::MachineFile& machine,
+               Executor& executor,
+               Results& out) {
     auto settings = load_settings({});
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
-    sim.scene = now.scene;
-    sim.seed = now.seed;
-    if (Status seen = experiments::see_by(now.profile, sim); !seen) return seen.error();
+    if (Status seen = now.put_into(sim); !seen) return seen.error();
     sim.known_motion = true;
     sim.drift = {0.0, 0.0};
     auto source = sim::open_scene(sim, &executor);
@@ -270,8 +265,6 @@ Status measure(const Case& now, const io::MachineFile& machine, Executor& execut
 int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2)
         return report(usage_error("terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES]]]"));
-    const std::uint64_t first = words.size() > 2 ? std::strtoull(words[2].c_str(), nullptr, 10) : 1;
-    const std::uint64_t seeds = words.size() > 3 ? std::strtoull(words[3].c_str(), nullptr, 10) : 1;
     const auto machine = load_machine("rex");
     if (!machine) return report(machine.error());
     const auto executor = make_executor({});
@@ -293,18 +286,9 @@ int measure_all(const std::vector<std::string>& words) {
         }
     }
     out.cases.print("\n");
-    const std::string profiles = words.size() > 4 ? words[4] : "ideal,zed";
-    for (const std::string_view profile : io::split(profiles, ",")) {
-        for (const std::string_view scene : io::split(words[1], ",")) {
-            for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
-                if (const auto done = measure({std::string(scene), seed, std::string(profile)},
-                                              **machine,
-                                              *executor,
-                                              out);
-                    !done)
-                    return report(done.error());
-            }
-        }
+    for (const SceneCase& now : experiments::scene_cases({words.begin() + 1, words.end()})) {
+        const auto done = measure(now, **machine, *executor, out);
+        if (!done) return report(done.error());
     }
     return kExitOk;
 }

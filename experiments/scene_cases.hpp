@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/text.hpp"
+#include "sim/scene_source.hpp"
+#include "surefoot/core/result.hpp"
+
+/// What the experiments over simulated scenes share: SCENES [FIRST_SEED [SEEDS [PROFILES]]].
+namespace surefoot::experiments {
+
+/// One scene as one camera sees it. Profiles: those of the simulator, and `zed_calibrated`: zed
+/// without its error of calibration.
+struct SceneCase {
+    std::string scene;
+    std::uint64_t seed = 1;
+    std::string profile;
+
+    /// A usage error names a profile that is none.
+    [[nodiscard]] Status put_into(sim::SceneOptions& options) const {
+        options.scene = scene;
+        options.seed = seed;
+        const bool calibrated = profile == "zed_calibrated";
+        for (int i = 0; i < static_cast<int>(std::size(sim::kCameraProfileNames)); ++i) {
+            if ((calibrated ? "zed" : profile) != sim::kCameraProfileNames[i]) continue;
+            options.profile = static_cast<sim::CameraProfile>(i);
+            if (!calibrated) return {};
+            const sim::CalibrationError error = sim::figures_of(options.profile).calibration;
+            options.calibration_error = {.right_roll_rad = -error.right_roll_rad,
+                                         .right_pitch_rad = -error.right_pitch_rad,
+                                         .right_yaw_rad = -error.right_yaw_rad,
+                                         .right_focal_share = -error.right_focal_share};
+            return {};
+        }
+        return usage_error("there is no profile " + profile);
+    }
+};
+
+/// Profile by profile, scene by scene, `words` as above, commas between several; not empty.
+[[nodiscard]] inline std::vector<SceneCase> scene_cases(const std::vector<std::string>& words) {
+    const auto number = [&](std::size_t i) {
+        return words.size() > i ? std::strtoull(words[i].c_str(), nullptr, 10) : 1;
+    };
+    const std::string profiles = words.size() > 3 ? words[3] : "ideal,zed";
+    std::vector<SceneCase> cases;
+    for (const std::string_view profile : io::split(profiles, ",")) {
+        for (const std::string_view scene : io::split(words.front(), ",")) {
+            for (std::uint64_t k = 0; k < number(2); ++k)
+                cases.push_back({std::string(scene), number(1) + k, std::string(profile)});
+        }
+    }
+    return cases;
+}
+
+}  // namespace surefoot::experiments
