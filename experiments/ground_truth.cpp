@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How true is the ground plane, that which places odom and those of the single frames?
-// Usage: ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES]]]]
+// Usage: ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [KEY=VALUE...]]]]]
 //   ground_truth out/ground.csv floor,demo_stairs 20001 3 ideal,zed
 //
 // Profiles: see scene_cases.hpp. One line a scene, seed and profile:
@@ -8,6 +8,7 @@
 //   tilt_deg, height_mm                       error of odom's z axis, and of the height of
 //   base_link
 //                                             over the ground, from the first ten frames
+//   waited_s                                  before these, for light
 //   frames, accepted                          frames after them, with a plane that was accepted
 //   tilt_p50_deg, tilt_p90_deg, height_p50_mm, height_p90_mm  errors of these, about the ground
 //                                             under base_link
@@ -27,7 +28,8 @@
 #include "experiments/scene_cases.hpp"
 #include "sim/ray_caster.hpp"
 #include "sim/scene_source.hpp"
-#include "surefoot/pipeline/pipeline.hpp"
+#include "surefoot/core/time.hpp"
+#include "surefoot/pipeline/start.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -62,8 +64,21 @@ Truth truth_of(const sim::SceneTruth& truth, const Pose& T_world_body) {
             T_world_body.translation_m.z() - static_cast<double>(dem_m.at(1, 1))};
 }
 
-Status measure(const SceneCase& now, int frames, Executor& executor, fmt::ostream& out) {
-    auto settings = load_settings({});
+Pose at(const std::vector<StampedPose>& trajectory, std::int64_t time_ns) {
+    const auto found = std::lower_bound(
+        trajectory.begin(),
+        trajectory.end(),
+        time_ns,
+        [](const StampedPose& pose, std::int64_t stamp) { return pose.time_ns < stamp; });
+    return (found == trajectory.end() ? trajectory.back() : *found).T_world_body;
+}
+
+Status measure(const SceneCase& now,
+               int frames,
+               const CommonOptions& common,
+               Executor& executor,
+               fmt::ostream& out) {
+    auto settings = load_settings(common);
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
     if (Status seen = now.put_into(sim); !seen) return seen.error();
@@ -74,39 +89,39 @@ Status measure(const SceneCase& now, int frames, Executor& executor, fmt::ostrea
     if (!pipeline) return pipeline.error();
 
     const sim::SceneTruth& truth = (*source)->truth();
-    std::vector<StereoFrame> first;
     std::vector<double> tilts_deg;
     std::vector<double> heights_mm;
     int judged = 0;
-    for (std::size_t i = 0; i < truth.trajectory.size(); ++i) {
+    std::optional<Error> failed;
+    const pipeline::NextFrame next = [&]() -> std::optional<StereoFrame> {
         auto frame = (*source)->next();
-        if (!frame) return frame.error();
-        if (!*frame) break;
-        if (first.size() < pipeline::Pipeline::kAlignmentFrames) {
-            first.push_back(std::move(**frame));
-            if (first.size() < pipeline::Pipeline::kAlignmentFrames) continue;
-            pipeline->align(first);
-            for (const StereoFrame& each : first)
-                static_cast<void>(pipeline->process(each, Work::full));
-            continue;
-        }
-        const FrameReport report = pipeline->process(**frame, Work::full);
-        const Truth here = truth_of(truth, truth.trajectory[i].T_world_body);
+        if (!frame) failed = frame.error();
+        return frame ? std::move(frame).value() : std::nullopt;
+    };
+    const pipeline::Start start = pipeline::align_when_ready(*pipeline, next);
+    for (const StereoFrame& frame : start.frames)
+        static_cast<void>(pipeline->process(frame, Work::full));
+    while (const auto frame = next()) {
+        const FrameReport report = pipeline->process(*frame, Work::full);
+        const Truth here = truth_of(truth, at(truth.trajectory, frame->time_ns));
         ++judged;
         if (!report.ground.accepted) continue;
         tilts_deg.push_back(between_deg(report.ground.normal, here.up_body));
         heights_mm.push_back(1e3 * std::abs(report.ground.height_m - here.height_m));
     }
+    if (failed) return *failed;
     const pipeline::Alignment& alignment = pipeline->alignment();
-    const Truth start = truth_of(truth, truth.trajectory.front().T_world_body);
-    out.print("{},{},{},{},{:.3f},{:.2f},{},{},{:.3f},{:.3f},{:.2f},{:.2f}\n",
+    const std::int64_t placed_ns = start.frames.front().time_ns;
+    const Truth first = truth_of(truth, at(truth.trajectory, placed_ns));
+    out.print("{},{},{},{},{:.3f},{:.2f},{:.1f},{},{},{:.3f},{:.3f},{:.2f},{:.2f}\n",
               now.scene,
               now.seed,
               now.profile,
               kSources[static_cast<int>(alignment.gravity_source)],
               between_deg(alignment.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ(),
-                          start.up_body),
-              1e3 * (alignment.ground_height_m - start.height_m),
+                          first.up_body),
+              1e3 * (alignment.ground_height_m - first.height_m),
+              seconds_from_ns(placed_ns - truth.trajectory.front().time_ns),
               judged,
               tilts_deg.size(),
               quantile(tilts_deg, 0.5),
@@ -120,15 +135,19 @@ Status measure(const SceneCase& now, int frames, Executor& executor, fmt::ostrea
 int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2)
         return report(
-            usage_error("ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES]]]]"));
+            usage_error("ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES "
+                        "[KEY=VALUE...]]]]]"));
     const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
+    CommonOptions common;
+    if (words.size() > 6) common.settings.assign(words.begin() + 6, words.end());
     const auto executor = make_executor({});
     auto out = fmt::output_file(words[0]);
     out.print(
-        "scene,seed,profile,source,tilt_deg,height_mm,frames,accepted,tilt_p50_deg,tilt_p90_deg,"
+        "scene,seed,profile,source,tilt_deg,height_mm,waited_s,frames,accepted,tilt_p50_deg,tilt_"
+        "p90_deg,"
         "height_p50_mm,height_p90_mm\n");
     for (const SceneCase& now : experiments::scene_cases({words.begin() + 1, words.end()})) {
-        const auto done = measure(now, frames, *executor, out);
+        const auto done = measure(now, frames, common, *executor, out);
         if (!done) return report(done.error());
     }
     return kExitOk;

@@ -69,7 +69,7 @@ constexpr std::uint8_t last_of(grid::SnapshotHealth) {
     return 2;
 }
 constexpr std::uint8_t last_of(CameraState) {
-    return 3;
+    return 6;
 }
 
 struct Reader {

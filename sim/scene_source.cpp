@@ -132,6 +132,7 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.group("exposure", camera.exposure);
     visitor.group("calibration_error", calibration_error);
     visitor.group("faults", faults);
+    visitor.group("knock", knock);
     visitor.group("imu_noise", imu_noise);
     visitor.group("depth_errors", depth_errors);
     visitor.begin_group("analytic");
@@ -155,6 +156,10 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
     source->executor_ = executor != nullptr ? executor : &source->serial_;
     source->truth_.trajectory = sampled(*script->motion, options.frames, options.rate_hz);
     source->motion_ = script->motion;
+    if (!options.knock.none()) {
+        source->motion_ = std::make_shared<KnockedMotion>(
+            script->motion, options.knock, rig->body_from_left().translation_m);
+    }
     source->truth_.scene = std::move(script->scene);
     source->truth_.scene.scale_contrast(options.contrast * figures_of(options.profile).contrast);
     source->truth_.steps = std::move(script->steps);
@@ -259,6 +264,10 @@ Status SceneSource::make_analytic(const SceneOptions& options, const camera::Ste
     return {};
 }
 
+Pose SceneSource::carried_body(const StampedPose& now) const {
+    return motion_->at(seconds_from_ns(now.time_ns - kStart_ns)).T_world_body;
+}
+
 /// Exposes both eyes at a stamp; the exposure control lives on, whatever becomes of the images.
 void SceneSource::take_pictures(const StampedPose& now) {
     const double since_start_s = seconds_from_ns(now.time_ns - kStart_ns);
@@ -274,7 +283,7 @@ void SceneSource::take_pictures(const StampedPose& now) {
     control_->update(clean_.left.signal_dn, 1.0 / truth_.rig.rate_hz);
     if (!depth_camera_) return;
     std::swap(older_depth_m_, measured_.depth_m);
-    depth_camera_->render(now.T_world_body * truth_.rig.body_from_left(),
+    depth_camera_->render(carried_body(now) * truth_.rig.body_from_left(),
                           static_cast<int>(next_pose_),
                           *executor_,
                           measured_);
@@ -298,7 +307,7 @@ void SceneSource::damage(const InjectedFault* fault) {
 DepthImage SceneSource::model_depth(const StampedPose& now) {
     DepthImage depth;
     const int frame = static_cast<int>(next_pose_);
-    analytic_->measure(now.T_world_body, frame, *executor_, view_, depth);
+    analytic_->measure(carried_body(now), frame, *executor_, view_, depth);
     const auto factor_px_m = static_cast<float>(analytic_->rig().depth_to_disparity_px_m());
     exact_depth_m_.resize(truth_.rig.left.width, truth_.rig.left.height);
     for (std::size_t i = 0; i < exact_depth_m_.size(); ++i)
@@ -327,7 +336,7 @@ Result<std::optional<StereoFrame>> SceneSource::next() {
         }
         if (odometry_ && arrives) {
             frame.known_motion =
-                odometry_->follow(now.time_ns, static_cast<int>(next_pose_), now.T_world_body);
+                odometry_->follow(now.time_ns, static_cast<int>(next_pose_), carried_body(now));
         }
         ++next_pose_;
         if (!arrives) continue;

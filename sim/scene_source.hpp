@@ -12,6 +12,7 @@
 #include "sim/depth_camera.hpp"
 #include "sim/image_faults.hpp"
 #include "sim/imu.hpp"
+#include "sim/knock.hpp"
 #include "sim/modelled_odometry.hpp"
 #include "sim/renderer.hpp"
 #include "sim/truth.hpp"
@@ -45,6 +46,7 @@ struct SceneOptions {
     double contrast = 1.0;               ///< factor on the contrast of every material
     CalibrationError calibration_error;  ///< of the images; `rig()` stays what it was
     ImageFaultConfig faults;
+    KnockConfig knock;  ///< the truth's poses are those of the machine, before and after
     ImuNoiseConfig imu_noise = imu_noise_of(imu);
     /// Also the lens, unless `rig` is one of RGB-D; where it sits is the place of the left eye.
     DepthCameraKind depth_camera = DepthCameraKind::kinect_v1;
@@ -94,13 +96,15 @@ class SceneSource final : public camera::FrameSource {
     [[nodiscard]] Status make_renderer(const SceneOptions& options);
     [[nodiscard]] Status make_depth_camera(const SceneOptions& options);
     [[nodiscard]] Status make_analytic(const SceneOptions& options, const camera::StereoRig& rig);
+    /// base_link as the camera carries it: that of the machine until the camera is knocked.
+    [[nodiscard]] Pose carried_body(const StampedPose& now) const;
     void take_pictures(const StampedPose& now);
     void damage(const InjectedFault* fault);
     [[nodiscard]] DepthImage model_depth(const StampedPose& now);
 
     camera::SourceInfo info_;
     SceneTruth truth_;
-    std::shared_ptr<const Motion> motion_;
+    std::shared_ptr<const Motion> motion_;     ///< of the camera
     std::optional<Renderer> renderer_;         ///< both sensors with images
     std::optional<DepthCamera> depth_camera_;  ///< that sensor only
     std::optional<AnalyticStereo> analytic_;   ///< that sensor only

@@ -214,6 +214,7 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
         {"source",
          {{"kind", record.source.kind}, {"path", record.source.path}, {"modelled", modelled}}},
         {"frames", record.frames.size()},
+        {"waited_frames", record.waited_frames},
         {"complete", record.complete()},
         {"error", record.error ? Json(record.error->message) : Json(nullptr)},
         {"gravity_source", name_of(alignment.gravity_source)},

@@ -16,6 +16,7 @@
 #include "io/frame_watch.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
+#include "surefoot/pipeline/start.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -64,23 +65,32 @@ Status play(const ReplayOptions& options,
             camera::FrameSource& source,
             pipeline::Pipeline& pipeline,
             std::vector<FrameReport>& seen) {
-    std::optional<Schedule> schedule;
+    Status ended;
     io::FrameWatch watch;
-    while (!interrupted()) {
-        auto frame = source.next();
-        if (!frame) return frame.error();
-        if (!frame->has_value()) return {};
+    const pipeline::NextFrame next = [&]() -> std::optional<StereoFrame> {
+        if (interrupted()) ended = Error{ErrorCode::interrupted, "interrupted by the user"};
+        Result<std::optional<StereoFrame>> frame = std::optional<StereoFrame>();
+        if (ended) frame = source.next();
+        if (!frame) ended = frame.error();
+        if (!frame || !frame->has_value()) return std::nullopt;
         watch.look(**frame);
-        if (!schedule) {
-            pipeline.align({&**frame, 1});
-            schedule.emplace((*frame)->time_ns, options.speed);
-        }
-        // A frame that comes late gets odometry only, as in a live run.
-        const bool in_time = schedule->wait_for((*frame)->time_ns) || seen.empty();
-        seen.push_back(pipeline.process(**frame, in_time ? Work::full : Work::odometry));
+        return std::move(frame).value();
+    };
+    const auto process = [&](const StereoFrame& frame, Work work) {
+        seen.push_back(pipeline.process(frame, work));
         if (!options.common.json) print_frame(seen.back(), seen.front().time_ns);
+    };
+    const pipeline::Start start =
+        pipeline::align_when_ready(pipeline, next, source.info().T_odom_first_body);
+    for (const StereoFrame& frame : start.frames) process(frame, Work::full);
+    if (start.frames.empty()) return ended;
+    // The clock starts where odom is placed.
+    const Schedule schedule(start.frames.back().time_ns, options.speed);
+    while (const auto frame = next()) {
+        // A frame that comes late gets odometry only, as in a live run.
+        process(*frame, schedule.wait_for(frame->time_ns) ? Work::full : Work::odometry);
     }
-    return Error{ErrorCode::interrupted, "interrupted by the user"};
+    return ended;
 }
 
 }  // namespace

@@ -282,6 +282,12 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
                     frame.median,
                     pipeline.map().known_cells(),
                     pipeline.alignment().reason);
+    if (record.waited_frames > 0) {
+        text += fmt::format(
+            "odom begins {} frames after the source: they were too bright, too dark or without "
+            "ground (mount.wait_for_light_s, mount.wait_for_ground_s)\n",
+            record.waited_frames);
+    }
     if (const auto& trim = pipeline.trim()) {
         text += fmt::format(
             "the right eye is corrected by {:+.3f} deg about the line of sight, {:+.3f} deg up and "

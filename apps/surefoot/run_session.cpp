@@ -10,6 +10,7 @@
 #include "apps/surefoot/measured_pair.hpp"
 #include "apps/surefoot/progress.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/pipeline/start.hpp"
 
 namespace surefoot::app {
 
@@ -54,9 +55,10 @@ void RunSession::drive(const std::string& label, const AfterFrame& after_frame) 
 
 void RunSession::process_all(const std::string& label, const AfterFrame& after_frame) {
     Progress progress(label, record_.source.frames);
-    const std::vector<StereoFrame> buffered = first_frames();
-    if (!buffered.empty()) pipeline_.align(buffered, record_.source.T_odom_first_body);
-    for (const StereoFrame& frame : buffered) {
+    const pipeline::Start start = pipeline::align_when_ready(
+        pipeline_, [this] { return next_frame(); }, record_.source.T_odom_first_body);
+    record_.waited_frames = start.waited_frames;
+    for (const StereoFrame& frame : start.frames) {
         process(frame, after_frame);
         progress.advance(static_cast<int>(record_.frames.size()));
     }
@@ -66,16 +68,6 @@ void RunSession::process_all(const std::string& label, const AfterFrame& after_f
         process(*frame, after_frame);
         progress.advance(static_cast<int>(record_.frames.size()));
     }
-}
-
-std::vector<StereoFrame> RunSession::first_frames() {
-    std::vector<StereoFrame> frames;
-    while (frames.size() < pipeline::Pipeline::kAlignmentFrames) {
-        auto frame = next_frame();
-        if (!frame) break;
-        frames.push_back(std::move(*frame));
-    }
-    return frames;
 }
 
 std::optional<StereoFrame> RunSession::next_frame() {

@@ -23,6 +23,7 @@ struct RunRecord {
     std::vector<FrameReport> frames;
     FusionCounts fusion;         ///< summed over all frames
     ArrivalCounts arrivals;      ///< likewise
+    int waited_frames = 0;       ///< before the first of `frames`, see pipeline/start.hpp
     std::optional<Error> error;  ///< why it ended early
     GreyImage last_left;         ///< rectified, for the report
     camera::DepthImage last_depth;
@@ -56,7 +57,6 @@ class RunSession {
 
   private:
     [[nodiscard]] std::optional<StereoFrame> next_frame();
-    [[nodiscard]] std::vector<StereoFrame> first_frames();
     void process_all(const std::string& label, const AfterFrame& after_frame);
     void process(const StereoFrame& frame, const AfterFrame& after_frame);
     /// Do the eyes belong together, and in this order? Asked until one frame tells.

@@ -69,6 +69,19 @@ Image<float> seen_by(const camera::RectifiedRig& rig,
     return seen_m;
 }
 
+/// Leaves out the poses before `first_ns`, which were waited out. False if the body moved
+/// meanwhile: odom then begins elsewhere than the world, and nothing is compared without alignment.
+bool starts_at(std::vector<StampedPose>& trajectory, std::int64_t first_ns) {
+    const Pose T_world_first = trajectory.front().T_world_body;
+    std::erase_if(trajectory, [&](const StampedPose& pose) { return pose.time_ns < first_ns; });
+    if (trajectory.empty()) return false;
+    const Pose moved = T_world_first.inverse() * trajectory.front().T_world_body;
+    constexpr double kMoved_m = 1e-3;
+    constexpr double kTurned_rad = 1e-3;
+    return moved.translation_m.norm() <= kMoved_m &&
+           2.0 * moved.rotation.vec().norm() <= kTurned_rad;
+}
+
 /// Height of odom's origin in the world. Odom begins on the ground, which is the world's z = 0, if
 /// the ground was found; else at the first body, and then the truth is told from there.
 double odom_height_m(const pipeline::Pipeline& pipeline,
@@ -145,12 +158,13 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
                                               const std::vector<FrameReport>& frames,
                                               const eval::EvalMapsConfig& config) const {
     if (scene_ == nullptr || frames.empty()) return std::nullopt;
+    sim::SceneTruth truth = scene_->truth();
+    if (!starts_at(truth.trajectory, frames.front().time_ns)) return std::nullopt;
+    truth.trajectory.resize(std::min(truth.trajectory.size(), frames.size()));
     TruthFigures figures;
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const grid::Layer live_m = pipeline.map().layers().height_m;
     const sim::Lattice lattice = lattice_of(geometry);
-    sim::SceneTruth truth = scene_->truth();
-    truth.trajectory.resize(std::min(truth.trajectory.size(), frames.size()));
 
     eval::MapPair maps;
     maps.geometry = geometry;

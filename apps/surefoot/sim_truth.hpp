@@ -44,6 +44,7 @@ class SimTruth {
     /// Keeps the exact depth of a frame that was just rendered until it is compared.
     void remember_depth(const StereoFrame& frame);
     void compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline);
+    /// Nothing without a simulated source, or when the body moved before odom was placed.
     [[nodiscard]] std::optional<TruthFigures> figures(const pipeline::Pipeline& pipeline,
                                                       const std::vector<FrameReport>& frames,
                                                       const eval::EvalMapsConfig& config) const;

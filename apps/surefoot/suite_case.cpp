@@ -106,6 +106,10 @@ class CaseRun {
         session.drive("", [&](const FrameReport& frame) { after(frame); });
         const RunRecord& record = session.record();
         if (record.error) return *record.error;
+        if (!record.truth) {
+            return input_error(which.name() +
+                               ": the machine moved before odom was placed; start it standing");
+        }
         if (auto status = take_snapshot(); !status) return status.error();
         const Pose T_world_body = source_.truth().trajectory[record.frames.size() - 1].T_world_body;
         const AroundAnswers around = compare_verdicts(

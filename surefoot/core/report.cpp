@@ -36,6 +36,9 @@ const char* to_string(CameraState state) noexcept {
         case CameraState::frozen: return "FROZEN";
         case CameraState::corrupt: return "CORRUPT";
         case CameraState::ok: return "OK";
+        case CameraState::overexposed: return "OVEREXPOSED";
+        case CameraState::dark: return "DARK";
+        case CameraState::moved: return "MOVED";
     }
     return "UNKNOWN";
 }

@@ -95,6 +95,12 @@ void check_camera(CameraState camera, Findings& findings) noexcept {
         findings.deny(Reason::frame_frozen);
     else if (camera == CameraState::corrupt)
         findings.deny(Reason::frame_corrupt);
+    else if (camera == CameraState::overexposed)
+        findings.deny(Reason::exposure);
+    else if (camera == CameraState::dark)
+        findings.deny(Reason::blind);
+    else if (camera == CameraState::moved)
+        findings.deny(Reason::mount_moved);
     else if (camera != CameraState::ok)
         findings.deny(Reason::not_ready);
 }

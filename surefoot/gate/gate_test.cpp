@@ -676,7 +676,13 @@ TEST(GateReadiness, the_camera_must_bring_new_and_whole_images) {
     expect_error(ask(floor, kForward), Reason::frame_frozen);
     floor.input.camera = CameraState::corrupt;
     expect_error(ask(floor, kForward), Reason::frame_corrupt);
-    for (const int camera : {0, 4, 255}) {
+    floor.input.camera = CameraState::overexposed;
+    expect_error(ask(floor, kForward), Reason::exposure);
+    floor.input.camera = CameraState::dark;
+    expect_error(ask(floor, kForward), Reason::blind);
+    floor.input.camera = CameraState::moved;
+    expect_error(ask(floor, kForward), Reason::mount_moved);
+    for (const int camera : {0, 7, 255}) {
         floor.input.camera = static_cast<CameraState>(camera);
         expect_error(ask(floor, kForward), Reason::not_ready);
     }

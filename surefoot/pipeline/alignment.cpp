@@ -65,6 +65,28 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
         0.1,
         45.0,
         "plane and accelerometer farther apart than this: the floor is a ramp, gravity wins");
+    visitor.number("max_lean_deg",
+                   max_lean_deg,
+                   0.1,
+                   45.0,
+                   "base_link may lean so far from how it stood at the start for long");
+    visitor.number("max_sway_deg", max_sway_deg, 0.1, 90.0, "farther than any gait leans");
+    visitor.number("max_lean_still_s", max_lean_still_s, 0.1, 600.0, "longest lean at rest");
+    visitor.number("max_lean_walking_s",
+                   max_lean_walking_s,
+                   0.1,
+                   600.0,
+                   "longest lean in all without having stood upright");
+    visitor.number("wait_for_light_s",
+                   wait_for_light_s,
+                   0.0,
+                   600.0,
+                   "frames too bright or too dark are waited out so long before odom is placed");
+    visitor.number("wait_for_ground_s",
+                   wait_for_ground_s,
+                   0.0,
+                   600.0,
+                   "so long the ground is looked for, where ground.expected_height_m is known");
 }
 
 std::optional<Eigen::Vector3d> up_from_imu(const AlignmentConfig& config,

@@ -20,6 +20,16 @@ struct AlignmentConfig {
                                        ///< accelerometer is not taken for gravity
     double still_force_m_s2 = 0.3;     ///< as above: deviation of the mean force from 9.81
     double plane_imu_limit_deg = 3.0;  ///< plane and gravity farther apart: the floor is a ramp
+    /// The mount has moved (mount_monitor.hpp) when base_link leans more than `max_lean_deg` from
+    /// how it stood at the start and does so for `max_lean_still_s` at rest, or for
+    /// `max_lean_walking_s` without having come home; at once beyond `max_sway_deg`. ASSUMPTION,
+    /// after the simulated REX: home within 0.3 deg, sways by 5.4, stands leaning for 2 s at most.
+    double max_lean_deg = 1.0;
+    double max_sway_deg = 7.0;
+    double max_lean_still_s = 4.0;
+    double max_lean_walking_s = 12.0;
+    double wait_for_light_s = 60.0;   ///< at most; the sun warm-up of the thesis took 10-30 s
+    double wait_for_ground_s = 10.0;  ///< at most, where the height of base_link is known
     void describe(ConfigVisitor& visitor);
 };
 

@@ -3,15 +3,20 @@
 
 namespace surefoot::pipeline {
 
-CameraState CameraMonitor::add(const FrameArrival& arrival) noexcept {
-    const bool good = arrival.is_new_and_whole();
+CameraState CameraMonitor::add(const FrameArrival& arrival, Light light) noexcept {
+    const bool arrived = arrival.is_new_and_whole();
+    const bool good = arrived && light == Light::lit;
     // Damaged images never became a frame: they lie between the previous one and this one.
     const int bad_now = arrival.damaged + (good ? 0 : 1);
     if (bad_now > 0) {
         bad_ += bad_now;
         fresh_ = 0;
-        if (bad_ >= kBadFrames)
-            state_ = arrival.repeated > 0 ? CameraState::frozen : CameraState::corrupt;
+        if (bad_ >= kBadFrames) {
+            state_ = arrival.repeated > 0              ? CameraState::frozen
+                     : !arrived || arrival.damaged > 0 ? CameraState::corrupt
+                     : light == Light::dark            ? CameraState::dark
+                                                       : CameraState::overexposed;
+        }
     }
     if (!good) return state_;
     bad_ = 0;

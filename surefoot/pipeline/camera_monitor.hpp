@@ -3,6 +3,7 @@
 
 #include "surefoot/core/camera_state.hpp"
 #include "surefoot/core/frame.hpp"
+#include "surefoot/pipeline/light.hpp"
 
 namespace surefoot::pipeline {
 
@@ -12,14 +13,15 @@ namespace surefoot::pipeline {
 /// then.
 class CameraMonitor {
   public:
-    /// Images in a row that bring nothing new or nothing whole: two, as hazard H1 says.
+    /// Images in a row that bring nothing new, nothing whole or nothing to see: two, as hazard H1
+    /// says.
     static constexpr int kBadFrames = 2;
-    /// New and whole images in a row that end it. ASSUMPTION: three, 200 ms at 15 Hz, as long as
-    /// the gate believes an old frame.
+    /// New, whole and lit images in a row that end it. ASSUMPTION: three, 200 ms at 15 Hz, as long
+    /// as the gate believes an old frame.
     static constexpr int kFreshFrames = 3;
 
     /// Frames in the order in which they came; returns the state after this one.
-    CameraState add(const FrameArrival& arrival) noexcept;
+    CameraState add(const FrameArrival& arrival, Light light = Light::lit) noexcept;
     [[nodiscard]] CameraState state() const noexcept { return state_; }
 
   private:

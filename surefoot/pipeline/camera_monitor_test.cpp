@@ -10,7 +10,8 @@ namespace surefoot::pipeline {
 namespace {
 
 /// States after each frame of a script: n = new, r = repeated, t = torn, d = new behind one damaged
-/// image, D = new behind two; states: u(nknown), o(k), f(rozen), c(orrupt).
+/// image, D = new behind two, l = new and too light, x = new and dark; states: u(nknown), o(k),
+/// f(rozen), c(orrupt), l(ight), x = dark.
 std::string states(std::string_view script) {
     CameraMonitor monitor;
     std::string result;
@@ -21,9 +22,12 @@ std::string states(std::string_view script) {
         arrival.repeated = repeated;
         arrival.torn = frame == 't';
         arrival.damaged = frame == 'd' ? 1 : frame == 'D' ? 2 : 0;
-        const CameraState state = monitor.add(arrival);
+        const Light light = frame == 'l'   ? Light::overexposed
+                            : frame == 'x' ? Light::dark
+                                           : Light::lit;
+        const CameraState state = monitor.add(arrival, light);
         EXPECT_EQ(state, monitor.state());
-        result += "ufco"[static_cast<std::size_t>(state)];
+        result += "ufcolx"[static_cast<std::size_t>(state)];
     }
     return result;
 }
@@ -50,6 +54,14 @@ TEST(CameraMonitor, TheLastKindOfFaultIsTheReason) {
     EXPECT_EQ(states("nrt"), "ooc");
     EXPECT_EQ(states("ntr"), "oof");
     EXPECT_EQ(states("nrrtt"), "oofcc");
+}
+
+TEST(CameraMonitor, WhatShowsNothingIsAsBadAsWhatDoesNotCome) {
+    EXPECT_EQ(states("nlnxn"), "ooooo") << "a flash changes nothing";
+    EXPECT_EQ(states("nllnnn"), "oolllo");
+    EXPECT_EQ(states("nxxxnnn"), "ooxxxxo");
+    EXPECT_EQ(states("nlxrr"), "ooxff");
+    EXPECT_EQ(states("llnnn"), "ulllo");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "surefoot/ground/ground_observation.hpp"
 #include "surefoot/ground/sample_points.hpp"
 #include "surefoot/odometry/health.hpp"
+#include "surefoot/pipeline/light.hpp"
 #include "surefoot/pipeline/rgbd_depth.hpp"
 #include "surefoot/traversability/reachability.hpp"
 
@@ -108,7 +109,8 @@ Pipeline::Pipeline(const PipelineConfig& config,
       matcher_(stereo::make_matcher(config.stereo)),
       map_(config.elevation),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
-      imu_mount_(rig.imu) {}
+      imu_mount_(rig.imu),
+      mount_monitor_(config.mount) {}
 
 const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
                                  const std::optional<Pose>& T_odom_first_body) {
@@ -132,7 +134,7 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
     scout.start_at(Pose{});
     ground::GroundCalibration calibration(config_.ground);
     for (const StereoFrame& frame : first_frames) {
-        if (!frame.arrival.is_new_and_whole()) continue;
+        if (!frame.arrival.is_new_and_whole() || light_of(frame) != Light::lit) continue;
         const MotionEstimate motion = track(frame, scout, Pose{});
         rectify(frame);
         measure_depth(frame);
@@ -157,7 +159,19 @@ std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFram
     return corners;
 }
 
+bool Pipeline::see_with(const camera::StereoRig& rig) {
+    auto rectifier = camera::Rectifier::make(rig, config_.camera);
+    if (!rectifier) return false;
+    rectifier_ = std::make_unique<camera::Rectifier>(std::move(rectifier).value());
+    odometry_ = odometry::Odometry(config_.odometry, *rectifier_, imu_mount_);
+    return true;
+}
+
 void Pipeline::trim_right_eye(std::span<const StereoFrame> frames) {
+    if (trim_) {  // of an earlier alignment
+        see_with(nominal_rig_);
+        trim_.reset();
+    }
     if (!config_.trim.enabled || !nominal_rig_.right) return;
     for (int round = 0; round < kTrimRounds; ++round) {
         auto found = stereo::estimate_trim(config_.trim, rig(), corners_of(frames));
@@ -168,12 +182,8 @@ void Pipeline::trim_right_eye(std::span<const StereoFrame> frames) {
             found->eye.focal_share += trim_->eye.focal_share;
             found->row_error_px = trim_->row_error_px;
         }
-        auto better =
-            camera::Rectifier::make(with_right_eye(nominal_rig_, found->eye), config_.camera);
-        if (!better) return;
+        if (!see_with(with_right_eye(nominal_rig_, found->eye))) return;
         trim_ = found;
-        rectifier_ = std::make_unique<camera::Rectifier>(std::move(better).value());
-        odometry_ = odometry::Odometry(config_.odometry, *rectifier_, imu_mount_);
     }
 }
 
@@ -183,7 +193,9 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     report.index = frame.index;
     report.work = work;
     report.arrival = frame.arrival;
-    report.camera = camera_monitor_.add(frame.arrival);
+    const Light light = light_of(frame);
+    camera_monitor_.add(frame.arrival, light);
+    report.camera = camera_state();
     if (!frame.arrival.is_new_and_whole()) {
         report.work = Work::odometry;
         odometry_.skip(frame);
@@ -196,12 +208,14 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     report.motion = track(frame, odometry_, alignment_.T_odom_body);
     follow(report.motion);
     timer.finished(Stage::odometry);  // with the move of the map, which follows every frame
-    if (work == Work::full) {
+    if (light != Light::lit) report.work = Work::odometry;  // flat grey matches anything
+    if (report.work == Work::full) {
         rectify(frame);
         timer.finished(Stage::rectify);
         measure_depth(frame);
         timer.finished(Stage::stereo);
         report.ground = observe_ground(report.motion.T_odom_body, Eigen::Vector3d::UnitZ());
+        watch_mount(report);
         timer.finished(Stage::ground);
         report.fusion = fuse(report.motion);
         timer.finished(Stage::fuse);
@@ -268,6 +282,15 @@ GroundObservation Pipeline::observe_ground(const Pose& T_level_body,
     return ground::observe_ground(config_.ground, ground_points_, up_body, kGroundSeed);
 }
 
+void Pipeline::watch_mount(FrameReport& report) {
+    if (config_.ground.expected_height_m > 0.0) mount_monitor_.add(report.motion, report.ground);
+    report.camera = camera_state();
+}
+
+CameraState Pipeline::camera_state() const noexcept {
+    return mount_monitor_.moved() ? CameraState::moved : camera_monitor_.state();
+}
+
 void Pipeline::follow(const MotionEstimate& motion) {
     map_.follow(motion.T_odom_body, motion.relative_covariance);
     last_motion_ = motion;
@@ -325,7 +348,7 @@ Status Pipeline::snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) con
     input.pose_time_ns = last_motion_.time_ns;
     input.gravity_source = alignment_.gravity_source;
     input.health = snapshot_health(last_motion_.health);
-    input.camera = camera_monitor_.state();
+    input.camera = camera_state();
     input.version = version_;
     input.config_hash = config_hash;
     return grid::build_snapshot(input, out);

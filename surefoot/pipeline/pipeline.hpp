@@ -18,6 +18,7 @@
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/pipeline/camera_monitor.hpp"
+#include "surefoot/pipeline/mount_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/pair_trim.hpp"
@@ -35,8 +36,11 @@ using Clock = std::int64_t (*)();
 /// stamps of the last good frame, so that the gate sees it grow old, and says what is wrong with
 /// the camera when there are several in a row.
 ///
-/// Order of calls: `make`, `align` once with the first frames, then `process` for every frame in
-/// time order (those used for the alignment included). One thread at a time.
+/// Frames too bright or too dark get odometry only; several in a row are said likewise.
+///
+/// Order of calls: `make`, `align` with the first frames (start.hpp says which) and, if it found no
+/// ground, perhaps with later ones; then `process` for every frame in time order (those used for
+/// the alignment included). One thread at a time.
 class Pipeline {
   public:
     /// Fails with the first problem of the rig or the configuration.
@@ -89,6 +93,8 @@ class Pipeline {
              Clock clock);
 
     [[nodiscard]] Alignment measure_alignment(std::span<const StereoFrame> first_frames);
+    /// False, and nothing changed, when the rig cannot be rectified.
+    bool see_with(const camera::StereoRig& rig);
     void trim_right_eye(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
     /// The last pose, with the motion that may have happened unseen since then.
@@ -101,6 +107,9 @@ class Pipeline {
     void measure_depth(const StereoFrame& frame);
     [[nodiscard]] GroundObservation observe_ground(const Pose& T_level_body,
                                                    const Eigen::Vector3d& up_level);
+    /// Only where a machine carries the camera: the height of base_link is known.
+    void watch_mount(FrameReport& report);
+    [[nodiscard]] CameraState camera_state() const noexcept;
     void follow(const MotionEstimate& motion);
     [[nodiscard]] FusionCounts fuse(const MotionEstimate& motion);
     void rate();
@@ -125,6 +134,7 @@ class Pipeline {
     ground::FramePoints ground_points_;
     MotionEstimate last_motion_;
     CameraMonitor camera_monitor_;
+    MountMonitor mount_monitor_;
     std::int64_t last_fused_ns_ = 0;
     std::uint64_t version_ = 0;  ///< counts fused frames
 };

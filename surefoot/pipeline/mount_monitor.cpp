@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/pipeline/mount_monitor.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "surefoot/core/time.hpp"
+
+namespace surefoot::pipeline {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+/// Between two frames; the odometry reports exact rest.
+constexpr double kStanding_m = 2e-4;
+constexpr double kStanding_rad = 5e-4;
+/// Stands shorter than this are passed through, not taken.
+constexpr double kHome_s = 1.0;
+/// Longer than the ringing after a foot strike.
+constexpr double kSway_s = 0.5;
+
+bool stands(const MotionEstimate& motion) {
+    return motion.T_previous_body.translation_m.norm() <= kStanding_m &&
+           2.0 * motion.T_previous_body.rotation.vec().norm() <= kStanding_rad;
+}
+
+}  // namespace
+
+double MountMonitor::common_lean_rad(const Pose& T_odom_body,
+                                     const Eigen::Vector3d& normal_body) const {
+    const Eigen::Vector3d by_odom =
+        T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ() - up_body_;
+    const Eigen::Vector3d by_ground = normal_body - normal_body_;
+    const bool same = (by_odom - by_ground).norm() <= config_.max_lean_deg * kRadPerDeg;
+    return same ? std::min(by_odom.norm(), by_ground.norm()) : 0.0;
+}
+
+void MountMonitor::add(const MotionEstimate& motion, const GroundObservation& ground_body) {
+    const double since_s = last_ns_ ? seconds_from_ns(motion.time_ns - *last_ns_) : 0.0;
+    last_ns_ = motion.time_ns;
+    if (motion.health != Health::ok || !ground_body.accepted) {
+        standing_s_ = leaning_s_ = swaying_s_ = 0.0;
+        return;
+    }
+    if (!started_) {
+        started_ = true;
+        up_body_ = motion.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+        normal_body_ = ground_body.normal;
+    }
+    lean_rad_ = common_lean_rad(motion.T_odom_body, ground_body.normal);
+    const bool leans = lean_rad_ > config_.max_lean_deg * kRadPerDeg;
+    standing_s_ = stands(motion) ? standing_s_ + since_s : 0.0;
+    leaning_s_ = leans && standing_s_ > 0.0 ? leaning_s_ + since_s : 0.0;
+    swaying_s_ = lean_rad_ > config_.max_sway_deg * kRadPerDeg ? swaying_s_ + since_s : 0.0;
+    away_s_ = !leans && standing_s_ >= kHome_s ? 0.0 : away_s_ + (leans ? since_s : 0.0);
+    moved_ = moved_ || swaying_s_ >= kSway_s || leaning_s_ >= config_.max_lean_still_s ||
+             away_s_ >= config_.max_lean_walking_s;
+}
+
+}  // namespace surefoot::pipeline

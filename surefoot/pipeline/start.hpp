@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "surefoot/core/frame.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::pipeline {
+
+/// The next frame of a source in time order, nothing at its end.
+using NextFrame = std::function<std::optional<StereoFrame>()>;
+
+struct Start {
+    std::vector<StereoFrame> frames;  ///< the pipeline is aligned by them; they are to be processed
+    int waited_frames = 0;            ///< came before them and have no pose
+};
+
+/// Reads frames until odom can be placed, and aligns the pipeline by them. The thesis took its
+/// ground plane from the first, over-exposed seconds in the sun, and whole recordings were lost by
+/// it; so what counts is what the images show, not how long the camera is on:
+/// * frames too bright or too dark are waited out, `mount.wait_for_light_s` at most;
+/// * where the height of base_link over its ground is known there is a ground to be found: for
+///   `mount.wait_for_ground_s` it is looked for, five frames later each time.
+/// When the source ends or the wait is over, odom is placed by the last frames, whatever they show.
+/// Holds `Pipeline::kAlignmentFrames` frames at a time.
+[[nodiscard]] Start align_when_ready(Pipeline& pipeline,
+                                     const NextFrame& next,
+                                     const std::optional<Pose>& T_odom_first_body = {});
+
+}  // namespace surefoot::pipeline

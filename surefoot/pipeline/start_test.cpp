@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/pipeline/start.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "surefoot/camera/test_rigs.hpp"
+
+namespace surefoot::pipeline {
+namespace {
+
+constexpr int kWidth = 160;
+constexpr int kHeight = 120;
+constexpr double kFocal_px = 120.0;
+constexpr double kHeight_m = 1.0;
+
+/// One metre above the ground, 40 deg down.
+camera::StereoRig looking_down() {
+    camera::StereoRig rig = camera::test::ideal_rig(kWidth, kHeight, kFocal_px);
+    const Eigen::AngleAxisd pitch(40.0 * M_PI / 180.0, Eigen::Vector3d::UnitY());
+    rig.T_body_left =
+        Pose{Eigen::Quaterniond(pitch) * rig.body_from_left().rotation, Eigen::Vector3d::Zero()};
+    return rig;
+}
+
+/// Disparity of a level floor, or of a wall two metres ahead that fills the view.
+DepthImage depth_of(const camera::RectifiedRig& rig, bool floor) {
+    DepthImage depth;
+    depth.disparity_px = Image<float>(rig.width, rig.height, 0.0F);
+    depth.sigma_px = Image<float>(rig.width, rig.height, 0.2F);
+    depth.outlier_probability = Image<float>(rig.width, rig.height, 0.0F);
+    for (int v = 0; v < rig.height; ++v) {
+        for (int u = 0; u < rig.width; ++u) {
+            const Eigen::Vector3d ray =
+                rig.T_body_camera.rotation *
+                Eigen::Vector3d((u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
+            const double z_m = floor ? -kHeight_m / ray.z() : 2.0 / ray.x();
+            if (z_m > 0.0) {
+                depth.disparity_px.row(v)[u] =
+                    static_cast<float>(rig.depth_to_disparity_px_m() / z_m);
+            }
+        }
+    }
+    return depth;
+}
+
+/// What the frames of a source show, by their index, ten a second.
+struct Script {
+    int frames = 0;
+    std::function<std::uint8_t(int)> grey_dn;
+    std::function<bool(int)> floor;
+};
+
+struct Outcome {
+    Start start;
+    Alignment alignment;
+};
+
+Outcome start_of(const Script& script, const PipelineConfig& config) {
+    Serial serial;
+    auto pipeline = Pipeline::make(config, looking_down(), serial);
+    EXPECT_TRUE(pipeline.ok()) << pipeline.error().message;
+    int next = 0;
+    const auto source = [&]() -> std::optional<StereoFrame> {
+        if (next == script.frames) return std::nullopt;
+        StereoFrame frame;
+        frame.index = next++;
+        frame.time_ns = 1'000'000'000 + frame.index * 100'000'000LL;
+        frame.left = frame.right = GreyImage(kWidth, kHeight, script.grey_dn(frame.index));
+        frame.known_depth = depth_of(pipeline->rig(), script.floor(frame.index));
+        MotionEstimate standing;
+        standing.time_ns = frame.time_ns;
+        standing.health = Health::ok;
+        frame.known_motion = standing;
+        return frame;
+    };
+    Outcome outcome{align_when_ready(*pipeline, source), {}};
+    outcome.alignment = pipeline->alignment();
+    return outcome;
+}
+
+std::uint8_t mid_grey(int /*index*/) {
+    return 128;
+}
+bool always(int /*index*/) {
+    return true;
+}
+
+TEST(Start, TheFirstFramesServeWhereTheyAreGood) {
+    const Outcome outcome = start_of({30, mid_grey, always}, {});
+    EXPECT_EQ(outcome.start.waited_frames, 0);
+    ASSERT_EQ(outcome.start.frames.size(), Pipeline::kAlignmentFrames);
+    EXPECT_EQ(outcome.start.frames.front().index, 0);
+    ASSERT_TRUE(outcome.alignment.has_ground) << outcome.alignment.reason;
+    EXPECT_NEAR(outcome.alignment.ground_height_m, kHeight_m, 1e-3);
+}
+
+TEST(Start, OverexposedFramesAreWaitedOut) {
+    const auto sun = [](int index) -> std::uint8_t { return index < 40 ? 255 : 128; };
+    const Outcome outcome = start_of({60, sun, [](int index) { return index >= 40; }}, {});
+    EXPECT_EQ(outcome.start.waited_frames, 40);
+    ASSERT_EQ(outcome.start.frames.size(), Pipeline::kAlignmentFrames);
+    EXPECT_EQ(outcome.start.frames.front().index, 40);
+    EXPECT_TRUE(outcome.alignment.has_ground);
+}
+
+TEST(Start, AFlickerBeginsTheWaitAnew) {
+    const auto flicker = [](int index) -> std::uint8_t {
+        return index < 5 || index == 12 ? 255 : 128;
+    };
+    const Outcome outcome = start_of({60, flicker, always}, {});
+    EXPECT_EQ(outcome.start.frames.front().index, 13) << "ten lit frames in a row are wanted";
+}
+
+TEST(Start, TheWaitForLightEnds) {
+    PipelineConfig config;
+    config.mount.wait_for_light_s = 2.0;
+    const auto night = [](int /*index*/) -> std::uint8_t { return 0; };
+    const Outcome outcome = start_of({60, night, always}, config);
+    EXPECT_EQ(outcome.start.frames.back().index, 20) << "two seconds";
+    EXPECT_FALSE(outcome.alignment.has_ground) << "no plane from dark frames";
+    EXPECT_EQ(outcome.alignment.gravity_source, grid::GravitySource::assumed);
+}
+
+TEST(Start, WhatIsThereWhenTheSourceEndsIsKept) {
+    const auto sun = [](int /*index*/) -> std::uint8_t { return 255; };
+    EXPECT_EQ(start_of({4, sun, always}, {}).start.frames.size(), 4U);
+    const Outcome longer = start_of({25, sun, always}, {});
+    EXPECT_EQ(longer.start.frames.back().index, 24);
+    EXPECT_EQ(longer.start.waited_frames, 15);
+    EXPECT_TRUE(start_of({0, sun, always}, {}).start.frames.empty());
+}
+
+TEST(Start, GroundIsLookedForWhereTheMachineSaysThereIsSome) {
+    const auto wall_first = [](int index) { return index >= 30; };
+    PipelineConfig config;
+    config.mount.pitch_deg = 0.0;
+    const Outcome anywhere = start_of({80, mid_grey, wall_first}, config);
+    EXPECT_EQ(anywhere.start.waited_frames, 0) << "a recording may show no ground at all";
+    EXPECT_FALSE(anywhere.alignment.has_ground);
+
+    config.ground.expected_height_m = kHeight_m;
+    const Outcome machine = start_of({80, mid_grey, wall_first}, config);
+    EXPECT_TRUE(machine.alignment.has_ground) << machine.alignment.reason;
+    // Five of ten sightings must agree, and the window moves by five: at once, at most 2 s later.
+    EXPECT_EQ(machine.start.waited_frames, 25);
+
+    config.mount.wait_for_ground_s = 1.5;
+    const Outcome impatient = start_of({80, mid_grey, wall_first}, config);
+    EXPECT_FALSE(impatient.alignment.has_ground);
+    EXPECT_LE(impatient.start.frames.back().index, 20);
+}
+
+}  // namespace
+}  // namespace surefoot::pipeline
