@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/pose.hpp"
+
+namespace surefoot::places {
+
+/// How the surroundings of a corner look: 256 comparisons of two grey values each.
+struct Descriptor {
+    std::array<std::uint64_t, 4> bits{};
+    friend bool operator==(const Descriptor&, const Descriptor&) = default;
+};
+
+/// Comparisons that came out differently (Hamming distance), 0 to 256; about 128 by chance.
+[[nodiscard]] int distance(const Descriptor& a, const Descriptor& b) noexcept;
+
+/// A corner with depth.
+struct Feature {
+    /// (u_left, v, u_right) in rectified pixels, as `odometry::StereoPixel`.
+    Eigen::Vector3f pixel_px = Eigen::Vector3f::Zero();
+    Descriptor descriptor;
+};
+
+/// What a rig saw at one instant.
+struct View {
+    std::int64_t time_ns = 0;
+    camera::RectifiedRig rig;
+    std::vector<Feature> features;
+};
+
+/// A view and where base_link was. The map frame has z up, so that gravity can be compared.
+struct Keyframe {
+    View view;
+    Pose T_map_body;
+};
+
+/// What is remembered of a place (home, clinic); its map frame is the odom of the first run there.
+struct Place {
+    std::vector<Keyframe> keyframes;
+
+    /// First reason why it cannot be used, with the value; or nothing.
+    [[nodiscard]] std::optional<std::string> problem() const;
+};
+
+/// Bounds of what a place may hold. A query among this many keyframes stays within 20 ms.
+inline constexpr int kMostKeyframes = 500;
+inline constexpr int kMostFeatures = 400;  ///< of a view
+inline constexpr double kMostImage_px = 16384.0;
+inline constexpr double kMostDistance_m = 1e4;  ///< of a keyframe from the origin
+
+}  // namespace surefoot::places
