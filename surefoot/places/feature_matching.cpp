@@ -27,7 +27,7 @@ int best_of(const MatchConfig& config,
     const auto elsewhere_px = static_cast<float>(config.elsewhere_px);
     for (std::size_t i = 0; i < others.size(); ++i) {
         const int d = distances[first + i * step];
-        if (static_cast<double>(least) <= config.ratio * static_cast<double>(d)) continue;
+        if (static_cast<double>(least) < config.ratio * static_cast<double>(d)) continue;
         const Eigen::Vector2f away_px = others[i].pixel_px.head<2>() - at_px;
         if (away_px.squaredNorm() > elsewhere_px * elsewhere_px) return -1;
     }

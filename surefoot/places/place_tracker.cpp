@@ -47,11 +47,15 @@ bool PlaceTracker::is_due() const {
         Pose{}, T_keyframe_body_, config_.keyframe_m, config_.keyframe_deg * kRadPerDeg);
 }
 
+void PlaceTracker::forget_pending() {
+    pending_.clear();
+    committed_ = 0;
+}
+
 void PlaceTracker::add_node() {
     if (lost_) {
         add_sigmas(covariance_, kLostSigma_m, kLostSigma_rad);
-        pending_.clear();  // what was seen before belongs to another odom
-        committed_ = 0;
+        forget_pending();  // what was seen before belongs to another odom
     }
     if (graph_.nodes() == 0)
         graph_.add_first(last_.T_odom_body);
@@ -101,9 +105,9 @@ Sighting PlaceTracker::look_for(const View& view, int node) {
                       std::nullopt};
     if (answer.refusal == Refusal::none) {
         sighting.refusal = confirm(answer, node);
-    } else {
-        pending_.clear();
-        committed_ = 0;
+        misses_ = 0;
+    } else if (++misses_ > config_.max_misses) {
+        forget_pending();
     }
     if (sighting.refusal == Refusal::none) sighting.T_map_odom = T_map_odom();
     return sighting;
@@ -125,10 +129,7 @@ Refusal PlaceTracker::confirm(const Answer& answer, int node) {
                        config_.agree_m,
                        config_.agree_deg * kRadPerDeg);
     };
-    if (!pending_.empty() && !agrees(pending_.back())) {
-        pending_.clear();
-        committed_ = 0;
-    }
+    if (!pending_.empty() && !agrees(pending_.back())) forget_pending();
     pending_.push_back(std::move(now));
     if (pending_.size() < static_cast<std::size_t>(config_.confirmations))
         return Refusal::unconfirmed;
@@ -160,8 +161,7 @@ bool PlaceTracker::commit() {
     for (int i = first; i <= last; ++i) good = good && graph_.chi2(i) <= config_.max_chi2;
     if (!good) {
         graph_ = before;
-        pending_.clear();
-        committed_ = 0;
+        forget_pending();
         return false;
     }
     committed_ = pending_.size();

@@ -21,8 +21,9 @@ struct TrackerConfig {
     double keyframe_deg = 12.0;
     /// The last keyframes show what the present one shows; recognising them tells nothing.
     int recent_keyframes = 10;
-    /// Keyframes one after the other that must name the same T_map_odom before it is believed.
+    /// Keyframes after each other that must name the same T_map_odom before it is believed.
     int confirmations = 3;
+    int max_misses = 1;  ///< keyframes in a row, in between, that may say nothing
     double agree_m = 0.15;
     double agree_deg = 2.5;
     /// What a recognition errs beyond its own covariance: landmarks of one view err together.
@@ -46,7 +47,7 @@ struct Sighting {
 ///
 /// Without a saved place the map is this run's odom and T_map_odom is the identity until the run
 /// comes back to where it was. With one, nothing is known of T_map_odom until the place was
-/// recognised in `confirmations` keyframes one after the other.
+/// recognised in `confirmations` keyframes after each other.
 ///
 /// Call `follow` with every frame's motion, then `see` with those that have depth. Not for several
 /// threads. Same calls, same results, bit by bit on one machine.
@@ -86,6 +87,7 @@ class PlaceTracker {
         int node = 0;
     };
     [[nodiscard]] bool is_due() const;
+    void forget_pending();
     void add_node();
     void remember(View view, int node);
     [[nodiscard]] Sighting look_for(const View& view, int node);
@@ -103,6 +105,7 @@ class PlaceTracker {
     bool located_ = false;
     std::vector<Pending> pending_;
     std::size_t committed_ = 0;  ///< of the pending ones
+    int misses_ = 0;             ///< keyframes in a row since the last pending one
     std::vector<Sighting> sightings_;
 
     MotionEstimate last_;

@@ -24,7 +24,7 @@ struct ComparisonConfig {
     int part_rows = 3;
     int min_asked = 8;               ///< features of a part that can say anything
     double min_agreeing = 0.25;      ///< share of a part's features, below which it says no
-    double min_agreeing_all = 0.3;   ///< the same of all features asked
+    double min_agreeing_all = 0.4;   ///< the same of all features asked
     double max_parts_against = 0.2;  ///< share of the parts asked that may say no
     int min_parts = 5;               ///< parts that hold an inlier
     double max_sigma_m = 0.05;       ///< of the position
