@@ -204,6 +204,30 @@ Json trim_json(const std::optional<stereo::PairTrim>& trim) {
             {"row_error_left_px", number(trim->row_error_left_px)}};
 }
 
+/// x y z qx qy qz qw
+Json pose_json(const Pose& T) {
+    const Eigen::Vector3d& t = T.translation_m;
+    const Eigen::Quaterniond& q = T.rotation;
+    return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
+Json place_json(const PlaceRecord& place) {
+    Json refusals = Json::object();
+    for (int i = 1; i < places::kRefusals; ++i)  // the first is none
+        refusals[to_string(static_cast<places::Refusal>(i))] =
+            place.refusals[static_cast<std::size_t>(i)];
+    const std::string& reason = place.left_as_it_was;
+    return {{"file", place.file},
+            {"saved_keyframes", place.saved_keyframes},
+            {"own_keyframes", place.own_keyframes},
+            {"kept_keyframes", place.kept_keyframes},
+            {"recognitions", place.refusals[0]},
+            {"recognised_ns", place.recognised_ns ? Json(*place.recognised_ns) : Json(nullptr)},
+            {"T_map_odom", place.T_map_odom ? pose_json(*place.T_map_odom) : Json(nullptr)},
+            {"refusals", refusals},
+            {"left_as_it_was", reason.empty() ? Json(nullptr) : Json(reason)}};
+}
+
 Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const pipeline::Alignment& alignment = pipeline.alignment();
     const auto& geometry = pipeline.map().geometry();
@@ -231,6 +255,7 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
           {"cells", geometry.nx * geometry.ny},
           {"resolution_m", geometry.resolution_m},
           {"reason", empty_map_reason(record, pipeline)}}}};
+    if (record.place) object["place"] = place_json(*record.place);
     if (record.truth) object["truth"] = truth_json(*record.truth);
     object["timing"] = timing_json(record);
     return object;

@@ -158,6 +158,11 @@ void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
                      o.save_map,
                      "file for the map as it is at the end, to merge and export with 'map'")
         ->type_name("F.region");
+    verb->add_option("--place",
+                     o.place,
+                     "file that remembers a place: recognised, extended and written again; begun "
+                     "where there is none")
+        ->type_name("F.place");
 }
 
 void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {

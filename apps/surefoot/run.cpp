@@ -3,10 +3,12 @@
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/place_session.hpp"
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "apps/surefoot/writes.hpp"
 #include "io/file.hpp"
 
 namespace surefoot::app {
@@ -48,6 +50,12 @@ int run(const RunOptions& options) {
     expect_machine_height(*machine, *settings);
     auto pipeline = pipeline::Pipeline::make(settings->pipeline, rig, *executor, steady_now_ns);
     if (!pipeline) return report(pipeline.error());
+    std::optional<PlaceSession> place;
+    if (!options.place.empty()) {
+        auto opened = PlaceSession::open(options.place);
+        if (!opened) return report(opened.error());
+        place.emplace(std::move(opened).value());
+    }
     if (const auto status = io::make_folder(options.out_dir); !status)
         return report(status.error());
 
@@ -62,10 +70,18 @@ int run(const RunOptions& options) {
         if (auto status = io::remove_file(options.save_map); !status) return report(status.error());
     }
     RunSession session(*pipeline, **source, rig, options.depth_every, settings->maps);
-    session.drive();
+    session.drive("run", [&](const FrameReport& frame) {
+        if (place) place->after_frame(frame, *pipeline);
+    });
+    Writes writes;
+    if (place) {
+        writes += place->save();
+        session.record().place = place->record();
+    }
     const RunRecord& record = session.record();
 
-    const Status written = write_results(options, *settings, *machine, *pipeline, record);
+    writes += write_results(options, *settings, *machine, *pipeline, record);
+    const Status& written = writes.first();
     if (options.common.json) {
         print_answer(run_json(record, *pipeline));
     } else {

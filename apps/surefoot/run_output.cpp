@@ -66,6 +66,7 @@ std::string command_line(const RunOptions& options) {
     add_number("--rate", options.rate_hz, 0.0);
     add_number("--max-frames", options.max_frames, 0.0);
     add_number("--depth-every", options.depth_every, 1.0);
+    add("--place", options.place);
     return line + fmt::format(" --seed {}\n", options.common.seed);
 }
 

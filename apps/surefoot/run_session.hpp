@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/surefoot/place_session.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/sim_truth.hpp"
 #include "io/frame_watch.hpp"
@@ -28,6 +29,7 @@ struct RunRecord {
     GreyImage last_left;         ///< rectified, for the report
     camera::DepthImage last_depth;
     std::optional<TruthFigures> truth;  ///< simulated sources only
+    std::optional<PlaceRecord> place;   ///< `run --place` only
     double wall_s = 0.0;
 
     [[nodiscard]] bool complete() const noexcept { return !error.has_value(); }

@@ -38,6 +38,7 @@ struct RunOptions {
     int depth_every = 1;
     bool all_layers = false;
     std::string save_map;  ///< file for the whole map; empty = none
+    std::string place;     ///< file that remembers the place; empty = none
 };
 int run(const RunOptions& options);
 
