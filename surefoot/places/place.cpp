@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 
 namespace surefoot::places {
@@ -52,12 +51,6 @@ std::optional<std::string> view_problem(const View& view) {
 }
 
 }  // namespace
-
-int distance(const Descriptor& a, const Descriptor& b) noexcept {
-    int count = 0;
-    for (std::size_t i = 0; i < a.bits.size(); ++i) count += std::popcount(a.bits[i] ^ b.bits[i]);
-    return count;
-}
 
 std::optional<std::string> Place::problem() const {
     if (keyframes.size() > static_cast<std::size_t>(kMostKeyframes))

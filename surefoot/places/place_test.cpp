@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <limits>
 
 #include "surefoot/places/views_for_test.hpp"
@@ -22,6 +23,16 @@ TEST(Descriptor, DistanceCountsTheBitsThatDiffer) {
     Descriptor b;
     b.bits = {1, 0, 3, ~std::uint64_t{0}};
     EXPECT_EQ(distance(a, b), 1 + 2 + 64);
+    b.bits.fill(~std::uint64_t{0});
+    EXPECT_EQ(distance(a, b), 256);
+    Rng rng(1);
+    for (int i = 0; i < 1000; ++i) {
+        a = testing::random_descriptor(rng);
+        b = testing::random_descriptor(rng);
+        int bits = 0;
+        for (std::size_t k = 0; k < 4; ++k) bits += std::popcount(a.bits[k] ^ b.bits[k]);
+        EXPECT_EQ(distance(a, b), bits);
+    }
 }
 
 TEST(Place, SaysWhatIsWrongWithIt) {

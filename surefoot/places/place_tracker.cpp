@@ -181,7 +181,8 @@ void PlaceTracker::remember(View view, int node) {
 
 std::optional<Pose> PlaceTracker::T_map_odom() const {
     if (!located_) return std::nullopt;
-    if (graph_.nodes() == 0) return Pose{};
+    // Not a product that is nearly the identity: nothing was corrected.
+    if (graph_.recognitions() == 0) return Pose{};
     return graph_.T_map_body(graph_.nodes() - 1) * T_odom_keyframe_.inverse();
 }
 

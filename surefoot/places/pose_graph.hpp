@@ -13,8 +13,8 @@ namespace surefoot::places {
 /// one among right ones is outvoted. Pose and covariance conventions are those of pose.hpp.
 class PoseGraph {
   public:
-    /// The first node, as sure as `covariance` says; zero = exact. Without any such node and any
-    /// `recognise_fixed` the graph floats, and `solve` leaves it where it is.
+    /// The first node. Without `hold_first` and any `recognise_fixed` the graph floats, and `solve`
+    /// leaves it where it is.
     int add_first(const Pose& T_map_body);
     /// A node after the last one.
     int add_next(const Pose& T_previous_body, const Matrix6& covariance);
@@ -34,6 +34,9 @@ class PoseGraph {
     bool solve();
 
     [[nodiscard]] int nodes() const noexcept { return static_cast<int>(poses_.size()); }
+    [[nodiscard]] int recognitions() const noexcept {
+        return static_cast<int>(recognitions_.size());
+    }
     [[nodiscard]] const Pose& T_map_body(int node) const {
         return poses_[static_cast<std::size_t>(node)];
     }
