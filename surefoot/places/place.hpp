@@ -66,7 +66,7 @@ struct Place {
     [[nodiscard]] std::optional<std::string> problem() const;
 };
 
-/// Bounds of what a place may hold. A query among this many keyframes stays within 20 ms.
+/// Bounds of what a place may hold, and so of the time of a query.
 inline constexpr int kMostKeyframes = 500;
 inline constexpr int kMostFeatures = 400;  ///< of a view
 inline constexpr double kMostImage_px = 16384.0;
