@@ -86,7 +86,8 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    wait_for_ground_s,
                    0.0,
                    600.0,
-                   "so long the ground is looked for, where ground.expected_height_m is known");
+                   "so long the ground is looked for where nothing else tells gravity and "
+                   "ground.expected_height_m is known");
 }
 
 std::optional<Eigen::Vector3d> up_from_imu(const AlignmentConfig& config,

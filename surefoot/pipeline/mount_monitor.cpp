@@ -10,10 +10,10 @@ namespace surefoot::pipeline {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-/// Between two frames; the odometry reports exact rest.
-constexpr double kStanding_m = 2e-4;
+/// Between two frames: above the noise of odometry, below any sway.
+constexpr double kStanding_m = 1e-3;
 constexpr double kStanding_rad = 5e-4;
-/// Stands shorter than this are passed through, not taken.
+/// A sway passes through the upright in less, a stand between two steps takes longer.
 constexpr double kHome_s = 1.0;
 /// Longer than the ringing after a foot strike.
 constexpr double kSway_s = 0.5;
@@ -38,7 +38,7 @@ void MountMonitor::add(const MotionEstimate& motion, const GroundObservation& gr
     const double since_s = last_ns_ ? seconds_from_ns(motion.time_ns - *last_ns_) : 0.0;
     last_ns_ = motion.time_ns;
     if (motion.health != Health::ok || !ground_body.accepted) {
-        standing_s_ = leaning_s_ = swaying_s_ = 0.0;
+        upright_s_ = leaning_s_ = swaying_s_ = 0.0;
         return;
     }
     if (!started_) {
@@ -48,10 +48,11 @@ void MountMonitor::add(const MotionEstimate& motion, const GroundObservation& gr
     }
     lean_rad_ = common_lean_rad(motion.T_odom_body, ground_body.normal);
     const bool leans = lean_rad_ > config_.max_lean_deg * kRadPerDeg;
-    standing_s_ = stands(motion) ? standing_s_ + since_s : 0.0;
-    leaning_s_ = leans && standing_s_ > 0.0 ? leaning_s_ + since_s : 0.0;
+    upright_s_ = leans ? 0.0 : upright_s_ + since_s;
+    leaning_s_ = leans && stands(motion) ? leaning_s_ + since_s : 0.0;
     swaying_s_ = lean_rad_ > config_.max_sway_deg * kRadPerDeg ? swaying_s_ + since_s : 0.0;
-    away_s_ = !leans && standing_s_ >= kHome_s ? 0.0 : away_s_ + (leans ? since_s : 0.0);
+    if (leans) away_s_ += since_s;
+    if (upright_s_ >= kHome_s) away_s_ = 0.0;
     moved_ = moved_ || swaying_s_ >= kSway_s || leaning_s_ >= config_.max_lean_still_s ||
              away_s_ >= config_.max_lean_walking_s;
 }

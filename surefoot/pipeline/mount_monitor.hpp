@@ -42,10 +42,10 @@ class MountMonitor {
     Eigen::Vector3d up_body_ = Eigen::Vector3d::UnitZ();      ///< odom's z axis at the start
     Eigen::Vector3d normal_body_ = Eigen::Vector3d::UnitZ();  ///< the ground's likewise
     std::optional<std::int64_t> last_ns_;
-    double standing_s_ = 0.0;  ///< until now
-    double leaning_s_ = 0.0;   ///< standing, until now
-    double swaying_s_ = 0.0;   ///< farther than any gait, until now
-    double away_s_ = 0.0;      ///< judged time since it stood as at the start
+    double upright_s_ = 0.0;  ///< until now
+    double leaning_s_ = 0.0;  ///< at rest, until now
+    double swaying_s_ = 0.0;  ///< farther than any gait, until now
+    double away_s_ = 0.0;     ///< leaning, in all, since it stood as at the start
     double lean_rad_ = 0.0;
     bool moved_ = false;
 };

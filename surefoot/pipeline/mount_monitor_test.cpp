@@ -29,13 +29,14 @@ Eigen::Quaterniond upright(double /*time_s*/) {
     return Eigen::Quaterniond::Identity();
 }
 
-/// A step in ten seconds: sways by `sway_deg` for 6 s, with stands of 1 s at the far ends, then
-/// stands upright for 4 s.
+/// A step in ten seconds as the simulated REX makes it: sways to both sides for 8.5 s and stands
+/// upright for the rest, while its frame still rings a little. Never at exact rest.
 Eigen::Quaterniond gait(double time_s, double sway_deg) {
     const double phase_s = std::fmod(time_s, 10.0);
-    if (phase_s >= 6.0) return upright(0.0);
-    const double swing = std::sin(phase_s * M_PI / 3.0);
-    return leaning(sway_deg * std::clamp(1.2 * swing, -1.0, 1.0), 0.0);
+    const double ringing_deg = 0.1 * std::sin(20.0 * time_s);
+    if (phase_s >= 8.5) return leaning(ringing_deg, ringing_deg);
+    const double swing = std::sin(phase_s * 2.0 * M_PI / 8.5);
+    return leaning(sway_deg * std::clamp(1.2 * swing, -1.0, 1.0) + ringing_deg, ringing_deg);
 }
 
 /// When the monitor says so, or nothing within a minute.

@@ -68,7 +68,7 @@ Start align_when_ready(Pipeline& pipeline,
         const bool more = window.fill();
         if (window.frames().empty()) break;
         const Alignment& alignment = pipeline.align(window.frames(), T_odom_first_body);
-        if (alignment.has_ground || !ground_is_there || !more ||
+        if (alignment.gravity_source != grid::GravitySource::assumed || !ground_is_there || !more ||
             window.waited_s() >= config.wait_for_ground_s)
             break;
         window.let_go(kSlide);

@@ -23,8 +23,9 @@ struct Start {
 /// ground plane from the first, over-exposed seconds in the sun, and whole recordings were lost by
 /// it; so what counts is what the images show, not how long the camera is on:
 /// * frames too bright or too dark are waited out, `mount.wait_for_light_s` at most;
-/// * where the height of base_link over its ground is known there is a ground to be found: for
-///   `mount.wait_for_ground_s` it is looked for, five frames later each time.
+/// * where neither ground nor accelerometer told which way is up, the gate could never say OK. If
+///   the height of base_link over its ground is known there is a ground to be found: it is looked
+///   for five frames later each time, `mount.wait_for_ground_s` at most.
 /// When the source ends or the wait is over, odom is placed by the last frames, whatever they show.
 /// Holds `Pipeline::kAlignmentFrames` frames at a time.
 [[nodiscard]] Start align_when_ready(Pipeline& pipeline,
