@@ -40,6 +40,28 @@ StereoFrame moving_frame(int index, double step_m) {
     return frame;
 }
 
+TEST(Light, AFrameInGlaringLightIsFollowedButNotFused) {
+    Serial serial;
+    auto pipeline = Pipeline::make({}, small_rig(), serial);
+    ASSERT_TRUE(pipeline.ok()) << pipeline.error().message;
+    const StereoFrame first = moving_frame(0, 0.02);
+    pipeline->align({&first, 1});
+    EXPECT_GT(pipeline->process(first, Work::full).fusion.points, 0);
+    for (int i = 1; i <= 3; ++i) {
+        StereoFrame bright = moving_frame(i, 0.02);
+        bright.left = bright.right = GreyImage(kWidth, kHeight, i < 3 ? 255 : 128);
+        const FrameReport report = pipeline->process(bright, Work::full);
+        EXPECT_EQ(report.work == Work::full, i == 3);
+        EXPECT_EQ(report.fusion.points > 0, i == 3);
+        EXPECT_NEAR(report.motion.T_odom_body.translation_m.x(), i * 0.02, 1e-12);
+        EXPECT_EQ(report.camera, i == 1 ? CameraState::ok : CameraState::overexposed)
+            << "three good ones release";
+    }
+    grid::MapSnapshot snapshot;
+    ASSERT_TRUE(pipeline->snapshot(1, snapshot).ok());
+    EXPECT_EQ(snapshot.camera, CameraState::overexposed);
+}
+
 class Arrival : public ::testing::TestWithParam<bool> {};
 
 TEST_P(Arrival, ABadImageIsNeitherTrackedNorFused) {

@@ -91,6 +91,8 @@ TEST(MountMonitor, SlopesAndDriftLeanAloneAndAreNoKnock) {
     const Eigen::Quaterniond ramp = leaning(0.0, -4.8);
     EXPECT_FALSE(said_at_s({upright, upright, from(10.0, ramp)})) << "upright on a ramp";
     EXPECT_FALSE(said_at_s({from(10.0, ramp), upright, from(10.0, ramp)})) << "square to it";
+    EXPECT_FALSE(said_at_s({from(10.0, leaning(2.0, 0.0)), upright, from(10.0, ramp)}))
+        << "both lean, but not by the same turn";
     // The odometry leans, and the ground seems to lean with it.
     const Eigen::Quaterniond drift = leaning(1.5, 1.0);
     EXPECT_FALSE(said_at_s({from(10.0, drift), upright, from(10.0, drift)}));

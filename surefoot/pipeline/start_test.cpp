@@ -24,8 +24,11 @@ camera::StereoRig looking_down() {
     return rig;
 }
 
-/// Disparity of a level floor, or of a wall two metres ahead that fills the view.
-DepthImage depth_of(const camera::RectifiedRig& rig, bool floor) {
+/// Disparity of a level floor, or of a wall two metres ahead that fills the view, for a base_link
+/// that leans.
+DepthImage depth_of(const camera::RectifiedRig& rig,
+                    bool floor,
+                    const Eigen::Quaterniond& lean = Eigen::Quaterniond::Identity()) {
     DepthImage depth;
     depth.disparity_px = Image<float>(rig.width, rig.height, 0.0F);
     depth.sigma_px = Image<float>(rig.width, rig.height, 0.2F);
@@ -33,7 +36,7 @@ DepthImage depth_of(const camera::RectifiedRig& rig, bool floor) {
     for (int v = 0; v < rig.height; ++v) {
         for (int u = 0; u < rig.width; ++u) {
             const Eigen::Vector3d ray =
-                rig.T_body_camera.rotation *
+                lean * rig.T_body_camera.rotation *
                 Eigen::Vector3d((u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
             const double z_m = floor ? -kHeight_m / ray.z() : 2.0 / ray.x();
             if (z_m > 0.0) {
@@ -150,6 +153,40 @@ TEST(Start, GroundIsLookedForWhereTheMachineSaysThereIsSome) {
     const Outcome impatient = start_of({80, mid_grey, wall_first}, config);
     EXPECT_FALSE(impatient.alignment.has_ground);
     EXPECT_LE(impatient.start.frames.back().index, 20);
+}
+
+/// State of the camera after each of 70 frames of a standing machine; from the 20th on the camera
+/// looks 3 deg lower.
+std::vector<CameraState> states_when_knocked(double expected_height_m) {
+    Serial serial;
+    PipelineConfig config;
+    config.ground.expected_height_m = expected_height_m;
+    auto pipeline = Pipeline::make(config, looking_down(), serial);
+    EXPECT_TRUE(pipeline.ok()) << pipeline.error().message;
+    const Eigen::Quaterniond knock(Eigen::AngleAxisd(3.0 * M_PI / 180.0, Eigen::Vector3d::UnitY()));
+    std::vector<CameraState> states;
+    for (int i = 0; i < 70; ++i) {
+        StereoFrame frame;
+        frame.index = i;
+        frame.time_ns = 1'000'000'000 + i * 100'000'000LL;
+        MotionEstimate motion;
+        motion.time_ns = frame.time_ns;
+        motion.health = Health::ok;
+        if (i >= 20) motion.T_odom_body.rotation = knock;
+        frame.known_depth = depth_of(pipeline->rig(), true, motion.T_odom_body.rotation);
+        frame.known_motion = motion;
+        if (i == 0) pipeline->align({&frame, 1});
+        states.push_back(pipeline->process(frame, Work::full).camera);
+    }
+    return states;
+}
+
+TEST(Start, TheMountIsWatchedOnAMachine) {
+    const auto machine = states_when_knocked(kHeight_m);
+    EXPECT_EQ(machine[19], CameraState::ok);
+    EXPECT_EQ(machine[69], CameraState::moved);
+    const auto in_hand = states_when_knocked(0.0);
+    EXPECT_EQ(in_hand[69], CameraState::ok) << "a camera in the hand has no mount";
 }
 
 }  // namespace
