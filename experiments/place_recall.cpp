@@ -71,7 +71,7 @@ struct Stop {
     double yaw_deg = 0.0;
     bool revisit = false;
 
-    [[nodiscard]] Pose T_world_body() const {
+    [[nodiscard]] Pose world_from_body() const {
         return {exp_so3({0.0, 0.0, yaw_deg * kRadPerDeg}), {x_m, y_m, sim::kBodyHeight_m}};
     }
 };
@@ -220,9 +220,9 @@ class Run {
             {},
             eyes.rig().T_body_camera,
             mix_seed(now_.seed, static_cast<std::uint64_t>(first_frame)));
-        const Pose T_odom_first = T_world_odom.inverse() * stops.front().T_world_body();
+        const Pose T_odom_first = T_world_odom.inverse() * stops.front().world_from_body();
         for (std::size_t i = 0; i < stops.size(); ++i) {
-            const Pose T_world_body = stops[i].T_world_body();
+            const Pose T_world_body = stops[i].world_from_body();
             const int frame = static_cast<int>(i);
             MotionEstimate motion =
                 odometry.follow(1'000'000'000LL * (frame + 1), frame, T_world_body);
@@ -249,14 +249,14 @@ class Run {
         double error_deg = std::nan("");
         if (seen.T_map_odom) {
             const Vector6 e =
-                difference(stop.T_world_body(), T_world_map_ * *seen.T_map_odom * T_odom_body);
+                difference(stop.world_from_body(), T_world_map_ * *seen.T_map_odom * T_odom_body);
             error_m = e.head<3>().norm();
             error_deg = e.tail<3>().norm() / kRadPerDeg;
         }
         double single_m = std::nan("");
         if (seen.keyframe >= 0 && seen.saved && c.inliers > 0) {
             const Pose& T = saved_.keyframes[static_cast<std::size_t>(seen.keyframe)].T_map_body;
-            single_m = difference(stop.T_world_body(), T_world_map_ * T * c.T_candidate_query)
+            single_m = difference(stop.world_from_body(), T_world_map_ * T * c.T_candidate_query)
                            .head<3>()
                            .norm();
         }
@@ -309,7 +309,7 @@ Status drive_second(const Case& now,
     const double ahead_m = now.kind == "bay" ? kBay_m * static_cast<double>(2 + rng.below(3)) : 0.0;
     const auto again = second_way(now.scene, ahead_m, rng);
     Run second(now, T_world_map, std::move(saved), out);
-    const Pose T_start = again.front().T_world_body();
+    const Pose T_start = again.front().world_from_body();
     const Eigen::Vector3d ground_m(T_start.translation_m.x(), T_start.translation_m.y(), 0.0);
     second.drive(
         eyes, again, leaning({T_start.rotation, ground_m}, rng), kSecondRun, true, executor);
@@ -356,7 +356,7 @@ Status measure_house(const std::vector<Case>& cases, Executor& executor, fmt::os
         Rng rng(mix_seed(cases[i].seed, kWayStream));
         auto eyes = Eyes::open(cases[i].scene, 0, cases[i].seed, cases[i].profile);
         if (!eyes) return eyes.error();
-        const auto done = drive_second(cases[i], *eyes, T_world_map[i], house, rng, executor, out);
+        auto done = drive_second(cases[i], *eyes, T_world_map[i], house, rng, executor, out);
         if (!done) return done;
     }
     return {};
