@@ -64,15 +64,6 @@ Truth truth_of(const sim::SceneTruth& truth, const Pose& T_world_body) {
             T_world_body.translation_m.z() - static_cast<double>(dem_m.at(1, 1))};
 }
 
-Pose at(const std::vector<StampedPose>& trajectory, std::int64_t time_ns) {
-    const auto found = std::lower_bound(
-        trajectory.begin(),
-        trajectory.end(),
-        time_ns,
-        [](const StampedPose& pose, std::int64_t stamp) { return pose.time_ns < stamp; });
-    return (found == trajectory.end() ? trajectory.back() : *found).T_world_body;
-}
-
 Status measure(const SceneCase& now,
                int frames,
                const CommonOptions& common,
@@ -103,7 +94,8 @@ Status measure(const SceneCase& now,
         static_cast<void>(pipeline->process(frame, Work::full));
     while (const auto frame = next()) {
         const FrameReport report = pipeline->process(*frame, Work::full);
-        const Truth here = truth_of(truth, at(truth.trajectory, frame->time_ns));
+        const Truth here =
+            truth_of(truth, experiments::true_pose(truth.trajectory, frame->time_ns));
         ++judged;
         if (!report.ground.accepted) continue;
         tilts_deg.push_back(between_deg(report.ground.normal, here.up_body));
@@ -112,7 +104,7 @@ Status measure(const SceneCase& now,
     if (failed) return *failed;
     const pipeline::Alignment& alignment = pipeline->alignment();
     const std::int64_t placed_ns = start.frames.front().time_ns;
-    const Truth first = truth_of(truth, at(truth.trajectory, placed_ns));
+    const Truth first = truth_of(truth, experiments::true_pose(truth.trajectory, placed_ns));
     out.print("{},{},{},{},{:.3f},{:.2f},{:.1f},{},{},{:.3f},{:.3f},{:.2f},{:.2f}\n",
               now.scene,
               now.seed,

@@ -35,6 +35,7 @@
 #include "sim/scene_source.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
+#include "surefoot/pipeline/start.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -146,34 +147,21 @@ Status measure(const SceneCase& now,
     if (!pipeline) return pipeline.error();
 
     const sim::SceneTruth& truth = (*source)->truth();
-    const auto true_pose = [&](std::int64_t time_ns) {
-        const auto at = std::lower_bound(
-            truth.trajectory.begin(),
-            truth.trajectory.end(),
-            time_ns,
-            [](const StampedPose& pose, std::int64_t stamp) { return pose.time_ns < stamp; });
-        return (at == truth.trajectory.end() ? truth.trajectory.back() : *at).T_world_body;
-    };
     Tally tally;
     const auto follow = [&](const StereoFrame& frame) {
         const FrameReport report = pipeline->process(frame, Work::odometry);
-        tally.add(report.motion, true_pose(frame.time_ns));
+        tally.add(report.motion, experiments::true_pose(truth.trajectory, frame.time_ns));
     };
-    std::vector<StereoFrame> first;
-    bool aligned = false;
-    while (true) {
+    std::optional<Error> failed;
+    const pipeline::NextFrame next = [&]() -> std::optional<StereoFrame> {
         auto frame = (*source)->next();
-        if (!frame) return frame.error();
-        if (*frame && !aligned) first.push_back(std::move(**frame));
-        if (!aligned && (!*frame || first.size() == pipeline::Pipeline::kAlignmentFrames)) {
-            pipeline->align(first);
-            for (const StereoFrame& each : first) follow(each);
-            aligned = true;
-        } else if (*frame && aligned) {
-            follow(**frame);
-        }
-        if (!*frame) break;
-    }
+        if (!frame) failed = frame.error();
+        return frame ? std::move(frame).value() : std::nullopt;
+    };
+    const pipeline::Start start = pipeline::align_when_ready(*pipeline, next);
+    for (const StereoFrame& frame : start.frames) follow(frame);
+    while (const auto frame = next()) follow(*frame);
+    if (failed) return *failed;
     out.print("{},{},{},", now.scene, now.seed, now.profile);
     tally.print(out);
     out.print("\n");

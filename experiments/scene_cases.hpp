@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -55,6 +56,17 @@ struct SceneCase {
         }
     }
     return cases;
+}
+
+/// base_link at a frame's stamp; the last pose after the end. `trajectory`: the truth's, not empty.
+[[nodiscard]] inline Pose true_pose(const std::vector<StampedPose>& trajectory,
+                                    std::int64_t time_ns) {
+    const auto found = std::lower_bound(
+        trajectory.begin(),
+        trajectory.end(),
+        time_ns,
+        [](const StampedPose& pose, std::int64_t stamp) { return pose.time_ns < stamp; });
+    return (found == trajectory.end() ? trajectory.back() : *found).T_world_body;
 }
 
 }  // namespace surefoot::experiments

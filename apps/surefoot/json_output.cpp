@@ -100,15 +100,20 @@ Json sigma_json(const eval::SigmaCoverage& s) {
             {"count", s.count}};
 }
 
+/// x y z qx qy qz qw
+Json pose_json(const Pose& T) {
+    const Eigen::Vector3d& t = T.translation_m;
+    const Eigen::Quaterniond& q = T.rotation;
+    return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+}
+
 Json camera_json(const camera::RectifiedRig& rig) {
-    const Eigen::Vector3d& t = rig.T_body_camera.translation_m;
-    const Eigen::Quaterniond& q = rig.T_body_camera.rotation;
     return {{"width", rig.width},
             {"height", rig.height},
             {"focal_px", {rig.fx_px, rig.fy_px}},
             {"principal_px", {rig.cx_px, rig.cy_px}},
             {"baseline_m", rig.baseline_m},
-            {"T_body_camera", {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}}};
+            {"T_body_camera", pose_json(rig.T_body_camera)}};
 }
 
 /// `count` finite numbers of a list; nothing else is taken.
@@ -202,13 +207,6 @@ Json trim_json(const std::optional<stereo::PairTrim>& trim) {
             {"corners", trim->corners},
             {"row_error_px", number(trim->row_error_px)},
             {"row_error_left_px", number(trim->row_error_left_px)}};
-}
-
-/// x y z qx qy qz qw
-Json pose_json(const Pose& T) {
-    const Eigen::Vector3d& t = T.translation_m;
-    const Eigen::Quaterniond& q = T.rotation;
-    return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
 Json place_json(const PlaceRecord& place) {

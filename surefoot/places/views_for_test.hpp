@@ -6,6 +6,7 @@
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/odometry/stereo_projection.hpp"
+#include "surefoot/odometry/synthetic_for_test.hpp"
 #include "surefoot/places/place.hpp"
 
 namespace surefoot::places::testing {
@@ -17,13 +18,7 @@ struct Corner {
 };
 
 inline camera::RectifiedRig test_rig() {
-    camera::RectifiedRig rig;
-    rig.width = 672;
-    rig.height = 376;
-    rig.fx_px = rig.fy_px = 350.0;
-    rig.cx_px = 336.0;
-    rig.cy_px = 188.0;
-    rig.baseline_m = 0.12;
+    camera::RectifiedRig rig = odometry::testing::rectified_rig();
     rig.T_body_camera = T_body_optical();
     return rig;
 }
