@@ -102,7 +102,8 @@ std::vector<SceneParameter> drawn(const SceneReader& reader) {
 ScriptedScene build(SceneReader& reader,
                     const SceneNode& root,
                     const Entry& entry,
-                    std::uint64_t seed) {
+                    std::uint64_t seed,
+                    std::optional<Carrier> carrier) {
     ScriptedScene out;
     out.info = entry.info;
     reader.only_keys(root,
@@ -126,6 +127,10 @@ ScriptedScene build(SceneReader& reader,
     builder.add_solids(*solids, {});
     out.script = read_motion(reader, *motion);
     if (reader.error()) return out;
+    if (carrier && *carrier != out.script.carrier) {
+        out.script.carrier = *carrier;
+        out.script.speed_m_s = 0.0;  // the other carrier's own
+    }
     auto made = make_motion(out.script, seed, ground_of(builder.scene()));
     if (!made) {
         reader.fail(*motion, fmt::format("cannot be followed: {}", made.error().message));
@@ -175,7 +180,8 @@ Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file) {
 
 Result<ScriptedScene> read_scene(const SceneFile& file,
                                  const std::string& name,
-                                 std::uint64_t seed) {
+                                 std::uint64_t seed,
+                                 std::optional<Carrier> carrier) {
     const auto root = parse_scene_node(file.text, file.file);
     if (!root) return root.error();
     SceneReader reader(file.file);
@@ -185,7 +191,7 @@ Result<ScriptedScene> read_scene(const SceneFile& file,
     if (entry == nullptr) return *reader.error();
     // One seed must not draw the same light and the same distance in every scene.
     const std::uint64_t scene_seed = mix_seed(seed, hash_of(entry->info.name));
-    ScriptedScene scene = build(reader, *root, *entry, scene_seed);
+    ScriptedScene scene = build(reader, *root, *entry, scene_seed, carrier);
     if (reader.error()) return *reader.error();
     return scene;
 }

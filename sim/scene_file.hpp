@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,8 +57,10 @@ inline constexpr int kMaxPrimitives = 2000;
 
 /// One scene of a file; `name` may be empty where the file holds only one. The seed counts together
 /// with the scene's name: seed 7 of two scenes, or of two variants, has nothing in common.
+/// `carrier` goes the same way instead of the scene's own, at its own speed.
 [[nodiscard]] Result<ScriptedScene> read_scene(const SceneFile& file,
                                                const std::string& name,
-                                               std::uint64_t seed);
+                                               std::uint64_t seed,
+                                               std::optional<Carrier> carrier = {});
 
 }  // namespace surefoot::sim

@@ -31,11 +31,18 @@ enum class Sensor : std::uint8_t {
 };
 inline constexpr const char* kSensorNames[] = {"stereo", "depth_camera", "analytic"};
 
+/// What carries the camera along the scene's way: what the scene says, or another carrier.
+enum class CarriedBy : std::uint8_t { scene, trolley, rex, hand };
+inline constexpr const char* kCarriedByNames[] = {"scene", "trolley", "rex", "hand"};
+/// Nothing for `CarriedBy::scene`.
+[[nodiscard]] std::optional<Carrier> carrier_of(CarriedBy carried_by);
+
 struct SceneOptions {
     std::string scene = "demo_stairs";
     std::string rig_preset = "zed_vga";    ///< ignored if `rig` is set
     std::optional<camera::StereoRig> rig;  ///< any stereo rig; T_body_left as it says
     std::uint64_t seed = 1;                ///< textures, noise, centimetres of the path
+    CarriedBy carrier = CarriedBy::scene;  ///< an error where it cannot go the scene's way
     int frames = 0;                        ///< 0 = to the end of the path
     double rate_hz = 10.0;
     Sensor sensor = Sensor::stereo;

@@ -37,12 +37,13 @@ const std::vector<Entry>& index() {
 
 Result<ScriptedScene> scene_of_file(const std::string& path,
                                     const std::string& name,
-                                    std::uint64_t seed) {
+                                    std::uint64_t seed,
+                                    std::optional<Carrier> carrier) {
     std::ifstream stream(path, std::ios::binary);
     if (!stream) return input_error(fmt::format("{}: cannot be opened for reading", path));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (stream.bad()) return input_error(fmt::format("{}: cannot be read", path));
-    return read_scene({path, text}, name, seed);
+    return read_scene({path, text}, name, seed, carrier);
 }
 
 }  // namespace
@@ -53,15 +54,17 @@ std::vector<SceneInfo> list_scenes() {
     return scenes;
 }
 
-Result<ScriptedScene> make_scene(const std::string& name, std::uint64_t seed) {
+Result<ScriptedScene> make_scene(const std::string& name,
+                                 std::uint64_t seed,
+                                 std::optional<Carrier> carrier) {
     const std::size_t hash = name.find('#');
     const std::string path = name.substr(0, hash);
     if (path.ends_with(kExtension)) {
-        return scene_of_file(path, hash == name.npos ? "" : name.substr(hash + 1), seed);
+        return scene_of_file(path, hash == name.npos ? "" : name.substr(hash + 1), seed, carrier);
     }
     std::vector<std::string> names;
     for (const Entry& entry : index()) {
-        if (entry.info.name == name) return read_scene(*entry.file, name, seed);
+        if (entry.info.name == name) return read_scene(*entry.file, name, seed, carrier);
         names.push_back(entry.info.name);
     }
     // A hundred names would bury the likely one.

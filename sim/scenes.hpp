@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,11 @@ struct ScriptedScene {
 /// The seed draws the parameters of the scene, shifts its textures and moves the stops of the path
 /// by about a centimetre (never the first one). `name` is one of the list, or a scene file that
 /// ends in ".yaml" ("my/kerb.yaml", or "my/kerbs.yaml#kerb_low" where it holds several). An unknown
-/// name is a usage error that lists the names.
-[[nodiscard]] Result<ScriptedScene> make_scene(const std::string& name, std::uint64_t seed);
+/// name is a usage error that lists the names. `carrier` goes the scene's way instead of its own
+/// one; a way that it cannot go (a walking machine's steps are limited) is an error.
+[[nodiscard]] Result<ScriptedScene> make_scene(const std::string& name,
+                                               std::uint64_t seed,
+                                               std::optional<Carrier> carrier = {});
 
 /// Where things stand in `demo_stairs`, for tests and demonstrations (metres, world frame).
 namespace demo_stairs {

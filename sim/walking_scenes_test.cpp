@@ -167,5 +167,22 @@ TEST(WalkingScenesTest, AHandTakesNoSteps) {
     EXPECT_LT(scene.motion->duration_s(), 30.0);
 }
 
+TEST(WalkingScenesTest, AnotherCarrierGoesTheSameWayThroughTheSamePlace) {
+    const ScriptedScene driven = make_scene("kerb_down_100", 3).value();
+    const ScriptedScene walked = make_scene("kerb_down_100", 3, Carrier::rex).value();
+    const ScriptedScene carried = make_scene("kerb_down_100", 3, Carrier::hand).value();
+    EXPECT_TRUE(driven.steps.empty());
+    EXPECT_TRUE(carried.steps.empty());
+    EXPECT_FALSE(walked.steps.empty());
+    EXPECT_EQ(walked.parameters, driven.parameters);
+    const auto end_x_m = [](const ScriptedScene& scene) {
+        return scene.motion->at(scene.motion->duration_s()).T_world_body.translation_m.x();
+    };
+    EXPECT_NEAR(end_x_m(walked), end_x_m(driven), 0.25);  // whole steps
+    EXPECT_NEAR(end_x_m(carried), end_x_m(driven), 0.1);
+    EXPECT_GT(walked.motion->duration_s(), 3.0 * driven.motion->duration_s());
+    EXPECT_FALSE(make_scene("walk_descend_backwards", 3, Carrier::trolley).ok());
+}
+
 }  // namespace
 }  // namespace surefoot::sim

@@ -488,15 +488,15 @@ void add_dem(CLI::App& app, DemOptions& o, int& exit_code) {
 }
 
 void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
-    CLI::App* suite =
-        bind(add_verb(eval_verb,
-                      "suite",
-                      "scenes x seeds x noise through the whole chain against the truth; "
-                      "--threads cases at a time",
-                      "surefoot eval suite --quick --scenes floor --noise 1 --out out/suite"),
-             s,
-             eval_suite,
-             exit_code);
+    CLI::App* suite = bind(
+        add_verb(eval_verb,
+                 "suite",
+                 "scenes x carriers x seeds x noise through the whole chain against the truth; "
+                 "--threads cases at a time",
+                 "surefoot eval suite --quick --scenes floor --noise 1 --out out/suite"),
+        s,
+        eval_suite,
+        exit_code);
     suite
         ->add_option("--out",
                      s.out_dir,
@@ -506,11 +506,16 @@ void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
         ->type_name("DIR");
     suite->add_flag("--quick", s.quick, "a few short scenes, for every change of the code");
     suite
-        ->add_option("--scenes",
-                     s.scenes,
-                     "names or scene files, separated by commas; default all; who carries the "
-                     "camera is the scene's")
+        ->add_option("--scenes", s.scenes, "names or scene files, separated by commas; default all")
         ->delimiter(',')
+        ->type_name("NAMES");
+    suite
+        ->add_option("--carriers",
+                     s.carriers,
+                     "who goes each scene's way: scene = as its file says; a way that a carrier "
+                     "cannot go is named and left out")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"scene", "trolley", "rex", "hand"}))
         ->type_name("NAMES");
     suite->add_option("--camera", s.camera, "whose noise: nominal is what the real ZED showed")
         ->check(CLI::IsMember({"ideal", "zed", "euroc"}));

@@ -147,8 +147,15 @@ class CaseRun {
 
 }  // namespace
 
+sim::CarriedBy carried_by(const std::string& name) {
+    const auto at =
+        std::find(std::begin(sim::kCarriedByNames), std::end(sim::kCarriedByNames), name);
+    SUREFOOT_ASSERT(at != std::end(sim::kCarriedByNames));
+    return static_cast<sim::CarriedBy>(at - std::begin(sim::kCarriedByNames));
+}
+
 std::string SuiteCase::name() const {
-    return fmt::format("{}/seed {}/noise {:g}", scene, seed, noise);
+    return fmt::format("{}/{}/seed {}/noise {:g}", scene, carrier, seed, noise);
 }
 
 const std::vector<SuiteFigure>& suite_figures() {
@@ -222,6 +229,7 @@ Result<SuiteResult> run_suite_case(const SuiteCase& which, const SuiteConditions
     SourceRequest request{
         which.scene, "", which.rate_hz, which.max_frames, which.seed, settings.sim};
     request.sim.noise *= which.noise;
+    request.sim.carrier = carried_by(which.carrier);
     Serial serial;
     auto source = open_simulation(request, serial);
     if (!source) return source.error();

@@ -9,6 +9,7 @@
 #include "apps/surefoot/suite_bins.hpp"
 #include "apps/surefoot/suite_steps.hpp"
 #include "io/machine_file.hpp"
+#include "sim/scene_source.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
 
@@ -23,10 +24,13 @@ struct SuiteCase {
     double rate_hz = 10.0;            ///< of the camera
     std::string carrier = "trolley";  ///< one of sim::kCarrierNames
 
-    /// "demo_stairs/seed 3/noise 2": what a finished case is known by.
+    /// "demo_stairs/trolley/seed 3/noise 2": what a finished case is known by.
     [[nodiscard]] std::string name() const;
     friend bool operator==(const SuiteCase&, const SuiteCase&) = default;
 };
+
+/// One of sim::kCarriedByNames.
+[[nodiscard]] sim::CarriedBy carried_by(const std::string& name);
 
 /// How a figure is shown to people; files hold SI units and shares of 1.
 enum class FigureKind : std::uint8_t { count, share, length_m, percent, pixels, number };

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "apps/surefoot/log.hpp"
+#include "sim/scene_source.hpp"
 #include "sim/scenes.hpp"
 #include "surefoot/core/nearest_names.hpp"
 
@@ -75,17 +78,36 @@ Status check_name(const std::string& name) {
                     likely.empty() ? ";" : likely));
 }
 
+/// The scene once for each carrier that can go its way; what its file says counts once.
+Status add_carriers(const std::string& name,
+                    const EvalSuiteOptions& options,
+                    std::vector<SuiteScene>& scenes) {
+    std::set<sim::Carrier> carriers;
+    for (const std::string& word : options.carriers) {
+        const auto asked = sim::carrier_of(carried_by(word));
+        const auto scene = sim::make_scene(name, options.common.seed, asked);
+        if (!scene && asked && sim::make_scene(name, options.common.seed)) {
+            log_warning(
+                fmt::format("{} is left out for {}: {}", name, word, scene.error().message));
+            continue;
+        }
+        if (!scene) return usage_error(scene.error().message);
+        if (carriers.insert(scene->script.carrier).second)
+            scenes.push_back({name, scene->script.carrier, scene->motion->duration_s()});
+    }
+    return {};
+}
+
 Result<std::vector<SuiteScene>> open_scenes(const EvalSuiteOptions& options) {
     std::vector<SuiteScene> scenes;
+    std::set<std::string> names;
     for (const std::string& name : chosen_names(options)) {
         if (auto status = check_name(name); !status) return status.error();
-        const bool twice = std::any_of(
-            scenes.begin(), scenes.end(), [&](const SuiteScene& s) { return s.name == name; });
-        if (twice) return usage_error(fmt::format("--scenes: {} is named twice", name));
-        const auto scene = sim::make_scene(name, options.common.seed);
-        if (!scene) return usage_error(scene.error().message);
-        scenes.push_back({name, scene->script.carrier, scene->motion->duration_s()});
+        if (!names.insert(name).second)
+            return usage_error(fmt::format("--scenes: {} is named twice", name));
+        if (auto status = add_carriers(name, options, scenes); !status) return status.error();
     }
+    if (scenes.empty()) return usage_error("--carriers: none of them can go any of these ways");
     return scenes;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "apps/surefoot/suite_progress.hpp"
 #include "sim/scenes.hpp"
@@ -26,14 +27,14 @@ TEST(SuitePlan, SeedBySeedAndTheLongScenesFirst) {
     std::vector<std::string> names;
     for (const PlannedCase& planned : *plan) names.push_back(planned.which.name());
     EXPECT_EQ(names,
-              (std::vector<std::string>{"demo_stairs/seed 5/noise 1",
-                                        "demo_stairs/seed 5/noise 2",
-                                        "floor/seed 5/noise 1",
-                                        "floor/seed 5/noise 2",
-                                        "demo_stairs/seed 6/noise 1",
-                                        "demo_stairs/seed 6/noise 2",
-                                        "floor/seed 6/noise 1",
-                                        "floor/seed 6/noise 2"}));
+              (std::vector<std::string>{"demo_stairs/trolley/seed 5/noise 1",
+                                        "demo_stairs/trolley/seed 5/noise 2",
+                                        "floor/trolley/seed 5/noise 1",
+                                        "floor/trolley/seed 5/noise 2",
+                                        "demo_stairs/trolley/seed 6/noise 1",
+                                        "demo_stairs/trolley/seed 6/noise 2",
+                                        "floor/trolley/seed 6/noise 1",
+                                        "floor/trolley/seed 6/noise 2"}));
     EXPECT_GT((*plan)[0].frames, (*plan)[2].frames);
     EXPECT_EQ((*plan)[0].which.carrier, "trolley");
     EXPECT_EQ((*plan)[0].which.max_frames, 0);
@@ -59,6 +60,37 @@ TEST(SuitePlan, EverySceneOnceByDefaultAndAFewShortOnesWhenQuick) {
     const auto short_cases = plan_suite(options, {});
     ASSERT_TRUE(short_cases.ok());
     for (const PlannedCase& planned : *short_cases) EXPECT_EQ(planned.which.max_frames, 3);
+}
+
+TEST(SuitePlan, EveryCarrierThatCanGoTheSceneSWayGoesItOnce) {
+    EvalSuiteOptions options = choice({"floor", "walk_floor"}, 1, {1.0});
+    options.carriers = {"scene", "rex", "hand"};
+    const auto plan = plan_suite(options, {});
+    ASSERT_TRUE(plan.ok());
+    std::set<std::string> names;
+    for (const PlannedCase& planned : *plan) {
+        names.insert(planned.which.name());
+        EXPECT_EQ(planned.which.rate_hz, planned.which.carrier == "rex" ? 4.0 : 10.0);
+    }
+    EXPECT_EQ(names,
+              (std::set<std::string>{"floor/trolley/seed 5/noise 1",
+                                     "floor/rex/seed 5/noise 1",
+                                     "floor/hand/seed 5/noise 1",
+                                     "walk_floor/rex/seed 5/noise 1",
+                                     "walk_floor/hand/seed 5/noise 1"}));
+}
+
+TEST(SuitePlan, AWayThatACarrierCannotGoIsLeftOut) {
+    EvalSuiteOptions options = choice({"walk_descend_backwards", "floor"}, 1, {1.0});
+    options.carriers = {"trolley"};  // no trolley goes down a step
+    const auto plan = plan_suite(options, {});
+    ASSERT_TRUE(plan.ok()) << plan.error().message;
+    for (const PlannedCase& planned : *plan) EXPECT_EQ(planned.which.scene, "floor");
+    EXPECT_EQ(plan->size(), 1U);
+    options.scenes = {"walk_descend_backwards"};
+    const auto none = plan_suite(options, {});
+    ASSERT_FALSE(none.ok());
+    EXPECT_NE(none.error().message.find("--carriers"), std::string::npos);
 }
 
 TEST(SuitePlan, ImpossibleChoicesAreSentences) {

@@ -55,7 +55,7 @@ std::vector<SuiteRow> grouped(std::span<const SuiteResult> results, bool by_scen
 std::vector<SuiteResult> sorted(std::vector<SuiteResult> results) {
     const auto place_of = [](const SuiteResult& result) {
         const SuiteCase& c = result.which;
-        return std::tie(c.scene, c.noise, c.seed, c.max_frames);
+        return std::tie(c.scene, c.carrier, c.noise, c.seed, c.max_frames);
     };
     std::sort(results.begin(), results.end(), [&](const SuiteResult& a, const SuiteResult& b) {
         return place_of(a) < place_of(b);

@@ -13,8 +13,8 @@
 namespace surefoot::app {
 namespace {
 
-constexpr const char* kCaseHead = "scene,seed,noise,max_frames";
-constexpr std::size_t kKeyColumns = 4;
+constexpr const char* kCaseHead = "scene,carrier,seed,noise,max_frames";
+constexpr std::size_t kKeyColumns = 5;
 constexpr std::size_t kCaseColumns = 6;  ///< before the figures
 constexpr std::size_t kBinColumns = kKeyColumns + 8;
 constexpr std::size_t kStepColumns = kKeyColumns + 8;
@@ -23,7 +23,7 @@ constexpr std::size_t kTallyColumns = kKeyColumns + 4;
 using Words = std::vector<std::string_view>;
 
 std::string key_of(const SuiteCase& c) {
-    return fmt::format("{},{},{},{}", c.scene, c.seed, c.noise, c.max_frames);
+    return fmt::format("{},{},{},{},{}", c.scene, c.carrier, c.seed, c.noise, c.max_frames);
 }
 
 /// No column may be empty: the reader joins separators.
@@ -36,14 +36,14 @@ std::string from_dash(std::string_view text) {
 }
 
 std::string cases_head() {
-    std::string head = fmt::format("{},carrier,rate_hz", kCaseHead);
+    std::string head = fmt::format("{},rate_hz", kCaseHead);
     for (const SuiteFigure& figure : suite_figures()) head += fmt::format(",{}", figure.name);
     return head + "\n";
 }
 
 std::string case_line(const SuiteResult& result) {
     const SuiteCase& c = result.which;
-    std::string line = fmt::format("{},{},{}", key_of(c), c.carrier, c.rate_hz);
+    std::string line = fmt::format("{},{}", key_of(c), c.rate_hz);
     for (const double figure : result.figures)
         line += fmt::format(",{}", figure);  // reads back to the same bits
     return line + "\n";
@@ -98,12 +98,13 @@ std::string verdict_lines(const SuiteResult& result) {
 
 /// Nothing for a line that is not whole, as for all below.
 std::optional<SuiteCase> parse_key(const Words& words) {
-    const auto seed = io::parse_int64(words[1]);
-    const auto noise = io::parse_double(words[2]);
-    const auto frames = io::parse_int64(words[3]);
+    const auto seed = io::parse_int64(words[2]);
+    const auto noise = io::parse_double(words[3]);
+    const auto frames = io::parse_int64(words[4]);
     if (!seed || !noise || !frames) return std::nullopt;
     SuiteCase which;
     which.scene = words[0];
+    which.carrier = words[1];
     which.seed = static_cast<std::uint64_t>(*seed);
     which.noise = *noise;
     which.max_frames = static_cast<int>(*frames);
@@ -113,11 +114,10 @@ std::optional<SuiteCase> parse_key(const Words& words) {
 std::optional<SuiteResult> parse_case(const Words& words) {
     if (words.size() != kCaseColumns + suite_figures().size()) return std::nullopt;
     const auto which = parse_key(words);
-    const auto rate_hz = io::parse_double(words[5]);
+    const auto rate_hz = io::parse_double(words[kKeyColumns]);
     if (!which || !rate_hz) return std::nullopt;
     SuiteResult result;
     result.which = *which;
-    result.which.carrier = words[4];
     result.which.rate_hz = *rate_hz;
     for (std::size_t i = kCaseColumns; i < words.size(); ++i) {
         const auto figure =
@@ -130,38 +130,38 @@ std::optional<SuiteResult> parse_case(const Words& words) {
 
 std::optional<SuiteBin> parse_bin(const Words& words) {
     if (words.size() != kBinColumns) return std::nullopt;
-    const auto name = std::find(std::begin(kBinKeyNames), std::end(kBinKeyNames), words[4]);
-    const auto from = io::parse_double(words[5]);
-    const auto to = io::parse_double(words[6]);
-    const auto errors = parse_counts(words[11]);
+    const auto name = std::find(std::begin(kBinKeyNames), std::end(kBinKeyNames), words[5]);
+    const auto from = io::parse_double(words[6]);
+    const auto to = io::parse_double(words[7]);
+    const auto errors = parse_counts(words[12]);
     if (name == std::end(kBinKeyNames) || !from || !to || !errors) return std::nullopt;
     return SuiteBin{static_cast<BinKey>(name - std::begin(kBinKeyNames)), *from, *to, *errors};
 }
 
 std::optional<SuiteStep> parse_step(const Words& words) {
     if (words.size() != kStepColumns) return std::nullopt;
-    const auto number = io::parse_int64(words[4]);
-    const auto time_s = io::parse_double(words[5]);
-    const auto command = io::parse_int64(words[6]);
+    const auto number = io::parse_int64(words[5]);
+    const auto time_s = io::parse_double(words[6]);
+    const auto command = io::parse_int64(words[7]);
     if (!number || !time_s || !command) return std::nullopt;
     return SuiteStep{static_cast<int>(*number),
                      *time_s,
                      static_cast<int>(*command),
-                     words[7] == "1",
                      words[8] == "1",
-                     from_dash(words[9]),
-                     std::string(words[10]),
-                     from_dash(words[11])};
+                     words[9] == "1",
+                     from_dash(words[10]),
+                     std::string(words[11]),
+                     from_dash(words[12])};
 }
 
 std::optional<VerdictTally> parse_tally(const Words& words) {
     if (words.size() != kTallyColumns) return std::nullopt;
-    const auto key = std::find(std::begin(kTallyKeyNames), std::end(kTallyKeyNames), words[4]);
-    const auto named = io::parse_int64(words[6]);
-    const auto alone = io::parse_int64(words[7]);
+    const auto key = std::find(std::begin(kTallyKeyNames), std::end(kTallyKeyNames), words[5]);
+    const auto named = io::parse_int64(words[7]);
+    const auto alone = io::parse_int64(words[8]);
     if (key == std::end(kTallyKeyNames) || !named || !alone) return std::nullopt;
     return VerdictTally{static_cast<TallyKey>(key - std::begin(kTallyKeyNames)),
-                        std::string(words[5]),
+                        std::string(words[6]),
                         static_cast<int>(*named),
                         static_cast<int>(*alone)};
 }

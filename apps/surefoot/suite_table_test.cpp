@@ -165,7 +165,7 @@ TEST(SuiteRows, SummariseBySceneNoiseAndCarrier) {
     }
     results[0].which.carrier = "hand";
     results = sorted(std::move(results));
-    EXPECT_EQ(results[1].which.name(), "floor/seed 2/noise 1");
+    EXPECT_EQ(results[1].which.name(), "floor/rex/seed 2/noise 1");
     const auto rows = summarise(results);
     ASSERT_EQ(rows.size(), 3U);
     EXPECT_EQ(rows[1].scene, "floor");
@@ -188,7 +188,7 @@ TEST(SuiteRows, SummariseBySceneNoiseAndCarrier) {
     ASSERT_EQ(levels[1].bins.size(), 2U);
     EXPECT_EQ(levels[1].bins[0].errors.count(), 6);
     EXPECT_NEAR(levels[1].bins[0].errors.percentile(0.25), 0.02, 0.002);
-    EXPECT_NE(suite_html(results, "nowhere").find("floor/seed 2/noise 2"), std::string::npos);
+    EXPECT_NE(suite_html(results, "nowhere").find("floor/rex/seed 2/noise 2"), std::string::npos);
 }
 
 TEST(SuiteBins, CountsReadBack) {

@@ -164,8 +164,9 @@ struct EvalSuiteOptions {
     CommonOptions common;  ///< seed: the first one
     std::string out_dir;
     std::string machine = "rex";
-    std::string camera = "zed";       ///< one of sim::kCameraProfileNames
-    std::vector<std::string> scenes;  ///< empty = all
+    std::string camera = "zed";                     ///< one of sim::kCameraProfileNames
+    std::vector<std::string> scenes;                ///< empty = all
+    std::vector<std::string> carriers = {"scene"};  ///< of sim::kCarriedByNames
     int seeds = 1;
     std::vector<double> noise = {1.0, 2.0};
     bool quick = false;
