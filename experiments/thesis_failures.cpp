@@ -218,12 +218,12 @@ std::vector<float> heights_in(const HeightMap& map, const Eigen::AlignedBox2d& a
 
 /// Floor before the demonstration stairs, its two treads and the platform: picked by hand in the
 /// thesis, by geometry here, whole treads.
-std::vector<Eigen::AlignedBox2d> treads() {
-    using namespace sim::demo_stairs;
+std::vector<Eigen::AlignedBox2d> treads(double first_riser_x_m) {
+    using sim::demo_stairs::kGoing_m;
     constexpr double kHalf_m = 0.4;
     std::vector<Eigen::AlignedBox2d> areas;
     for (int step = -1; step < 3; ++step) {
-        const double x_m = kFirstRiser_x_m + step * kGoing_m;
+        const double x_m = first_riser_x_m + step * kGoing_m;
         areas.emplace_back(Eigen::Vector2d(x_m, -kHalf_m),
                            Eigen::Vector2d(x_m + kGoing_m, kHalf_m));
     }
@@ -280,7 +280,7 @@ void write_picture(const HeightMap& map, std::string name, const std::string& fo
 
 void report_map(const Walk& walk,
                 const Mapper& mapper,
-                const sim::Scene& scene,
+                const sim::ScriptedScene& place,
                 const camera::RectifiedRig& rig,
                 const Trajectory& bodies,
                 Tables& out) {
@@ -294,7 +294,7 @@ void report_map(const Walk& walk,
                                         mapper.fault().disparity_offset_px);
     out.runs.print("{}", who);
     for (const HeightMap& looked_at : {map, coarse(map)}) {
-        const eval::MapComparison figures = compare(scene, looked_at, rig, bodies);
+        const eval::MapComparison figures = compare(place.scene, looked_at, rig, bodies);
         out.runs.print(",{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}",
                        figures.floor.spread_m,
                        figures.floor.rms_m,
@@ -303,8 +303,9 @@ void report_map(const Walk& walk,
                        worse_p99(figures.edges_by_column, 0));
     }
     int tread = 0;
-    for (const Eigen::AlignedBox2d& area_m : treads()) {
-        const bool stairs = walk.scene == "demo_stairs";
+    const bool stairs = walk.scene == "demo_stairs";
+    const double first_riser_x_m = stairs ? sim::drawn_number(place, "stair_x_m") : 0.0;
+    for (const Eigen::AlignedBox2d& area_m : treads(first_riser_x_m)) {
         const std::vector<float> heights_m =
             stairs ? heights_in(map, area_m) : std::vector<float>{};
         out.runs.print(",{:.6f}", median_of(heights_m));
@@ -313,7 +314,7 @@ void report_map(const Walk& walk,
         ++tread;
     }
     out.runs.print("\n");
-    const auto floor = eval::level_floor(sim::dem(scene, lattice_of(map.geometry)), {});
+    const auto floor = eval::level_floor(sim::dem(place.scene, lattice_of(map.geometry)), {});
     for (std::size_t i = 0; i < floor.size(); ++i) {
         const float height_m = map.height_m.data()[i];
         if (floor.data()[i] != 0 && !std::isnan(height_m))
@@ -364,7 +365,7 @@ Status follow(const Walk& walk, Executor& executor, Tables& out) {
         for (Mapper& mapper : mappers) mapper.add(depth, motion, time_s);
     }
     for (const Mapper& mapper : mappers)
-        report_map(walk, mapper, scene, rectifier->rig(), bodies, out);
+        report_map(walk, mapper, *place, rectifier->rig(), bodies, out);
     return {};
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/scenes.hpp"
 #include "sim/sensor_scenes_for_test.hpp"
 #include "sim/test_cameras.hpp"
 
@@ -61,7 +62,8 @@ TEST(SceneSourceTest, TheWholePathIsTheDefault) {
     options.rate_hz = 5.0;
     const auto source = open_scene(options).value();
     const auto& poses = source->truth().trajectory;
-    EXPECT_NEAR(poses.back().T_world_body.translation_m.x(), 1.5, 0.011);
+    const double drive_m = drawn_number(make_scene("floor", options.seed).value(), "drive_m");
+    EXPECT_NEAR(poses.back().T_world_body.translation_m.x(), drive_m, 0.011);
     EXPECT_EQ(*source->info().frames, static_cast<int>(poses.size()));
 }
 

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <string>
 
 #include "sim/embedded_scenes.hpp"
 #include "sim/scene_file.hpp"
@@ -75,6 +77,14 @@ Result<ScriptedScene> make_scene(const std::string& name,
                     name,
                     likely.empty() ? ";" : likely,
                     names.size()));
+}
+
+double drawn_number(const ScriptedScene& script, std::string_view name) {
+    const auto found = std::find_if(script.parameters.begin(),
+                                    script.parameters.end(),
+                                    [&](const SceneParameter& p) { return p.name == name; });
+    SUREFOOT_ASSERT(found != script.parameters.end());
+    return std::stod(found->value);  // they are written so that they read back to the same bits
 }
 
 }  // namespace surefoot::sim

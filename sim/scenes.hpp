@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/motion.hpp"
@@ -50,34 +51,14 @@ struct ScriptedScene {
                                                std::uint64_t seed,
                                                std::optional<Carrier> carrier = {});
 
-/// Where things stand in `demo_stairs`, for tests and demonstrations (metres, world frame).
+/// A number that the seed has drawn, by its name in the scene file ("edge_x_m"): where things
+/// stand, for tests and experiments. Precondition: the file has a parameter of that name.
+[[nodiscard]] double drawn_number(const ScriptedScene& script, std::string_view name);
+
+/// What never varies in `demo_stairs`: the thesis' stair.
 namespace demo_stairs {
 inline constexpr double kRise_m = 0.18;
 inline constexpr double kGoing_m = 0.31;
-inline constexpr double kFirstRiser_x_m = 3.6;
-inline constexpr double kStairHalfWidth_m = 0.6;
-inline constexpr double kRampFoot_x_m = 2.8;
-inline constexpr double kRampLength_m = 1.44;
-inline constexpr double kRampCenter_y_m = -1.25;
-inline constexpr double kRampWidth_m = 1.1;
-inline constexpr double kTableTop_m = 0.72;
-inline constexpr double kTableMin_x_m = 1.9;
-inline constexpr double kTableMax_x_m = 2.9;
-inline constexpr double kTableMin_y_m = 0.8;
-inline constexpr double kTableMax_y_m = 1.5;
-inline constexpr double kPitMin_x_m = 1.1;
-inline constexpr double kPitMax_x_m = 2.4;
-inline constexpr double kPitMin_y_m = -1.7;
-inline constexpr double kPitMax_y_m = -0.8;
-inline constexpr double kPitDepth_m = 0.25;
-inline constexpr double kPathEnd_x_m = 2.4;
 }  // namespace demo_stairs
-
-namespace platform_edge {
-inline constexpr double kHeight_m = 0.17;
-inline constexpr double kEdge_x_m = 2.6;
-/// The next step would land with half a foot beyond the edge.
-inline constexpr double kPathEnd_x_m = 2.15;
-}  // namespace platform_edge
 
 }  // namespace surefoot::sim

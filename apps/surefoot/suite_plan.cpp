@@ -21,7 +21,7 @@ constexpr double kQuickWalk_s = 22.0;   ///< two steps and the moment before the
 constexpr double kQuickDrive_s = 10.0;  ///< of a trolley: to the end of its way
 /// What the trolley sees in the first seconds lies ahead, and the gate refuses each movement there
 /// for want of knowledge. A floor and a platform are driven to the end, so that there is something
-/// to allow, and an edge to refuse for a better reason.
+/// to allow, and an edge to refuse for a better reason; their files keep that way within the time.
 struct QuickScene {
     const char* name;
     double time_s;
@@ -40,7 +40,7 @@ constexpr double kWalkRate_hz = 4.0;
 struct SuiteScene {
     std::string name;
     sim::Carrier carrier = sim::Carrier::trolley;
-    double duration_s = 0.0;  ///< of its first seed; others differ by centimetres of the way
+    double duration_s = 0.0;  ///< of its first seed; the ways of others are longer or shorter
 };
 
 bool is_scene_file(const std::string& name) {

@@ -103,7 +103,9 @@ TEST_F(StepQuestionsTest, TheOperatorsWordHoldsAtTheStartOnly) {
 
 TEST_F(StepQuestionsTest, AHazardThatTheMapDoesNotShowIsCountedAsMissed) {
     // The map believes in level ground; the platform ends under the way.
-    const sim::SceneTruth truth = walk_on("platform_edge", 3.2);
+    const double edge_m =
+        sim::drawn_number(sim::make_scene("platform_edge", 1).value(), "edge_x_m");
+    const sim::SceneTruth truth = walk_on("platform_edge", edge_m + 0.6);
     StepQuestions questions(truth, machine_);
     for (const sim::StepEvent& step : truth.steps)
         questions.ask(*level_map(step.T_world_before.translation_m.x(), -2.0));
