@@ -78,6 +78,16 @@ class EurocWriter final : public RecordingWriter {
         return left_list_->append(line);
     }
 
+    [[nodiscard]] bool read_back(StereoFrame& frame) const override {
+        const std::string name = fmt::format("data/{}.png", frame.time_ns);
+        auto left = read_grey_image(join_path(folder_, "mav0/cam0/" + name));
+        auto right = read_grey_image(join_path(folder_, "mav0/cam1/" + name));
+        if (!left || !right) return false;
+        frame.left = std::move(left).value();
+        frame.right = std::move(right).value();
+        return true;
+    }
+
     [[nodiscard]] Status close() override {
         Status first;
         for (auto* file : {&left_list_, &right_list_, &imu_list_}) {

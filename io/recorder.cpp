@@ -18,13 +18,19 @@ struct Recorder::Impl {
     std::optional<std::int64_t> last_frame_ns, last_truth_ns;
     int frames = 0;
 
-    [[nodiscard]] Status check(const StereoFrame& frame) const {
-        const int second_width = rig.right ? frame.right.width() : frame.depth_m.width();
-        const int second_height = rig.right ? frame.right.height() : frame.depth_m.height();
-        const auto fits = [&](int width, int height) {
+    [[nodiscard]] bool fits(const StereoFrame& frame) const {
+        const auto of_rig = [&](int width, int height) {
             return width == rig.left.width && height == rig.left.height;
         };
-        if (!fits(frame.left.width(), frame.left.height()) || !fits(second_width, second_height)) {
+        return of_rig(frame.left.width(), frame.left.height()) &&
+               (rig.right ? of_rig(frame.right.width(), frame.right.height())
+                          : of_rig(frame.depth_m.width(), frame.depth_m.height()));
+    }
+
+    [[nodiscard]] Status check(const StereoFrame& frame) const {
+        if (!fits(frame)) {
+            const int second_width = rig.right ? frame.right.width() : frame.depth_m.width();
+            const int second_height = rig.right ? frame.right.height() : frame.depth_m.height();
             return input_error(
                 fmt::format("{}: frame {} is {} x {} and {} x {} px, the rig is for {} x {} px",
                             folder,
@@ -61,11 +67,15 @@ Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder& Recorder::operator=(Recorder&&) noexcept = default;
 
-Result<Recorder> Recorder::create(const std::string& folder, const camera::StereoRig& rig) {
+Result<Recorder> Recorder::create(const std::string& folder,
+                                  const camera::StereoRig& rig,
+                                  Existing existing) {
     if (const auto problem = rig.problem()) {
         return input_error(fmt::format("{}: this rig cannot be recorded: {}", folder, *problem));
     }
-    if (is_file(join_path(folder, "mav0/cam0/data.csv")) || is_file(join_path(folder, "rgb.txt"))) {
+    const bool is_there =
+        is_file(join_path(folder, "mav0/cam0/data.csv")) || is_file(join_path(folder, "rgb.txt"));
+    if (is_there && existing == Existing::refuse) {
         return output_error(folder + ": holds a recording already; choose another folder");
     }
     auto impl = std::make_unique<Impl>();
@@ -78,6 +88,16 @@ Result<Recorder> Recorder::create(const std::string& folder, const camera::Stere
 
 Status Recorder::add(const StereoFrame& frame) {
     return impl_->add(frame);
+}
+
+bool Recorder::read_back(StereoFrame& frame) const {
+    StereoFrame images;
+    images.time_ns = frame.time_ns;
+    if (!impl_->writer->read_back(images) || !impl_->fits(images)) return false;
+    frame.left = std::move(images.left);
+    frame.right = std::move(images.right);
+    frame.depth_m = std::move(images.depth_m);
+    return true;
 }
 
 Status Recorder::add_truth(std::int64_t time_ns, const Pose& T_world_body) {

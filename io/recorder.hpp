@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,10 +24,14 @@ namespace surefoot::io {
 /// interrupted at any time can be read. Raw images are stored as they came, without loss.
 class Recorder {
   public:
-    /// Makes the folders and calibration files. Refuses a rig with a problem and a folder that
-    /// holds a recording already.
+    enum class Existing : std::uint8_t {
+        refuse,  ///< a folder that holds a recording already
+        renew,   ///< begin its lists again; images stay until their frame is added
+    };
+    /// Makes the folders and calibration files. Refuses a rig with a problem.
     [[nodiscard]] static Result<Recorder> create(const std::string& folder,
-                                                 const camera::StereoRig& rig);
+                                                 const camera::StereoRig& rig,
+                                                 Existing existing = Existing::refuse);
 
     ~Recorder();
     Recorder(Recorder&&) noexcept;
@@ -34,6 +39,9 @@ class Recorder {
 
     /// Appends a frame with its IMU samples; stamps must grow.
     [[nodiscard]] Status add(const StereoFrame& frame);
+    /// Reads the images that an earlier recorder has written for the stamp of `frame`; false, and
+    /// the frame as it was, unless all are there, whole and of the rig's size.
+    [[nodiscard]] bool read_back(StereoFrame& frame) const;
     /// Appends a pose of `groundtruth.tum` (base_link, or whatever the caller documents).
     [[nodiscard]] Status add_truth(std::int64_t time_ns, const Pose& T_world_body);
     /// Closes all files and reports what the system found only then.

@@ -221,6 +221,30 @@ TEST(Recorder, RefusesInWords) {
     EXPECT_TRUE(contains(recorder->add(wrong).error().message, "3 x 3 px, the rig is for 32 x 20"));
 }
 
+TEST(Recorder, ReadsBackWhatIsWholeAndOfItsSize) {
+    const TemporaryFolder folder;
+    record(folder / "r", 3);
+    const std::string second = folder / "r/mav0/cam1/data/" + stamp(1) + ".png";
+    const std::string bytes = *read_file(second);
+    ASSERT_TRUE(write_file(second, bytes.substr(0, bytes.size() - 20)).ok());
+    ASSERT_TRUE(
+        write_file(folder / "r/mav0/cam0/data/" + stamp(2) + ".png", *format_png(GreyImage(3, 3)))
+            .ok());
+    const auto recorder = Recorder::create(folder / "r", small_rig(), Recorder::Existing::renew);
+    ASSERT_TRUE(recorder.ok()) << recorder.error().message;
+    StereoFrame frame;
+    frame.time_ns = small_frame(0).time_ns;
+    ASSERT_TRUE(recorder->read_back(frame));
+    EXPECT_EQ(frame.left, small_frame(0).left);
+    EXPECT_EQ(frame.right, small_frame(0).right);
+    for (const int index : {1, 2, 3}) {  // cut off, of another size, not there
+        StereoFrame missing;
+        missing.time_ns = small_frame(index).time_ns;
+        EXPECT_FALSE(recorder->read_back(missing)) << index;
+        EXPECT_TRUE(missing.left.empty()) << index;
+    }
+}
+
 TEST(Inspect, CountsFramesGapsAndSize) {
     const TemporaryFolder folder;
     record(folder / "r", 6);

@@ -19,6 +19,8 @@ class RecordingWriter {
     [[nodiscard]] virtual Status start() = 0;
     [[nodiscard]] virtual Status add(const StereoFrame& frame) = 0;
     [[nodiscard]] virtual Status close() = 0;
+    /// Reads the images that were written for the stamp of `frame`; false unless all are whole.
+    [[nodiscard]] virtual bool read_back(StereoFrame& frame) const = 0;
 };
 
 [[nodiscard]] std::unique_ptr<RecordingWriter> make_euroc_writer(const std::string& folder,

@@ -28,6 +28,14 @@ DepthCodes codes_of(const Image<float>& depth_m) {
     return codes;
 }
 
+/// The depths that `codes_of` makes these codes of.
+Image<float> depths_of(const DepthCodes& codes) {
+    Image<float> depth_m(codes.width(), codes.height());
+    for (std::size_t i = 0; i < codes.size(); ++i)
+        depth_m.data()[i] = static_cast<float>(codes.data()[i]) / kDepthCodesPerMetre;
+    return depth_m;
+}
+
 class TumWriter final : public RecordingWriter {
   public:
     TumWriter(std::string folder, camera::StereoRig rig)
@@ -56,6 +64,16 @@ class TumWriter final : public RecordingWriter {
         if (Status s = write_png(join_path(folder_, depth), codes_of(frame.depth_m)); !s) return s;
         if (Status s = depth_list_->append(fmt::format("{} {}\n", stamp, depth)); !s) return s;
         return colour_list_->append(fmt::format("{} {}\n", stamp, colour));
+    }
+
+    [[nodiscard]] bool read_back(StereoFrame& frame) const override {
+        const std::string name = format_seconds(frame.time_ns) + ".png";
+        auto grey = read_grey_image(join_path(folder_, "rgb/" + name));
+        const auto codes = read_depth_codes(join_path(folder_, "depth/" + name));
+        if (!grey || !codes) return false;
+        frame.left = std::move(grey).value();
+        frame.depth_m = depths_of(*codes);
+        return true;
     }
 
     [[nodiscard]] Status close() override {

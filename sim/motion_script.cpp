@@ -169,13 +169,17 @@ Result<ScriptedMotion> make_motion(const MotionScript& script,
     if (script.carrier == Carrier::hand) {
         HandConfig config;
         if (script.speed_m_s > 0.0) config.speed_m_s = script.speed_m_s;
-        return ScriptedMotion{std::make_shared<HandMotion>(stops, config, seed), {}};
+        return ScriptedMotion{std::make_shared<HandMotion>(stops, config, seed), {}, {}};
     }
     TrolleyConfig config;
     config.height_m = kBodyHeight_m;
     if (script.speed_m_s > 0.0) config.speed_m_s = script.speed_m_s;
-    return ScriptedMotion{std::make_shared<TrolleyMotion>(TrolleyMotion::trolley(stops, config)),
-                          {}};
+    ScriptedMotion result;
+    const auto trolley = std::make_shared<TrolleyMotion>(TrolleyMotion::trolley(stops, config));
+    for (const double start_s : trolley->pauses_s())
+        result.stops.push_back({start_s, trolley->at(start_s).T_world_body});
+    result.motion = trolley;
+    return result;
 }
 
 }  // namespace surefoot::sim

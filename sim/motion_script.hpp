@@ -33,9 +33,16 @@ struct StepEvent {
     Pose T_world_after;
 };
 
+/// A pause of a trolley: there a movement of a machine that stood in its place can be asked for.
+struct Stop {
+    double start_s = 0.0;
+    Pose T_world_body;
+};
+
 struct ScriptedMotion {
     std::shared_ptr<const Motion> motion;
-    std::vector<StepEvent> steps;  ///< of a walking machine; empty for the other carriers
+    std::vector<StepEvent> steps = {};  ///< of a walking machine; empty for the other carriers
+    std::vector<Stop> stops = {};       ///< of a trolley; a hand never stands still
 };
 
 /// The seed moves all waypoints but the first by about a centimetre and a third of a degree, and

@@ -69,6 +69,24 @@ TEST(MotionScriptTest, StepEventsTellWhatTheMachineDoes) {
     EXPECT_TRUE(made(approach_script(Carrier::hand, 2.0)).steps.empty());
 }
 
+TEST(MotionScriptTest, ATrolleyStopsWhereItPauses) {
+    MotionScript script;
+    script.waypoints = {{0.0, 0.0, 0.0, 1.0}, {0.5, 0.0, 0.0, 0.0}, {0.5, 0.0, 0.2, 0.5}};
+    const ScriptedMotion drive = made(script);
+    ASSERT_EQ(drive.stops.size(), 2U) << "no pause, no stop";
+    EXPECT_EQ(drive.stops[0].start_s, 0.0);
+    EXPECT_NEAR(drive.stops[1].start_s, drive.motion->duration_s() - 0.5, 1e-9);
+    for (const Stop& stop : drive.stops) {
+        EXPECT_EQ(drive.motion->at(stop.start_s).velocity_world_m_s.norm(), 0.0);
+        EXPECT_EQ(
+            difference(drive.motion->at(stop.start_s + 0.4).T_world_body, stop.T_world_body).norm(),
+            0.0);
+    }
+    EXPECT_TRUE(drive.steps.empty());
+    EXPECT_TRUE(made(approach_script(Carrier::hand, 2.0)).stops.empty());
+    EXPECT_TRUE(made(approach_script(Carrier::rex, 2.0)).stops.empty());
+}
+
 TEST(MotionScriptTest, TheSpeedOfARexIsThatOfItsSteps) {
     MotionScript script = approach_script(Carrier::rex, 0.8);
     script.speed_m_s = 0.05;

@@ -139,6 +139,7 @@ ScriptedScene build(SceneReader& reader,
     check_way(reader, *motion, builder, *made);
     out.motion = std::move(made->motion);
     out.steps = std::move(made->steps);
+    out.stops = std::move(made->stops);
     out.scene = builder.take_scene();
     return out;
 }

@@ -174,6 +174,7 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
     source->truth_.scene = std::move(script->scene);
     source->truth_.scene.scale_contrast(options.contrast * figures_of(options.profile).contrast);
     source->truth_.steps = std::move(script->steps);
+    source->truth_.stops = std::move(script->stops);
     source->truth_.start_ns = kStart_ns;
     if (auto made = source->make_sensor(options, *rig); !made) return made.error();
     if (options.known_motion || source->analytic_) {
@@ -199,6 +200,9 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
         std::count_if(source->faults_.begin(), source->faults_.end(), [](const auto& fault) {
             return fault.kind == ImageFault::dropped;
         });
+    source->frames_stand_alone_ = options.sensor != Sensor::analytic &&
+                                  !options.camera.exposure.automatic &&
+                                  !needs_images(options.faults);
     source->imu_until_ns_ = kStart_ns - kImuLead_ns;
     source->info_ = {"sim",
                      options.scene,
@@ -326,6 +330,12 @@ DepthImage SceneSource::model_depth(const StampedPose& now) {
     return depth;
 }
 
+bool SceneSource::use_known_images(KnownImages known) {
+    if (!frames_stand_alone_) return false;
+    known_images_ = std::move(known);
+    return true;
+}
+
 Result<std::optional<StereoFrame>> SceneSource::next() {
     while (next_pose_ < truth_.trajectory.size()) {
         const StampedPose& now = truth_.trajectory[next_pose_];
@@ -336,7 +346,11 @@ Result<std::optional<StereoFrame>> SceneSource::next() {
         }
         const bool arrives = fault == nullptr || fault->kind != ImageFault::dropped;
         StereoFrame frame;
-        if (renderer_) {
+        frame.time_ns = now.time_ns;
+        const bool known = arrives && known_images_ && known_images_(frame);
+        if (known) {
+            ++known_frames_;
+        } else if (renderer_) {
             take_pictures(now);
             if (arrives) damage(fault);
             frame.left = shown_left_;
@@ -351,7 +365,6 @@ Result<std::optional<StereoFrame>> SceneSource::next() {
         }
         ++next_pose_;
         if (!arrives) continue;
-        frame.time_ns = now.time_ns;
         frame.index = next_index_++;
         if (imu_) frame.imu = imu_->samples(imu_until_ns_, now.time_ns);
         imu_until_ns_ = now.time_ns;

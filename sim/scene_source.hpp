@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -82,6 +83,16 @@ class SceneSource final : public camera::FrameSource {
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override;
 
+    /// Fills in the images of a frame whose stamp is set, or says false.
+    using KnownImages = std::function<bool(StereoFrame& frame)>;
+    /// Frames whose images `known` has from an earlier call with the same options are not rendered
+    /// again. False, and they are, where an image depends on those before it: automatic exposure,
+    /// faults that show older images. After such a frame `last_shot` and `last_depth_m` are those
+    /// of the last one that was rendered.
+    bool use_known_images(KnownImages known);
+    /// How many were not rendered for that reason.
+    [[nodiscard]] int known_frames() const noexcept { return known_frames_; }
+
     /// Poses of all frames, also of those that are still to come, and the scene.
     [[nodiscard]] const SceneTruth& truth() const noexcept { return truth_; }
     /// What was injected into the whole recording. `InjectedFault::frame` counts the poses of
@@ -136,6 +147,9 @@ class SceneSource final : public camera::FrameSource {
     std::size_t next_pose_ = 0;
     std::size_t next_fault_ = 0;
     int next_index_ = 0;
+    KnownImages known_images_;
+    int known_frames_ = 0;
+    bool frames_stand_alone_ = false;
     std::int64_t imu_until_ns_ = 0;
 };
 

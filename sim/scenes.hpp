@@ -37,6 +37,7 @@ struct ScriptedScene {
     MotionScript script;
     std::shared_ptr<const Motion> motion;
     std::vector<StepEvent> steps;  ///< of a walking machine
+    std::vector<Stop> stops;       ///< of a trolley
 };
 
 /// The scenes of sim/scenes/, which travel inside the program.

@@ -133,6 +133,16 @@ void TrolleyMotion::append_way(const Waypoint& from,
     duration_s_ += segment.duration_s;
 }
 
+std::vector<double> TrolleyMotion::pauses_s() const {
+    std::vector<double> starts_s;
+    starts_s.reserve(segments_.size());
+    for (const Segment& segment : segments_) {
+        if (segment.length_m == 0.0 && segment.duration_s > 0.0)
+            starts_s.push_back(segment.start_s);
+    }
+    return starts_s;
+}
+
 MotionState TrolleyMotion::at(double time_s) const {
     const double t_s = std::clamp(time_s, 0.0, duration_s_);
     const auto next = std::upper_bound(

@@ -32,6 +32,8 @@ class TrolleyMotion final : public Motion {
 
     [[nodiscard]] MotionState at(double time_s) const override;
     [[nodiscard]] double duration_s() const override { return duration_s_; }
+    /// When each pause begins, in order.
+    [[nodiscard]] std::vector<double> pauses_s() const;
 
   private:
     struct Segment {

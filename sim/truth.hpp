@@ -22,6 +22,7 @@ struct SceneTruth {
     std::vector<StampedPose> trajectory;  ///< one pose a frame
     std::int64_t start_ns = 0;            ///< stamp of the motion's time 0
     std::vector<StepEvent> steps;         ///< of a walking machine
+    std::vector<Stop> stops;              ///< of a trolley
 };
 
 /// Cells of a map: `origin_m` is the outer corner of cell (0, 0) in the world, images are indexed

@@ -29,7 +29,9 @@ Result<bool> copy_one(camera::FrameSource& source,
 
 }  // namespace
 
-Result<io::Recorder> start_recording(const std::string& folder, const camera::FrameSource& source) {
+Result<io::Recorder> start_recording(const std::string& folder,
+                                     const camera::FrameSource& source,
+                                     io::Recorder::Existing existing) {
     if (source.info().modelled_depth) {
         return usage_error(
             fmt::format("{}: sim.sensor = analytic makes no images that could be recorded in {}; "
@@ -38,7 +40,7 @@ Result<io::Recorder> start_recording(const std::string& folder, const camera::Fr
                         folder,
                         source.info().path));
     }
-    return io::Recorder::create(folder, source.rig());
+    return io::Recorder::create(folder, source.rig(), existing);
 }
 
 Copied copy_frames(const std::string& label,

@@ -17,8 +17,10 @@ struct Copied {
 };
 
 /// Starts a recording of a source. A source without images is a usage error.
-[[nodiscard]] Result<io::Recorder> start_recording(const std::string& folder,
-                                                   const camera::FrameSource& source);
+[[nodiscard]] Result<io::Recorder> start_recording(
+    const std::string& folder,
+    const camera::FrameSource& source,
+    io::Recorder::Existing existing = io::Recorder::Existing::refuse);
 
 /// Copies a source into a recording and closes it, frame by frame, with progress under `label`.
 /// What was copied before an error is a valid recording. `after_frame` may write more of each

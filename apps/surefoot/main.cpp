@@ -182,7 +182,11 @@ void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
             "scene", o.scene, "which scene; see --list; or a scene file: my/scene.yaml[#NAME]")
         ->type_name("SCENE");
     CLI::Option* out =
-        verb->add_option("--out", o.out_dir, "folder for the recording")->type_name("DIR");
+        verb->add_option("--out",
+                         o.out_dir,
+                         "folder for the recording; the same call goes on with one that was "
+                         "interrupted")
+            ->type_name("DIR");
     verb->add_option("--frames", o.frames, "stop after this many frames")->check(positive_number());
     verb->add_option("--rate", o.rate_hz, "frame rate")
         ->type_name("HZ")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +10,7 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/scene_gallery.hpp"
 #include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/sim_folder.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
@@ -91,27 +93,96 @@ Status write_truth(const std::string& out,
     return io::write_esri_grid(out + "/labels.asc", geometry, labels);
 }
 
-/// joystick.csv: what the user asks a walking machine for, and when (no line for other carriers);
-/// safety.csv: which of all movements would truly be safe at each of these moments.
-Status write_steps(const std::string& out, const sim::SceneTruth& truth, const Machine& machine) {
+/// joystick.csv: what the user asks a walking machine for, and when (no line for other carriers).
+Status write_joystick(const std::string& out,
+                      const sim::SceneTruth& truth,
+                      std::int64_t last_frame_ns) {
     std::string joystick = "time_s,end_s,command\n";
-    std::vector<sim::SafetyLabel> labels;
     for (const sim::StepEvent& step : truth.steps) {
         const std::int64_t time_ns = truth.start_ns + ns_from_seconds(step.start_s);
+        if (time_ns > last_frame_ns) break;
         joystick += fmt::format("{:.3f},{:.3f},{}\n",
                                 seconds_from_ns(time_ns),
                                 seconds_from_ns(truth.start_ns + ns_from_seconds(step.end_s)),
                                 step.command);
+    }
+    return io::write_file(out + "/joystick.csv", joystick);
+}
+
+/// safety.csv: which of all movements would truly be safe where the machine stands before a step,
+/// or would stand where the trolley stops. A hand never stands: no line.
+Status write_safety(const std::string& out,
+                    const sim::SceneTruth& truth,
+                    std::int64_t last_frame_ns,
+                    const Machine& machine) {
+    std::vector<sim::Stop> stances = truth.stops;
+    for (const sim::StepEvent& step : truth.steps)
+        stances.push_back({step.start_s, step.T_world_before});
+    std::vector<sim::SafetyLabel> labels;
+    for (const sim::Stop& stance : stances) {
+        const std::int64_t time_ns = truth.start_ns + ns_from_seconds(stance.start_s);
+        if (time_ns > last_frame_ns) break;
         for (int command = 1; command < Machine::kMovementCodes; ++command) {
             if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
             labels.push_back(
-                {time_ns, command, sim::judge(truth.scene, machine, step.T_world_before, command)});
+                {time_ns, command, sim::judge(truth.scene, machine, stance.T_world_body, command)});
         }
     }
+    return io::write_file(out + "/safety.csv", sim::safety_csv(labels));
+}
+
+/// The truth of the frames that are there, also when the recording ended early.
+Status write_all_truth(const std::string& out,
+                       const sim::SceneTruth& truth,
+                       int frames,
+                       double resolution_m,
+                       const Machine& machine) {
+    const auto count = std::min(static_cast<std::size_t>(frames), truth.trajectory.size());
+    const std::int64_t last_frame_ns = truth.trajectory[count - 1].time_ns;
     Writes writes;
-    writes += io::write_file(out + "/joystick.csv", joystick);
-    writes += io::write_file(out + "/safety.csv", sim::safety_csv(labels));
+    writes += write_truth(out, truth, count, resolution_m);
+    writes += write_joystick(out, truth, last_frame_ns);
+    writes += write_safety(out, truth, last_frame_ns, machine);
     return writes.first();
+}
+
+/// Starts the recording, or goes on with one of the same call; beside it config.yaml.
+Result<io::Recorder> start_simulated(const SimOptions& options,
+                                     const Settings& settings,
+                                     const sim::SceneSource& source) {
+    const auto config = sim_config(options, settings);
+    if (!config) return config.error();
+    const SimFolder there = compare_folder(options.out_dir, *config);
+    auto recorder = start_recording(options.out_dir, source, there.existing);
+    if (!recorder && !there.difference.empty())
+        return Error{recorder.error().code, recorder.error().message + "; " + there.difference};
+    if (!recorder) return recorder;
+    if (options.depth) {
+        if (auto status = io::make_folder(options.out_dir + "/depth"); !status)
+            return status.error();
+    }
+    if (there.existing == io::Recorder::Existing::renew) return recorder;
+    if (auto status = io::write_file(options.out_dir + "/config.yaml", *config); !status)
+        return status.error();
+    return recorder;
+}
+
+/// Renders and records what is not there already.
+Copied record_frames(const SimOptions& options, sim::SceneSource& source, io::Recorder& recorder) {
+    const auto depth_file = [&](std::int64_t time_ns) {
+        return fmt::format("{}/depth/{}.pfm", options.out_dir, time_ns);
+    };
+    bool known = false;
+    source.use_known_images([&](StereoFrame& frame) {
+        known = (!options.depth || io::read_pfm(depth_file(frame.time_ns)).ok()) &&
+                recorder.read_back(frame);
+        return known;
+    });
+    const auto write_depth = [&](const StereoFrame& frame) -> Status {
+        if (!options.depth || known) return {};
+        return io::write_pfm(depth_file(frame.time_ns), source.last_depth_m());
+    };
+    return copy_frames("sim", source, recorder, write_depth);
 }
 
 }  // namespace
@@ -138,28 +209,19 @@ int simulate(const SimOptions& options) {
                                    settings->sim},
                                   *executor);
     if (!source) return report(source.error());
-    auto recorder = start_recording(options.out_dir, **source);
+    auto recorder = start_simulated(options, *settings, **source);
     if (!recorder) return report(recorder.error());
-    if (options.depth) {
-        if (auto status = io::make_folder(options.out_dir + "/depth"); !status)
-            return report(status.error());
-    }
-    const auto write_depth = [&](const StereoFrame& frame) -> Status {
-        if (!options.depth) return {};
-        return io::write_pfm(fmt::format("{}/depth/{}.pfm", options.out_dir, frame.time_ns),
-                             (*source)->last_depth_m());
-    };
-    Copied copied = copy_frames("sim", **source, *recorder, write_depth);
-    // The truth of the frames that are there, also when the recording ended early.
+    Copied copied = record_frames(options, **source, *recorder);
     if (copied.frames > 0) {
-        Writes writes;
-        writes += write_truth(options.out_dir,
-                              (*source)->truth(),
-                              static_cast<std::size_t>(copied.frames),
-                              settings->pipeline.elevation.resolution_m);
-        writes += write_steps(options.out_dir, (*source)->truth(), machine->value().machine);
-        if (!writes.first() && !copied.error) copied.error = writes.first().error();
+        const auto truth = write_all_truth(options.out_dir,
+                                           (*source)->truth(),
+                                           copied.frames,
+                                           settings->pipeline.elevation.resolution_m,
+                                           machine->value().machine);
+        if (!truth && !copied.error) copied.error = truth.error();
     }
+    if (const int known = (*source)->known_frames(); known > 0)
+        log_info(fmt::format("{} of {} frames were there already", known, copied.frames));
     if (options.common.json) {
         print_answer(copied_json(copied, options.out_dir));
     } else {

@@ -177,6 +177,154 @@ class Verbs(CliTest):
         self.assertIn("demo_stairs", [scene["name"] for scene in scenes])
 
 
+class Scenes(CliTest):
+    """Simulated recordings: of which scenes, and what becomes of one that is stopped."""
+    # Half a metre ahead to an edge: 1 s standing, 3 s of way, 0.7 s standing.
+    EDGE = """name: edge
+description: the ground ends after a short way
+materials:
+  grey: {pattern: concrete}
+solids:
+  - floor: {min_x_m: -2, min_y_m: -2, max_x_m: 4, max_y_m: 2, z_m: -0.3, material: grey, label: drop}
+  - box: {x_m: -0.5, y_m: 0, length_m: 3, width_m: 4, bottom_m: -0.3, top_m: 0, material: grey, label: floor}
+  - walls: {min_x_m: -2, min_y_m: -2, max_x_m: 4, max_y_m: 2, bottom_m: -0.3, material: grey}
+motion:
+  waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 0.5, y_m: 0, pause_s: 0.7}]
+"""
+
+    def scene(self, old="", new=""):
+        self.assertIn(old, self.EDGE)
+        path = self.dir / "edge.yaml"
+        path.write_text(self.EDGE.replace(old, new, 1))
+        return path
+
+    def test_list_draws_every_scene(self):
+        out = self.dir / "gallery"
+        scenes = self.json_of("sim", "--list", "--out", out)["scenes"]
+        page = (out / "index.html").read_text()
+        for scene in scenes:
+            view, heights = out / f"{scene['name']}.png", out / f"{scene['name']}_height.png"
+            self.assertIn(f'src="{view.name}"', page)
+            self.assertIn(f'src="{heights.name}"', page)
+            self.assertIn(scene["description"], page)
+            for picture in (view, heights):
+                self.assertGreater(min(read_png_size(picture)), 300, picture.name)
+                self.assertGreater(picture.stat().st_size, 5000, picture.name)
+        self.assertEqual(len(list(out.iterdir())), 2 * len(scenes) + 1)
+        self.assertGreaterEqual(len(scenes), 100)
+        # No two scenes look alike.
+        pictures = {(out / f"{scene['name']}.png").read_bytes() for scene in scenes}
+        self.assertEqual(len(pictures), len(scenes))
+
+    def test_folders_that_cannot_be_written_are_sentences(self):
+        (self.dir / "file").write_text("")
+        for out in ("/proc/nowhere/out", self.dir / "file" / "out", self.dir / "file"):
+            for words in (["sim", "floor", "--frames", 1], ["sim", "--list"]):
+                process = surefoot(*words, "--out", out, timeout=60)
+                self.assertEqual(process.returncode, 1, process.stderr)
+                self.assertIn(str(out), process.stderr)
+                self.assertRegex(process.stderr, "cannot make this folder|is a file; a folder is needed")
+
+    def test_impossible_scenes_are_sentences(self):
+        for old, new, said in (("length_m: 3", "length_m: -3", ("edge.yaml:7", "length_m", "-3")),
+                               ("pattern: concrete", "pattern: marble", ("edge.yaml:4", "'marble'", "carpet")),
+                               ("material: grey}", "material: gray}", ("edge.yaml:8", "'gray'", "grey")),
+                               ("x_m: 0.5,", "x_m: 3.9,", ("edge.yaml:9", "the camera or base_link", "the solid of line 8")),
+                               ("x_m: 0.5,", "x_m: a_way,", ("edge.yaml:10", "a_way")),
+                               ("max_x_m: 4", "max_x_m: -4", ("edge.yaml:6", "max_x_m"))):
+            out = self.dir / "out"
+            process = surefoot("sim", self.scene(old, new), "--frames", 1, "--out", out)
+            self.assertEqual(process.returncode, 1, f"{new}: {process.stderr}")
+            for words in said:
+                self.assertIn(words, process.stderr, new)
+            self.assertFalse(out.exists(), new)
+
+    def recorded(self, name, *more):
+        return self.run_ok("sim", self.scene(), "--rate", 2, *more, "--out", self.dir / name)
+
+    def files(self, name):
+        folder = self.dir / name
+        return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+    def cut(self, name, damaged):
+        """As if it had been stopped while `damaged` was being written: what comes later is not there."""
+        folder = self.dir / name
+        for file in folder.glob("*.*"):
+            if file.name not in ("config.yaml", "rig.yaml", "rgb.txt", "depth.txt"):
+                file.unlink()
+        for file in [*folder.glob("mav0/*/data.csv"), *folder.glob("*.txt")]:
+            file.write_text("".join(file.read_text().splitlines(True)[:3]))
+        for file in [*folder.rglob("*.png"), *folder.rglob("*.pfm")]:
+            if float(file.stem) > damaged:
+                file.unlink()
+            elif float(file.stem) == damaged:
+                file.write_bytes(file.read_bytes()[:-100])
+
+    def test_a_recording_that_was_stopped_goes_on_where_it_was(self):
+        self.recorded("whole", "--depth")
+        whole = self.files("whole")
+        frames = sorted(name for name in whole if name.startswith("mav0/cam0/data/"))
+        self.assertEqual(len(frames), 10)
+        self.recorded("cut", "--depth")
+        self.cut("cut", 3_000_000_000)
+        process = self.recorded("cut", "--depth")
+        self.assertIn("4 of 10 frames were there already", process.stderr)
+        self.assertEqual(self.files("cut"), whole)
+        # What is kept is not rendered again: it stays what somebody has made of it.
+        image = self.dir / "cut" / frames[2]
+        image.write_bytes(whole[frames[7]])
+        self.recorded("cut", "--depth")
+        self.assertEqual({name for name, content in self.files("cut").items() if content != whole[name]}, {frames[2]})
+
+    def test_an_rgbd_recording_goes_on_too(self):
+        rgbd = ["--set", "sim.sensor=depth_camera"]
+        self.recorded("whole", *rgbd)
+        self.recorded("cut", *rgbd)
+        self.cut("cut", 2.5)
+        process = self.recorded("cut", *rgbd)
+        self.assertIn("3 of 10 frames were there already", process.stderr)
+        self.assertEqual(self.files("cut"), self.files("whole"))
+
+    def test_what_depends_on_earlier_frames_is_rendered_again(self):
+        automatic = ["--set", "sim.exposure.automatic=true"]
+        self.recorded("whole", *automatic)
+        self.recorded("cut", *automatic)
+        self.cut("cut", 3_000_000_000)
+        self.assertNotIn("already", self.recorded("cut", *automatic).stderr)
+        self.assertEqual(self.files("cut"), self.files("whole"))
+
+    def test_another_recording_in_the_folder_is_a_sentence(self):
+        self.recorded("out", "--frames", 2)
+        before = self.files("out")
+        for more, said in ((["--frames", 3], "--frames 3"), (["--frames", 2, "--seed", 5], "--seed 5"),
+                           (["--frames", 2, "--set", "sim.noise=2"], "noise: 2")):
+            process = surefoot("sim", self.scene(), "--rate", 2, *more, "--out", self.dir / "out")
+            self.assertEqual(process.returncode, 1, process.stderr)
+            self.assertIn("holds a recording already", process.stderr)
+            self.assertIn(said, process.stderr)
+        process = surefoot("sim", self.scene("z_m: -0.3", "z_m: -0.2"), "--rate", 2, "--frames", 2, "--out", self.dir / "out")
+        self.assertEqual(process.returncode, 1, "the scene file is another one")
+        self.assertEqual(self.files("out"), before)
+
+    def test_safety_of_a_trolley_is_asked_at_its_stops(self):
+        self.recorded("out")
+        head, *lines = (self.dir / "out" / "safety.csv").read_text().splitlines()
+        rows = [dict(zip(head.split(","), line.split(","))) for line in lines]
+        ahead = [row for row in rows if row["command"] == "9"]
+        # At the start, and 1 + 3 s later: 0.5 m at 0.25 m/s, 1 s longer for getting up to speed.
+        self.assertEqual(float(ahead[0]["time_s"]), 1.0)
+        self.assertAlmostEqual(float(ahead[1]["time_s"]), 5.0, delta=0.05)
+        self.assertEqual([row["safe"] for row in ahead], ["1", "0"])
+        self.assertIn("drop_off", ahead[1]["dangers"])
+        commands = {row["command"] for row in rows}
+        self.assertEqual(len(rows), 2 * len(commands))
+        self.assertGreater(len(commands), 5)
+        # A recording that ends before the second stop does not tell of it.
+        self.recorded("short", "--frames", 4)
+        lines = (self.dir / "short" / "safety.csv").read_text().splitlines()
+        self.assertEqual(len(lines), 1 + len(commands))
+
+
 def write_pfm(path, rows):
     """One float channel, little-endian, bottom row first; None = +inf = unknown."""
     values = [math.inf if x is None else x for row in reversed(rows) for x in row]
