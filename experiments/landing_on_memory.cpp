@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The foot lands on remembered ground: how wrong is the memory when the step is decided?
-// Usage: landing_on_memory OUT.csv [FIRST_SEED [SEEDS [NOISE]]]
+// Usage: landing_on_memory OUT.csv [FIRST_SEED [SEEDS [NOISE [grid | mounts | conditions]]]]
+//   grid: every mount, on carpet, sharp images of a global shutter. mounts: the two that are
+//   recommended. conditions: the usual mount with poor texture, motion blur, a rolling shutter, and
+//   all of these.
 //
 // The machine walks over flat floor; its odometry sees rendered images, its map exact depth, so
 // that what is wrong comes from the motion alone. When a step is asked for, every point under the
@@ -9,7 +12,9 @@
 //                     into the world at the true one, minus the true ground
 //   horizontal error  how far the place that the foot will really meet lies from the place that was
 //                     really seen when the cell was last measured
-// One line a point: pitch_deg,height_m,cameras,script,seed,step,known,age_s,height_m,horizontal_m.
+// One line a point: pitch_deg,height_m,cameras,script,condition,seed,step,lost,known,age_s,
+// height_error_m,horizontal_m; lost: frames so far whose motion the odometry did not know. As in
+// the pipeline, their depth is not taken.
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -38,6 +43,15 @@ namespace {
 constexpr double kRate_hz = 8.0;
 constexpr int kDepthEvery = 2;  ///< frames with depth
 constexpr double kSecondPitch_deg = 65.0;
+constexpr double kLongExposure_s = 0.016;  ///< the control's longest
+
+/// What makes the odometry's images worse than those of a global shutter over carpet.
+struct Condition {
+    std::string name = "plain";
+    double contrast = 1.0;  ///< factor on all textures
+    int blur_samples = 0;   ///< instants of an exposure of 16 ms; 0 = sharp
+    bool rolling = false;
+};
 
 struct Setup {
     double pitch_deg = 32.0;
@@ -46,10 +60,11 @@ struct Setup {
     sim::MotionScript motion;
     std::uint64_t seed = 1;
     double noise = 1.0;
+    Condition condition;
 };
 
-camera::StereoRig mounted(double pitch_deg, double camera_z_body_m) {
-    camera::StereoRig rig = *sim::rig_preset("zed_vga");
+camera::StereoRig mounted(double pitch_deg, double camera_z_body_m, bool rolling = false) {
+    camera::StereoRig rig = *sim::rig_preset(rolling ? "zed_vga_rolling" : "zed_vga");
     rig.T_body_left = sim::looking_down({0.075, 0.25, camera_z_body_m}, pitch_deg * M_PI / 180.0);
     return rig;
 }
@@ -71,6 +86,13 @@ camera::DepthImage exact_depth(const sim::Scene& scene,
     depth.outlier_probability = Image<float>(rig.width, rig.height, 0.0F);
     return depth;
 }
+
+/// The moment at which a step is asked for.
+struct Decision {
+    int step = 0;
+    std::int64_t time_ns = 0;
+    int lost_frames = 0;  ///< until then
+};
 
 struct Poses {
     Pose T_odom_body;   ///< estimated
@@ -100,10 +122,9 @@ void look_up(const Setup& setup,
              const Memory& memory,
              const std::map<std::int64_t, Poses>& poses,
              const std::vector<Eigen::Vector2d>& points_body_m,
-             int step,
-             std::int64_t now_ns,
+             const Decision& decision,
              fmt::ostream& out) {
-    const Poses& now = poses.at(now_ns);
+    const Poses& now = poses.at(decision.time_ns);
     const auto& layers = memory.map.layers();
     for (const Eigen::Vector2d& point : points_body_m) {
         // Where the gate looks: by the estimated pose, level.
@@ -124,15 +145,17 @@ void look_up(const Setup& setup,
             const Poses& then = poses.at(seen_ns);
             const Eigen::Vector3d seen = then.T_world_body * (then.T_odom_body.inverse() * stored);
             horizontal_m = (met - seen).head<2>().norm();
-            age_s = seconds_from_ns(now_ns - seen_ns);
+            age_s = seconds_from_ns(decision.time_ns - seen_ns);
         }
-        out.print("{},{},{},{},{},{},{},{:.2f},{:.6f},{:.6f}\n",
+        out.print("{},{},{},{},{},{},{},{},{},{:.2f},{:.6f},{:.6f}\n",
                   setup.pitch_deg,
                   setup.height_m,
                   memory.cameras,
                   setup.script,
+                  setup.condition.name,
                   setup.seed,
-                  step,
+                  decision.step,
+                  decision.lost_frames,
                   known ? 1 : 0,
                   age_s,
                   height_error_m,
@@ -144,16 +167,20 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
     const auto place = sim::make_scene("floor", setup.seed);
     if (!place) return place.error();
     sim::Scene scene = place->scene;
-    scene.scale_contrast(sim::figures_of(sim::CameraProfile::zed).contrast);
+    scene.scale_contrast(sim::figures_of(sim::CameraProfile::zed).contrast *
+                         setup.condition.contrast);
     const auto script = sim::make_motion(setup.motion, setup.seed);
     if (!script) return script.error();
     const double base_z_m = script->motion->at(0.0).T_world_body.translation_m.z();
-    const camera::StereoRig rig = mounted(setup.pitch_deg, setup.height_m - base_z_m);
+    const camera::StereoRig rig =
+        mounted(setup.pitch_deg, setup.height_m - base_z_m, setup.condition.rolling);
     const auto rectifier = camera::Rectifier::make(rig);
     const auto second =
         camera::Rectifier::make(mounted(kSecondPitch_deg, setup.height_m - base_z_m));
     sim::CameraConfig camera;
     sim::apply_profile(sim::CameraProfile::zed, setup.noise, camera);
+    camera.shutter.blur_samples = setup.condition.blur_samples;
+    if (setup.condition.blur_samples > 0) camera.exposure.exposure_s = kLongExposure_s;
     const sim::ProfileFigures zed = sim::figures_of(sim::CameraProfile::zed);
     const auto renderer =
         sim::Renderer::make(scene, sim::with_error(rig, zed.calibration), camera, setup.seed);
@@ -169,6 +196,7 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
     sim::CleanPair clean;
     sim::RenderedPair images;
     std::size_t next_step = 0;
+    int lost_frames = 0;
     const int frames = static_cast<int>(script->motion->duration_s() * kRate_hz) + 1;
     for (int i = 0; i < frames && next_step < script->steps.size(); ++i) {
         const double time_s = i / kRate_hz;
@@ -183,7 +211,9 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
         const MotionEstimate estimate = odometry.update(frame, executor);
         const Pose T_world_body = script->motion->at(time_s).T_world_body;
         poses[time_ns] = {estimate.T_odom_body, T_world_body};
-        const bool with_depth = i % kDepthEvery == 0;
+        const bool lost = i > 0 && estimate.health == Health::lost;
+        lost_frames += lost ? 1 : 0;
+        const bool with_depth = i % kDepthEvery == 0 && !lost;
         std::vector<camera::DepthImage> depths;
         for (const camera::RectifiedRig& eyes : memories[1].rigs) {
             if (with_depth) depths.push_back(exact_depth(scene, eyes, T_world_body, executor));
@@ -200,8 +230,7 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
                     memory,
                     poses,
                     landing_points(machine, step),
-                    static_cast<int>(next_step),
-                    time_ns,
+                    {static_cast<int>(next_step), time_ns, lost_frames},
                     out);
         }
         ++next_step;
@@ -209,20 +238,61 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
     return {};
 }
 
-std::vector<Setup> setups(std::uint64_t seed, double noise) {
+sim::MotionScript straight_walk() {
     sim::MotionScript straight;
     straight.carrier = sim::Carrier::rex;
     straight.waypoints = {{0.0, 0.0, 0.0, 1.0}, {2.4, 0.0, 0.0, 0.5}};
+    return straight;
+}
+
+std::vector<Setup> grid(std::uint64_t seed, double noise) {
+    const sim::MotionScript straight = straight_walk();
     sim::MotionScript turning;
     turning.carrier = sim::Carrier::rex;
     turning.waypoints = {{0.0, 0.0, 0.0, 1.0}, {0.8, 0.0, 0.0, 0.5}, {0.8, 0.8, M_PI / 2.0, 0.5}};
     std::vector<Setup> all;
     for (const double pitch_deg : {28.0, 32.0, 36.0, 42.0, 50.0})
         for (const double height_m : {0.95, 1.05})
-            all.push_back({pitch_deg, height_m, "straight", straight, seed, noise});
+            all.push_back({pitch_deg, height_m, "straight", straight, seed, noise, {}});
     for (const double pitch_deg : {32.0, 42.0})
-        all.push_back({pitch_deg, 1.0, "turning", turning, seed, noise});
+        all.push_back({pitch_deg, 1.0, "turning", turning, seed, noise, {}});
     return all;
+}
+
+constexpr double kUsualPitch_deg = 32.0;
+constexpr double kUsualHeight_m = 1.05;
+
+std::vector<Setup> mounts(std::uint64_t seed, double noise) {
+    std::vector<Setup> all;
+    for (const double pitch_deg : {kUsualPitch_deg, 42.0}) {
+        all.push_back(
+            {pitch_deg, kUsualHeight_m, "straight", straight_walk(), seed, noise, Condition{}});
+    }
+    return all;
+}
+
+std::vector<Setup> conditions(std::uint64_t seed, double noise) {
+    constexpr double kPoor = 0.3;  // of the contrast
+    constexpr int kInstants = 3;   // the frame's ringing smears by about a pixel
+    std::vector<Setup> all;
+    const auto add = [&](const Condition& condition) {
+        all.push_back(
+            {kUsualPitch_deg, kUsualHeight_m, "straight", straight_walk(), seed, noise, condition});
+    };
+    add({"poor texture", kPoor, 0, false});
+    add({"motion blur", 1.0, kInstants, false});
+    add({"rolling shutter", 1.0, 0, true});
+    add({"all three", kPoor, kInstants, true});
+    return all;
+}
+
+using Set = std::vector<Setup> (*)(std::uint64_t seed, double noise);
+
+/// None where no set has that name.
+Set set_of(const std::string& name) {
+    if (name == "grid") return grid;
+    if (name == "mounts") return mounts;
+    return name == "conditions" ? conditions : nullptr;
 }
 
 }  // namespace
@@ -232,29 +302,38 @@ std::vector<Setup> setups(std::uint64_t seed, double noise) {
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 2) {
-        fmt::print(stderr, "usage: landing_on_memory OUT.csv [FIRST_SEED [SEEDS [NOISE]]]\n");
+        fmt::print(stderr,
+                   "usage: landing_on_memory OUT.csv "
+                   "[FIRST_SEED [SEEDS [NOISE [grid | mounts | conditions]]]]\n");
         return 2;
     }
     const int first_seed = argc > 2 ? std::atoi(argv[2]) : 1;
     const int seeds = argc > 3 ? std::atoi(argv[3]) : 1;
     const double noise = argc > 4 ? std::atof(argv[4]) : 1.0;
+    const Set set = set_of(argc > 5 ? argv[5] : "grid");
+    if (!set) {
+        fmt::print(stderr, "landing_on_memory: {} is no set of walks\n", argv[5]);
+        return 2;
+    }
     const auto machine = app::load_machine("rex");
     if (!machine) return app::report(machine.error());
     const auto executor = app::make_executor({});
     auto out = fmt::output_file(argv[1]);
     out.print(
-        "pitch_deg,height_m,cameras,script,seed,step,known,age_s,height_error_m,horizontal_m\n");
+        "pitch_deg,height_m,cameras,script,condition,seed,step,lost,known,age_s,"
+        "height_error_m,horizontal_m\n");
     for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
-        for (const Setup& setup : setups(static_cast<std::uint64_t>(seed), noise)) {
+        for (const Setup& setup : set(static_cast<std::uint64_t>(seed), noise)) {
             const Status walked = walk(setup, machine->value().machine, *executor, out);
             if (!walked) return app::report(walked.error());
             out.flush();
             fmt::print(stderr,
-                       "seed {}: {} deg, {} m, {} done\n",
+                       "seed {}: {} deg, {} m, {}, {} done\n",
                        seed,
                        setup.pitch_deg,
                        setup.height_m,
-                       setup.script);
+                       setup.script,
+                       setup.condition.name);
         }
     }
     return 0;

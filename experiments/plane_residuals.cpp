@@ -8,8 +8,8 @@
 // Windows of 32 x 32 px of the rectified left image. For each: horizontal gradient of the grey
 // values (texture), share of matched pixels (density), scatter of the disparity about the robustly
 // fitted plane, and how much the eyes differ when they are laid over each other by that plane. A
-// line a window: frame, u, v, texture_dn, coarse_dn, grey_dn, density, residual_px, inliers,
-// eyes_dn.
+// line a window: frame, u, v, texture_dn, coarse_dn, grey_dn, density, residual_px, rms_px,
+// inliers, eyes_dn.
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -39,6 +39,7 @@ struct Window {
     double grey_dn = 0.0;
     double density = 0.0;
     double residual_px = 0.0;  ///< 1.4826 median |residual|: one sigma of a normal scatter
+    double rms_px = 0.0;       ///< of all matched pixels, outliers too
     double inliers = 0.0;      ///< share of the matched pixels within 3 sigma
     Eigen::Vector3d plane = Eigen::Vector3d::Zero();  ///< disparity = plane . (u, v, 1), window
     std::vector<double> departure_px;  ///< of every pixel from it, NaN = no match or an outlier
@@ -97,12 +98,15 @@ Window fit(const Image<float>& disparity_px, int u0, int v0) {
         window.inliers = static_cast<double>(in) / static_cast<double>(residuals.size());
     }
     window.departure_px.assign(kWindow_px * kWindow_px, std::nan(""));
+    double sum_sq = 0.0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double departure_px = values[i] - places[i].dot(plane);
+        sum_sq += departure_px * departure_px;
         if (std::abs(departure_px) > limit_px) continue;
         window.departure_px[static_cast<std::size_t>(places[i].y() * kWindow_px + places[i].x())] =
             departure_px;
     }
+    window.rms_px = std::sqrt(sum_sq / static_cast<double>(values.size()));
     return window;
 }
 
@@ -225,7 +229,8 @@ int run(const std::string& name,
     camera::RectifiedPair pair;
     camera::DepthImage depth;
     auto file = fmt::output_file(out);
-    file.print("frame,u,v,texture_dn,coarse_dn,grey_dn,density,residual_px,inliers,eyes_dn\n");
+    file.print(
+        "frame,u,v,texture_dn,coarse_dn,grey_dn,density,residual_px,rms_px,inliers,eyes_dn\n");
     std::vector<Window> before;
     Repetition repetition;
     for (int frame = 0; max_frames == 0 || frame < max_frames; ++frame) {
@@ -242,7 +247,7 @@ int run(const std::string& name,
                 double grey = 0.0;
                 for (int y = v; y < v + kWindow_px; ++y)
                     for (int x = u; x < u + kWindow_px; ++x) grey += pair.left.at(x, y);
-                file.print("{},{},{},{:.3f},{:.3f},{:.1f},{:.4f},{:.4f},{:.4f},{:.3f}\n",
+                file.print("{},{},{},{:.3f},{:.3f},{:.1f},{:.4f},{:.4f},{:.4f},{:.4f},{:.3f}\n",
                            frame,
                            u,
                            v,
@@ -251,6 +256,7 @@ int run(const std::string& name,
                            grey / (kWindow_px * kWindow_px),
                            window.density,
                            window.residual_px,
+                           window.rms_px,
                            window.inliers,
                            eye_difference_of(pair, window, u, v));
                 if (!before.empty()) repetition.add(before[windows.size()], window);

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The system that this project descends from, put into the simulator: does it fail there as it did
 // in the world? Then the simulator does not flatter.
-// Usage: thesis_failures OUT_DIR [FIRST_SEED [SEEDS [NOISE]]]
+// Usage: thesis_failures OUT_DIR [FIRST_SEED [SEEDS [NOISE [fixed | drawn]]]]
+//   fixed: delays that are always the same, on the floor and on the stairs. drawn: late now and
+//   then, beside some that are not, on the floor alone.
 //
 // Its settings: the ZED's images at 15 Hz, one cloud a second into the map, points of 1 cm cubes,
 // the simplified stereo error model, the ancestor's fusion with a variance floor of (45 mm)^2, the
 // ground plane taken once at the start (RANSAC, 75 mm). Its faults: the cloud is put where the
 // machine was `late` images ago (the true pose of that moment: a tracker that is late and right),
-// and disparities are off by a constant, the camera never having been recalibrated. Trolley and
-// walking machine go the same way, 2.4 m ahead.
+// always, or only for a drawn share of the clouds and then by drawn 50-500 ms; and disparities are
+// off by a constant, the camera never having been recalibrated. Trolley and walking machine go the
+// same way, 2.4 m ahead; both draw the same delays.
 //
 // runs.csv     one line a map: spread of the level floor, jumps between its neighbouring cells
 // (all;
@@ -24,6 +27,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,7 +61,10 @@ constexpr int kCoarse_cells = 4;
 struct Fault {
     int late_images = 0;
     double disparity_offset_px = 0.0;
+    double drawn_share = 0.0;  ///< of the clouds are late by kDrawnLate_s instead
 };
+constexpr double kDrawnLate_s[] = {0.05, 0.5};
+constexpr std::uint64_t kDelayStream = 0x1a7e;
 /// Poses that were 50-500 ms late were seen. The ZED of the thesis read 18 mm wrong at 1 m, which
 /// are 0.7 px.
 constexpr Fault kFaults[] = {{0, 0.0},
@@ -71,12 +78,15 @@ constexpr Fault kFaults[] = {{0, 0.0},
                              {4, 0.7},
                              {4, 1.4},
                              {4, -0.7}};
+constexpr Fault kDrawnFaults[] = {
+    {0, 0.0}, {3, 0.0}, {5, 0.0}, {7, 0.0}, {0, 0.0, 0.25}, {0, 0.0, 0.5}};
 
 struct Walk {
     std::string scene;
     sim::Carrier carrier = sim::Carrier::trolley;
     std::uint64_t seed = 1;
     double noise = 1.0;
+    std::span<const Fault> faults = kFaults;
 };
 
 elevation::ElevationConfig thesis_points() {
@@ -126,13 +136,15 @@ Pose ground_error(const camera::RectifiedRig& rig,
 /// The thesis' chain behind the matcher, with one of its faults.
 class Mapper {
   public:
-    Mapper(const camera::RectifiedRig& rig, const Fault& fault) : rig_(rig), fault_(fault) {}
+    /// `seed`: of the delays that are drawn.
+    Mapper(const camera::RectifiedRig& rig, const Fault& fault, std::uint64_t seed)
+        : rig_(rig), fault_(fault), delays_(mix_seed(seed, kDelayStream)) {}
 
     void add(const camera::DepthImage& seen, const sim::Motion& motion, double time_s) {
         camera::DepthImage depth = seen;
         for (std::size_t i = 0; i < depth.disparity_px.size(); ++i)
             depth.disparity_px.data()[i] += static_cast<float>(fault_.disparity_offset_px);
-        const Pose T_world_body = motion.at(time_s - fault_.late_images / kCamera_hz).T_world_body;
+        const Pose T_world_body = motion.at(time_s - delay_s()).T_world_body;
         if (!T_believed_world_) T_believed_world_ = ground_error(rig_, depth, T_world_body);
         fuse(depth, *T_believed_world_ * T_world_body, time_s);
     }
@@ -140,6 +152,12 @@ class Mapper {
     [[nodiscard]] const Fault& fault() const { return fault_; }
 
   private:
+    double delay_s() {
+        const double draw = delays_.uniform(0.0, 1.0);
+        const double drawn_s = delays_.uniform(kDrawnLate_s[0], kDrawnLate_s[1]);
+        return draw < fault_.drawn_share ? drawn_s : fault_.late_images / kCamera_hz;
+    }
+
     void fuse(const camera::DepthImage& depth, const Pose& T_believed_body, double time_s) {
         const Eigen::Vector2d at_m = T_believed_body.translation_m.head<2>();
         map_.move_to(at_m.x(), at_m.y());
@@ -160,6 +178,7 @@ class Mapper {
 
     camera::RectifiedRig rig_;
     Fault fault_;
+    Rng delays_;
     elevation::ElevationConfig config_ = thesis_points();
     elevation::AncestorMap map_{thesis_map()};
     std::optional<Pose> T_believed_world_;
@@ -285,13 +304,14 @@ void report_map(const Walk& walk,
                 const Trajectory& bodies,
                 Tables& out) {
     const HeightMap map{mapper.map().geometry(), mapper.map().elevation_m()};
-    const std::string who = fmt::format("{},{},{},{:g},{},{:g}",
+    const std::string who = fmt::format("{},{},{},{:g},{},{:g},{:g}",
                                         walk.scene,
                                         sim::kCarrierNames[static_cast<int>(walk.carrier)],
                                         walk.seed,
                                         walk.noise,
                                         mapper.fault().late_images,
-                                        mapper.fault().disparity_offset_px);
+                                        mapper.fault().disparity_offset_px,
+                                        mapper.fault().drawn_share);
     out.runs.print("{}", who);
     for (const HeightMap& looked_at : {map, coarse(map)}) {
         const eval::MapComparison figures = compare(place.scene, looked_at, rig, bodies);
@@ -346,7 +366,7 @@ Status follow(const Walk& walk, Executor& executor, Tables& out) {
     const auto matcher = stereo::make_sgbm_matcher({});
 
     std::vector<Mapper> mappers;
-    for (const Fault& fault : kFaults) mappers.emplace_back(rectifier->rig(), fault);
+    for (const Fault& fault : walk.faults) mappers.emplace_back(rectifier->rig(), fault, walk.seed);
     Trajectory bodies;
     sim::CleanPair clean;
     sim::RenderedPair images;
@@ -376,27 +396,36 @@ Status follow(const Walk& walk, Executor& executor, Tables& out) {
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     using namespace surefoot;
     if (argc < 2) {
-        fmt::print(stderr, "usage: thesis_failures OUT_DIR [FIRST_SEED [SEEDS [NOISE]]]\n");
+        fmt::print(stderr,
+                   "usage: thesis_failures OUT_DIR [FIRST_SEED [SEEDS [NOISE [fixed | drawn]]]]\n");
         return 2;
     }
     const std::string folder = argv[1];
     const int first_seed = argc > 2 ? std::atoi(argv[2]) : 1;
     const int seeds = argc > 3 ? std::atoi(argv[3]) : 1;
     const double noise = argc > 4 ? std::atof(argv[4]) : 1.0;
+    const std::string faults = argc > 5 ? argv[5] : "fixed";
+    if (faults != "fixed" && faults != "drawn") {
+        fmt::print(stderr, "thesis_failures: faults are fixed or drawn, not {}\n", faults);
+        return 2;
+    }
+    const bool drawn = faults == "drawn";
     const auto executor = app::make_executor({});
     Tables out{fmt::output_file(folder + "/runs.csv"),
                fmt::output_file(folder + "/heights.csv"),
                folder,
                static_cast<std::uint64_t>(first_seed)};
     out.runs.print(
-        "scene,carrier,seed,noise,late_images,offset_px,spread_m,rms_m,edges_m,edges_middle_m,"
-        "edges_sides_m,coarse_spread_m,coarse_rms_m,coarse_edges_m,coarse_edges_middle_m,"
-        "coarse_edges_sides_m,tread0_m,tread1_m,tread2_m,tread3_m\n");
-    out.heights.print("scene,carrier,seed,noise,late_images,offset_px,part,height_m\n");
+        "scene,carrier,seed,noise,late_images,offset_px,drawn_share,spread_m,rms_m,edges_m,"
+        "edges_middle_m,edges_sides_m,coarse_spread_m,coarse_rms_m,coarse_edges_m,"
+        "coarse_edges_middle_m,coarse_edges_sides_m,tread0_m,tread1_m,tread2_m,tread3_m\n");
+    out.heights.print("scene,carrier,seed,noise,late_images,offset_px,drawn_share,part,height_m\n");
     for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
         for (const char* scene : {"floor", "demo_stairs"}) {
+            if (drawn && scene != std::string("floor")) continue;
             for (const sim::Carrier carrier : {sim::Carrier::trolley, sim::Carrier::rex}) {
-                const Walk walk{scene, carrier, static_cast<std::uint64_t>(seed), noise};
+                Walk walk{scene, carrier, static_cast<std::uint64_t>(seed), noise};
+                if (drawn) walk.faults = kDrawnFaults;
                 const Status walked = follow(walk, *executor, out);
                 if (!walked) return app::report(walked.error());
                 fmt::print(stderr,
