@@ -16,9 +16,9 @@ inline constexpr const char* kCameraProfileNames[] = {"ideal", "zed", "euroc", "
 /// `euroc_still` by `tools/experiments camera_fit`, see docs/experiments/reality_gap.md; the turn
 /// of the ZED's right eye was measured on corners of the same recording. `zed_alone` is
 /// that camera and nothing else: before a heap of things as in its recording it scatters as the
-/// recording does. `zed` stands before plain scenes and has the rest as noise (fitted to what
-/// OpenCV's matcher makes of it; our own agrees with the recording at twice that noise): the
-/// harsher one, and the one for claims.
+/// recording does on the seeds of the fit, a quarter more on others. `zed` stands before plain
+/// scenes and has the rest as noise (fitted to what OpenCV's matcher makes of it; our own agrees
+/// with the recording at twice that noise): the harsher one, and the one for claims.
 struct ProfileFigures {
     double noise_dn = 0.0;       ///< on top of the camera's own
     double noise_size_px = 0.0;  ///< instead of the camera's own where it has none
