@@ -58,7 +58,8 @@ struct LayerStyle {
                                        const Overlays& overlays);
 
 /// What the live map calls safe is white, unsafe black; the dot says whether that is right: green =
-/// right, blue on white = unsafe called safe, orange on black = safe called unsafe.
+/// right, blue on white = unsafe called safe, orange on black = safe called unsafe. These are the
+/// colours of the thesis (9.2), but for its red, which some eyes cannot tell from the green.
 [[nodiscard]] Picture render_confusion(const grid::GridGeometry& geometry,
                                        const Image<Call>& calls,
                                        const FigureText& text,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "eval/path_errors.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -235,6 +236,95 @@ TEST(Trajectory, RelativeErrorPerFrameAndPerSecond) {
         EXPECT_NEAR(evaluate_trajectory(estimate, truth, config)->rpe_rot_rmse_deg, 2.0, 1e-6);
         config.rpe_interval_s = 0.97;  // the nearest pose is 1 s later
         EXPECT_NEAR(evaluate_trajectory(estimate, truth, config)->rpe_rot_rmse_deg, 2.0, 1e-6);
+    }
+}
+
+/// Four corners of a square of 2 m, one a second, heading along its sides. The estimate is higher
+/// and lower by `kBump_m` in turn, which no rotation or translation can take away, and has turned
+/// too far by `kTurn_deg`. All figures below follow from it by hand.
+constexpr double kBump_m = 0.1;
+constexpr double kTurn_deg[] = {0.0, 1.0, 3.0, 6.0};
+
+struct Square {
+    Trajectory truth;
+    Trajectory estimate;
+};
+Square square(const Pose& T_estimate_truth) {
+    Square result;
+    const Eigen::Vector3d corners_m[] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+    for (int k = 0; k < 4; ++k) {
+        const double yaw_deg = 90.0 * k;
+        const std::int64_t time_ns = k * 1'000'000'000LL;
+        const double bump_m = k % 2 == 0 ? kBump_m : -kBump_m;
+        const Pose truth{exp_so3({0.0, 0.0, yaw_deg / kDegPerRad}), corners_m[k]};
+        const Pose estimate{exp_so3({0.0, 0.0, (yaw_deg + kTurn_deg[k]) / kDegPerRad}),
+                            corners_m[k] + Eigen::Vector3d(0.0, 0.0, bump_m)};
+        result.truth.push_back({time_ns, truth});
+        result.estimate.push_back({time_ns, T_estimate_truth * estimate});
+    }
+    return result;
+}
+
+double ate_m(const Square& walk, Alignment align) {
+    EvalTrajectoryConfig config;
+    config.align = align;
+    return evaluate_trajectory(walk.estimate, walk.truth, config)->ate_rmse_m;
+}
+
+TEST(Trajectory, AteByHandForEachAlignment) {
+    // Turned by 90 deg about z and shifted by (5, -3, 1): x, y, z come to 5 - y, x - 3, z + 1.
+    const Square turned =
+        square({exp_so3({0.0, 0.0, 90.0 / kDegPerRad}), Eigen::Vector3d(5.0, -3.0, 1.0)});
+    EXPECT_NEAR(ate_m(turned, Alignment::se3), kBump_m, kRounding);
+    EXPECT_NEAR(ate_m(turned, Alignment::yaw), kBump_m, kRounding);
+    // Squares of the distances: 34, 10, 10, 34 along the ground, (1 +- bump)^2 upwards.
+    EXPECT_NEAR(ate_m(turned, Alignment::none), std::sqrt(23.0 + kBump_m * kBump_m), kRounding);
+    // Turned by 90 deg about x: x, y, z come to x, -z, y. No yaw helps, the mean is taken away.
+    const Square tilted = square({exp_so3({90.0 / kDegPerRad, 0.0, 0.0}), {0.0, 0.0, 0.0}});
+    EXPECT_NEAR(ate_m(tilted, Alignment::se3), kBump_m, kRounding);
+    EXPECT_NEAR(ate_m(tilted, Alignment::yaw), std::sqrt(2.0 + kBump_m * kBump_m), kRounding);
+}
+
+/// Squared error of a stretch of `chord_m` on the ground, begun `turn_deg` too far to the left.
+double turned_sq_m2(double chord_m, double turn_deg) {
+    const double off_m = 2.0 * chord_m * std::sin(0.5 * turn_deg / kDegPerRad);
+    return off_m * off_m;
+}
+
+TEST(Trajectory, RpeByHandAtSeveralLengths) {
+    const double up_sq_m2 = 4.0 * kBump_m * kBump_m;  // of stretches between a high and a low pose
+    const double side_m = std::sqrt((3.0 * up_sq_m2 + turned_sq_m2(2.0, 0.0) +
+                                     turned_sq_m2(2.0, 1.0) + turned_sq_m2(2.0, 3.0)) /
+                                    3.0);
+    const double side_deg = std::sqrt((1.0 + 4.0 + 9.0) / 3.0);
+    const double diagonal_m = std::sqrt(0.5 * turned_sq_m2(std::sqrt(8.0), 1.0));
+    const double diagonal_deg = std::sqrt((9.0 + 25.0) / 2.0);
+    Rng rng(7);
+    for (const Alignment align : {Alignment::se3, Alignment::yaw, Alignment::none}) {
+        const Square walk = square(random_pose(rng));  // no alignment plays a part
+        EvalTrajectoryConfig config;
+        config.align = align;
+        const auto sides = evaluate_trajectory(walk.estimate, walk.truth, config);
+        EXPECT_NEAR(sides->rpe_trans_rmse_m, side_m, kRounding);
+        EXPECT_NEAR(sides->rpe_rot_rmse_deg, side_deg, 1e-6);
+        EXPECT_NEAR(sides->end_error_m, 2.0 * kBump_m, kRounding);
+        EXPECT_NEAR(sides->drift_percent, 100.0 * 2.0 * kBump_m / 6.0, 1e-6);
+        config.rpe_interval_s = 2.0;
+        const auto diagonals = evaluate_trajectory(walk.estimate, walk.truth, config);
+        EXPECT_NEAR(diagonals->rpe_trans_rmse_m, diagonal_m, kRounding);
+        EXPECT_NEAR(diagonals->rpe_rot_rmse_deg, diagonal_deg, 1e-6);
+
+        const auto by_path = errors_over_path(walk.estimate, walk.truth, sides->pairs, {2, 4, 6});
+        EXPECT_EQ(by_path[0].count, 3);
+        EXPECT_NEAR(by_path[0].trans_rmse_m, side_m, kRounding);
+        EXPECT_NEAR(by_path[0].rot_rmse_deg, side_deg, 1e-6);
+        EXPECT_EQ(by_path[1].count, 2);
+        EXPECT_NEAR(by_path[1].trans_rmse_m, diagonal_m, kRounding);
+        EXPECT_NEAR(by_path[1].rot_rmse_deg, diagonal_deg, 1e-6);
+        EXPECT_EQ(by_path[2].count, 1);
+        EXPECT_NEAR(by_path[2].trans_rmse_m, 2.0 * kBump_m, kRounding);
+        EXPECT_NEAR(by_path[2].rot_rmse_deg, 6.0, 1e-6);
+        EXPECT_NEAR(by_path[2].trans_percent, 100.0 * 2.0 * kBump_m / 6.0, 1e-6);
     }
 }
 
