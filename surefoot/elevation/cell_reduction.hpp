@@ -14,8 +14,8 @@ struct ReductionConfig {
     double upper_share = 0.1;        ///< share of the cell's points that the upper surface needs
     double window_sigma = 2.5;       ///< points this close to a surface belong to it ...
     double surface_relief_m = 0.01;  ///< ... plus this: relief of the ground within a cell
-    /// Errors of a semi-global matcher are shared over 30-50 px, more than a cell covers: until it
-    /// is measured otherwise, a cell and frame hold one independent error.
+    /// Errors of a semi-global matcher hang together over more pixels than a cell covers: 1.0-1.3
+    /// independent ones per cell and frame were measured (docs/experiments/correlated_depth.md).
     double points_per_independent = 30.0;
     double max_independent = 1.0;
     /// So many points without a common height are a vertical face, seen from the side.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts every allocation of this test program, to prove that rating a map needs none after the
-// first, nor asking for what lies under a footprint.
+// first, nor finding its footholds, nor asking for what lies under a footprint.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "surefoot/traversability/foothold.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"
 #include "surefoot/traversability/reachability.hpp"
@@ -91,6 +92,27 @@ TEST(TraversabilityAllocation, NoneInConfidenceAfterTheFirstMap) {
     const long before = allocations;
     EXPECT_GT(before, before_first) << "the counter works";
     confidence.compute(input, out);
+    EXPECT_EQ(allocations - before, 0);
+}
+
+TEST(TraversabilityAllocation, NoneInFootholdsAfterTheFirstMap) {
+    const grid::Layer map(120, 100, 0.25F);
+    const grid::Layer var_m2(120, 100, 1e-6F);
+    grid::Layer rough = map;
+    for (std::size_t i = 0; i < rough.size(); ++i)
+        rough.data()[i] = 0.001F * static_cast<float>(i * 7919 % 101);
+    const FootholdGround flat{map.view(), var_m2.view(), {}, {}, {}, 0.025};
+    const FootholdGround uneven{rough.view(), var_m2.view(), map.view(), map.view(), {}, 0.025};
+    FootholdFinder finder{FootholdConfig{}};
+    Image<Foothold> out;
+    const long before_first = allocations;
+    finder.find(flat, serial(), out);
+    const long before = allocations;
+    EXPECT_GT(before, before_first) << "the counter works";
+    EXPECT_EQ(out.at(60, 50), Foothold::safe);
+    finder.find(uneven, serial(), out);
+    EXPECT_NE(out.at(60, 50), Foothold::safe) << "the patches were looked at one by one";
+    finder.find(flat, serial(), out);
     EXPECT_EQ(allocations - before, 0);
 }
 

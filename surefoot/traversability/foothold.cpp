@@ -16,12 +16,12 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 
-std::vector<int> half_widths(double radius_m, double resolution_m) {
-    std::vector<int> widths;
+/// In the memory of `widths`: asked for in every frame.
+void set_half_widths(double radius_m, double resolution_m, std::vector<int>& widths) {
     const int reach = Disc::reach_of(radius_m, resolution_m);
+    widths.resize(static_cast<std::size_t>(reach) + 1);
     for (int dy = 0; dy <= reach; ++dy)
-        widths.push_back(Disc::half_width_of(radius_m, resolution_m, dy));
-    return widths;
+        widths[static_cast<std::size_t>(dy)] = Disc::half_width_of(radius_m, resolution_m, dy);
 }
 
 int reach_of(const std::vector<int>& half_widths) {
@@ -68,8 +68,8 @@ FootholdFinder::~FootholdFinder() = default;
 void FootholdFinder::shape(double resolution_m) {
     resolution_m_ = resolution_m;
     const double foot_m = config_.foot_radius_m + config_.margin_m;
-    foot_ = half_widths(foot_m, resolution_m);
-    band_ = half_widths(foot_m + config_.band_m, resolution_m);
+    set_half_widths(foot_m, resolution_m, foot_);
+    set_half_widths(foot_m + config_.band_m, resolution_m, band_);
     patch_cells_ = std::max(1, static_cast<int>(std::lround(config_.patch_side_m / resolution_m)));
     foot_cells_ = 0.0;
     foot_moment_ = 0.0;
