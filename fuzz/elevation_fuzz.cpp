@@ -3,7 +3,8 @@
 // the plain map (plain_map.hpp) says, bit for bit in every layer and count; and a second map that
 // does its blocks backwards on another instruction set has the same bytes. No cell is ever half
 // known, and none that is known lacks a finite height and a positive variance. Where heights are
-// aligned, which the plain map does not, the two maps are held to each other alone.
+// aligned, which the plain map does not, the two maps are held to each other alone. The last byte
+// of an input says what is done with the lines of sight.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -56,7 +57,6 @@ bool same(const FusionCounts& a, const FusionCounts& b) {
 
 ElevationConfig config_of(Choices& choices) {
     ElevationConfig config;
-    config.visibility.cleanup = false;  // the plain map has none
     config.resolution_m = choices.yes() ? 0.05 : 0.025;
     constexpr int kSides[] = {1, 2, 15, 16, 17, 24};
     config.length_m = kSides[choices.below(6)] * config.resolution_m;
@@ -84,6 +84,18 @@ ElevationConfig config_of(Choices& choices) {
     return config;
 }
 
+/// What the last byte of an input says of the lines of sight; 0 is a map without clean-up.
+void set_sight(std::uint8_t byte, ElevationConfig& config) {
+    config.visibility.cleanup = (byte & 1U) != 0U;
+    config.visibility.drops = (byte & 2U) == 0U;
+    if ((byte & 4U) != 0U) config.visibility.frames = 1;
+    if ((byte & 8U) != 0U) config.visibility.neighbour_s = 0.0;
+    if ((byte & 16U) != 0U) config.visibility.margin_m = 0.01;
+    if ((byte & 32U) != 0U) config.visibility.sigmas = 0.5;
+    if ((byte & 64U) != 0U) config.min_overhead_m = 0.05;
+    if ((byte & 128U) != 0U) config.prefilter.min_height_m = -1.0;
+}
+
 class Play {
   public:
     Play(const ElevationConfig& config, Choices& choices)
@@ -101,6 +113,7 @@ class Play {
             case 2: depth_image(); break;
             case 3: region(); break;
             case 4: clear(); break;
+            case 7: config_.visibility.cleanup ? floor() : cloud(); break;
             default: cloud(); break;
         }
         compare();
@@ -152,6 +165,10 @@ class Play {
             if (choices_.yes()) points.push_back({at_m, along_m2, lateral_m2});
         }
         const Pose T_body_sensor = choices_.below(4) == 1 ? small_pose() : Pose{};
+        fuse(points, T_body_sensor);
+    }
+
+    void fuse(const std::vector<MeasuredPoint>& points, const Pose& T_body_sensor) {
         const std::int64_t time_ns = next_time_ns();
         const FusionCounts counts = map_.add_points(points, T_body_sensor, T_odom_body_, time_ns);
         {
@@ -163,6 +180,27 @@ class Play {
         if (config_.height_drift.enabled) return;
         must(same(counts, plain_.add_points(points, T_body_sensor, T_odom_body_, time_ns)),
              "counts of a cloud differ from the plain map");
+    }
+
+    /// Level ground in most cells of the window, seen from above its middle: lines of sight pass
+    /// over and through what is remembered higher up.
+    void floor() {
+        const Pose T_body_sensor{Eigen::Quaterniond::Identity(), {0.0, 0.0, 1.0}};
+        const Pose T_sensor_odom = (T_odom_body_ * T_body_sensor).inverse();
+        const grid::GridGeometry& grid = map_.geometry();
+        const auto z_m = static_cast<double>(choices_.number(0.05F));
+        const int left_out = 2 + choices_.below(6);
+        std::vector<MeasuredPoint> points;
+        for (int iy = 0; iy < grid.ny; ++iy) {
+            for (int ix = 0; ix < grid.nx; ++ix) {
+                if ((ix + 2 * iy) % left_out == 1) continue;
+                const Eigen::Vector2d at_m = grid.center_m({ix, iy});
+                const Eigen::Vector3d point_m =
+                    T_sensor_odom * Eigen::Vector3d(at_m.x(), at_m.y(), z_m);
+                points.insert(points.end(), 4, {point_m.cast<float>(), 1e-5F, 1e-6F});
+            }
+        }
+        fuse(points, T_body_sensor);
     }
 
     void depth_image() {
@@ -271,6 +309,11 @@ class Play {
         const grid::MapRegion plain = plain_.layers();
         must(same_layers(map_.layers(), plain), "the map differs from the plain map");
         must(same_layers(twin_.layers(), plain), "executor or target change the map");
+        const Image<float> free_above_m = plain_.free_above_m();
+        must(same_cells(map_.layers().free_above_m, free_above_m),
+             "lines of sight lie elsewhere than over the plain map");
+        must(same_cells(twin_.layers().free_above_m, free_above_m),
+             "executor or target change the lines of sight");
         for (std::size_t i = 0; i < plain.height_m.size(); ++i) must_be_whole(plain, i);
     }
 
@@ -295,6 +338,9 @@ class Play {
         twin.confidence = layers.confidence;
         twin.density_ratio = layers.density_ratio;
         must(same_layers(map_.layers(), twin), "executor or target change the map");
+        const Image<float> free_above_m = layers.free_above_m;
+        must(same_cells(map_.layers().free_above_m, free_above_m),
+             "executor or target change the lines of sight");
         for (std::size_t i = 0; i < twin.height_m.size(); ++i) must_be_whole(twin, i);
     }
 
@@ -340,8 +386,10 @@ class Play {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    Choices choices(data, size);
-    const ElevationConfig config = config_of(choices);
+    if (size == 0) return 0;
+    Choices choices(data, size - 1);
+    ElevationConfig config = config_of(choices);
+    set_sight(data[size - 1], config);
     if (config.problem()) return 0;
     Play play(config, choices);
     for (int i = 0; i < kMostOperations && !choices.done(); ++i) play.one_operation();

@@ -20,6 +20,8 @@ constexpr int kSureAbove = 4;
 constexpr int kMostAbove = 8;
 constexpr float kNewLook = 0.25F;
 constexpr float kFirstLook = 0.5F;
+constexpr int kGone = 16;
+constexpr int kBeside = 2;
 
 std::int64_t nearest(double way_m, double resolution_m) {
     constexpr double kFarthest = 1 << 30;
@@ -182,6 +184,9 @@ void PlainMap::fuse(const Samples& samples,
         }
         if (measured->z_m < lowest_z_m(config_.prefilter, T_odom_body)) {
             counts.gated_height += static_cast<std::int64_t>(heights.z_m.size());
+            Cell& cell = cells_[index];
+            if (std::isnan(cell.height_m))
+                see_over(cell, lowest_z_m(config_.prefilter, T_odom_body));
             continue;
         }
         const auto ix = static_cast<int>(index.second - first_ix_);
@@ -198,6 +203,95 @@ void PlainMap::fuse(const Samples& samples,
         update(cells_[index], seen, time_ns, counts);
     }
     look_overhead(ends);
+    LinesOfSight lines;
+    lines.reset(geometry_, camera_m);
+    for (int iy = 0; iy < geometry_.ny; ++iy) {
+        for (int ix = 0; ix < geometry_.nx; ++ix) {
+            const float z_m = ends.z_m(static_cast<std::size_t>(iy * geometry_.nx + ix));
+            if (!std::isnan(z_m)) lines.add({ix, iy}, z_m);
+        }
+    }
+    lines.finish();
+    if (config_.visibility.drops) look_over_unknown(lines);
+    if (!config_.visibility.cleanup) return;
+    const std::vector<Index> gone = find_gone(ends, lines, time_ns);
+    for (const Index& index : gone) forget(cells_.at(index));
+    counts.cells_cleared += static_cast<std::int64_t>(gone.size());
+}
+
+void PlainMap::look_over_unknown(const LinesOfSight& lines) {
+    for (int iy = 0; iy < geometry_.ny; ++iy) {
+        for (int ix = 0; ix < geometry_.nx; ++ix) {
+            const float line_z_m = lines.lowest_over({ix, iy});
+            if (!(line_z_m < std::numeric_limits<float>::infinity())) continue;
+            Cell& cell = cells_[lattice_of(ix, iy)];
+            if (std::isnan(cell.height_m)) see_over(cell, line_z_m);
+        }
+    }
+}
+
+void PlainMap::see_over(Cell& cell, float line_z_m) {
+    if (!(cell.bottom_m <= line_z_m)) {
+        cell.free_above_m = cell.bottom_m;
+        cell.bottom_m = line_z_m;
+    } else if (!(cell.free_above_m <= line_z_m)) {
+        cell.free_above_m = line_z_m;
+    }
+}
+
+std::vector<PlainMap::Index> PlainMap::find_gone(const SightEnds& ends,
+                                                 const LinesOfSight& lines,
+                                                 std::int64_t time_ns) {
+    const VisibilityConfig& visibility = config_.visibility;
+    const auto margin_m = static_cast<float>(visibility.margin_m);
+    std::vector<Index> gone;
+    for (auto& [index, cell] : cells_) {
+        if (std::isnan(cell.height_m) || cell.seen_ns == time_ns) continue;
+        const grid::Cell at{static_cast<int>(index.second - first_ix_),
+                            static_cast<int>(index.first - first_iy_)};
+        const float seen_m = ends.z_m(static_cast<std::size_t>(at.iy * geometry_.nx + at.ix));
+        const float line_m = lines.lowest_over(at);
+        const float lowest_m = seen_m < line_m ? seen_m : line_m;
+        const float sigma_m = std::sqrt(cell.height_var_m2);
+        const bool above =
+            cell.height_m - lowest_m > margin_m + static_cast<float>(visibility.sigmas) * sigma_m;
+        if (!above) continue;
+        const bool stands =
+            cell.bottom_m - lowest_m <= static_cast<float>(config_.min_overhead_m) ||
+            cell.count == 1;
+        if (!stands && !ends.passed_through(at, cell.height_m - margin_m, cell.height_m + margin_m))
+            continue;
+        const int enough = visibility.frames * kGone;
+        cell.seen_through = std::min(cell.seen_through + cell.steady, enough);
+        if (cell.seen_through == enough && !stands_beside(index, time_ns)) gone.push_back(index);
+    }
+    return gone;
+}
+
+bool PlainMap::stands_beside(Index index, std::int64_t time_ns) const {
+    const std::int64_t since_ns = time_ns - ns_from_seconds(config_.visibility.neighbour_s);
+    const float height_m = cells_.at(index).height_m;
+    for (std::int64_t iy = index.first - kBeside; iy <= index.first + kBeside; ++iy) {
+        for (std::int64_t ix = index.second - kBeside; ix <= index.second + kBeside; ++ix) {
+            const auto found = cells_.find({iy, ix});
+            if (found == cells_.end() || found->second.seen_ns < since_ns) continue;
+            const float apart_m = std::abs(found->second.height_m - height_m);
+            if (apart_m < static_cast<float>(config_.visibility.margin_m)) return true;
+        }
+    }
+    return false;
+}
+
+void PlainMap::forget(Cell& cell) {
+    const float before_m = cell.bottom_m;
+    const int trust = cell.count > 1 ? kMostAbove : kSeenAbove;
+    cell = {};
+    see_above(cell, before_m, trust, true);
+}
+
+void PlainMap::set_confidence(Cell& cell, float confidence) {
+    cell.confidence = confidence;
+    cell.steady = static_cast<int>(std::lround(kGone * confidence));
 }
 
 void PlainMap::look_overhead(const SightEnds& ends) {
@@ -259,8 +353,10 @@ void PlainMap::start(Cell& cell, const Seen& seen, std::int64_t time_ns) {
     cell.horizontal_drift_m = 0.0F;
     cell.highest_m = measured.highest_m;
     cell.lowest_m = measured.lowest_m;
-    cell.confidence = kFirstLook;
+    set_confidence(cell, kFirstLook);
     cell.density_ratio = seen.density_ratio;
+    cell.free_above_m = kNan;
+    cell.seen_through = 0;
     cell.settled_var_m2 = cell.height_var_m2;
     cell.view = view_;
     cell.bottom_m = seen.bottom_m;
@@ -285,7 +381,8 @@ void PlainMap::agree(Cell& cell, const Height& fused, const Seen& seen, std::int
     cell.horizontal_drift_m = 0.0F;
     cell.highest_m = std::max(cell.highest_m, measured.highest_m);
     cell.lowest_m = std::min(cell.lowest_m, measured.lowest_m);
-    cell.confidence += kNewLook * (1.0F - cell.confidence);
+    set_confidence(cell, cell.confidence + kNewLook * (1.0F - cell.confidence));
+    cell.seen_through = 0;
     if (std::isnan(cell.density_ratio)) {
         cell.density_ratio = seen.density_ratio;
     } else if (!std::isnan(seen.density_ratio)) {
@@ -348,7 +445,9 @@ std::int64_t PlainMap::insert(const grid::MapRegion& region,
             cell.horizontal_drift_m = placed.horizontal_drift_m.at(ix, iy);
             cell.highest_m = placed.highest_m.at(ix, iy);
             cell.lowest_m = placed.lowest_m.at(ix, iy);
-            cell.confidence = placed.confidence.at(ix, iy);
+            set_confidence(cell, placed.confidence.at(ix, iy));
+            cell.free_above_m = kNan;
+            cell.seen_through = 0;
             cell.density_ratio = placed.density_ratio.at(ix, iy);
             cell.settled_var_m2 = cell.height_var_m2;
             cell.view = ViewpointHistory::kNever;
@@ -385,6 +484,15 @@ grid::MapRegion PlainMap::layers() const {
         region.density_ratio.at(ix, iy) = cell.density_ratio;
     }
     return region;
+}
+
+Image<float> PlainMap::free_above_m() const {
+    Image<float> all(geometry_.nx, geometry_.ny, kNan);
+    for (const auto& [index, cell] : cells_) {
+        all.at(static_cast<int>(index.second - first_ix_),
+               static_cast<int>(index.first - first_iy_)) = cell.free_above_m;
+    }
+    return all;
 }
 
 PlainMap::Known PlainMap::known(int ix, int iy) const {

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "surefoot/elevation/elevation_map.hpp"
+#include "surefoot/elevation/sight_ends.hpp"
+#include "surefoot/elevation/visibility.hpp"
 
 namespace surefoot::fuzz {
 
@@ -16,7 +18,7 @@ namespace surefoot::fuzz {
 /// what is known of them, no layers, no sliding, no blocks, no registers. Shares with the map the
 /// functions that have oracles of their own: points of a cloud or an image, the plain reduction of
 /// a cell, the height fusion, the noise of a row, the history of viewpoints, the ends of the lines
-/// of sight. Without clean-up.
+/// of sight and the lowest of them over a place. Does not align heights.
 class PlainMap {
   public:
     explicit PlainMap(const elevation::ElevationConfig& config);
@@ -52,6 +54,8 @@ class PlainMap {
     [[nodiscard]] Known known(int ix, int iy) const;
     /// All cells of the window; only the layers are filled in.
     [[nodiscard]] grid::MapRegion layers() const;
+    /// What a region does not hold.
+    [[nodiscard]] Image<float> free_above_m() const;
     [[nodiscard]] const grid::GridGeometry& geometry() const { return geometry_; }
 
   private:
@@ -64,7 +68,10 @@ class PlainMap {
         float overhead_m = kNan;
         int overhead_trust = 0;
         bool overhead_hangs = false;
-        float bottom_m = kNan;
+        float bottom_m = kNan;      ///< of an unknown cell the lowest line of sight over it
+        float free_above_m = kNan;  ///< the second lowest
+        int steady = 0;
+        int seen_through = 0;
     };
     /// What one look says about one cell.
     struct Seen {
@@ -96,6 +103,15 @@ class PlainMap {
     void start(Cell& cell, const Seen& seen, std::int64_t time_ns);
     void agree(Cell& cell, const elevation::Height& fused, const Seen& seen, std::int64_t time_ns);
     void look_overhead(const elevation::SightEnds& ends);
+    void look_over_unknown(const elevation::LinesOfSight& lines);
+    /// Of the surfaces that lines of sight passed through: which are gone.
+    [[nodiscard]] std::vector<Index> find_gone(const elevation::SightEnds& ends,
+                                               const elevation::LinesOfSight& lines,
+                                               std::int64_t time_ns);
+    [[nodiscard]] bool stands_beside(Index index, std::int64_t time_ns) const;
+    static void see_over(Cell& cell, float line_z_m);
+    static void set_confidence(Cell& cell, float confidence);
+    static void forget(Cell& cell);
     static void see_above(Cell& cell, float z_m, int trust, bool hangs);
     static void see_no_more_above(Cell& cell);
     static void set_clearance(Cell& cell);

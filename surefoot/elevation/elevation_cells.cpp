@@ -80,11 +80,10 @@ void ElevationCells::update(std::size_t cell,
                             const Look& look,
                             FusionCounts& counts) {
     const CellMeasurement& measured = seen.measured;
-    // Sums over a cell that left the range of a float say nothing.
-    if (!std::isfinite(measured.z_m) || !std::isfinite(measured.var_m2)) return;
     ++counts.cells_measured;
     const float height_m = layers_.height_m.data()[cell];
-    // Nor does a height that may be anywhere: its variance left it on the way.
+    // A height that may be anywhere says nothing: its variance left the range of a float on the
+    // way.
     if (std::isnan(height_m) || !std::isfinite(layers_.height_var_m2.data()[cell])) {
         ++counts.cells_new;
         start(cell, seen, look);

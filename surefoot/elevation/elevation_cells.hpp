@@ -58,7 +58,7 @@ class ElevationCells {
     /// it is aligned with the present body. `var_m2`: of the offset.
     void lift(std::size_t cell, double offset_m, double var_m2);
 
-    /// Fuses a measurement.
+    /// Fuses a measurement; its height and variance are finite.
     void update(std::size_t cell, const Seen& seen, const Look& look, FusionCounts& counts);
     /// The height of the cell is clearly above a line of sight over it.
     [[nodiscard]] bool is_above(std::size_t cell, float line_z_m) const;

@@ -28,6 +28,11 @@ Eigen::Vector2d ahead_of(const Pose& T_odom_body) {
     return length > 1e-3 ? Eigen::Vector2d(ahead / length) : Eigen::Vector2d::UnitX();
 }
 
+/// Sums over a cell that left the range of a float do not: no height, no end of a line of sight.
+bool says_something(const CellMeasurement& measured) {
+    return measured.points > 0 && std::isfinite(measured.z_m) && std::isfinite(measured.var_m2);
+}
+
 }  // namespace
 
 ElevationMap::ElevationMap(const ElevationConfig& config)
@@ -256,7 +261,7 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
         CellMeasurement* measured = measurements_of_row(iy);
         if (!config_.height_drift.enabled) reduce_row(iy, measured);
         for (int ix = 0; ix < nx; ++ix) {
-            if (measured[ix].points == 0) continue;
+            if (!says_something(measured[ix])) continue;
             const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(nx) +
                               static_cast<std::size_t>(ix);
             if (measured[ix].z_m < lowest_z_m_) {
