@@ -17,6 +17,7 @@ struct Timing {
     double p99_ms = 0.0;
     /// Least processor time of the process in one call: what a crowded machine leaves comparable.
     std::optional<double> least_cpu_ms = {};
+    std::optional<double> median_cpu_ms = {};  ///< likewise; where calls differ, as frames do
 };
 
 /// One line of `surefoot bench`.
@@ -42,5 +43,10 @@ struct BenchResult {
 /// the plain way.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common,
                                                              Executor& executor);
+
+/// Frames of two scenes as the simulator makes them, sharp, blurred and without images, beside what
+/// the chain needs to find depth and motion in images. Only frames during which the camera moves.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common,
+                                                         Executor& executor);
 
 }  // namespace surefoot::app

@@ -133,6 +133,7 @@ Timing time_query(const Query& query) {
     timing.median_ms /= kQueries;
     timing.p99_ms /= kQueries;
     if (timing.least_cpu_ms) *timing.least_cpu_ms /= kQueries;
+    if (timing.median_cpu_ms) *timing.median_cpu_ms /= kQueries;
     return timing;
 }
 

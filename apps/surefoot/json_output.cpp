@@ -831,6 +831,7 @@ std::string bench_json(const std::vector<BenchResult>& results) {
              {"median_ms", result.ours.median_ms},
              {"p99_ms", result.ours.p99_ms},
              {"least_cpu_ms", optional(result.ours.least_cpu_ms)},
+             {"median_cpu_ms", optional(result.ours.median_cpu_ms)},
              {"peer_ms", optional(result.peer ? std::optional(peer.median_ms) : std::nullopt)},
              {"peer_least_cpu_ms", optional(peer.least_cpu_ms)}});
     }

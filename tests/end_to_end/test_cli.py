@@ -122,7 +122,8 @@ class Verbs(CliTest):
         maps = answers["eval maps"]
         self.assertLessEqual({"median_abs_m", "p90_abs_m"}, set(maps["elevation"]))
         self.assertLessEqual({"false_safe", "false_unsafe"}, set(maps["traversability"]))
-        self.assertEqual({"name", "median_ms", "p99_ms", "least_cpu_ms", "peer_ms", "peer_least_cpu_ms"},
+        self.assertEqual({"name", "median_ms", "p99_ms", "least_cpu_ms", "median_cpu_ms", "peer_ms",
+                          "peer_least_cpu_ms"},
                          set(answers["bench gate"]["benchmarks"][0]))
         self.assertEqual(len(answers[f"replay {recording}"]["per_frame"]), 3)
 
