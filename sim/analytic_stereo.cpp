@@ -163,7 +163,7 @@ void AnalyticStereo::cast(const Pose& T_world_body, Executor& executor, View& ou
             std::size_t i = 0;
             for (int v = block.v0; v < block.v0 + block.height; ++v) {
                 for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
-                    const RayHit& hit = block.hits[i];
+                    const RayHit hit = block.hits[i];
                     out.disparity_px.row(v)[u] = kNan;
                     out.surface.row(v)[u] = hit.face;
                     out.missing_chance.row(v)[u] = 1.0F;

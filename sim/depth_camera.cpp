@@ -159,7 +159,7 @@ void DepthCamera::cast(const Pose& T_world_camera, Executor& executor, Image<See
             std::size_t i = 0;
             for (int v = block.v0; v < block.v0 + block.height; ++v) {
                 for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
-                    const RayHit& hit = block.hits[i];
+                    const RayHit hit = block.hits[i];
                     if (hit.face < 0) continue;
                     out.row(v)[u] = {hit.distance_m * rays_.ray(u, v).z(),
                                      hit.face,

@@ -39,19 +39,17 @@ void cast_within(const Scene& scene,
                  CastBlock& block) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         const auto [u, v] = pixels[i];
-        block.directions[i] =
-            views.row(v).R_world_camera * rays.ray_within(u, v, place[0], place[1]);
-        block.hits[i] = {};
+        block.directions.set(
+            i, views.row(v).R_world_camera * rays.ray_within(u, v, place[0], place[1]));
+        block.hits.set(i, {});
     }
     for (std::size_t first = 0; first < pixels.size();) {
         // Rows that share their view are cast at once.
         std::size_t end = first + 1;
         while (end < pixels.size() && (views.single() || pixels[end].v == pixels[first].v)) ++end;
         for (const int k : block.primitives) {
-            scene.intersect_primitive(k,
-                                      views.row(pixels[first].v).origin_m,
-                                      {block.directions.data() + first, end - first},
-                                      {block.hits.data() + first, end - first});
+            scene.intersect_primitive(
+                k, views.row(pixels[first].v).origin_m, block.directions, {first, end}, block.hits);
         }
         first = end;
     }

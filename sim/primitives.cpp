@@ -72,6 +72,22 @@ Vector2d direction(double yaw_rad) {
     return {std::cos(yaw_rad), std::sin(yaw_rad)};
 }
 
+/// Ray by ray.
+template <typename Shape>
+void intersect_each(const Shape& shape,
+                    const Vector3d& origin,
+                    const RayBatch& rays,
+                    BatchRange range,
+                    int first_face,
+                    HitBatch& hits) {
+    for (std::size_t i = range.first; i < range.end; ++i) {
+        const Vector3d direction = rays[i];
+        RayHit hit = hits[i];
+        shape.intersect(origin, {&direction, 1}, first_face, {&hit, 1});
+        hits.set(i, hit);
+    }
+}
+
 }  // namespace
 
 Floor::Floor(const Rect& area, double z_m, std::vector<Pit> pits)
@@ -100,6 +116,14 @@ void Floor::intersect(const Vector3d& origin,
             enter_pit(static_cast<int>(pit - pits_.begin()), origin, d, first_face, hits[i]);
         }
     }
+}
+
+void Floor::intersect(const Vector3d& origin,
+                      const RayBatch& rays,
+                      BatchRange range,
+                      int first_face,
+                      HitBatch& hits) const {
+    intersect_each(*this, origin, rays, range, first_face, hits);
 }
 
 /// The ray is inside the open box of the pit: where it leaves that box is a wall or the bottom.
@@ -219,43 +243,49 @@ void Prism::intersect(const Vector3d& origin,
                       std::span<const Vector3d> directions,
                       int first_face,
                       std::span<RayHit> hits) const {
-    struct Facing {
-        Vector3d normal;
-        double outside_m = 0.0;
-        int face = 0;
-    };
-    constexpr std::size_t kMaxFaces = 16;
-    std::array<Facing, kMaxFaces> facing;
+    const Facing seen = facing(origin, first_face);
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        double enter_m = 0.0;
+        int face = -1;
+        bool met = seen.towards > 0;
+        for (std::size_t k = 0; met && k < seen.towards; ++k) {
+            const double speed = seen.sides[k].normal.dot(directions[i]);
+            const double t = -seen.sides[k].outside_m / speed;
+            met = speed < 0.0 && t < hits[i].distance_m;
+            if (t > enter_m) {
+                enter_m = t;
+                face = seen.sides[k].face;
+            }
+        }
+        for (std::size_t k = seen.towards; met && k < half_spaces_.size(); ++k) {
+            const double speed = seen.sides[k].normal.dot(directions[i]);
+            // Would leave at -outside_m / speed.
+            met = !(speed > 0.0 && enter_m * speed >= -seen.sides[k].outside_m);
+        }
+        if (met) hits[i] = {enter_m, face};
+    }
+}
+
+void Prism::intersect(const Vector3d& origin,
+                      const RayBatch& rays,
+                      BatchRange range,
+                      int first_face,
+                      HitBatch& hits) const {
+    const Facing seen = facing(origin, first_face);
+    meet_convex(seen.sides.data(), seen.towards, half_spaces_.size(), rays, range, hits);
+}
+
+Prism::Facing Prism::facing(const Vector3d& origin, int first_face) const {
     SUREFOOT_ASSERT(half_spaces_.size() <= kMaxFaces);
-    // Faces that look at the origin first.
-    std::size_t towards = 0;
+    Facing seen;
     std::size_t away = half_spaces_.size();
     for (std::size_t k = 0; k < half_spaces_.size(); ++k) {
         const HalfSpace& half = half_spaces_[k];
         const double outside_m = half.normal.dot(origin) - half.offset_m;
-        facing[outside_m > 0.0 ? towards++ : --away] = {
-            half.normal, outside_m, static_cast<int>(k)};
+        seen.sides[outside_m > 0.0 ? seen.towards++ : --away] = {
+            half.normal, outside_m, first_face + static_cast<int>(k)};
     }
-    for (std::size_t i = 0; i < directions.size(); ++i) {
-        double enter_m = 0.0;
-        int face = -1;
-        bool met = towards > 0;
-        for (std::size_t k = 0; met && k < towards; ++k) {
-            const double speed = facing[k].normal.dot(directions[i]);
-            const double t = -facing[k].outside_m / speed;
-            met = speed < 0.0 && t < hits[i].distance_m;
-            if (t > enter_m) {
-                enter_m = t;
-                face = facing[k].face;
-            }
-        }
-        for (std::size_t k = towards; met && k < half_spaces_.size(); ++k) {
-            const double speed = facing[k].normal.dot(directions[i]);
-            // Would leave at -outside_m / speed.
-            met = !(speed > 0.0 && enter_m * speed >= -facing[k].outside_m);
-        }
-        if (met) hits[i] = {enter_m, first_face + face};
-    }
+    return seen;
 }
 
 double Prism::top_at(const Vector2d& p_m) const {
@@ -376,6 +406,14 @@ void Cylinder::intersect(const Vector3d& origin,
         if (!(enter_m < std::min(side_out, cap_out))) continue;
         shorten(hits[i], enter_m, first_face + (side_in >= cap_in ? 2 : cap_face));
     }
+}
+
+void Cylinder::intersect(const Vector3d& origin,
+                         const RayBatch& rays,
+                         BatchRange range,
+                         int first_face,
+                         HitBatch& hits) const {
+    intersect_each(*this, origin, rays, range, first_face, hits);
 }
 
 std::optional<Column> Cylinder::column(double x_m, double y_m) const {

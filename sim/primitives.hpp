@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <optional>
 #include <span>
@@ -9,14 +10,9 @@
 #include <vector>
 
 #include "sim/beam.hpp"
+#include "sim/ray_batch.hpp"
 
 namespace surefoot::sim {
-
-/// Nearest hit so far along one ray. Faces are numbered through a whole scene.
-struct RayHit {
-    double distance_m = std::numeric_limits<double>::infinity();
-    int face = -1;
-};
 
 /// What a vertical line meets in one primitive: solid from `bottom_m` up to `top_m`. A sheet (a
 /// floor) has both equal. `face` is counted within the primitive.
@@ -66,6 +62,11 @@ class Floor {
                    std::span<const Eigen::Vector3d> directions,
                    int first_face,
                    std::span<RayHit> hits) const;
+    void intersect(const Eigen::Vector3d& origin,
+                   const RayBatch& rays,
+                   BatchRange range,
+                   int first_face,
+                   HitBatch& hits) const;
     [[nodiscard]] std::optional<Column> column(double x_m, double y_m) const;
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
     [[nodiscard]] Sphere bounds() const;
@@ -103,6 +104,11 @@ class Prism {
                    std::span<const Eigen::Vector3d> directions,
                    int first_face,
                    std::span<RayHit> hits) const;
+    void intersect(const Eigen::Vector3d& origin,
+                   const RayBatch& rays,
+                   BatchRange range,
+                   int first_face,
+                   HitBatch& hits) const;
     [[nodiscard]] std::optional<Column> column(double x_m, double y_m) const;
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
     [[nodiscard]] Sphere bounds() const;
@@ -115,6 +121,13 @@ class Prism {
         Eigen::Vector3d normal;
         double offset_m;  ///< inside: normal . p <= offset
     };
+    static constexpr std::size_t kMaxFaces = 16;
+    /// Its sides as seen from an origin, those that look at it first.
+    struct Facing {
+        std::array<FacingSide, kMaxFaces> sides;
+        std::size_t towards = 0;
+    };
+    [[nodiscard]] Facing facing(const Eigen::Vector3d& origin, int first_face) const;
     [[nodiscard]] double top_at(const Eigen::Vector2d& p_m) const;
 
     std::vector<Eigen::Vector2d> footprint_m_;
@@ -133,6 +146,11 @@ class Cylinder {
                    std::span<const Eigen::Vector3d> directions,
                    int first_face,
                    std::span<RayHit> hits) const;
+    void intersect(const Eigen::Vector3d& origin,
+                   const RayBatch& rays,
+                   BatchRange range,
+                   int first_face,
+                   HitBatch& hits) const;
     [[nodiscard]] std::optional<Column> column(double x_m, double y_m) const;
     [[nodiscard]] std::optional<double> highest_over(const Rect& cell) const;
     [[nodiscard]] Sphere bounds() const;
@@ -149,7 +167,7 @@ class Cylinder {
 
 /// Every primitive offers
 ///   intersect       shortens `hits` where it is met at a distance > 0 (unit directions; NaN
-///                   misses)
+///                   misses); the same, bit by bit, for rays of a batch
 ///   column          what stands on a point of the ground, rims included
 ///   highest_over    exact highest point over the inside of a cell
 ///   hull            corners of a convex solid that holds it

@@ -65,26 +65,13 @@ void place(const RayField& rays, int block_x, int block_y, CastBlock& out) {
     out.height = std::min(RayField::kBlock, rays.height() - out.v0);
 }
 
-void turn_rays(const RayField& rays, const ImageViews& views, CastBlock& out) {
-    std::size_t i = 0;
-    for (int v = out.v0; v < out.v0 + out.height; ++v) {
-        const Eigen::Matrix3d& R_world_camera = views.row(v).R_world_camera;
-        for (int u = out.u0; u < out.u0 + out.width; ++u) {
-            out.directions[i++] = R_world_camera * rays.ray(u, v);
-        }
-    }
-}
-
-/// As `Scene::intersect_primitive` would, if all rays meet the plane first.
-void cast_on_plane(const FacePlane& plane, const ImageViews& views, CastBlock& out) {
-    std::size_t i = 0;
-    for (int v = out.v0; v < out.v0 + out.height; ++v) {
-        const double above_m = plane.normal.dot(views.row(v).origin_m) - plane.offset_m;
-        for (const std::size_t end = i + static_cast<std::size_t>(out.width); i < end; ++i) {
-            const double speed = plane.normal.dot(out.directions[i]);
-            // A ray of NaN, beyond the rim of a fisheye image, meets nothing.
-            out.hits[i] = speed < 0.0 ? RayHit{-above_m / speed, plane.face} : RayHit{};
-        }
+/// Calls `work(row, rays)` for rows that share their view, at once.
+template <typename Work>
+void for_each_view(const ImageViews& views, const CastBlock& block, const Work& work) {
+    const auto width = static_cast<std::size_t>(block.width);
+    const std::size_t span = views.single() ? block.pixels() : width;
+    for (std::size_t first = 0; first < block.pixels(); first += span) {
+        work(block.v0 + static_cast<int>(first / width), BatchRange{first, first + span});
     }
 }
 
@@ -116,24 +103,24 @@ void cast_block(const Scene& scene,
                 int block_y,
                 CastBlock& out) {
     find_primitives(scene, rays, views, block_x, block_y, out);
-    turn_rays(rays, views, out);
+    const RayField::BlockRays block = rays.block(block_x, block_y);
+    for_each_view(views, out, [&](int v, BatchRange range) {
+        turn_rays(views.row(v).R_world_camera, block.x, block.y, block.z, range, out.directions);
+    });
     if (out.plane) {
-        cast_on_plane(*out.plane, views, out);
+        const FacePlane& plane = *out.plane;
+        for_each_view(views, out, [&](int v, BatchRange range) {
+            const double above_m = plane.normal.dot(views.row(v).origin_m) - plane.offset_m;
+            meet_plane(plane.normal, above_m, plane.face, out.directions, range, out.hits);
+        });
         return;
     }
-    const auto width = static_cast<std::size_t>(out.width);
-    const std::size_t count = width * static_cast<std::size_t>(out.height);
-    std::fill_n(out.hits.begin(), count, RayHit{});
-    // Rows that share their view are cast at once.
-    const std::size_t span = views.single() ? count : width;
+    std::fill_n(out.hits.distance_m.begin(), out.pixels(), RayHit{}.distance_m);
+    std::fill_n(out.hits.face.begin(), out.pixels(), RayHit{}.face);
     for (const int k : out.primitives) {
-        for (std::size_t first = 0; first < count; first += span) {
-            const int row = out.v0 + static_cast<int>(first / width);
-            scene.intersect_primitive(k,
-                                      views.row(row).origin_m,
-                                      {out.directions.data() + first, span},
-                                      {out.hits.data() + first, span});
-        }
+        for_each_view(views, out, [&](int v, BatchRange range) {
+            scene.intersect_primitive(k, views.row(v).origin_m, out.directions, range, out.hits);
+        });
     }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -15,15 +14,18 @@ namespace surefoot::sim {
 /// Rays of one block in the world frame with their nearest hits, row by row, `width` to a row. Kept
 /// from block to block: it is filled without allocating.
 struct CastBlock {
-    static constexpr std::size_t kPixels =
-        static_cast<std::size_t>(RayField::kBlock) * static_cast<std::size_t>(RayField::kBlock);
+    static constexpr std::size_t kPixels = kBatchRays;
+    static_assert(kPixels == static_cast<std::size_t>(RayField::kBlock * RayField::kBlock));
 
     int u0 = 0;
     int v0 = 0;
     int width = 0;
     int height = 0;
-    std::array<Eigen::Vector3d, kPixels> directions;
-    std::array<RayHit, kPixels> hits;
+    RayBatch directions;
+    HitBatch hits;
+    [[nodiscard]] std::size_t pixels() const noexcept {
+        return static_cast<std::size_t>(width * height);
+    }
     std::vector<int> primitives;     ///< that some ray through a pixel of the block may meet first
     std::optional<FacePlane> plane;  ///< of the face that all rays meet first, where that is proved
 };

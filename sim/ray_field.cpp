@@ -11,13 +11,17 @@ using Eigen::Vector3d;
 
 RayField::RayField(const camera::Camera& camera) : width_(camera.width), height_(camera.height) {
     const Vector3d none = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    rays_.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(pixels);
     for (int v = 0; v < height_; ++v) {
         for (int u = 0; u < width_; ++u) {
-            rays_.push_back(camera::unproject(camera.model, {u, v}).value_or(none));
+            const Vector3d ray = camera::unproject(camera.model, {u, v}).value_or(none);
+            x_[index(u, v)] = ray.x();
+            y_[index(u, v)] = ray.y();
+            z_[index(u, v)] = ray.z();
         }
     }
-    pixel_angle_rad_.resize(rays_.size());
+    pixel_angle_rad_.resize(pixels);
     for (int v = 0; v < height_; ++v) {
         for (int u = 0; u < width_; ++u) {
             const double angle_rad = std::sqrt(step_u(u, v).norm() * step_v(u, v).norm());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "surefoot/camera/camera_model.hpp"
@@ -28,8 +30,20 @@ class RayField {
     [[nodiscard]] int blocks_x() const noexcept { return (width_ + kBlock - 1) / kBlock; }
     [[nodiscard]] int blocks_y() const noexcept { return (height_ + kBlock - 1) / kBlock; }
     /// Unit ray in the optical frame; NaN where the lens has none.
-    [[nodiscard]] const Eigen::Vector3d& ray(int u, int v) const noexcept {
-        return rays_[index(u, v)];
+    [[nodiscard]] Eigen::Vector3d ray(int u, int v) const noexcept {
+        const std::size_t i = index(u, v);
+        return {x_[i], y_[i], z_[i]};
+    }
+    /// The same of all pixels of a block, row by row, as many to a row as the block is wide.
+    struct BlockRays {
+        const double* x;
+        const double* y;
+        const double* z;
+        const float* pixel_angle_rad;
+    };
+    [[nodiscard]] BlockRays block(int block_x, int block_y) const noexcept {
+        const std::size_t i = index(block_x * kBlock, block_y * kBlock);
+        return {&x_[i], &y_[i], &z_[i], &pixel_angle_rad_[i]};
     }
     /// Angle between the rays of neighbouring pixels.
     [[nodiscard]] double pixel_angle_rad(int u, int v) const noexcept {
@@ -42,9 +56,14 @@ class RayField {
     }
 
   private:
+    /// Blocks lie one behind the other.
     [[nodiscard]] std::size_t index(int u, int v) const noexcept {
-        return static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
-               static_cast<std::size_t>(u);
+        const int u0 = u / kBlock * kBlock;
+        const int v0 = v / kBlock * kBlock;
+        const int block_width = std::min(kBlock, width_ - u0);
+        const int block_height = std::min(kBlock, height_ - v0);
+        return static_cast<std::size_t>(v0) * static_cast<std::size_t>(width_) +
+               static_cast<std::size_t>(u0 * block_height + (v - v0) * block_width + (u - u0));
     }
     [[nodiscard]] Eigen::Vector3d step_u(int u, int v) const;
     [[nodiscard]] Eigen::Vector3d step_v(int u, int v) const;
@@ -52,7 +71,9 @@ class RayField {
 
     int width_ = 0;
     int height_ = 0;
-    std::vector<Eigen::Vector3d> rays_;
+    std::vector<double> x_;
+    std::vector<double> y_;
+    std::vector<double> z_;
     std::vector<float> pixel_angle_rad_;
     std::vector<Cone> cones_;
 };

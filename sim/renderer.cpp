@@ -29,16 +29,30 @@ void for_each_block(const RayField& rays, Executor& executor, const Work& work) 
     });
 }
 
-Sight sight(const RayField& rays,
-            const Vector3d& origin_m,
-            const Vector3d& direction,
-            const RayHit& hit,
-            int u,
-            int v) {
-    return {origin_m + hit.distance_m * direction,
-            direction,
-            hit.distance_m,
-            rays.pixel_angle_rad(u, v)};
+/// Where the rays of a block end.
+void find_sights(const RayField& rays,
+                 const ImageViews& views,
+                 int block_x,
+                 int block_y,
+                 const CastBlock& block,
+                 SightBatch& out) {
+    const auto width = static_cast<std::size_t>(block.width);
+    const std::size_t span = views.single() ? block.pixels() : width;
+    for (std::size_t first = 0; first < block.pixels(); first += span) {
+        const int v = block.v0 + static_cast<int>(first / width);
+        end_points(views.row(v).origin_m,
+                   block.directions,
+                   block.hits,
+                   {first, first + span},
+                   out.points_m);
+    }
+    out.count = block.pixels();
+    const float* angles_rad = rays.block(block_x, block_y).pixel_angle_rad;
+    std::copy_n(angles_rad, out.count, out.pixel_angle_rad.begin());
+    std::copy_n(block.hits.distance_m.begin(), out.count, out.way_m.begin());
+    std::copy_n(block.directions.x.begin(), out.count, out.directions.x.begin());
+    std::copy_n(block.directions.y.begin(), out.count, out.directions.y.begin());
+    std::copy_n(block.directions.z.begin(), out.count, out.directions.z.begin());
 }
 
 void resize(const RayField& rays, CleanImage& image) {
@@ -52,7 +66,7 @@ void store_geometry(const RayField& rays, const CastBlock& block, CleanImage& ou
     std::size_t i = 0;
     for (int v = block.v0; v < block.v0 + block.height; ++v) {
         for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
-            const RayHit& hit = block.hits[i];
+            const RayHit hit = block.hits[i];
             out.surface.row(v)[u] = static_cast<std::int16_t>(hit.face);
             out.depth_m.row(v)[u] =
                 hit.face < 0 ? kNan : static_cast<float>(hit.distance_m * rays.ray(u, v).z());
@@ -199,7 +213,7 @@ void Renderer::render_instant(const RayField& rays,
     for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
         cast_block(*scene_, rays, views, block_x, block_y, block);
         if (wanted == Wanted::picture_and_depth) store_geometry(rays, block, out);
-        shade_block(rays, views, block, out);
+        shade_block(rays, views, block_x, block_y, block, out);
     });
     for_each_block(rays, executor, [&](int block_x, int block_y, CastBlock& block) {
         soften_block(rays, views, places, block_x, block_y, block, out);
@@ -207,57 +221,53 @@ void Renderer::render_instant(const RayField& rays,
 }
 
 /// Face after face, because many places of one surface are looked up at once.
-void Renderer::shade_by_face(std::span<const RayHit> hits,
-                             std::span<const Sight> sights,
+void Renderer::shade_by_face(const HitBatch& hits,
+                             const SightBatch& sights,
                              std::span<Seen> out) const {
-    // Filled as far as they are read: zeros would cost more than the work.
-    // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
-    std::array<std::size_t, CastBlock::kPixels> waiting;
-    std::array<std::size_t, CastBlock::kPixels> chosen;
+    // Filled as far as they are read. NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
+    BatchArray<std::size_t> waiting;
+    BatchArray<std::size_t> chosen;
+    SightBatch chosen_sights;
     // NOLINTEND(cppcoreguidelines-pro-type-member-init)
-    std::array<Sight, CastBlock::kPixels> chosen_sights;
-    std::array<Seen, CastBlock::kPixels> chosen_seen;
-    std::iota(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(hits.size()), 0U);
-    for (std::size_t left = hits.size(); left > 0;) {
-        const int face = hits[waiting[0]].face;
+    BatchArray<Seen> chosen_seen;
+    std::iota(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(sights.count), 0U);
+    for (std::size_t left = sights.count; left > 0;) {
+        const int face = hits.face[waiting[0]];
         std::size_t later = 0;
         std::size_t count = 0;
         for (std::size_t k = 0; k < left; ++k) {
             const std::size_t i = waiting[k];
-            (hits[i].face == face ? chosen[count++] : waiting[later++]) = i;
+            (hits.face[i] == face ? chosen[count++] : waiting[later++]) = i;
         }
         left = later;
         if (face < 0) {
             for (std::size_t k = 0; k < count; ++k) out[chosen[k]] = Shader::background();
             continue;
         }
-        for (std::size_t k = 0; k < count; ++k) chosen_sights[k] = sights[chosen[k]];
-        shader_.surface(face, {chosen_sights.data(), count}, chosen_seen);
+        chosen_sights.count = 0;
+        for (std::size_t k = 0; k < count; ++k) chosen_sights.add(sights[chosen[k]]);
+        shader_.surface(face, chosen_sights, chosen_seen);
         for (std::size_t k = 0; k < count; ++k) out[chosen[k]] = chosen_seen[k];
     }
 }
 
 void Renderer::shade_block(const RayField& rays,
                            const ImageViews& views,
+                           int block_x,
+                           int block_y,
                            const CastBlock& block,
                            CleanImage& out) const {
-    const auto pixels = static_cast<std::size_t>(block.width * block.height);
-    std::array<Sight, CastBlock::kPixels> sights;
-    std::array<Seen, CastBlock::kPixels> seen;
-    std::size_t i = 0;
-    for (int v = block.v0; v < block.v0 + block.height; ++v) {
-        const Vector3d& origin_m = views.row(v).origin_m;
-        for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
-            sights[i] = sight(rays, origin_m, block.directions[i], block.hits[i], u, v);
-        }
-    }
+    SightBatch
+        sights;  // Filled as far as it is read. NOLINT(cppcoreguidelines-pro-type-member-init)
+    BatchArray<Seen> seen;
+    find_sights(rays, views, block_x, block_y, block, sights);
     if (block.plane) {
-        shader_.surface(block.plane->face, {sights.data(), pixels}, seen);
+        shader_.surface(block.plane->face, sights, seen);
     } else {
-        shade_by_face({block.hits.data(), pixels}, sights, seen);
+        shade_by_face(block.hits, sights, seen);
     }
+    std::size_t i = 0;
     const auto white_dn = static_cast<float>(255.0 * config_.imaging.exposure);
-    i = 0;
     for (int v = block.v0; v < block.v0 + block.height; ++v) {
         for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
             out.signal_dn.row(v)[u] = white_dn * seen[i].radiance;
@@ -278,17 +288,23 @@ void Renderer::soften_block(const RayField& rays,
     const std::span<const Pixel> edge(pixels.data(), find_edge(out.key, block_x, block_y, pixels));
     if (edge.empty()) return;
     find_primitives(*scene_, rays, views, block_x, block_y, block);
-    std::array<Sight, CastBlock::kPixels> sights;
-    std::array<Seen, CastBlock::kPixels> seen;
-    std::array<float, CastBlock::kPixels> sum{};
+    SightBatch
+        sights;  // Filled as far as it is read. NOLINT(cppcoreguidelines-pro-type-member-init)
+    BatchArray<Seen> seen;
+    BatchArray<float> sum{};
     for (const auto& place : places) {
         cast_within(*scene_, rays, views, place, edge, block);
+        sights.count = 0;
         for (std::size_t i = 0; i < edge.size(); ++i) {
             const auto [u, v] = edge[i];
-            sights[i] =
-                sight(rays, views.row(v).origin_m, block.directions[i], block.hits[i], u, v);
+            const RayHit hit = block.hits[i];
+            const Vector3d direction = block.directions[i];
+            sights.add({views.row(v).origin_m + hit.distance_m * direction,
+                        direction,
+                        hit.distance_m,
+                        rays.pixel_angle_rad(u, v)});
         }
-        shade_by_face({block.hits.data(), edge.size()}, sights, seen);
+        shade_by_face(block.hits, sights, seen);
         for (std::size_t i = 0; i < edge.size(); ++i) sum[i] += seen[i].radiance;
     }
     const auto white_dn = static_cast<float>(255.0 * config_.imaging.exposure);

@@ -118,11 +118,11 @@ class Renderer {
                         CleanImage& out) const;
     void shade_block(const RayField& rays,
                      const ImageViews& views,
+                     int block_x,
+                     int block_y,
                      const CastBlock& block,
                      CleanImage& out) const;
-    void shade_by_face(std::span<const RayHit> hits,
-                       std::span<const Sight> sights,
-                       std::span<Seen> out) const;
+    void shade_by_face(const HitBatch& hits, const SightBatch& sights, std::span<Seen> out) const;
     void soften_block(const RayField& rays,
                       const ImageViews& views,
                       Places places,

@@ -58,6 +58,19 @@ void Scene::intersect_primitive(int primitive,
         primitives_[index]);
 }
 
+void Scene::intersect_primitive(int primitive,
+                                const Vector3d& origin_m,
+                                const RayBatch& rays,
+                                BatchRange range,
+                                HitBatch& hits) const {
+    const auto index = static_cast<std::size_t>(primitive);
+    std::visit(
+        [&](const auto& shape) {
+            shape.intersect(origin_m, rays, range, first_surface_[index], hits);
+        },
+        primitives_[index]);
+}
+
 std::optional<Hit> Scene::intersect(const Vector3d& origin_m, const Vector3d& direction) const {
     RayHit nearest;
     for (int k = 0; k < primitives(); ++k) {

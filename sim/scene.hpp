@@ -99,6 +99,11 @@ class Scene {
                              const Eigen::Vector3d& origin_m,
                              std::span<const Eigen::Vector3d> directions,
                              std::span<RayHit> hits) const;
+    void intersect_primitive(int primitive,
+                             const Eigen::Vector3d& origin_m,
+                             const RayBatch& rays,
+                             BatchRange range,
+                             HitBatch& hits) const;
     [[nodiscard]] SurfacePoint surface_point(int surface, const Eigen::Vector3d& point_m) const;
 
     /// Highest surface at a point; nothing where there is no ground.

@@ -15,8 +15,6 @@ using Eigen::Vector3d;
 
 /// Grey 30 at the default exposure: a dim, even surrounding.
 constexpr float kBackground = 30.0F / (255.0F * 1.4F);
-/// Nearest to grazing incidence (1.1 deg) that the footprint of a pixel is stretched to.
-constexpr double kLeastCosine = 0.02;
 /// A ray that goes on from a surface starts this far from it, so as not to meet it again.
 constexpr double kClear_m = 1e-6;
 constexpr int kMaxBounces = 2;
@@ -96,13 +94,20 @@ void Shader::add_face(const Surface& surface, const Material& material) {
     face.normal = frame.normal;
     face.tangent_u = frame.tangent_u;
     face.tangent_v = frame.tangent_v;
-    face.texel_u = face.placement.along * frame.tangent_u + face.placement.across * frame.tangent_v;
-    face.texel_v = face.placement.along * frame.tangent_v - face.placement.across * frame.tangent_u;
+    PlaneTexels& texels = face.texels;
+    texels.texel_u =
+        face.placement.along * frame.tangent_u + face.placement.across * frame.tangent_v;
+    texels.texel_v =
+        face.placement.along * frame.tangent_v - face.placement.across * frame.tangent_u;
     if (material.same_look && !frame.curved) {
         const Vector3d& middle_m = scene_->bounds(surface.primitive).center_m;
-        face.placement.u_texel -= face.texel_u.dot(middle_m);
-        face.placement.v_texel -= face.texel_v.dot(middle_m);
+        face.placement.u_texel -= texels.texel_u.dot(middle_m);
+        face.placement.v_texel -= texels.texel_v.dot(middle_m);
     }
+    texels.normal = frame.normal;
+    texels.u_texel = face.placement.u_texel;
+    texels.v_texel = face.placement.v_texel;
+    texels.texels_per_m = face.placement.texels_per_m;
     face.facing_lamp = frame.normal.dot(towards_lamp_);
     face.finish = material.finish;
     face.curved = frame.curved;
@@ -118,39 +123,50 @@ Seen Shader::surface(int surface, const Sight& sight) const {
     return seen(surface, sight, 0);
 }
 
-void Shader::surface(int surface, std::span<const Sight> sights, std::span<Seen> out) const {
+void Shader::surface(int surface, const SightBatch& sights, std::span<Seen> out) const {
     const Face& face = faces_[static_cast<std::size_t>(surface)];
-    if (face.curved || face.finish != Finish::matte) {
-        for (std::size_t i = 0; i < sights.size(); ++i) out[i] = seen(surface, sights[i], 0);
-        return;
+    if (face.finish != Finish::matte) {
+        for (std::size_t i = 0; i < sights.count; ++i) out[i] = seen(surface, sights[i], 0);
+    } else if (face.curved) {
+        curved(surface, sights, out);
+    } else {
+        plane(surface, sights, out);
     }
+}
+
+void Shader::plane(int surface, const SightBatch& sights, std::span<Seen> out) const {
+    const Face& face = faces_[static_cast<std::size_t>(surface)];
     TextureBatch batch;
+    look_at(face.texels, sights, batch);
     // Filled as far as it is read. NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
     std::array<float, TextureBatch::kMost> albedo;
-    for (std::size_t done = 0; done < sights.size(); done += batch.count) {
-        const auto part = sights.subspan(done, std::min(sights.size() - done, albedo.size()));
-        batch.count = part.size();
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            const PlaneLook look = look_at(face, part[i]);
-            batch.u[i] = TextureTable::place(look.at_texel.x());
-            batch.v[i] = TextureTable::place(look.at_texel.y());
-            batch.blotch_u[i] = TextureTable::place(look.at_texel.x() * kBlotchScale);
-            batch.blotch_v[i] = TextureTable::place(look.at_texel.y() * kBlotchScale);
-            batch.along_u[i] = look.along_texel.x();
-            batch.along_v[i] = look.along_texel.y();
-            batch.minor_texel[i] = look.minor_texel;
-            batch.cosine[i] = look.cosine;
-        }
-        textures_.reflectances(face.placement, batch, albedo.data());
-        const std::vector<Blocker> blockers = blockers_of(face, part);
-        // Without shadows and stripes the light is the same all over a plane.
-        const bool even = blockers.empty() && !(lighting_.stripe_width_m > 0.0);
-        const Seen white = lit_surface(surface, part[0], face.facing_lamp, 1.0F, blockers);
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            out[done + i] =
-                even ? Seen{white.radiance * albedo[i], white.key}
-                     : lit_surface(surface, part[i], face.facing_lamp, albedo[i], blockers);
-        }
+    textures_.reflectances(face.placement, batch, albedo.data());
+    const std::vector<Blocker> blockers = blockers_of(face, sights);
+    // Without shadows and stripes the light is the same all over a plane.
+    const bool even = blockers.empty() && !(lighting_.stripe_width_m > 0.0);
+    const Seen white = lit_surface(surface, sights[0], face.facing_lamp, 1.0F, blockers);
+    for (std::size_t i = 0; i < sights.count; ++i) {
+        out[i] = even ? Seen{white.radiance * albedo[i], white.key}
+                      : lit_surface(surface, sights[i], face.facing_lamp, albedo[i], blockers);
+    }
+}
+
+void Shader::curved(int surface, const SightBatch& sights, std::span<Seen> out) const {
+    const Face& face = faces_[static_cast<std::size_t>(surface)];
+    TextureBatch batch;
+    // Filled as far as they are read. NOLINTBEGIN(cppcoreguidelines-pro-type-member-init)
+    BatchArray<double> facing;
+    std::array<float, TextureBatch::kMost> albedo;
+    // NOLINTEND(cppcoreguidelines-pro-type-member-init)
+    for (std::size_t i = 0; i < sights.count; ++i) {
+        const Sight sight = sights[i];
+        const SurfacePoint at = scene_->surface_point(surface, sight.point_m);
+        batch.add(Textures::look(face.placement, at.u_m, at.v_m, footprint_of(sight, at)));
+        facing[i] = at.normal.dot(towards_lamp_);
+    }
+    textures_.reflectances(face.placement, batch, albedo.data());
+    for (std::size_t i = 0; i < sights.count; ++i) {
+        out[i] = lit_surface(surface, sights[i], facing[i], albedo[i], blockers_);
     }
 }
 
@@ -196,7 +212,7 @@ Seen Shader::matte(int surface, const Sight& sight) const {
         albedo = textures_.reflectance(face.placement, at.u_m, at.v_m, footprint_of(sight, at));
         facing = at.normal.dot(towards_lamp_);
     } else {
-        albedo = reflectance(face, sight);
+        albedo = textures_.reflectance(face.placement, look_at(face.texels, sight));
         facing = face.facing_lamp;
     }
     return lit_surface(surface, sight, facing, albedo, blockers_);
@@ -216,25 +232,6 @@ Seen Shader::lit_surface(int surface,
     }
     const auto key = 2U * (static_cast<std::uint32_t>(surface) + 1U) + (bright ? 1U : 0U);
     return {static_cast<float>(light) * albedo, key};
-}
-
-/// On a plane, with everything counted in texels.
-Shader::PlaneLook Shader::look_at(const Face& face, const Sight& sight) {
-    PlaneLook look;
-    look.at_texel = {face.texel_u.dot(sight.point_m) + face.placement.u_texel,
-                     face.texel_v.dot(sight.point_m) + face.placement.v_texel};
-    look.along_texel = {static_cast<float>(face.texel_u.dot(sight.direction)),
-                        static_cast<float>(face.texel_v.dot(sight.direction))};
-    look.minor_texel =
-        static_cast<float>(sight.way_m * sight.pixel_angle_rad * face.placement.texels_per_m);
-    look.cosine = static_cast<float>(std::max(-face.normal.dot(sight.direction), kLeastCosine));
-    return look;
-}
-
-float Shader::reflectance(const Face& face, const Sight& sight) const {
-    const PlaneLook look = look_at(face, sight);
-    return textures_.reflectance(
-        face.placement, look.at_texel, look.along_texel, look.minor_texel, look.cosine);
 }
 
 /// Bright share of the pixel's footprint, exact for a footprint that is a line across the stripes.
@@ -281,14 +278,13 @@ bool Shader::may_shade(const Sphere& blocker, const Sphere& points) const {
 }
 
 /// What may shade some points of a plane: never what lies behind it.
-std::vector<Shader::Blocker> Shader::blockers_of(const Face& face,
-                                                 std::span<const Sight> sights) const {
+std::vector<Shader::Blocker> Shader::blockers_of(const Face& face, const SightBatch& sights) const {
     std::vector<Blocker> blockers;
     if (!lighting_.shadows || !(face.facing_lamp > 0.0)) return blockers;
-    Sphere points{sights[sights.size() / 2].point_m, 0.0};
-    for (const Sight& sight : sights) {
+    Sphere points{sights[sights.count / 2].point_m, 0.0};
+    for (std::size_t i = 0; i < sights.count; ++i) {
         points.radius_m =
-            std::max(points.radius_m, (sight.point_m - points.center_m).squaredNorm());
+            std::max(points.radius_m, (sights[i].point_m - points.center_m).squaredNorm());
     }
     points.radius_m = std::sqrt(points.radius_m) + kClear_m;
     const double offset_m = face.normal.dot(points.center_m) + kClear_m;

@@ -6,19 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "sim/plane_look.hpp"
 #include "sim/scene.hpp"
 #include "sim/texture.hpp"
 
 namespace surefoot::sim {
-
-/// A ray in the world that has come `way_m` from the camera to `point_m`, with the angle between
-/// the rays of neighbouring pixels.
-struct Sight {
-    Eigen::Vector3d point_m;
-    Eigen::Vector3d direction;
-    double way_m = 0.0;
-    double pixel_angle_rad = 0.0;
-};
 
 /// What a ray sees. Radiance 1 = a white surface under full light. Places with another `key` differ
 /// in more than texture: another face, light instead of shadow, another thing in the mirror.
@@ -38,7 +30,7 @@ class Shader {
     /// A point of a surface that was hit.
     [[nodiscard]] Seen surface(int surface, const Sight& sight) const;
     /// The same, bit by bit, for several points of one surface, at least one, which is faster.
-    void surface(int surface, std::span<const Sight> sights, std::span<Seen> out) const;
+    void surface(int surface, const SightBatch& sights, std::span<Seen> out) const;
     /// Where no surface is.
     [[nodiscard]] static Seen background() noexcept;
     /// Does the lamp shine on a point of a surface? Always, where the scene has no shadows.
@@ -50,19 +42,11 @@ class Shader {
         Eigen::Vector3d normal;
         Eigen::Vector3d tangent_u;
         Eigen::Vector3d tangent_v;
-        Eigen::Vector3d texel_u;  ///< of a plane: texels along the pattern's axes for each metre
-        Eigen::Vector3d texel_v;
+        PlaneTexels texels;  ///< of a plane
         Finish finish = Finish::matte;
         bool curved = false;
         float gloss = 0.0F;
         double facing_lamp = 0.0;  ///< of a plane: cosine of the lamp's incidence
-    };
-    /// A pixel on a plane, in texels, as Textures::reflectance wants it.
-    struct PlaneLook {
-        Eigen::Vector2d at_texel;
-        Eigen::Vector2f along_texel;
-        float minor_texel = 0.0F;
-        float cosine = 1.0F;
     };
     struct Blocker {
         int primitive = 0;
@@ -80,9 +64,9 @@ class Shader {
     [[nodiscard]] bool lit(const Eigen::Vector3d& point_m, std::span<const Blocker> blockers) const;
     [[nodiscard]] bool may_shade(const Sphere& blocker, const Sphere& points) const;
     [[nodiscard]] std::vector<Blocker> blockers_of(const Face& face,
-                                                   std::span<const Sight> sights) const;
-    [[nodiscard]] static PlaneLook look_at(const Face& face, const Sight& sight);
-    [[nodiscard]] float reflectance(const Face& face, const Sight& sight) const;
+                                                   const SightBatch& sights) const;
+    void plane(int surface, const SightBatch& sights, std::span<Seen> out) const;
+    void curved(int surface, const SightBatch& sights, std::span<Seen> out) const;
     [[nodiscard]] Seen along(const Sight& sight, int bounces) const;
     [[nodiscard]] SurfacePoint point_on(int surface, const Eigen::Vector3d& point_m) const;
     [[nodiscard]] double stripes(const Sight& sight, const SurfacePoint& at) const;

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
+#include "surefoot/camera/simd_targets_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
@@ -152,12 +154,22 @@ TEST(ShaderTest, ManyPointsTogetherLookLikeEachAlone) {
         EXPECT_GT(sights[0].size(), 600U);
         EXPECT_GT(sights[3].size(), 300U);
         for (std::size_t surface = 0; surface < sights.size(); ++surface) {
-            std::vector<Seen> seen(sights[surface].size());
-            shader.surface(static_cast<int>(surface), sights[surface], seen);
-            for (std::size_t i = 0; i < seen.size(); ++i) {
-                const Seen alone = shader.surface(static_cast<int>(surface), sights[surface][i]);
-                ASSERT_EQ(seen[i].radiance, alone.radiance) << surface << " " << i;
-                ASSERT_EQ(seen[i].key, alone.key);
+            const std::vector<Sight>& all = sights[surface];
+            for (std::size_t first = 0; first < all.size(); first += kBatchRays) {
+                SightBatch batch;
+                const std::size_t end = std::min(first + kBatchRays, all.size());
+                for (std::size_t i = first; i < end; ++i) batch.add(all[i]);
+                camera::test::on_every_target([&](const char* target) {
+                    std::vector<Seen> seen(batch.count);
+                    shader.surface(static_cast<int>(surface), batch, seen);
+                    for (std::size_t i = 0; i < seen.size(); ++i) {
+                        const Seen alone =
+                            shader.surface(static_cast<int>(surface), all[first + i]);
+                        ASSERT_EQ(seen[i].radiance, alone.radiance)
+                            << surface << " " << first + i << " on " << target;
+                        ASSERT_EQ(seen[i].key, alone.key) << target;
+                    }
+                });
             }
         }
     }

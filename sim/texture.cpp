@@ -130,38 +130,39 @@ float Textures::reflectance(const Placement& placement,
                             double u_m,
                             double v_m,
                             const Footprint& footprint) const noexcept {
-    const double minor_texel = footprint.minor_m * placement.texels_per_m;
-    const Eigen::Vector2d at_texel(
-        placement.along * u_m + placement.across * v_m + placement.u_texel,
-        placement.along * v_m - placement.across * u_m + placement.v_texel);
+    return reflectance(placement, look(placement, u_m, v_m, footprint));
+}
+
+TexelLook Textures::look(const Placement& placement,
+                         double u_m,
+                         double v_m,
+                         const Footprint& footprint) noexcept {
     const Eigen::Vector2d along(
         placement.along * footprint.axis_u + placement.across * footprint.axis_v,
         placement.along * footprint.axis_v - placement.across * footprint.axis_u);
-    return reflectance(placement,
-                       at_texel,
-                       along.cast<float>(),
-                       static_cast<float>(minor_texel),
-                       static_cast<float>(footprint.minor_m / footprint.major_m));
+    TexelLook look;
+    look.at_texel = {placement.along * u_m + placement.across * v_m + placement.u_texel,
+                     placement.along * v_m - placement.across * u_m + placement.v_texel};
+    look.along_texel = along.cast<float>();
+    look.minor_texel = static_cast<float>(footprint.minor_m * placement.texels_per_m);
+    look.cosine = static_cast<float>(footprint.minor_m / footprint.major_m);
+    return look;
 }
 
-float Textures::reflectance(const Placement& placement,
-                            const Eigen::Vector2d& at_texel,
-                            const Eigen::Vector2f& along_texel,
-                            float minor_texel,
-                            float cosine) const noexcept {
+float Textures::reflectance(const Placement& placement, const TexelLook& look) const noexcept {
     const TextureTable& table = tables_[placement.table];
     const lookup::Cover cover =
-        lookup::cover_of(along_texel.x(), along_texel.y(), minor_texel, cosine);
-    const auto u = TextureTable::place(at_texel.x());
-    const auto v = TextureTable::place(at_texel.y());
+        lookup::cover_of(look.along_texel.x(), look.along_texel.y(), look.minor_texel, look.cosine);
+    const auto u = TextureTable::place(look.at_texel.x());
+    const auto v = TextureTable::place(look.at_texel.y());
     const float detail = table.mean(lookup::first_tap(u, cover.du, cover.taps),
                                     lookup::first_tap(v, cover.dv, cover.taps),
                                     cover.du,
                                     cover.dv,
                                     cover.taps,
                                     cover.level);
-    const float blotch = table.sample(TextureTable::place(at_texel.x() * kBlotchScale),
-                                      TextureTable::place(at_texel.y() * kBlotchScale),
+    const float blotch = table.sample(TextureTable::place(look.at_texel.x() * kBlotchScale),
+                                      TextureTable::place(look.at_texel.y() * kBlotchScale),
                                       cover.blotch_level);
     return lookup::reflectance(placement.albedo, placement.contrast, detail, blotch);
 }

@@ -127,6 +127,15 @@ struct Placement {
 /// Coarse blotches, many times the finest detail in size, hide that the tile repeats.
 inline constexpr double kBlotchScale = 1.0 / 13.7;
 
+/// The footprint of a pixel on a pattern, in texels: an ellipse `minor_texel` across, stretched by
+/// 1 / `cosine` along a direction of any length.
+struct TexelLook {
+    Eigen::Vector2d at_texel;
+    Eigen::Vector2f along_texel;
+    float minor_texel = 0.0F;
+    float cosine = 1.0F;
+};
+
 /// Places on one surface that are looked up together, each with the footprint of its pixel as for
 /// Textures::reflectance.
 struct TextureBatch {
@@ -143,6 +152,18 @@ struct TextureBatch {
     Array<float> along_v;
     Array<float> minor_texel;
     Array<float> cosine;
+
+    void add(const TexelLook& look) {
+        u[count] = TextureTable::place(look.at_texel.x());
+        v[count] = TextureTable::place(look.at_texel.y());
+        blotch_u[count] = TextureTable::place(look.at_texel.x() * kBlotchScale);
+        blotch_v[count] = TextureTable::place(look.at_texel.y() * kBlotchScale);
+        along_u[count] = look.along_texel.x();
+        along_v[count] = look.along_texel.y();
+        minor_texel[count] = look.minor_texel;
+        cosine[count] = look.cosine;
+        ++count;
+    }
 };
 
 /// The textures of a scene. Far and grazing surfaces are averaged over the pixel's footprint: up to
@@ -157,13 +178,14 @@ class Textures {
                                     double u_m,
                                     double v_m,
                                     const Footprint& footprint) const noexcept;
-    /// The same for a place in texels and the footprint of a pixel that covers `minor_texel` across
-    /// and is stretched by 1 / `cosine` along a direction of any length, in texels.
+    /// The same in texels.
     [[nodiscard]] float reflectance(const Placement& placement,
-                                    const Eigen::Vector2d& at_texel,
-                                    const Eigen::Vector2f& along_texel,
-                                    float minor_texel,
-                                    float cosine) const noexcept;
+                                    const TexelLook& look) const noexcept;
+    /// Surface coordinates and a footprint in metres, in texels.
+    [[nodiscard]] static TexelLook look(const Placement& placement,
+                                        double u_m,
+                                        double v_m,
+                                        const Footprint& footprint) noexcept;
     /// The same, bit by bit and on every processor, for a batch of places; `out` has room for all
     /// of them.
     void reflectances(const Placement& placement,

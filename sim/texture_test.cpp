@@ -194,23 +194,16 @@ TEST(TextureTest, ABatchHasTheBitsOfSinglePlaces) {
     Rng rng(6);
     for (const std::size_t count : {std::size_t{256}, std::size_t{1}, std::size_t{37}}) {
         TextureBatch batch;
-        batch.count = count;
         std::vector<float> single(count);
         for (std::size_t i = 0; i < count; ++i) {
-            const Eigen::Vector2d at_texel(rng.uniform(-1e5, 1e5), rng.uniform(-1e5, 1e5));
-            const Eigen::Vector2f along(static_cast<float>(rng.uniform(-500.0, 500.0)),
-                                        static_cast<float>(i % 9 == 0 ? 0.0 : rng.normal()));
-            const auto minor = static_cast<float>(std::exp(rng.uniform(-6.0, 9.0)));
-            const auto cosine = static_cast<float>(rng.uniform(0.02, 1.0));
-            batch.u[i] = at(at_texel.x());
-            batch.v[i] = at(at_texel.y());
-            batch.blotch_u[i] = at(at_texel.x() * kBlotchScale);
-            batch.blotch_v[i] = at(at_texel.y() * kBlotchScale);
-            batch.along_u[i] = along.x();
-            batch.along_v[i] = along.y();
-            batch.minor_texel[i] = minor;
-            batch.cosine[i] = cosine;
-            single[i] = textures.reflectance(placement, at_texel, along, minor, cosine);
+            TexelLook look;
+            look.at_texel = {rng.uniform(-1e5, 1e5), rng.uniform(-1e5, 1e5)};
+            look.along_texel = {static_cast<float>(rng.uniform(-500.0, 500.0)),
+                                static_cast<float>(i % 9 == 0 ? 0.0 : rng.normal())};
+            look.minor_texel = static_cast<float>(std::exp(rng.uniform(-6.0, 9.0)));
+            look.cosine = static_cast<float>(rng.uniform(0.02, 1.0));
+            batch.add(look);
+            single[i] = textures.reflectance(placement, look);
         }
         camera::test::on_every_target([&](const char* target) {
             std::vector<float> together(count);

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace surefoot::sim {
+
+/// Nearest hit so far along one ray. Faces are numbered through a whole scene.
+struct RayHit {
+    double distance_m = std::numeric_limits<double>::infinity();
+    int face = -1;
+};
+
+/// As many rays as a block of pixels has; kept coordinate by coordinate, so that many are worked on
+/// side by side. Filled as far as they are read.
+inline constexpr std::size_t kBatchRays = 256;
+template <typename T>
+using BatchArray = std::array<T, kBatchRays>;
+
+/// Unit directions.
+struct RayBatch {
+    BatchArray<double> x;
+    BatchArray<double> y;
+    BatchArray<double> z;
+
+    [[nodiscard]] Eigen::Vector3d operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+    void set(std::size_t i, const Eigen::Vector3d& direction) {
+        x[i] = direction.x();
+        y[i] = direction.y();
+        z[i] = direction.z();
+    }
+};
+
+struct HitBatch {
+    BatchArray<double> distance_m;
+    BatchArray<int> face;
+
+    [[nodiscard]] RayHit operator[](std::size_t i) const { return {distance_m[i], face[i]}; }
+    void set(std::size_t i, const RayHit& hit) {
+        distance_m[i] = hit.distance_m;
+        face[i] = hit.face;
+    }
+};
+
+/// Rays [first, end) of a batch.
+struct BatchRange {
+    std::size_t first = 0;
+    std::size_t end = 0;
+};
+
+/// A half space that a convex solid lies in, as seen from one origin: n . p <= offset, the origin
+/// `outside_m` beyond it.
+struct FacingSide {
+    Eigen::Vector3d normal;
+    double outside_m = 0.0;
+    int face = 0;
+};
+
+// All of these do what the plain code named beside them does, to the last bit, for many rays at
+// once and under every instruction set.
+
+/// Directions from an optical frame into the world: R_world_camera * (x, y, z)[i] for the rays
+/// [range.first, range.end); `x` is that of ray 0, and so on.
+void turn_rays(const Eigen::Matrix3d& R_world_camera,
+               const double* x,
+               const double* y,
+               const double* z,
+               BatchRange range,
+               RayBatch& out);
+
+/// Hits on a plane that all rays meet first, from `above_m` over it; a ray of NaN, beyond the rim
+/// of a fisheye image, meets nothing.
+void meet_plane(const Eigen::Vector3d& normal,
+                double above_m,
+                int face,
+                const RayBatch& rays,
+                BatchRange range,
+                HitBatch& hits);
+
+/// `Prism::intersect`: the first `towards` of `count` sides look at the origin.
+void meet_convex(const FacingSide* sides,
+                 std::size_t towards,
+                 std::size_t count,
+                 const RayBatch& rays,
+                 BatchRange range,
+                 HitBatch& hits);
+
+/// Places where rays end: origin + distance * direction.
+struct PointBatch {
+    BatchArray<double> x;
+    BatchArray<double> y;
+    BatchArray<double> z;
+};
+void end_points(const Eigen::Vector3d& origin_m,
+                const RayBatch& rays,
+                const HitBatch& hits,
+                BatchRange range,
+                PointBatch& out);
+
+}  // namespace surefoot::sim
