@@ -146,63 +146,97 @@ AnalyticStereo::AnalyticStereo(const Scene& scene,
       rig_(thinned(rig, config.stride)),
       rays_(ideal(rig_)),
       surface_noise_(mix_seed(seed, kSurfaceStream), config.fixed_size_m),
+      fixed_noise_(config.sigma_px > 0.0 && config.correlated_share > 0.0 &&
+                   config.fixed_share > 0.0),
       fade_cosine_(std::cos(config.fade_incidence_deg / kDegPerRad)),
-      cdf_(normal_cdf()) {}
+      cdf_(normal_cdf()) {
+    known_.reserve(scene.surfaces().size());
+    for (const Surface& surface : scene.surfaces()) {
+        known_.push_back(
+            known_share(scene.materials()[static_cast<std::size_t>(surface.material)]));
+    }
+}
 
 void AnalyticStereo::cast(const Pose& T_world_body, Executor& executor, View& out) const {
     const Pose T_world_camera = T_world_body * rig_.T_body_camera;
-    const ImageViews views(T_world_camera);
     out.disparity_px.resize(rig_.width, rig_.height);
     out.surface.resize(rig_.width, rig_.height);
     out.fixed.resize(rig_.width, rig_.height);
     out.missing_chance.resize(rig_.width, rig_.height);
-    executor.parallel_for(rays_.blocks_y(), [&](int block_y) {
-        CastBlock block;
-        for (int block_x = 0; block_x < rays_.blocks_x(); ++block_x) {
-            cast_block(*scene_, rays_, views, block_x, block_y, block);
-            std::size_t i = 0;
-            for (int v = block.v0; v < block.v0 + block.height; ++v) {
-                for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
-                    const RayHit hit = block.hits[i];
-                    out.disparity_px.row(v)[u] = kNan;
-                    out.surface.row(v)[u] = hit.face;
-                    out.missing_chance.row(v)[u] = 1.0F;
-                    if (hit.face < 0) continue;
-                    // Through a float as the depth images of the renderer are.
-                    const auto depth_m = static_cast<float>(hit.distance_m * rays_.ray(u, v).z());
-                    out.disparity_px.row(v)[u] = static_cast<float>(rig_.depth_to_disparity_px_m() /
-                                                                    static_cast<double>(depth_m));
-                    look(T_world_camera.translation_m + hit.distance_m * block.directions[i],
-                         block.directions[i],
-                         hit.face,
-                         out.fixed.row(v)[u],
-                         out.missing_chance.row(v)[u]);
-                }
+    executor.parallel_for(rays_.blocks_y(),
+                          [&](int block_y) { cast_rows(T_world_camera, block_y, out); });
+}
+
+/// One row of blocks.
+void AnalyticStereo::cast_rows(const Pose& T_world_camera, int block_y, View& out) const {
+    const ImageViews views(T_world_camera);
+    const double depth_to_disparity_px_m = rig_.depth_to_disparity_px_m();
+    CastBlock block;
+    SurfaceNoise::Square square;
+    for (int block_x = 0; block_x < rays_.blocks_x(); ++block_x) {
+        cast_block(*scene_, rays_, views, block_x, block_y, block);
+        const double* ray_z = rays_.block(block_x, block_y).z;
+        std::size_t i = 0;
+        for (int v = block.v0; v < block.v0 + block.height; ++v) {
+            float* disparity_px = out.disparity_px.row(v);
+            float* fixed = out.fixed.row(v);
+            float* missing_chance = out.missing_chance.row(v);
+            for (int u = block.u0; u < block.u0 + block.width; ++u, ++i) {
+                const RayHit hit = block.hits[i];
+                out.surface.row(v)[u] = hit.face;
+                disparity_px[u] = kNan;
+                missing_chance[u] = 1.0F;
+                if (hit.face < 0) continue;
+                // Through a float as the depth images of the renderer are.
+                const auto depth_m = static_cast<float>(hit.distance_m * ray_z[i]);
+                disparity_px[u] =
+                    static_cast<float>(depth_to_disparity_px_m / static_cast<double>(depth_m));
+                const Vector3d direction = block.directions[i];
+                const Look seen = look(T_world_camera.translation_m + hit.distance_m * direction,
+                                       direction,
+                                       hit.face,
+                                       square);
+                fixed[u] = seen.fixed;
+                missing_chance[u] = seen.missing_chance;
             }
         }
-    });
-}
-
-void AnalyticStereo::look(const Vector3d& point_m,
-                          const Vector3d& direction,
-                          int surface,
-                          float& fixed,
-                          float& chance) const {
-    const SurfacePoint at = scene_->surface_point(surface, point_m);
-    const Surface& face = scene_->surfaces()[static_cast<std::size_t>(surface)];
-    const Material& material = scene_->materials()[static_cast<std::size_t>(face.material)];
-    chance = static_cast<float>(missing_chance(material, -at.normal.dot(direction)));
-    const bool sticks =
-        config_.sigma_px > 0.0 && config_.correlated_share > 0.0 && config_.fixed_share > 0.0;
-    fixed = sticks ? surface_noise_.at(noise_, surface, at.u_m, at.v_m) : 0.0F;
-}
-
-double AnalyticStereo::missing_chance(const Material& material, double cosine) const {
-    if (material.finish != Finish::matte) return 1.0;
-    double known = 1.0 - config_.missing_share;
-    if (material.contrast < config_.least_contrast) {
-        known *= material.contrast / config_.least_contrast;
     }
+}
+
+AnalyticStereo::Look AnalyticStereo::look(const Vector3d& point_m,
+                                          const Vector3d& direction,
+                                          int surface,
+                                          SurfaceNoise::Square& square) const {
+    const auto index = static_cast<std::size_t>(surface);
+    const FaceFrame& frame = scene_->surfaces()[index].frame;
+    double u_m = 0.0;
+    double v_m = 0.0;
+    double cosine = 0.0;
+    if (frame.curved) {
+        const SurfacePoint at = scene_->surface_point(surface, point_m);
+        u_m = at.u_m;
+        v_m = at.v_m;
+        cosine = -at.normal.dot(direction);
+    } else {
+        u_m = frame.tangent_u.dot(point_m);
+        v_m = frame.tangent_v.dot(point_m);
+        cosine = -frame.normal.dot(direction);
+    }
+    Look seen;
+    seen.missing_chance = static_cast<float>(missing_chance(known_[index], cosine));
+    if (fixed_noise_) seen.fixed = surface_noise_.at(noise_, surface, u_m, v_m, square);
+    return seen;
+}
+
+double AnalyticStereo::known_share(const Material& material) const {
+    if (material.finish != Finish::matte) return 0.0;
+    const double known = 1.0 - config_.missing_share;
+    return material.contrast < config_.least_contrast
+               ? known * (material.contrast / config_.least_contrast)
+               : known;
+}
+
+double AnalyticStereo::missing_chance(double known, double cosine) const {
     if (cosine < fade_cosine_) {
         const double incidence_deg = std::acos(std::clamp(cosine, 0.0, 1.0)) * kDegPerRad;
         const double width_deg = config_.max_incidence_deg - config_.fade_incidence_deg;
@@ -232,14 +266,17 @@ void AnalyticStereo::measure(const Pose& T_world_body,
     };
     const SmoothNoise errors = smooth(correlated, config_.correlation_px);
     const SmoothNoise fortune = smooth(luck, config_.patch_px);
+    const std::uint64_t white_key = PixelNoise::key(seed_, stream + white);
     out.resize(rig_.width, rig_.height);
     executor.parallel_for(rig_.height, [&](int v) {
         std::vector<float> scratch;
+        std::vector<float> white_row(static_cast<std::size_t>(rig_.width));
         std::vector<float> error_row(static_cast<std::size_t>(rig_.width));
         std::vector<float> luck_row(static_cast<std::size_t>(rig_.width));
+        noise_.fill(white_key, static_cast<std::uint32_t>(v * rig_.width), white_row);
         errors.row(v, scratch, error_row);
         fortune.row(v, scratch, luck_row);
-        measure_row(view, stream, v, error_row, luck_row, out);
+        measure_row(view, v, white_row, error_row, luck_row, out);
     });
 }
 
@@ -262,19 +299,17 @@ AnalyticStereo::Match AnalyticStereo::match(const View& view, int u, int v, floa
 }
 
 void AnalyticStereo::measure_row(const View& view,
-                                 std::uint64_t stream,
                                  int v,
+                                 std::span<const float> whites,
                                  std::span<const float> errors,
                                  std::span<const float> luck,
                                  camera::DepthImage& out) const {
     constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
     const Scales scale(config_);
-    const std::uint64_t white_key = PixelNoise::key(seed_, stream + white);
     for (int u = 0; u < rig_.width; ++u) {
         const auto column = static_cast<std::size_t>(u);
         const Match found = match(view, u, v, uniform_from(cdf_, luck[column]));
-        const auto pixel = static_cast<std::uint32_t>(v * rig_.width + u);
-        float measured_px = found.disparity_px + scale.white_px * noise_.normal(white_key, pixel) +
+        float measured_px = found.disparity_px + scale.white_px * whites[column] +
                             scale.correlated_px * errors[column] +
                             scale.fixed_px * view.fixed.row(v)[u];
         if (scale.locking_px > 0.0F) {

@@ -94,23 +94,29 @@ class AnalyticStereo {
                    const AnalyticStereoConfig& config,
                    std::uint64_t seed);
     void cast(const Pose& T_world_body, Executor& executor, View& out) const;
-    void look(const Eigen::Vector3d& point_m,
-              const Eigen::Vector3d& direction,
-              int surface,
-              float& fixed,
-              float& missing_chance) const;
+    /// What a ray that ends on a surface meets there.
+    struct Look {
+        float fixed = 0.0F;
+        float missing_chance = 1.0F;
+    };
+    [[nodiscard]] Look look(const Eigen::Vector3d& point_m,
+                            const Eigen::Vector3d& direction,
+                            int surface,
+                            SurfaceNoise::Square& square) const;
+    void cast_rows(const Pose& T_world_camera, int block_y, View& out) const;
     struct Match {
         float disparity_px = 0.0F;  ///< NaN = none
         bool invented = false;
     };
     [[nodiscard]] Match match(const View& view, int u, int v, float luck) const;
     void measure_row(const View& view,
-                     std::uint64_t stream,
                      int v,
+                     std::span<const float> whites,
                      std::span<const float> errors,
                      std::span<const float> luck,
                      camera::DepthImage& out) const;
-    [[nodiscard]] double missing_chance(const Material& material, double cosine) const;
+    [[nodiscard]] double known_share(const Material& material) const;
+    [[nodiscard]] double missing_chance(double known, double cosine) const;
 
     const Scene* scene_;
     AnalyticStereoConfig config_;
@@ -119,7 +125,9 @@ class AnalyticStereo {
     RayField rays_;
     PixelNoise noise_;
     SurfaceNoise surface_noise_;
-    double fade_cosine_ = 0.0;  ///< of `fade_incidence_deg`
+    std::vector<double> known_;  ///< by surface, seen from straight ahead; 0 where nothing ever is
+    bool fixed_noise_ = false;   ///< does any stick to the surfaces?
+    double fade_cosine_ = 0.0;   ///< of `fade_incidence_deg`
     std::vector<float> cdf_;
 };
 

@@ -86,12 +86,12 @@ SurfaceNoise::SurfaceNoise(std::uint64_t seed, double size_m)
     : seed_(seed), per_m_(1.0 / std::max(size_m, 1e-6)) {}
 
 float SurfaceNoise::at(const PixelNoise& noise, int surface, double u_m, double v_m) const {
-    const double u = u_m * per_m_;
-    const double v = v_m * per_m_;
-    const double u0 = std::floor(u);
-    const double v0 = std::floor(v);
-    const auto fu = static_cast<float>(u - u0);
-    const auto fv = static_cast<float>(v - v0);
+    Square square;
+    return at(noise, surface, u_m, v_m, square);
+}
+
+void SurfaceNoise::look_up(
+    const PixelNoise& noise, int surface, double u0, double v0, Square& square) const {
     const std::uint64_t key = PixelNoise::key(seed_, static_cast<std::uint64_t>(surface));
     // Lattices of more than 2^16 steps repeat; with 0.1 m between nodes that is 6.5 km.
     const auto node = [&](int du, int dv) {
@@ -99,8 +99,22 @@ float SurfaceNoise::at(const PixelNoise& noise, int surface, double u_m, double 
         const auto y = static_cast<std::uint32_t>(static_cast<std::int64_t>(v0) + dv) & 0xFFFFU;
         return noise.normal(key, (y << 16U) | x);
     };
-    const float sum = (1.0F - fv) * ((1.0F - fu) * node(0, 0) + fu * node(1, 0)) +
-                      fv * ((1.0F - fu) * node(0, 1) + fu * node(1, 1));
+    square = {surface, u0, v0, {node(0, 0), node(1, 0), node(0, 1), node(1, 1)}};
+}
+
+float SurfaceNoise::at(
+    const PixelNoise& noise, int surface, double u_m, double v_m, Square& square) const {
+    const double u = u_m * per_m_;
+    const double v = v_m * per_m_;
+    const double u0 = std::floor(u);
+    const double v0 = std::floor(v);
+    if (square.surface != surface || square.u0 != u0 || square.v0 != v0)
+        look_up(noise, surface, u0, v0, square);
+    const auto fu = static_cast<float>(u - u0);
+    const auto fv = static_cast<float>(v - v0);
+    const auto& corners = square.corners;
+    const float sum = (1.0F - fv) * ((1.0F - fu) * corners[0] + fu * corners[1]) +
+                      fv * ((1.0F - fu) * corners[2] + fu * corners[3]);
     const float squares =
         (fu * fu + (1.0F - fu) * (1.0F - fu)) * (fv * fv + (1.0F - fv) * (1.0F - fv));
     return sum / std::sqrt(squares);

@@ -45,8 +45,21 @@ class SurfaceNoise {
   public:
     SurfaceNoise(std::uint64_t seed, double size_m);
     [[nodiscard]] float at(const PixelNoise& noise, int surface, double u_m, double v_m) const;
+    /// The numbers at the corners of the last square of the lattice that was looked at.
+    /// Neighbouring pixels see the same square.
+    struct Square {
+        int surface = -1;  ///< none yet
+        double u0 = 0.0;
+        double v0 = 0.0;
+        std::array<float, 4> corners{};
+    };
+    /// The same, bit by bit, for places of which many lie in one square.
+    [[nodiscard]] float at(
+        const PixelNoise& noise, int surface, double u_m, double v_m, Square& square) const;
 
   private:
+    void look_up(const PixelNoise& noise, int surface, double u0, double v0, Square& square) const;
+
     std::uint64_t seed_ = 0;
     double per_m_ = 1.0;
 };

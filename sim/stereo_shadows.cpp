@@ -38,18 +38,104 @@ class LineWalk {
         }
         before_px_ = disparity_px;
         before_surface_ = surface;
+        note(behind);
+    }
+    /// Goes on over pixels that show the surface before them, the last one with this disparity.
+    void skip(float disparity_px) { before_px_ = disparity_px; }
+    [[nodiscard]] bool behind_nothing() const { return steps_ == 0; }
+    [[nodiscard]] int surface() const { return before_surface_; }
+
+  private:
+    void note(Behind& behind) const {
         if (steps_ > 0 && (behind.steps == 0 || steps_ < behind.steps)) {
             behind = {static_cast<std::uint8_t>(steps_), front_px_};
         }
     }
 
-  private:
     float jump_px_;
     int reach_;
     int steps_ = 0;
     float front_px_ = 0.0F;
     float before_px_ = 0.0F;
     int before_surface_ = -1;
+};
+
+/// Pixels of a line that are looked at together: most show what the one before them shows.
+constexpr int kTogether = 16;
+
+bool all_show(const std::int32_t* surface, int wanted) {
+    std::int32_t differs = 0;
+    for (int i = 0; i < kTogether; ++i) differs |= surface[i] ^ wanted;
+    return differs == 0;
+}
+
+/// One row, away from its jumps in both directions.
+void walk_row(const float* disparity_px,
+              const std::int32_t* surface,
+              int width,
+              const LineWalk& start,
+              Behind* behind) {
+    LineWalk right = start;
+    for (int u = 0; u < width;) {
+        if (right.behind_nothing() && u + kTogether <= width &&
+            all_show(surface + u, right.surface())) {
+            u += kTogether;
+            right.skip(disparity_px[u - 1]);
+        } else {
+            right.step(disparity_px[u], surface[u], behind[u]);
+            ++u;
+        }
+    }
+    LineWalk left = start;
+    for (int u = width - 1; u >= 0;) {
+        const int first = u - kTogether + 1;
+        if (left.behind_nothing() && first >= 0 && all_show(surface + first, left.surface())) {
+            left.skip(disparity_px[first]);
+            u = first - 1;
+        } else {
+            left.step(disparity_px[u], surface[u], behind[u]);
+            --u;
+        }
+    }
+}
+
+/// Columns side by side, from row to row in one direction.
+class StripWalk {
+  public:
+    StripWalk(const Image<float>& disparity_px,
+              const Image<std::int32_t>& surface,
+              int first,
+              int count,
+              const LineWalk& start)
+        : disparity_px_(disparity_px),
+          surface_(surface),
+          first_(first),
+          lines_(static_cast<std::size_t>(count), start) {}
+
+    void step(int v, Image<Behind>& behind) {
+        const float* d = disparity_px_.row(v) + first_;
+        const std::int32_t* s = surface_.row(v) + first_;
+        Behind* out = behind.row(v) + first_;
+        std::int32_t differs = 0;
+        bool nothing = true;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            differs |= s[i] ^ lines_[i].surface();
+            nothing = nothing && lines_[i].behind_nothing();
+        }
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            if (nothing && differs == 0) {
+                lines_[i].skip(d[i]);
+            } else {
+                lines_[i].step(d[i], s[i], out[i]);
+            }
+        }
+    }
+
+  private:
+    const Image<float>& disparity_px_;
+    const Image<std::int32_t>& surface_;
+    int first_;
+    std::vector<LineWalk> lines_;
 };
 
 /// Bridges over a run of occluded pixels [first, end) of a row, from surface to surface.
@@ -103,28 +189,18 @@ void find_shadows(const Image<float>& disparity_px,
     out.shadow.resize(width, height);
     out.bridge_px.resize(width, height);
     Image<Behind> behind(width, height);
-    const auto walk = [&](LineWalk& line, int u, int v) {
-        line.step(disparity_px.row(v)[u], surface.row(v)[u], behind.row(v)[u]);
-    };
+    const LineWalk start(jump_px, reach);
     if (reach > 0) {
         executor.parallel_for(height, [&](int v) {
-            LineWalk right(jump_px, reach);
-            for (int u = 0; u < width; ++u) walk(right, u, v);
-            LineWalk left(jump_px, reach);
-            for (int u = width - 1; u >= 0; --u) walk(left, u, v);
+            walk_row(disparity_px.row(v), surface.row(v), width, start, behind.row(v));
         });
         executor.parallel_for((width + kStrip - 1) / kStrip, [&](int strip) {
             const int first = strip * kStrip;
             const int count = std::min(kStrip, width - first);
-            std::vector<LineWalk> down(static_cast<std::size_t>(count), {jump_px, reach});
-            std::vector<LineWalk> up = down;
-            for (int v = 0; v < height; ++v) {
-                for (int i = 0; i < count; ++i)
-                    walk(down[static_cast<std::size_t>(i)], first + i, v);
-            }
-            for (int v = height - 1; v >= 0; --v) {
-                for (int i = 0; i < count; ++i) walk(up[static_cast<std::size_t>(i)], first + i, v);
-            }
+            StripWalk down(disparity_px, surface, first, count, start);
+            for (int v = 0; v < height; ++v) down.step(v, behind);
+            StripWalk up(disparity_px, surface, first, count, start);
+            for (int v = height - 1; v >= 0; --v) up.step(v, behind);
         });
     }
     executor.parallel_for(height, [&](int v) {
