@@ -36,11 +36,7 @@ struct BenchResult {
 [[nodiscard]] Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common,
                                                             Executor& executor);
 
-/// Depth images into the map, moves, lines of sight, bounds.
-[[nodiscard]] std::vector<BenchResult> bench_elevation(Executor& executor);
-
-/// The above, and traversability of maps of several sizes, settings and instruction sets, beside
-/// the plain way.
+/// The workloads of the terrain engine (terrain_workloads.hpp), some beside the plain way.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common,
                                                              Executor& executor);
 

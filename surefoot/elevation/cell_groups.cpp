@@ -2,9 +2,9 @@
 #include "surefoot/elevation/cell_groups.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/elevation/group_samples.hpp"
 
 namespace surefoot::elevation {
 
@@ -62,27 +62,27 @@ std::int64_t samples_from_points(std::span<const GridPoint> points,
 }
 
 void CellGroups::assign(const CellSamples& samples, std::size_t cells) {
-    begin_.assign(cells + 1, 0);
+    // Counted two places ahead, so that the sums stand one ahead: placing the samples of a cell
+    // moves its begin to its end, which is where the next one's begin belongs.
+    begin_.assign(cells + 2, 0);
     for (int b = 0; b < samples.blocks(); ++b) {
-        for (const std::uint32_t cell : samples.block(b).cell) ++begin_[cell];
+        const CellSamples::Block from = samples.block(b);
+        count_samples(from.cell.data(), from.cell.size(), begin_.data() + 2);
     }
     std::uint32_t total = 0;
-    for (std::uint32_t& begin : begin_) total += std::exchange(begin, total);
+    for (std::uint32_t& begin : begin_) begin = total += begin;
     if (z_m_.size() < total + kSlack) {
         z_m_.resize(total + kSlack);
         var_m2_.resize(total + kSlack);
     }
     for (int b = 0; b < samples.blocks(); ++b) {
         const CellSamples::Block from = samples.block(b);
-        for (std::size_t i = 0; i < from.cell.size(); ++i) {
-            const std::uint32_t to = begin_[from.cell[i]]++;
-            z_m_[to] = from.z_m[i];
-            var_m2_[to] = from.var_m2[i];
-        }
+        place_samples(from.cell.data(),
+                      from.z_m.data(),
+                      from.var_m2.data(),
+                      from.cell.size(),
+                      {begin_.data() + 1, z_m_.data(), var_m2_.data()});
     }
-    // Filling has moved each begin to its end, which is the next one's begin.
-    for (std::size_t cell = cells; cell > 0; --cell) begin_[cell] = begin_[cell - 1];
-    begin_[0] = 0;
 }
 
 }  // namespace surefoot::elevation

@@ -72,7 +72,7 @@ class CellGroups {
     [[nodiscard]] const float* var_m2() const noexcept { return var_m2_.data(); }
 
   private:
-    std::vector<std::uint32_t> begin_;  ///< cells + 1
+    std::vector<std::uint32_t> begin_;  ///< cells + 2
     std::vector<float> z_m_;
     std::vector<float> var_m2_;
 };

@@ -65,25 +65,6 @@ float mean_variance(std::span<const float> var_m2) {
 
 }  // namespace
 
-int support_of(const ReductionConfig& config, int n) noexcept {
-    return std::max({1, static_cast<int>(std::ceil(config.upper_share * n)), config.min_points});
-}
-
-float half_width(const ReductionConfig& config, float mean_var_m2) noexcept {
-    return static_cast<float>(config.window_sigma * std::sqrt(static_cast<double>(mean_var_m2)) +
-                              config.surface_relief_m);
-}
-
-Surface surface_of(
-    int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept {
-    const auto n = static_cast<float>(points);
-    Surface surface{points, center_m + sum_m / n, sum_var_m2 / n, 0.0F};
-    if (points > 1) {
-        surface.scatter_m2 = std::max(0.0F, (sum_sq_m2 - sum_m * sum_m / n) / (n - 1.0F));
-    }
-    return surface;
-}
-
 CellMeasurement face_of(const ReductionConfig& config,
                         const CellMeasurement& seen,
                         int points,
@@ -94,14 +75,6 @@ CellMeasurement face_of(const ReductionConfig& config,
     face.var_m2 = half_width_m * half_width_m;
     face.points = points;
     return face;
-}
-
-float measurement_variance(const ReductionConfig& config, const Surface& surface) noexcept {
-    const double independent = std::max(
-        1.0, std::min(surface.points / config.points_per_independent, config.max_independent));
-    const auto spread_m2 = static_cast<double>(std::max(surface.mean_var_m2, surface.scatter_m2));
-    return static_cast<float>(spread_m2 / independent +
-                              config.systematic_sigma_m * config.systematic_sigma_m);
 }
 
 void ReductionConfig::describe(ConfigVisitor& visitor) {

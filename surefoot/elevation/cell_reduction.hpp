@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -53,9 +55,15 @@ inline constexpr int kClimbs = 3;    ///< mean shift settles to a few percent of
 inline constexpr int kMaxTries = 4;  ///< lower starts before a cell counts as pure scatter
 
 /// Points that a surface in a cell of `n` points needs.
-[[nodiscard]] int support_of(const ReductionConfig& config, int n) noexcept;
+[[nodiscard]] inline int support_of(const ReductionConfig& config, int n) noexcept {
+    return std::max({1, static_cast<int>(std::ceil(config.upper_share * n)), config.min_points});
+}
+
 /// Half width of the window around a surface.
-[[nodiscard]] float half_width(const ReductionConfig& config, float mean_var_m2) noexcept;
+[[nodiscard]] inline float half_width(const ReductionConfig& config, float mean_var_m2) noexcept {
+    return static_cast<float>(config.window_sigma * std::sqrt(static_cast<double>(mean_var_m2)) +
+                              config.surface_relief_m);
+}
 
 /// The points within a window around a height.
 struct Surface {
@@ -67,10 +75,24 @@ struct Surface {
 
 /// From sums over `points` > 0 points of their offset from the centre, its square, and the
 /// variance.
-[[nodiscard]] Surface surface_of(
-    int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept;
-[[nodiscard]] float measurement_variance(const ReductionConfig& config,
-                                         const Surface& surface) noexcept;
+[[nodiscard]] inline Surface surface_of(
+    int points, float center_m, float sum_m, float sum_sq_m2, float sum_var_m2) noexcept {
+    const auto n = static_cast<float>(points);
+    Surface surface{points, center_m + sum_m / n, sum_var_m2 / n, 0.0F};
+    if (points > 1) {
+        surface.scatter_m2 = std::max(0.0F, (sum_sq_m2 - sum_m * sum_m / n) / (n - 1.0F));
+    }
+    return surface;
+}
+
+[[nodiscard]] inline float measurement_variance(const ReductionConfig& config,
+                                                const Surface& surface) noexcept {
+    const double independent = std::max(
+        1.0, std::min(surface.points / config.points_per_independent, config.max_independent));
+    const auto spread_m2 = static_cast<double>(std::max(surface.mean_var_m2, surface.scatter_m2));
+    return static_cast<float>(spread_m2 / independent +
+                              config.systematic_sigma_m * config.systematic_sigma_m);
+}
 
 /// What stands for a cell in which no surface has enough points: a face, or nothing (0 points).
 /// `seen` holds the extremes.

@@ -12,7 +12,7 @@
 
 // Sixteen samples of a cell side by side, in one, two or four registers. What is added in floats is
 // added in sixteen columns first and in the same tree then, as `LaneSum` does it one by one: so the
-// width of the registers does not show.
+// width of the registers does not show. Most cells hold no more than sixteen samples.
 
 HWY_BEFORE_NAMESPACE();
 namespace surefoot::elevation::HWY_NAMESPACE {
@@ -37,6 +37,39 @@ struct Samples {
     int n;
 };
 
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE float sum_of(const V (&part)[kParts]) {
+    float column[16];
+    for (int p = 0; p < kParts; ++p) hn::Store(part[p], D(), column + p * kWidth);
+    return tree(column);
+}
+#else
+template <class DV, class W>
+HWY_INLINE auto add_halves(DV, W value) {
+    const hn::Half<DV> half;
+    return hn::Add(hn::LowerHalf(half, value), hn::UpperHalf(half, value));
+}
+
+/// Column i with those 4, 8 and 12 behind it.
+template <int kHere>
+HWY_INLINE auto four_of(const V (&part)[kHere]) {
+    if constexpr (kHere == 1) {
+        return add_halves(hn::Half<D>(), add_halves(D(), part[0]));
+    } else if constexpr (kHere == 2) {
+        return add_halves(D(), hn::Add(part[0], part[1]));
+    } else {
+        return hn::Add(hn::Add(part[0], part[2]), hn::Add(part[1], part[3]));
+    }
+}
+
+/// `tree` in registers: ((0 + 8) + (4 + 12)) + ((2 + 10) + (6 + 14)), ...
+HWY_INLINE float sum_of(const V (&part)[kParts]) {
+    const auto four = four_of(part);
+    const auto two = hn::Add(four, hn::Shuffle1032(four));
+    return hn::GetLane(hn::Add(two, hn::Shuffle2301(two)));
+}
+#endif
+
 /// Sixteen columns of a sum.
 struct Columns {
     V part[kParts];
@@ -44,32 +77,33 @@ struct Columns {
     HWY_INLINE Columns() {
         for (V& p : part) p = hn::Zero(D());
     }
-    /// (0 + 8) + (4 + 12), ... : see LaneSum.
-    HWY_INLINE float total() const {
-        HWY_ALIGN float column[16];
-        for (int p = 0; p < kParts; ++p) hn::Store(part[p], D(), column + p * kWidth);
-        return tree(column);
-    }
+    HWY_INLINE void add(int p, V value) { part[p] = hn::Add(part[p], value); }
+    HWY_INLINE float total() const { return sum_of(part); }
 };
 
 HWY_INLINE M present(int index, int n) {
     return hn::FirstN(D(), static_cast<std::size_t>(n > index ? n - index : 0));
 }
 
-/// Calls f(part, offset of its first sample, which of its samples exist).
-template <class F>
+/// Calls f(part, offset of its first sample, which of its samples exist). `kFew`: there are no
+/// more than sixteen.
+template <bool kFew, class F>
 HWY_INLINE void for_each_part(int n, const F& f) {
-    for (int i = 0; i < n; i += 16) {
-        for (int p = 0; p < kParts; ++p) {
-            const int at = i + p * kWidth;
-            f(p, at, present(at, n));
+    if constexpr (kFew) {
+        for (int p = 0; p < kParts; ++p) f(p, p * kWidth, present(p * kWidth, n));
+    } else {
+        for (int i = 0; i < n; i += 16) {
+            for (int p = 0; p < kParts; ++p) {
+                const int at = i + p * kWidth;
+                f(p, at, present(at, n));
+            }
         }
     }
 }
 
 HWY_INLINE int count_from(const Samples& samples, V flip, V least) {
     std::size_t count = 0;
-    for_each_part(samples.n, [&](int, int at, M exists) {
+    for_each_part<false>(samples.n, [&](int, int at, M exists) {
         const V value = hn::Xor(hn::LoadU(D(), samples.z_m + at), flip);
         count += hn::CountTrue(D(), hn::And(exists, hn::Ge(value, least)));
     });
@@ -79,16 +113,18 @@ HWY_INLINE int count_from(const Samples& samples, V flip, V least) {
 /// The value with `rank` values at or above it, by taking the largest, the next one, ...
 HWY_INLINE float by_extremes(const Samples& samples, V flip, int rank) {
     V below = hn::Set(D(), kInfinity);
+    std::size_t from_below = 0;  // values that are not less
     while (true) {
         V largest = hn::Set(D(), -kInfinity);
-        for_each_part(samples.n, [&](int, int at, M exists) {
+        for_each_part<false>(samples.n, [&](int, int at, M exists) {
             const V value = hn::Xor(hn::LoadU(D(), samples.z_m + at), flip);
-            const M counts = hn::And(exists, hn::Lt(value, below));
-            largest = hn::IfThenElse(counts, hn::Max(largest, value), largest);
+            const M less = hn::And(exists, hn::Lt(value, below));
+            from_below += hn::CountTrue(D(), hn::And(exists, hn::Eq(value, below)));
+            largest = hn::IfThenElse(less, hn::Max(largest, value), largest);
         });
+        if (from_below >= static_cast<std::size_t>(rank)) return hn::GetLane(below);
         below = hn::MaxOfLanes(D(), largest);
         if (hn::GetLane(below) == -kInfinity) return -kInfinity;
-        if (count_from(samples, flip, below) >= rank) return hn::GetLane(below);
     }
 }
 
@@ -113,14 +149,83 @@ HWY_INLINE float by_bits(const Samples& samples, bool from_below, int rank) {
     return float_of(key);
 }
 
-/// Height with `rank` samples at or above it (rank 1 = the maximum), or at or below it.
-HWY_INLINE float ranked(const Samples& samples, bool from_below, int rank) {
-    const V flip = hn::Set(D(), from_below ? -0.0F : 0.0F);
-    const float value =
-        rank <= kFewRanks ? by_extremes(samples, flip, rank) : by_bits(samples, from_below, rank);
-    return (from_below ? -value : value) + 0.0F;  // zero has no sign
+/// Heights by their rank among many samples.
+struct RanksOfMany {
+    const Samples& samples;
+
+    /// Height with `rank` samples at or above it (rank 1 = the maximum), or at or below it.
+    HWY_INLINE float ranked(bool from_below, int rank) const {
+        const V flip = hn::Set(D(), from_below ? -0.0F : 0.0F);
+        const float value = rank <= kFewRanks ? by_extremes(samples, flip, rank)
+                                              : by_bits(samples, from_below, rank);
+        return (from_below ? -value : value) + 0.0F;  // zero has no sign
+    }
+};
+
+/// The same for up to sixteen: how many are as high, and as low, is counted for all of them.
+struct RanksOfFew {
+    V z_m[kParts];
+    V as_high[kParts];  ///< how many samples are at or above this one; 0 for none
+    V as_low[kParts];
+
+    HWY_INLINE explicit RanksOfFew(const Samples& samples) {
+        const V one = hn::Set(D(), 1.0F);
+        for (int p = 0; p < kParts; ++p) {
+            z_m[p] = hn::LoadU(D(), samples.z_m + p * kWidth);
+            as_high[p] = hn::Zero(D());
+            as_low[p] = hn::Zero(D());
+        }
+        for (int i = 0; i < samples.n; ++i) {
+            const V other = hn::Set(D(), samples.z_m[i]);
+            for (int p = 0; p < kParts; ++p) {
+                as_high[p] = hn::Add(as_high[p], hn::IfThenElseZero(hn::Ge(other, z_m[p]), one));
+                as_low[p] = hn::Add(as_low[p], hn::IfThenElseZero(hn::Le(other, z_m[p]), one));
+            }
+        }
+        for (int p = 0; p < kParts; ++p) {
+            const M exists = present(p * kWidth, samples.n);
+            as_high[p] = hn::IfThenElseZero(exists, as_high[p]);
+            as_low[p] = hn::IfThenElseZero(exists, as_low[p]);
+        }
+    }
+
+    HWY_INLINE float ranked(bool from_below, int rank) const {
+        const V least = hn::Set(D(), static_cast<float>(rank));
+        const V none = hn::Set(D(), from_below ? kInfinity : -kInfinity);
+        V best = none;
+        for (int p = 0; p < kParts; ++p) {
+            const M enough = hn::Ge(from_below ? as_low[p] : as_high[p], least);
+            const V value = hn::IfThenElse(enough, z_m[p], none);
+            best = from_below ? hn::Min(best, value) : hn::Max(best, value);
+        }
+        const V extreme = from_below ? hn::MinOfLanes(D(), best) : hn::MaxOfLanes(D(), best);
+        return hn::GetLane(extreme) + 0.0F;  // zero has no sign
+    }
+};
+
+/// Points within a window around a height: how many, and the sum of their offsets from it.
+struct Window {
+    std::size_t points = 0;
+    float sum_m = 0.0F;
+};
+
+template <bool kFew>
+HWY_INLINE Window window_around(const Samples& samples, float center_m, float half_width_m) {
+    const V center = hn::Set(D(), center_m);
+    const V half_width = hn::Set(D(), half_width_m);
+    Columns sum_m;
+    Window window;
+    for_each_part<kFew>(samples.n, [&](int p, int at, M exists) {
+        const V offset = hn::Sub(hn::LoadU(D(), samples.z_m + at), center);
+        const M near = hn::And(exists, hn::Le(hn::Abs(offset), half_width));
+        window.points += hn::CountTrue(D(), near);
+        sum_m.add(p, hn::IfThenElseZero(near, offset));
+    });
+    window.sum_m = sum_m.total();
+    return window;
 }
 
+template <bool kFew>
 HWY_INLINE Surface surface_around(const Samples& samples, float center_m, float half_width_m) {
     const V center = hn::Set(D(), center_m);
     const V half_width = hn::Set(D(), half_width_m);
@@ -128,49 +233,52 @@ HWY_INLINE Surface surface_around(const Samples& samples, float center_m, float 
     Columns sum_sq_m2;
     Columns sum_var_m2;
     std::size_t points = 0;
-    for_each_part(samples.n, [&](int p, int at, M exists) {
+    for_each_part<kFew>(samples.n, [&](int p, int at, M exists) {
         const V offset = hn::Sub(hn::LoadU(D(), samples.z_m + at), center);
         const M near = hn::And(exists, hn::Le(hn::Abs(offset), half_width));
         points += hn::CountTrue(D(), near);
         const V counted = hn::IfThenElseZero(near, offset);
-        sum_m.part[p] = hn::Add(sum_m.part[p], counted);
-        sum_sq_m2.part[p] = hn::Add(sum_sq_m2.part[p], hn::Mul(counted, counted));
-        const V var = hn::IfThenElseZero(near, hn::LoadU(D(), samples.var_m2 + at));
-        sum_var_m2.part[p] = hn::Add(sum_var_m2.part[p], var);
+        sum_m.add(p, counted);
+        sum_sq_m2.add(p, hn::Mul(counted, counted));
+        sum_var_m2.add(p, hn::IfThenElseZero(near, hn::LoadU(D(), samples.var_m2 + at)));
     });
     if (points == 0) return {};
     return surface_of(
         static_cast<int>(points), center_m, sum_m.total(), sum_sq_m2.total(), sum_var_m2.total());
 }
 
+/// Only the place of a surface that is climbed on from counts, not its spread.
+template <bool kFew>
 HWY_INLINE Surface climb(const Samples& samples, float start_m, float half_width_m) {
-    Surface surface = surface_around(samples, start_m, half_width_m);
-    for (int round = 1; round < kClimbs && surface.points > 0; ++round) {
-        surface = surface_around(samples, surface.mean_m, half_width_m);
+    float center_m = start_m;
+    for (int round = 1; round < kClimbs; ++round) {
+        const Window window = window_around<kFew>(samples, center_m, half_width_m);
+        if (window.points == 0) return {};
+        center_m += window.sum_m / static_cast<float>(window.points);
     }
-    return surface;
+    return surface_around<kFew>(samples, center_m, half_width_m);
 }
 
+template <bool kFew>
 HWY_INLINE float mean_variance(const Samples& samples) {
     Columns sum_m2;
-    for_each_part(samples.n, [&](int p, int at, M exists) {
-        const V var = hn::IfThenElseZero(exists, hn::LoadU(D(), samples.var_m2 + at));
-        sum_m2.part[p] = hn::Add(sum_m2.part[p], var);
+    for_each_part<kFew>(samples.n, [&](int p, int at, M exists) {
+        sum_m2.add(p, hn::IfThenElseZero(exists, hn::LoadU(D(), samples.var_m2 + at)));
     });
     return sum_m2.total() / static_cast<float>(samples.n);
 }
 
-HWY_INLINE CellMeasurement reduce(const ReductionConfig& config, const Samples& samples) {
-    const int support = support_of(config, samples.n);
-    if (samples.n < support) return {};
+template <bool kFew, class Ranks>
+HWY_INLINE CellMeasurement
+reduce(const ReductionConfig& config, const Samples& samples, int support, const Ranks& ranks) {
     CellMeasurement measured;
-    measured.lowest_m = ranked(samples, true, support);
-    measured.highest_m = ranked(samples, false, support);
-    const float half_width_m = half_width(config, mean_variance(samples));
+    measured.lowest_m = ranks.ranked(true, support);
+    measured.highest_m = ranks.ranked(false, support);
+    const float half_width_m = half_width(config, mean_variance<kFew>(samples));
     float start_m = measured.highest_m;
     int rank = support;
     for (int attempt = 0; attempt < kMaxTries; ++attempt) {
-        const Surface surface = climb(samples, start_m, half_width_m);
+        const Surface surface = climb<kFew>(samples, start_m, half_width_m);
         if (surface.points >= support) {
             measured.z_m = surface.mean_m;
             measured.var_m2 = measurement_variance(config, surface);
@@ -179,9 +287,16 @@ HWY_INLINE CellMeasurement reduce(const ReductionConfig& config, const Samples& 
         }
         rank += support;
         if (rank > samples.n) break;
-        start_m = ranked(samples, false, rank);
+        start_m = ranks.ranked(false, rank);
     }
     return face_of(config, measured, samples.n, half_width_m);
+}
+
+CellMeasurement reduce(const ReductionConfig& config, const Samples& samples) {
+    const int support = support_of(config, samples.n);
+    if (samples.n < support) return {};
+    return samples.n <= 16 ? reduce<true>(config, samples, support, RanksOfFew(samples))
+                           : reduce<false>(config, samples, support, RanksOfMany{samples});
 }
 
 void reduce_all(const ReductionConfig& config,
