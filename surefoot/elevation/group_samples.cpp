@@ -14,8 +14,9 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, 16>;
-using DU = hn::RebindToUnsigned<D>;
+/// Of runs: most are shorter than this, and what is stored beyond them costs all the same.
+using D = hn::CappedTag<float, 8>;
+using DU = hn::ScalableTag<std::uint32_t>;
 
 /// Samples whose runs are found at a time: few enough to stay in the nearest memory.
 constexpr std::size_t kChunk = 512;
@@ -69,14 +70,15 @@ void place_runs(const std::uint32_t* cell,
                 const SamplePlaces& to) {
     const D d;
     const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-    for_each_run(cell, samples, [&](std::uint32_t first, std::uint32_t n) {
-        std::uint32_t& next = to.next[cell[first]];
+    const SamplePlaces places = to;  // of our own: no store of a register can change it
+    for_each_run(cell, samples, [=](std::uint32_t first, std::uint32_t n) {
+        const std::uint32_t next = places.next[cell[first]];
+        places.next[cell[first]] = next + n;
         for (std::uint32_t k = 0; k < n; k += lanes) {
             const auto exists = hn::FirstN(d, n - k);
-            hn::BlendedStore(hn::LoadU(d, z_m + first + k), exists, d, to.z_m + next + k);
-            hn::BlendedStore(hn::LoadU(d, var_m2 + first + k), exists, d, to.var_m2 + next + k);
+            hn::BlendedStore(hn::LoadU(d, z_m + first + k), exists, d, places.z_m + next + k);
+            hn::BlendedStore(hn::LoadU(d, var_m2 + first + k), exists, d, places.var_m2 + next + k);
         }
-        next += n;
     });
 }
 

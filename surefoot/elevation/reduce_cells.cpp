@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -299,17 +300,212 @@ CellMeasurement reduce(const ReductionConfig& config, const Samples& samples) {
                            : reduce<false>(config, samples, support, RanksOfMany{samples});
 }
 
+/// As many cells as a register has lanes, one in each, of up to kMost samples: column i holds the
+/// sample i of all of them, and sums over a cell are sums of columns in the order of `tree`.
+template <int kMost>
+class SmallCells {
+  public:
+    SmallCells(const ReductionConfig& config, const float* z_m, const float* var_m2)
+        : config_(config), z_m_(z_m), var_m2_(var_m2) {}
+
+    /// Takes a cell that has the support it needs; `measured` is written by the next `reduce_all`.
+    HWY_INLINE void add(std::uint32_t begin, int n, int support, CellMeasurement* measured) {
+        begin_[cells_] = static_cast<std::int32_t>(begin);
+        n_[cells_] = static_cast<float>(n);
+        support_[cells_] = static_cast<float>(support);
+        measured_[cells_] = measured;
+        if (++cells_ == kLanes) reduce_all();
+    }
+
+    HWY_NOINLINE void reduce_all() {
+        if (cells_ == 0) return;
+        load();
+        HWY_ALIGN float highest_m[kWidth];
+        HWY_ALIGN float lowest_m[kWidth];
+        rank(highest_m, lowest_m);
+        HWY_ALIGN float half_width_m[kWidth];
+        half_widths(half_width_m);
+        V center = hn::Load(D(), highest_m);
+        const V half_width = hn::Load(D(), half_width_m);
+        for (int round = 1; round < kClimbs; ++round) center = climbed(center, half_width);
+        finish(center, half_width, highest_m, lowest_m);
+        cells_ = 0;
+    }
+
+  private:
+    static constexpr auto kLanes = static_cast<std::size_t>(kWidth);
+    using PerSample = V[static_cast<std::size_t>(kMost)];
+
+    HWY_INLINE M exists(int i) const {
+        return hn::Lt(hn::Set(D(), static_cast<float>(i)), hn::Load(D(), n_));
+    }
+    /// `tree` of columns of which the last ones are zero.
+    static HWY_INLINE V sum_of(const PerSample& column) {
+        V four[4];
+        for (int i = 0; i < 4; ++i) {
+            if constexpr (kMost == 16) {
+                four[i] = hn::Add(hn::Add(column[i], column[i + 8]),
+                                  hn::Add(column[i + 4], column[i + 12]));
+            } else {
+                four[i] = hn::Add(column[i], column[i + 4]);
+            }
+        }
+        return hn::Add(hn::Add(four[0], four[2]), hn::Add(four[1], four[3]));
+    }
+
+    HWY_INLINE void load() {
+        for (std::size_t k = cells_; k < kLanes; ++k) {
+            begin_[k] = begin_[0];
+            n_[k] = 0.0F;
+        }
+        const hn::RebindToSigned<D> di;
+        const auto begin = hn::Load(di, begin_);
+        for (int i = 0; i < kMost; ++i) z_[i] = hn::GatherIndex(D(), z_m_ + i, begin);
+    }
+
+    /// Sorts by Batcher's odd-even merges; what does not exist comes last.
+    HWY_INLINE void rank(float* highest_m, float* lowest_m) const {
+        PerSample sorted;
+        for (int i = 0; i < kMost; ++i)
+            sorted[i] = hn::IfThenElse(exists(i), z_[i], hn::Set(D(), kInfinity));
+        for (int p = 1; p < kMost; p *= 2) {
+            for (int k = p; k > 0; k /= 2) {
+                for (int i = k % p; i + k < kMost; ++i) {
+                    if ((i - k % p) % (2 * k) >= k || i / (2 * p) != (i + k) / (2 * p)) continue;
+                    const V low = hn::Min(sorted[i], sorted[i + k]);
+                    sorted[i + k] = hn::Max(sorted[i], sorted[i + k]);
+                    sorted[i] = low;
+                }
+            }
+        }
+        const V support = hn::Load(D(), support_);
+        const V from_above = hn::Sub(hn::Load(D(), n_), support);
+        const V from_below = hn::Sub(support, hn::Set(D(), 1.0F));
+        V highest = hn::Zero(D());
+        V lowest = hn::Zero(D());
+        for (int i = 0; i < kMost; ++i) {
+            const V at = hn::Set(D(), static_cast<float>(i));
+            highest = hn::IfThenElse(hn::Eq(at, from_above), sorted[i], highest);
+            lowest = hn::IfThenElse(hn::Eq(at, from_below), sorted[i], lowest);
+        }
+        // Zero has no sign.
+        hn::Store(hn::Add(highest, hn::Zero(D())), D(), highest_m);
+        hn::Store(hn::Add(lowest, hn::Zero(D())), D(), lowest_m);
+    }
+
+    HWY_INLINE void half_widths(float* half_width_m) const {
+        const hn::RebindToSigned<D> di;
+        const auto begin = hn::Load(di, begin_);
+        PerSample column;
+        for (int i = 0; i < kMost; ++i) {
+            const V var = hn::GatherIndex(D(), var_m2_ + i, begin);
+            column[i] = hn::IfThenElseZero(exists(i), var);
+        }
+        HWY_ALIGN float mean_m2[kWidth];
+        hn::Store(hn::Div(sum_of(column), hn::Load(D(), n_)), D(), mean_m2);
+        for (std::size_t k = 0; k < cells_; ++k) half_width_m[k] = half_width(config_, mean_m2[k]);
+        std::fill(half_width_m + cells_, half_width_m + kWidth, 0.0F);
+    }
+
+    /// Which samples lie around the centres, and how far from them.
+    HWY_INLINE M near(int i, V center, V half_width, V& offset) const {
+        offset = hn::Sub(z_[i], center);
+        return hn::And(exists(i), hn::Le(hn::Abs(offset), half_width));
+    }
+
+    /// Not a number where no sample is near; then none ever is.
+    HWY_INLINE V climbed(V center, V half_width) const {
+        V points = hn::Zero(D());
+        PerSample column;
+        for (int i = 0; i < kMost; ++i) {
+            V offset;
+            const M counts = near(i, center, half_width, offset);
+            points = hn::Add(points, hn::IfThenElseZero(counts, hn::Set(D(), 1.0F)));
+            column[i] = hn::IfThenElseZero(counts, offset);
+        }
+        return hn::Add(center, hn::Div(sum_of(column), points));
+    }
+
+    HWY_INLINE void finish(V center, V half_width, const float* highest_m, const float* lowest_m) {
+        const hn::RebindToSigned<D> di;
+        const auto begin = hn::Load(di, begin_);
+        V points = hn::Zero(D());
+        PerSample offsets;
+        PerSample squares;
+        PerSample variances;
+        for (int i = 0; i < kMost; ++i) {
+            V offset;
+            const M counts = near(i, center, half_width, offset);
+            const V var = hn::GatherIndex(D(), var_m2_ + i, begin);
+            points = hn::Add(points, hn::IfThenElseZero(counts, hn::Set(D(), 1.0F)));
+            offsets[i] = hn::IfThenElseZero(counts, offset);
+            squares[i] = hn::Mul(offsets[i], offsets[i]);
+            variances[i] = hn::IfThenElseZero(counts, var);
+        }
+        HWY_ALIGN float figures[5][kWidth];
+        hn::Store(points, D(), figures[0]);
+        hn::Store(center, D(), figures[1]);
+        hn::Store(sum_of(offsets), D(), figures[2]);
+        hn::Store(sum_of(squares), D(), figures[3]);
+        hn::Store(sum_of(variances), D(), figures[4]);
+        for (std::size_t k = 0; k < cells_; ++k) {
+            CellMeasurement& measured = *measured_[k];
+            if (figures[0][k] < support_[k]) {
+                // The highest samples stand alone: lower starts, one cell after the other.
+                measured = reduce(config_,
+                                  {z_m_ + begin_[k], var_m2_ + begin_[k], static_cast<int>(n_[k])});
+                continue;
+            }
+            const Surface surface = surface_of(static_cast<int>(figures[0][k]),
+                                               figures[1][k],
+                                               figures[2][k],
+                                               figures[3][k],
+                                               figures[4][k]);
+            measured = {surface.mean_m,
+                        measurement_variance(config_, surface),
+                        highest_m[k],
+                        lowest_m[k],
+                        surface.points};
+        }
+    }
+
+    const ReductionConfig& config_;
+    const float* z_m_;
+    const float* var_m2_;
+    HWY_ALIGN std::int32_t begin_[kWidth] = {};
+    HWY_ALIGN float n_[kWidth] = {};
+    HWY_ALIGN float support_[kWidth] = {};
+    CellMeasurement* measured_[kWidth] = {};
+    std::size_t cells_ = 0;
+    PerSample z_;
+};
+
 void reduce_all(const ReductionConfig& config,
                 const std::uint32_t* begin,
                 int cells,
                 const float* z_m,
                 const float* var_m2,
                 CellMeasurement* measured) {
+    constexpr int kFew = 8;
+    constexpr int kSome = 16;
+    SmallCells<kFew> few(config, z_m, var_m2);
+    SmallCells<kSome> some(config, z_m, var_m2);
+    int support[kSome + 1];
+    for (int n = 0; n <= kSome; ++n) support[n] = support_of(config, n);
     for (int i = 0; i < cells; ++i) {
         const auto n = static_cast<int>(begin[i + 1] - begin[i]);
-        measured[i] =
-            n == 0 ? CellMeasurement{} : reduce(config, {z_m + begin[i], var_m2 + begin[i], n});
+        if (n > kSome) {
+            measured[i] = reduce(config, {z_m + begin[i], var_m2 + begin[i], n});
+        } else if (n < support[n]) {
+            measured[i] = {};
+        } else if (n > kFew) {
+            some.add(begin[i], n, support[n], measured + i);
+        } else {
+            few.add(begin[i], n, support[n], measured + i);
+        }
     }
+    few.reduce_all();
+    some.reduce_all();
 }
 
 }  // namespace
