@@ -139,9 +139,15 @@ HWY_INLINE void add_pixels(const DepthFrame& f,
     const auto cell = hn::Add(hn::Mul(iy, hn::Set(di, f.nx)), ix);
     const V var = height_variance(f, depth, range, p.sigma, ray_up, ray_sq);
     const std::size_t at = counts.samples;
-    hn::CompressStore(hn::BitCast(du, cell), hn::RebindMask(du, inside), du, out.cell + at);
-    hn::CompressStore(z, inside, D(), out.z_m + at);
-    hn::CompressStore(var, inside, D(), out.var_m2 + at);
+    if (static_cast<std::size_t>(n_inside) == hn::Lanes(D())) {
+        hn::StoreU(hn::BitCast(du, cell), du, out.cell + at);
+        hn::StoreU(z, D(), out.z_m + at);
+        hn::StoreU(var, D(), out.var_m2 + at);
+    } else {
+        hn::CompressStore(hn::BitCast(du, cell), hn::RebindMask(du, inside), du, out.cell + at);
+        hn::CompressStore(z, inside, D(), out.z_m + at);
+        hn::CompressStore(var, inside, D(), out.var_m2 + at);
+    }
     counts.samples = at + static_cast<std::size_t>(n_inside);
 }
 

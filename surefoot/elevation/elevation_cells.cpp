@@ -28,6 +28,14 @@ constexpr int kGone = 16;
 }  // namespace
 
 template <typename F>
+void ElevationCells::for_each_layer_of_known(const F& f) {
+    f(settled_var_m2_, kNan);
+    f(viewpoint_, ViewpointHistory::kNever);
+    f(steady_, std::uint8_t{0});
+    f(seen_through_, std::uint16_t{0});
+}
+
+template <typename F>
 void ElevationCells::for_each_layer(const F& f) {
     f(layers_.height_m, kNan);
     f(layers_.height_var_m2, kNan);
@@ -40,25 +48,23 @@ void ElevationCells::for_each_layer(const F& f) {
     f(layers_.free_above_m, kNan);
     f(layers_.confidence, kNan);
     f(layers_.density_ratio, kNan);
-    f(settled_var_m2_, kNan);
     if (aligns()) {
         f(aligned_var_m2_, kNan);
         f(aligned_step_, std::uint32_t{0});
         f(is_asked_, std::uint8_t{0});
     }
-    f(viewpoint_, ViewpointHistory::kNever);
     f(overhead_m_, kNan);
     f(overhead_trust_, std::uint8_t{0});
     f(overhead_hangs_, std::uint8_t{0});
     f(bottom_m_, kNan);
-    f(steady_, std::uint8_t{0});
-    f(seen_through_, std::uint16_t{0});
 }
 
 ElevationCells::ElevationCells(const ElevationConfig& config, int nx, int ny) : config_(config) {
-    for_each_layer([&](auto& layer, auto unknown) {
+    const auto make = [&](auto& layer, auto unknown) {
         layer = std::remove_reference_t<decltype(layer)>(nx, ny, unknown);
-    });
+    };
+    for_each_layer(make);
+    for_each_layer_of_known(make);
 }
 
 void ElevationCells::clear() {
@@ -67,6 +73,7 @@ void ElevationCells::clear() {
 
 void ElevationCells::shift(grid::Shift shift) {
     for_each_layer([&](auto& layer, auto unknown) { layer.shift(shift, unknown); });
+    for_each_layer_of_known([&](auto& layer, auto) { layer.slide(shift); });
 }
 
 ElevationCells::Memory ElevationCells::memory_of_row(int iy) noexcept {
@@ -312,7 +319,11 @@ void ElevationCells::agree(std::size_t cell,
 
 void ElevationCells::set_confidence(std::size_t cell, float confidence) {
     layers_.confidence.data()[cell] = confidence;
-    steady_.data()[cell] = static_cast<std::uint8_t>(std::lround(kGone * confidence));
+    // The nearest sixteenth, halves away from zero.
+    const float share = kGone * confidence;
+    const int whole = static_cast<int>(share);
+    const int more = share - static_cast<float>(whole) >= 0.5F ? 1 : 0;
+    steady_.data()[cell] = static_cast<std::uint8_t>(whole + more);
 }
 
 void ElevationCells::remember_density(std::size_t cell, float ratio) {

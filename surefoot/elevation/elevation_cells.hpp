@@ -85,8 +85,12 @@ class ElevationCells {
     void recall(std::size_t cell, const grid::MapRegion& region, std::size_t from);
 
   private:
+    /// Calls f(layer, value of unknown cells) for those that are read in unknown cells too ...
     template <typename F>
     void for_each_layer(const F& f);
+    /// ... and for those that are written whenever a cell becomes known, and not read before.
+    template <typename F>
+    void for_each_layer_of_known(const F& f);
 
     [[nodiscard]] bool is_same_scan(std::int64_t since_seen_ns) const;
     void start(std::size_t cell, const Seen& seen, const Look& look);

@@ -4,6 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/elevation/group_samples.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -43,15 +44,22 @@ HWY_INLINE std::size_t find_runs(const std::uint32_t* cell,
 }
 
 /// Calls f(first sample, how many) for every run of equal cells; a long one may come in parts.
-template <class F>
-HWY_INLINE void for_each_run(const std::uint32_t* cell, std::size_t samples, const F& f) {
-    std::uint32_t begins[kChunk + 2 * hn::MaxLanes(DU())];
+/// Some runs earlier it calls ahead(first sample).
+template <class F, class Ahead>
+HWY_INLINE void for_each_run(const std::uint32_t* cell,
+                             std::size_t samples,
+                             const F& f,
+                             const Ahead& ahead) {
+    constexpr std::size_t kAhead = 8;
+    std::uint32_t begins[kChunk + hn::MaxLanes(DU()) + kAhead];
     for (std::size_t first = 0; first < samples; first += kChunk) {
         const std::size_t last = std::min(first + kChunk, samples);
         const std::size_t runs = find_runs(cell, first, last, begins);
-        begins[runs] = static_cast<std::uint32_t>(last);
+        for (std::size_t k = 0; k <= kAhead; ++k)
+            begins[runs + k] = static_cast<std::uint32_t>(last);
         auto begin = static_cast<std::uint32_t>(first);
         for (std::size_t k = 0; k <= runs; ++k) {
+            if (begins[k + kAhead] < last) ahead(begins[k + kAhead]);
             f(begin, begins[k] - begin);
             begin = begins[k];
         }
@@ -60,7 +68,10 @@ HWY_INLINE void for_each_run(const std::uint32_t* cell, std::size_t samples, con
 
 void count_runs(const std::uint32_t* cell, std::size_t samples, std::uint32_t* count) {
     for_each_run(
-        cell, samples, [&](std::uint32_t first, std::uint32_t n) { count[cell[first]] += n; });
+        cell,
+        samples,
+        [=](std::uint32_t first, std::uint32_t n) { count[cell[first]] += n; },
+        [](std::uint32_t) {});
 }
 
 void place_runs(const std::uint32_t* cell,
@@ -71,7 +82,7 @@ void place_runs(const std::uint32_t* cell,
     const D d;
     const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
     const SamplePlaces places = to;  // of our own: no store of a register can change it
-    for_each_run(cell, samples, [=](std::uint32_t first, std::uint32_t n) {
+    const auto place = [=](std::uint32_t first, std::uint32_t n) {
         const std::uint32_t next = places.next[cell[first]];
         places.next[cell[first]] = next + n;
         for (std::uint32_t k = 0; k < n; k += lanes) {
@@ -79,7 +90,14 @@ void place_runs(const std::uint32_t* cell,
             hn::BlendedStore(hn::LoadU(d, z_m + first + k), exists, d, places.z_m + next + k);
             hn::BlendedStore(hn::LoadU(d, var_m2 + first + k), exists, d, places.var_m2 + next + k);
         }
-    });
+    };
+    // Along a row of pixels the cells lie far from each other: their memory is fetched beforehand.
+    const auto fetch = [=](std::uint32_t first) {
+        const std::uint32_t next = places.next[cell[first]];
+        hwy::Prefetch(places.z_m + next);
+        hwy::Prefetch(places.var_m2 + next);
+    };
+    for_each_run(cell, samples, place, fetch);
 }
 
 }  // namespace

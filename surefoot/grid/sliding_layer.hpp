@@ -60,11 +60,11 @@ class SlidingLayer {
     /// Moves the contents along with their window and gives the cells that came into view `value`.
     void shift(Shift shift, T value) {
         if (shift.is_zero()) return;
-        if (std::abs(shift.dx) >= nx_ || std::abs(shift.dy) >= ny_) {
+        if (!keeps_any(shift)) {
             fill(value);
             return;
         }
-        move_begin(static_cast<std::ptrdiff_t>(shift.dy) * nx_ + shift.dx);
+        slide(shift);
         const int kept_columns = nx_ - std::abs(shift.dx);
         const int first_new_ix = shift.dx > 0 ? kept_columns : 0;
         const int kept_rows = ny_ - std::abs(shift.dy);
@@ -76,8 +76,16 @@ class SlidingLayer {
             std::fill_n(row(iy) + first_new_ix, std::abs(shift.dx), value);
         }
     }
+    /// The same for a layer that nobody reads in those cells before writing it: they keep what
+    /// happens to be there. Touches no cell but at the end of the memory.
+    void slide(Shift shift) {
+        if (keeps_any(shift)) move_begin(static_cast<std::ptrdiff_t>(shift.dy) * nx_ + shift.dx);
+    }
 
   private:
+    [[nodiscard]] bool keeps_any(Shift shift) const noexcept {
+        return std::abs(shift.dx) < nx_ && std::abs(shift.dy) < ny_;
+    }
     void move_begin(std::ptrdiff_t by) {
         const auto cells = static_cast<std::ptrdiff_t>(size());
         const std::ptrdiff_t moved = begin_ + by;
