@@ -33,7 +33,7 @@ RayBatch random_rays(Rng& rng) {
 TEST(RayBatchTest, TurnsAsAMatrixTurnsOneRayOnEveryTarget) {
     Rng rng(1);
     const RayBatch optical = random_rays(rng);
-    const Eigen::Matrix3d R = exp_so3({0.3, -1.1, 0.7});
+    const Eigen::Matrix3d R = exp_so3({0.3, -1.1, 0.7}).toRotationMatrix();
     camera::test::on_every_target([&](const char* target) {
         RayBatch world;
         turn_rays(R, optical.x.data(), optical.y.data(), optical.z.data(), kOddRange, world);

@@ -95,5 +95,19 @@ TEST(SmoothNoiseTest, SurfaceNoiseHasVarianceOneEverywhereAndIsContinuous) {
     EXPECT_NE(surface.at(noise, 0, 0.5, 0.5), surface.at(noise, 1, 0.5, 0.5));
 }
 
+/// Also from surface to surface and across borders of squares, back and forth.
+TEST(SmoothNoiseTest, ARememberedSquareChangesNoSurfaceNoise) {
+    const PixelNoise noise;
+    const SurfaceNoise surface(4, 0.1);
+    SurfaceNoise::Square square;
+    for (int i = 0; i < 4000; ++i) {
+        const int face = i / 7 % 3;
+        const double u_m = 0.013 * (i % 50) - 0.3;
+        const double v_m = 0.004 * (i % 90) - 0.2;
+        ASSERT_EQ(surface.at(noise, face, u_m, v_m, square), surface.at(noise, face, u_m, v_m))
+            << i;
+    }
+}
+
 }  // namespace
 }  // namespace surefoot::sim
