@@ -66,11 +66,11 @@ void expect_grouped(const std::vector<std::uint32_t>& cell) {
 }
 
 TEST(GroupSamples, KeepsEverySampleInItsOrderOnEveryInstructionSet) {
+    constexpr std::size_t kSizes[] = {0, 1, 2, 7, 8, 9, 16, 17, 511, 512, 513, 1024, 5000};
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(target);
         Rng rng(8);
-        for (const std::size_t n : {0, 1, 2, 7, 8, 9, 16, 17, 511, 512, 513, 1024, 5000})
-            expect_grouped(cells_in_runs(rng, n));
+        for (const std::size_t n : kSizes) expect_grouped(cells_in_runs(rng, n));
         hwy::SetSupportedTargetsForTest(0);
     }
 }

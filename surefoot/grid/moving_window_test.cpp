@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <utility>
@@ -108,6 +109,35 @@ TEST(MovingWindow, ContentsFollowARandomWalkLikeAMapByLatticeIndex) {
                        static_cast<std::int64_t>(std::floor(p_m.y() / 0.05))}] = step;
             }
         }
+    }
+}
+
+TEST(SlidingLayer, SlidesAsItShiftsButForTheCellsThatCameIntoView) {
+    constexpr int kSide = 7;
+    constexpr std::uint8_t kOutside = 255;
+    Rng rng(4);
+    SlidingLayer<std::uint8_t> shifted(kSide, kSide, kOutside);
+    SlidingLayer<std::uint8_t> slid(kSide, kSide, kOutside);
+    for (int step = 0; step < 500; ++step) {
+        const Shift shift{static_cast<int>(rng.below(11)) - 5, static_cast<int>(rng.below(11)) - 5};
+        shifted.shift(shift, kOutside);
+        slid.slide(shift);
+        for (int iy = 0; iy < kSide; ++iy) {
+            for (int ix = 0; ix < kSide; ++ix) {
+                const bool stayed = ix + shift.dx >= 0 && ix + shift.dx < kSide &&
+                                    iy + shift.dy >= 0 && iy + shift.dy < kSide;
+                if (!stayed) {
+                    ASSERT_EQ(shifted.at(ix, iy), kOutside) << "step " << step;
+                    slid.at(ix, iy) = kOutside;
+                }
+                ASSERT_EQ(slid.at(ix, iy), shifted.at(ix, iy)) << "step " << step;
+            }
+        }
+        const auto value = static_cast<std::uint8_t>(step % 200);
+        const int ix = static_cast<int>(rng.below(kSide));
+        const int iy = static_cast<int>(rng.below(kSide));
+        shifted.at(ix, iy) = value;
+        slid.at(ix, iy) = value;
     }
 }
 

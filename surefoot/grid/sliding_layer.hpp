@@ -72,9 +72,7 @@ class SlidingLayer {
         std::fill_n(
             row(first_new_iy), static_cast<std::ptrdiff_t>(std::abs(shift.dy)) * nx_, value);
         const int first_kept_iy = shift.dy > 0 ? 0 : -shift.dy;
-        for (int iy = first_kept_iy; iy < first_kept_iy + kept_rows; ++iy) {
-            std::fill_n(row(iy) + first_new_ix, std::abs(shift.dx), value);
-        }
+        fill_columns(row(first_kept_iy) + first_new_ix, std::abs(shift.dx), kept_rows, value);
     }
     /// The same for a layer that nobody reads in those cells before writing it: they keep what
     /// happens to be there. Touches no cell but at the end of the memory.
@@ -85,6 +83,18 @@ class SlidingLayer {
   private:
     [[nodiscard]] bool keeps_any(Shift shift) const noexcept {
         return std::abs(shift.dx) < nx_ && std::abs(shift.dy) < ny_;
+    }
+    /// A strip of a few columns. Of bytes column by column: a call of memset for each row takes
+    /// longer.
+    void fill_columns(T* first, int columns, int rows, T value) {
+        if constexpr (sizeof(T) == 1) {
+            for (int ix = 0; ix < columns; ++ix, ++first) {
+                T* cell = first;
+                for (int iy = 0; iy < rows; ++iy, cell += nx_) *cell = value;
+            }
+        } else {
+            for (int iy = 0; iy < rows; ++iy, first += nx_) std::fill_n(first, columns, value);
+        }
     }
     void move_begin(std::ptrdiff_t by) {
         const auto cells = static_cast<std::ptrdiff_t>(size());
