@@ -47,6 +47,7 @@ struct FootholdFinder::Row {
     std::vector<float> patch_high;
     std::vector<float> patch_low;
     std::vector<float> low_shown;
+    std::vector<float> low_near;  ///< as low_shown, as far as corners are looked for
     std::vector<float> low_possible;
     std::vector<float> tight;
 
@@ -55,7 +56,7 @@ struct FootholdFinder::Row {
         foot.assign(n, {});
         yz.assign(n, 0.0);
         unknown_band.assign(n, 0.0);
-        for (auto* best : {&patch_high, &patch_low, &low_shown, &low_possible, &tight})
+        for (auto* best : {&patch_high, &patch_low, &low_shown, &low_near, &low_possible, &tight})
             best->assign(n, kNothing);
     }
 };
@@ -66,10 +67,13 @@ FootholdFinder& FootholdFinder::operator=(FootholdFinder&&) noexcept = default;
 FootholdFinder::~FootholdFinder() = default;
 
 void FootholdFinder::shape(double resolution_m) {
+    if (resolution_m == resolution_m_) return;
     resolution_m_ = resolution_m;
     const double foot_m = config_.foot_radius_m + config_.margin_m;
     set_half_widths(foot_m, resolution_m, foot_);
     set_half_widths(foot_m + config_.band_m, resolution_m, band_);
+    set_half_widths(foot_m + config_.band_m + config_.corner_m, resolution_m, near_);
+    for (int yaw = 0; yaw < kYaws; ++yaw) turned_[static_cast<std::size_t>(yaw)] = turned_foot(yaw);
     patch_cells_ = std::max(1, static_cast<int>(std::lround(config_.patch_side_m / resolution_m)));
     foot_cells_ = 0.0;
     foot_moment_ = 0.0;
@@ -81,6 +85,41 @@ void FootholdFinder::shape(double resolution_m) {
     const double errors = std::max(
         1.0, std::numbers::pi * foot_m * foot_m / (config_.correlation_m * config_.correlation_m));
     slope_sigmas_per_m_ = config_.sigma_factor / (0.5 * foot_m * std::sqrt(errors));
+}
+
+FootholdFinder::TurnedFoot FootholdFinder::turned_foot(int yaw) const {
+    // Sine of 22.5 deg, and cosine; written out, for no library decides where a foot may stand.
+    constexpr double kSin = 0.38268343236508977;
+    constexpr double kCos = 0.92387953251128674;
+    constexpr double kHalf = 0.70710678118654752;
+    constexpr double kCosines[kYaws] = {1.0, kCos, kHalf, kSin, 0.0, -kSin, -kHalf, -kCos};
+    constexpr double kSines[kYaws] = {0.0, kSin, kHalf, kCos, 1.0, kCos, kHalf, kSin};
+    constexpr double kRounding_m = 1e-9;
+    const double half_width_m = 0.5 * config_.foot_width_m;
+    const double half_length_m =
+        std::sqrt(config_.foot_radius_m * config_.foot_radius_m - half_width_m * half_width_m);
+    TurnedFoot turned;
+    const int reach = reach_of(foot_);
+    turned.runs.reserve(foot_.size() * 2);
+    for (int dy = -reach; dy <= reach; ++dy) {
+        const int h = foot_[static_cast<std::size_t>(std::abs(dy))];
+        TurnedFoot::Run run{dy, 1, 0};
+        for (int dx = -h; dx <= h; ++dx) {
+            const double along = dx * kCosines[yaw] + dy * kSines[yaw];
+            const double across = dy * kCosines[yaw] - dx * kSines[yaw];
+            if (std::abs(along) * resolution_m_ > half_length_m + kRounding_m ||
+                std::abs(across) * resolution_m_ > half_width_m + kRounding_m) {
+                continue;
+            }
+            if (run.first_dx > run.last_dx) run.first_dx = dx;
+            run.last_dx = dx;
+            turned.xx += dx * dx;
+            turned.xy += dx * dy;
+            turned.yy += dy * dy;
+        }
+        if (run.first_dx <= run.last_dx) turned.runs.push_back(run);
+    }
+    return turned;
 }
 
 void FootholdFinder::find(const FootholdGround& ground, Executor& executor, Image<Foothold>& out) {
@@ -184,8 +223,11 @@ void FootholdFinder::gather(int iy, Row& row) const {
     row.reset(nx_);
     const int foot = reach_of(foot_);
     const int band = reach_of(band_);
-    for (int dy = std::max(-band, -iy); dy <= std::min(band, ny_ - 1 - iy); ++dy) {
+    const int near = reach_of(near_);
+    for (int dy = std::max(-near, -iy); dy <= std::min(near, ny_ - 1 - iy); ++dy) {
         const auto distance = static_cast<std::size_t>(std::abs(dy));
+        low_shown_.take(iy + dy, -near_[distance], near_[distance], row.low_near.data());
+        if (std::abs(dy) > band) continue;
         const Sums* sums = sums_.data() + static_cast<std::ptrdiff_t>(iy + dy) * (nx_ + 1);
         const int h = band_[distance];
         low_shown_.take(iy + dy, -h, h, row.low_shown.data());
@@ -254,7 +296,9 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
     if (found == Foothold::rough) return found;
     if (row.tight[at] > 0.0F) return Foothold::low;
     if (slope + slope_doubt > config_.max_slope ||
-        middle_m + static_cast<double>(row.low_possible[at]) > config_.drop_m) {
+        middle_m + static_cast<double>(row.low_possible[at]) > config_.drop_m ||
+        drop_begins(middle_m, slope, row.low_near[at]) ||
+        (slope > 0.5 * config_.max_slope && tilts_at_a_yaw(ix, iy))) {
         return Foothold::unsure;
     }
     const bool cut_off = !ground.reach_step_m.empty() && std::isnan(ground.reach_step_m.at(ix, iy));
@@ -282,10 +326,43 @@ Foothold FootholdFinder::judge_patches(
     return found;
 }
 
+bool FootholdFinder::drop_begins(double middle_m, double slope, float low_near) const {
+    if (config_.corner_m == 0.0) return false;
+    const double rise_m =
+        slope * (config_.foot_radius_m + config_.margin_m + config_.band_m + config_.corner_m);
+    return middle_m - rise_m + static_cast<double>(low_near) > 0.5 * config_.drop_m;
+}
+
+bool FootholdFinder::tilts_at_a_yaw(int ix, int iy) const {
+    for (const TurnedFoot& turned : turned_) {
+        const double determinant = turned.xx * turned.yy - turned.xy * turned.xy;
+        // A foot of a single row of cells has no plane.
+        if (!(determinant > 0.0)) continue;
+        double xz = 0.0;
+        double yz = 0.0;
+        for (const TurnedFoot::Run& run : turned.runs) {
+            const Sums* sums =
+                sums_.data() + static_cast<std::ptrdiff_t>(iy + run.dy) * (nx_ + 1) + ix;
+            const Sums& begin = sums[run.first_dx];
+            const Sums& end = sums[run.last_dx + 1];
+            const double z = end.z - begin.z;
+            xz += (end.xz - begin.xz) - ix * z;
+            yz += run.dy * z;
+        }
+        const double slope_x = (turned.yy * xz - turned.xy * yz) / determinant / resolution_m_;
+        const double slope_y = (turned.xx * yz - turned.xy * xz) / determinant / resolution_m_;
+        if (slope_x * slope_x + slope_y * slope_y > config_.max_slope * config_.max_slope)
+            return true;
+    }
+    return false;
+}
+
 void FootholdConfig::describe(ConfigVisitor& visitor) {
     visitor.number("foot_radius_m", foot_radius_m, 0.01, 1.0, "half the diagonal of a foot");
+    visitor.number("foot_width_m", foot_width_m, 0.01, 1.0, "shorter side of a foot");
     visitor.number("margin_m", margin_m, 0.0, 1.0, "edges may lie beside where the map has them");
     visitor.number("band_m", band_m, 0.0, 1.0, "solid ground wanted beyond the foot");
+    visitor.number("corner_m", corner_m, 0.0, 1.0, "drops begin up to so far before the map's");
     visitor.number("drop_m", drop_m, 0.001, 1.0, "ground lower than the foot by more is a drop");
     visitor.number(
         "max_slope", max_slope, 0.001, 10.0, "of the plane under the foot, rise over run");
@@ -303,6 +380,13 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
 }
 
 std::optional<std::string> FootholdConfig::problem() const {
+    if (foot_width_m > std::numbers::sqrt2 * foot_radius_m) {
+        return fmt::format(
+            "foothold.foot_width_m = {} must be the shorter side of a foot with half a diagonal of "
+            "foothold.foot_radius_m = {}",
+            foot_width_m,
+            foot_radius_m);
+    }
     if (patch_side_m <= foot_radius_m) return std::nullopt;
     return fmt::format("foothold.patch_side_m = {} must not exceed foothold.foot_radius_m = {}",
                        patch_side_m,
@@ -310,7 +394,7 @@ std::optional<std::string> FootholdConfig::problem() const {
 }
 
 bool FootholdConfig::fits(double resolution_m) const noexcept {
-    const double reach_m = foot_radius_m + margin_m + band_m;
+    const double reach_m = foot_radius_m + margin_m + band_m + corner_m;
     return resolution_m <= foot_radius_m && reach_m <= (RunMaxima::kMargin - 1) * resolution_m;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -19,10 +20,14 @@ namespace surefoot::traversability {
 /// this one every cell, for a foot turned in any way.
 struct FootholdConfig {
     double foot_radius_m = 0.206;  ///< half the diagonal of a foot of 0.366 x 0.190 m
+    double foot_width_m = 0.190;   ///< its shorter side
     double margin_m = 0.05;        ///< edges may lie two cells beside where the map has them
     double band_m = 0.10;          ///< solid ground wanted beyond the foot
-    double drop_m = 0.05;          ///< ground lower than the foot by more is a drop
-    double max_slope = 0.1051;     ///< rise over run: tan 6 deg
+    /// Where two edges meet, a matcher puts the nearer ground up to three cells too far over the
+    /// lower: drops that begin so far beyond the band may reach into it.
+    double corner_m = 0.075;
+    double drop_m = 0.05;       ///< ground lower than the foot by more is a drop
+    double max_slope = 0.1051;  ///< rise over run: tan 6 deg
     double patch_side_m = 0.05;
     double max_residual_m = 0.025;   ///< of the mean of a patch to the plane under the foot
     double sigma_factor = 3.4;       ///< one-sided 3e-4
@@ -75,7 +80,13 @@ struct FootholdGround {
 ///   mean (variance of the cells over their number, at most `independent_cells`);
 /// - low: `clearance_m` is less than wanted somewhere in F;
 /// - unreachable: the cell has no `reach_step_m`.
-/// What is only beyond a limit when k sigma are added is unsure.
+/// What is only beyond a limit when k sigma are added is unsure. So are
+/// - what has ground in B, or within `corner_m` beyond it, that is shown to lie by more than half
+/// of
+///   `drop_m` below all of p there (not asked for if `corner_m` is 0);
+/// - where p rises by more than half of `max_slope`: what has a plane steeper than that under the
+///   foot itself, no margin, at one of kYaws yaws. The narrow foot tilts more than the disc does
+///   where a ramp begins or ends. Its sigma is not asked for: it would doubt every ramp of 1:12.
 ///
 /// Holds the working memory: maps of one size allocate nothing after the first. The same bytes for
 /// every executor. Cost: cells times rows of B.
@@ -86,6 +97,8 @@ class FootholdFinder {
     FootholdFinder& operator=(FootholdFinder&&) noexcept;
     ~FootholdFinder();
     [[nodiscard]] const FootholdConfig& config() const noexcept { return config_; }
+    /// Yaws of the foot, as far apart as each other; half a turn exchanges heel and toe.
+    static constexpr int kYaws = 8;
     /// `out` gets the size of the map; `config().problem()` is empty.
     void find(const FootholdGround& ground, Executor& executor, Image<Foothold>& out);
 
@@ -98,6 +111,19 @@ class FootholdFinder {
         double unknown = 0.0;
     };
     struct Row;
+    /// The cells under a foot turned by one of the yaws, row by row, and their second moments about
+    /// its middle [cells^2].
+    struct TurnedFoot {
+        struct Run {
+            int dy = 0;
+            int first_dx = 0;
+            int last_dx = 0;
+        };
+        std::vector<Run> runs;
+        double xx = 0.0;
+        double xy = 0.0;
+        double yy = 0.0;
+    };
 
     void shape(double resolution_m);
     void sum_row(const FootholdGround& ground, int iy);
@@ -111,6 +137,12 @@ class FootholdFinder {
     [[nodiscard]] Foothold judge_patches(
         int ix, int iy, double mean_m, double slope_x, double slope_y) const;
     [[nodiscard]] int patch_half_width(int dy) const;
+    [[nodiscard]] TurnedFoot turned_foot(int yaw) const;
+    /// Ground within `corner_m` of B is shown to be lower than p by half a drop; `low_near` is
+    /// minus the lowest that is shown there.
+    [[nodiscard]] bool drop_begins(double middle_m, double slope, float low_near) const;
+    /// A plane under the foot is steeper than allowed at one of the yaws; F is known.
+    [[nodiscard]] bool tilts_at_a_yaw(int ix, int iy) const;
 
     FootholdConfig config_;
     int nx_ = 0;
@@ -118,6 +150,8 @@ class FootholdFinder {
     double resolution_m_ = 0.0;
     std::vector<int> foot_;  ///< half widths of the rows 0 ... reach of F [cells]
     std::vector<int> band_;  ///< of B
+    std::vector<int> near_;  ///< of B and the corners beyond it
+    std::array<TurnedFoot, kYaws> turned_;
     int patch_cells_ = 1;
     double foot_cells_ = 0.0;        ///< of F
     double foot_moment_ = 0.0;       ///< sum of x^2 over F [cells^2]

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "surefoot/core/rng.hpp"
@@ -44,10 +47,11 @@ struct Map {
     }
 };
 
-/// F reaches 9 cells and B 13: margin of one cell.
+/// F reaches 9 cells and B 13: margin of one cell, nothing for corners.
 FootholdConfig narrow() {
     FootholdConfig config;
     config.margin_m = 0.025;
+    config.corner_m = 0.0;
     return config;
 }
 
@@ -128,6 +132,8 @@ class Oracle {
         if (rough) return Foothold::rough;
         if (tight) return Foothold::low;
         if (perhaps_rough || perhaps_deep || slope + doubt > c_.max_slope) return Foothold::unsure;
+        if (drop_begins(cx, cy, middle, slope)) return Foothold::unsure;
+        if (slope > 0.5 * c_.max_slope && tilts(cx, cy)) return Foothold::unsure;
         return std::isnan(g_.reach_step_m.at(cx, cy)) ? Foothold::unreachable : Foothold::safe;
     }
 
@@ -141,6 +147,49 @@ class Oracle {
     }
     static bool within(int dx, int dy, double radius) {
         return dx * dx + dy * dy <= radius * radius + 1e-6;
+    }
+    [[nodiscard]] bool drop_begins(int cx, int cy, double middle, double slope) const {
+        if (c_.corner_m == 0.0) return false;
+        const double near_m = c_.foot_radius_m + c_.margin_m + c_.band_m + c_.corner_m;
+        const double near = near_m / g_.resolution_m;
+        const int reach = static_cast<int>(std::ceil(near));
+        for (int y = cy - reach; y <= cy + reach; ++y) {
+            for (int x = cx - reach; x <= cx + reach; ++x) {
+                if (!within(x - cx, y - cy, near) || !inside(x, y)) continue;
+                const double shown =
+                    known(x, y) ? height(x, y) + c_.sigma_factor * std::sqrt(variance(x, y))
+                                : free_above(x, y);
+                if (middle - slope * near_m - shown > 0.5 * c_.drop_m) return true;
+            }
+        }
+        return false;
+    }
+    /// Least squares by normal equations over the cells under the foot, yaw by yaw.
+    [[nodiscard]] bool tilts(int cx, int cy) const {
+        const double half_width = 0.5 * c_.foot_width_m;
+        const double half_length =
+            std::sqrt(c_.foot_radius_m * c_.foot_radius_m - half_width * half_width);
+        for (int yaw = 0; yaw < 8; ++yaw) {
+            Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+            Eigen::Vector3d right = Eigen::Vector3d::Zero();
+            const Eigen::Rotation2Dd turned(M_PI * yaw / 8);
+            for (int dy = -10; dy <= 10; ++dy) {
+                for (int dx = -10; dx <= 10; ++dx) {
+                    const Eigen::Vector2d at(dx * g_.resolution_m, dy * g_.resolution_m);
+                    const Eigen::Vector2d in_foot = turned.inverse() * at;
+                    if (std::abs(in_foot.x()) > half_length + 1e-9 ||
+                        std::abs(in_foot.y()) > half_width + 1e-9) {
+                        continue;
+                    }
+                    const Eigen::Vector3d row(at.x(), at.y(), 1.0);
+                    normal += row * row.transpose();
+                    right += height(cx + dx, cy + dy) * row;
+                }
+            }
+            const Eigen::Vector3d plane = normal.inverse() * right;
+            if (plane.head<2>().norm() > c_.max_slope) return true;
+        }
+        return false;
     }
     [[nodiscard]] bool inside(int x, int y) const {
         return x >= 0 && y >= 0 && x < g_.height_m.width && y < g_.height_m.height;
@@ -236,6 +285,51 @@ TEST(Foothold, RampsUpToSixDegrees) {
     EXPECT_EQ(at(across, 30), Foothold::tilted);
 }
 
+TEST(Foothold, ANarrowFootTiltsWhereARampBegins) {
+    const auto ramp = [](double run) {
+        return [run](int ix) { return std::max(0, ix - 29) * kCell_m / run; };
+    };
+    FootholdConfig wide = narrow();
+    wide.foot_width_m = 0.29;  // square: hardly less than the disc
+    int narrow_alone = 0;
+    for (int ix = 14; ix < kSide - 14; ++ix) {
+        EXPECT_EQ(at(Map(ramp(12.0)), ix), Foothold::safe) << ix;
+        const Foothold found = at(Map(ramp(8.0)), ix);
+        const Foothold found_wide = at(Map(ramp(8.0)), ix, wide);
+        // A foot across the beginning: least squares over 0.19 m of which less than this is flat.
+        EXPECT_EQ(found == Foothold::safe, ix <= 30) << ix;
+        narrow_alone += found == Foothold::unsure && found_wide == Foothold::safe ? 1 : 0;
+    }
+    EXPECT_GE(narrow_alone, 1);
+}
+
+TEST(Foothold, WhereADropBeginsBeyondTheBandNothingIsSure) {
+    const auto pit = [](float depth_m) {
+        Map map([](int) { return 0.0; });
+        for (int iy = 40; iy < kSide; ++iy)
+            for (int ix = 40; ix < kSide; ++ix) map.height_m.at(ix, iy) = -depth_m;
+        return map;
+    };
+    FootholdConfig corners = narrow();
+    corners.corner_m = 0.075;  // three cells
+    // On the diagonal through the corner the pit is (40 - i) cells away along each axis.
+    for (const auto& [i, with, without] : {std::tuple(40 - 9, Foothold::drop, Foothold::drop),
+                                           std::tuple(40 - 10, Foothold::unsure, Foothold::safe),
+                                           std::tuple(40 - 11, Foothold::unsure, Foothold::safe),
+                                           std::tuple(40 - 12, Foothold::safe, Foothold::safe)}) {
+        EXPECT_EQ(found(pit(0.25F), corners).at(i, i), with) << i;
+        EXPECT_EQ(found(pit(0.25F)).at(i, i), without) << i;
+    }
+    // Half a drop counts, a lesser one does not, nor one that is not sure.
+    EXPECT_EQ(found(pit(0.026F), corners).at(30, 30), Foothold::unsure);
+    EXPECT_EQ(found(pit(0.024F), corners).at(30, 30), Foothold::safe);
+    Map unsure = pit(0.035F);
+    unsure.var_m2.at(40, 40) = 0.004F * 0.004F;
+    EXPECT_EQ(found(unsure, corners).at(29, 29), Foothold::safe);
+    // A ramp of 1:12 falls by 31 mm as far as corners are looked for.
+    EXPECT_EQ(at(Map([](int ix) { return -ix * kCell_m / 12.0; }), 30, corners), Foothold::safe);
+}
+
 TEST(Foothold, ABumpUnderTheFootIsRough) {
     Map bump([](int) { return 0.0; });
     for (int i = 0; i < 4; ++i) bump.height_m.at(30 + i % 2, 30 + i / 2) = 0.03F;
@@ -295,9 +389,10 @@ TEST(Foothold, SameAsTheRulesOnRandomGround) {
                     map.free_above_m.at(ix, iy) = static_cast<float>(z - 0.12 * rng.uniform());
             }
         }
-        const Image<Foothold> holds = found(map);
+        FootholdConfig config = narrow();
+        if (seed % 2 == 0) config.corner_m = 0.05;
+        const Image<Foothold> holds = found(map, config);
         const FootholdGround ground = map.ground();
-        const FootholdConfig config = narrow();
         const Oracle oracle(config, ground);
         for (int iy = 0; iy < kSide; ++iy) {
             for (int ix = 0; ix < kSide; ++ix) {
@@ -327,6 +422,9 @@ TEST(Foothold, OtherGridsAreUnknown) {
     EXPECT_TRUE(config.fits(0.1));
     config.patch_side_m = 0.3;
     EXPECT_NE(config.problem()->find("must not exceed"), std::string::npos);
+    config = {};
+    config.foot_width_m = 0.3;
+    EXPECT_NE(config.problem()->find("shorter side"), std::string::npos);
 }
 
 }  // namespace
