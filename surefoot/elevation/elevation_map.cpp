@@ -266,7 +266,9 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
                               static_cast<std::size_t>(ix);
             if (measured[ix].z_m < lowest_z_m_) {
                 counts.gated_height += begin[ix + 1] - begin[ix];
-                if (std::isnan(layers().height_m.data()[cell])) cells_.see_over(cell, lowest_z_m_);
+                const float not_above_m = sight_.not_above_m(measured[ix].z_m, measured[ix].var_m2);
+                if (std::isnan(layers().height_m.data()[cell]))
+                    cells_.see_over(cell, std::max(lowest_z_m_, not_above_m));
                 continue;
             }
             Seen seen{measured[ix], kNan, measured[ix].z_m};
@@ -278,7 +280,7 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
                 if (points > kFaceDensity * expected->at(ix, iy, lowest_m))
                     seen.bottom_m = std::min(lowest_m, measured[ix].z_m);
             }
-            sight_.ended(cell, seen.measured.z_m, seen.bottom_m);
+            sight_.ended(cell, measured[ix].z_m, measured[ix].var_m2, seen.bottom_m);
             cells_.update(cell, seen, look, counts);
         }
     }

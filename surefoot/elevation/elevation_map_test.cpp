@@ -249,6 +249,25 @@ TEST(ElevationMap, GroundBelowTheHeightCutIsADropAndNoHeight) {
     EXPECT_TRUE(std::isnan(at(map, map.layers().free_above_m, 1.01, 0.01)));
 }
 
+TEST(ElevationMap, LinesOfSightShowDropsAsSurelyAsTheirEndsAreKnown) {
+    // From 1 m up, half the lines to a patch 2 m ahead and 0.6 m below the floor are 0.2 m below it
+    // at 1.5 m. Whose end may as well lie 0.9 m higher says nothing of a drop.
+    const Pose T_odom_body = body_at(0, 0);
+    constexpr double kEnd_m = -0.6;
+    const auto line_m = [](double end_m) { return static_cast<float>(1.0 - 0.75 * (1.0 - end_m)); };
+    for (const float sigma_m : {0.005F, 0.3F}) {
+        ElevationMap map(exact_config());
+        const auto deep = flat_patch(T_odom_body, 2.0, 0.0, kEnd_m, sigma_m);
+        for (int time_ns = 0; time_ns < 2; ++time_ns)
+            map.add_points(deep, {}, T_odom_body, time_ns);
+        ASSERT_TRUE(std::isnan(height_at(map, 1.51, 0.01)));
+        EXPECT_NEAR(at(map, map.layers().free_above_m, 1.51, 0.01),
+                    line_m(kEnd_m + 3.0 * static_cast<double>(sigma_m)),
+                    0.05F)
+            << sigma_m;
+    }
+}
+
 /// Collects every key, and checks that defaults lie within their own ranges.
 class KeyCollector : public ConfigVisitor {
   public:

@@ -18,12 +18,15 @@ constexpr int kBeside = 2;  ///< cells that vouch for one that was not seen lie 
 SightCheck::SightCheck(const ElevationConfig& config)
     : config_(config.visibility),
       margin_m_(static_cast<float>(config.visibility.margin_m)),
-      hangs_m_(static_cast<float>(config.min_overhead_m)) {}
+      hangs_m_(static_cast<float>(config.min_overhead_m)),
+      sigmas_(static_cast<float>(config.visibility.sigmas)) {}
 
 void SightCheck::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {
     geometry_ = geometry;
     camera_m_ = camera_m;
     ends_.reset(geometry, camera_m);
+    line_end_m_.resize(static_cast<std::size_t>(geometry.nx) *
+                       static_cast<std::size_t>(geometry.ny));
 }
 
 std::int64_t SightCheck::apply(std::int64_t time_ns, Executor& executor, ElevationCells& cells) {
@@ -68,7 +71,7 @@ void SightCheck::collect_lines() {
     std::size_t cell = 0;
     for (int iy = 0; iy < geometry_.ny; ++iy) {
         for (int ix = 0; ix < geometry_.nx; ++ix, ++cell) {
-            if (!std::isnan(ends_.z_m(cell))) lines_.add({ix, iy}, ends_.z_m(cell));
+            if (!std::isnan(ends_.z_m(cell))) lines_.add({ix, iy}, line_end_m_[cell]);
         }
     }
     lines_.finish();

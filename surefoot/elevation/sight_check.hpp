@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,9 +24,15 @@ class SightCheck {
 
     /// Starts a frame seen from a camera at `camera_m` in odom.
     void reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m);
-    /// Lines of sight ended in a cell, see `SightEnds::set`.
-    void ended(std::size_t cell, float z_m, float bottom_m) noexcept {
+    /// Lines of sight ended in a cell, see `SightEnds::set`, as surely as `var_m2` says.
+    void ended(std::size_t cell, float z_m, float var_m2, float bottom_m) noexcept {
         ends_.set(cell, z_m, bottom_m);
+        line_end_m_[cell] = not_above_m(z_m, var_m2);
+    }
+    /// So low what was seen at that height is, at `visibility.sigmas`, at least: a wrong match far
+    /// below the floor, of which the matcher is not sure, shows no drop.
+    [[nodiscard]] float not_above_m(float z_m, float var_m2) const noexcept {
+        return z_m + sigmas_ * std::sqrt(var_m2);
     }
     /// Call once all of the frame's measurements are in the cells. Returns how many were forgotten.
     std::int64_t apply(std::int64_t time_ns, Executor& executor, ElevationCells& cells);
@@ -45,9 +52,11 @@ class SightCheck {
     VisibilityConfig config_;
     float margin_m_;
     float hangs_m_;  ///< what is so far over the ground hangs
+    float sigmas_;
     grid::GridGeometry geometry_;
     Eigen::Vector3d camera_m_ = Eigen::Vector3d::Zero();
     SightEnds ends_;
+    std::vector<float> line_end_m_;  ///< per cell with an end: not higher than this
     LinesOfSight lines_;
     std::vector<std::uint8_t> gone_;  ///< per cell: the frame's lines of sight say so
 };
