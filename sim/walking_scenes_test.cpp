@@ -69,7 +69,9 @@ TEST(WalkingScenesTest, OnFreeGroundEveryStepIsSafe) {
                              "walk_turn_round",
                              "walk_back_to_table",
                              "walk_sidestep_door_1000",
-                             "walk_pivot_reverse"}) {
+                             "walk_pivot_reverse",
+                             "walk_look_pivot_reverse",
+                             "walk_look_pivot_reverse_edge"}) {
         for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
             Walk(name, seed).expect_only_the_last_unsafe(0);
     }
