@@ -346,7 +346,7 @@ TEST(ScenesTest, TheCameraSeesWhatTheSceneIsAbout) {
         {"stripes", Label::floor},    {"shadow", Label::floor},       {"look", Label::step},
         {"hand", Label::step},        {"walk_back", Label::table},    {"walk_descend", Label::step},
         {"walk_ramp", Label::ramp},   {"walk_sidestep", Label::wall}, {"walk_turn", Label::table},
-        {"walk_pivot", Label::floor}, {"walk_floor", Label::floor},
+        {"walk_pivot", Label::floor}, {"walk_floor", Label::floor},   {"walk_look", Label::floor},
     };
     for (const SceneInfo& info : list_scenes()) {
         const auto subject = std::find_if(subjects.begin(), subjects.end(), [&](const auto& entry) {
