@@ -46,8 +46,7 @@ struct FootholdFinder::Row {
     std::vector<double> unknown_band;  ///< unknown cells of B
     std::vector<float> patch_high;
     std::vector<float> patch_low;
-    std::vector<float> low_shown;
-    std::vector<float> low_near;  ///< as low_shown, as far as corners are looked for
+    std::vector<float> low_near;  ///< of low_shown_, as far as corners are looked for
     std::vector<float> low_possible;
     std::vector<float> tight;
 
@@ -56,7 +55,7 @@ struct FootholdFinder::Row {
         foot.assign(n, {});
         yz.assign(n, 0.0);
         unknown_band.assign(n, 0.0);
-        for (auto* best : {&patch_high, &patch_low, &low_shown, &low_near, &low_possible, &tight})
+        for (auto* best : {&patch_high, &patch_low, &low_near, &low_possible, &tight})
             best->assign(n, kNothing);
     }
 };
@@ -230,7 +229,6 @@ void FootholdFinder::gather(int iy, Row& row) const {
         if (std::abs(dy) > band) continue;
         const Sums* sums = sums_.data() + static_cast<std::ptrdiff_t>(iy + dy) * (nx_ + 1);
         const int h = band_[distance];
-        low_shown_.take(iy + dy, -h, h, row.low_shown.data());
         low_possible_.take(iy + dy, -h, h, row.low_possible.data());
         for (int ix = h; ix < nx_ - h; ++ix) {
             row.unknown_band[static_cast<std::size_t>(ix)] +=
@@ -277,7 +275,11 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
                                 ? foot.z / foot_cells_
                                 : static_cast<double>(height_m) -
                                       config_.sigma_factor * std::sqrt(variance_of(ground, ix, iy));
-    if (middle_m + static_cast<double>(row.low_shown[at]) > config_.drop_m) return Foothold::drop;
+    // What is beyond B is asked for everywhere, B itself only where that holds a drop.
+    if (middle_m + static_cast<double>(row.low_near[at]) > config_.drop_m &&
+        middle_m + static_cast<double>(low_in_band(ix, iy)) > config_.drop_m) {
+        return Foothold::drop;
+    }
     const bool band_known = inside(reach_of(band_)) && row.unknown_band[at] == 0.0;
     if (!foot_known || !band_known) return Foothold::unknown;
 
@@ -324,6 +326,16 @@ Foothold FootholdFinder::judge_patches(
         }
     }
     return found;
+}
+
+float FootholdFinder::low_in_band(int ix, int iy) const {
+    const int band = reach_of(band_);
+    float low = kNothing;
+    for (int dy = std::max(-band, -iy); dy <= std::min(band, ny_ - 1 - iy); ++dy) {
+        const int h = band_[static_cast<std::size_t>(std::abs(dy))];
+        low = std::max(low, low_shown_.largest(iy + dy, ix, -h, h));
+    }
+    return low;
 }
 
 bool FootholdFinder::drop_begins(double middle_m, double slope, float low_near) const {

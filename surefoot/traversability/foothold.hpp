@@ -138,6 +138,8 @@ class FootholdFinder {
         int ix, int iy, double mean_m, double slope_x, double slope_y) const;
     [[nodiscard]] int patch_half_width(int dy) const;
     [[nodiscard]] TurnedFoot turned_foot(int yaw) const;
+    /// Minus the lowest that is shown in B.
+    [[nodiscard]] float low_in_band(int ix, int iy) const;
     /// Ground within `corner_m` of B is shown to be lower than p by half a drop; `low_near` is
     /// minus the lowest that is shown there.
     [[nodiscard]] bool drop_begins(double middle_m, double slope, float low_near) const;

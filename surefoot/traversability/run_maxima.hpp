@@ -52,6 +52,15 @@ class RunMaxima {
             best[ix] = best[ix] < here ? here : best[ix];
         }
     }
+    /// The largest of the cells ix + first ... ix + last of the row; limits as for `take`.
+    [[nodiscard]] float largest(int iy, int ix, int first, int last) const noexcept {
+        const int cells = last - first + 1;
+        std::size_t l = 0;
+        while (2 << l <= cells) ++l;
+        const float* left = level(l, iy) + kMargin + ix + first;
+        const float right = left[cells - (1 << l)];
+        return *left < right ? right : *left;
+    }
 
   private:
     static constexpr std::size_t kLevels = 7;
