@@ -183,7 +183,8 @@ Workload checking_sight(std::string name, int side, Executor& executor) {
             state->check.reset(state->geometry, {0.1, 0.0, 1.0});
             const auto cells = static_cast<std::size_t>(state->geometry.nx) *
                                static_cast<std::size_t>(state->geometry.ny);
-            for (std::size_t cell = 0; cell < cells; ++cell) state->check.ended(cell, 0.0F, 0.0F);
+            for (std::size_t cell = 0; cell < cells; ++cell)
+                state->check.ended(cell, 0.0F, 1e-5F, 0.0F);
             static_cast<void>(state->check.apply(2 * kFrame_ns, executor, state->cells));
         });
     };
