@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How true is the map, and how often is it wrong about where a foot may stand?
-// Usage: terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES]]]
-//   terrain_truth out/terrain.csv floor,demo_stairs 20001 3 ideal,zed
+// Usage: terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [NOISE]]]]
+//   terrain_truth out/terrain.csv floor,demo_stairs 20001 3 ideal,zed 2
 //
 // The whole chain runs over rendered images with true poses (sim.known_motion). At the end of the
 // way the map is compared with the scene's geometry in the cells that were in view within 2.5 m.
@@ -9,10 +9,11 @@
 // so at eight yaws, 22.5 deg apart (half a turn exchanges heel and toe), and truly unsafe if one of
 // them is not. The machine is the REX; the floor is reached from the first base_link.
 // Profiles: those of the simulator, and zed_calibrated: zed without its error of calibration.
+// NOISE: factor on every noise amplitude of the images.
 // One line a scene, seed and profile:
 //   median_mm, p90_mm, coverage               of all heights
 //   sigma_1, sigma_2, sigma_3                 share of errors within, farther than 2 cells from
-//                                             edges
+//                                             edges of any surface, in view at any range
 //   truly_unsafe, called_safe, cluster        cells; largest connected group of the second
 //   hazards, hazards_called_safe, hazard_cluster  the same where the foot itself could not stand
 //                                             (no drop is asked to be a band away), clear cut
@@ -26,6 +27,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +35,10 @@
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
+#include "eval/error_bins.hpp"
 #include "eval/maps.hpp"
 #include "experiments/scene_cases.hpp"
+#include "io/text.hpp"
 #include "sim/cell_safety.hpp"
 #include "sim/scene_source.hpp"
 #include "sim/truth.hpp"
@@ -64,6 +68,80 @@ struct FootholdCounts {
     int unsure = 0;
     int unknown = 0;
 };
+
+/// A cell has a surface, highest or not, that has no counterpart within `step_m` in the other one:
+/// what stands under a table, and its legs, have edges too.
+bool has_edge_towards(const std::vector<sim::SurfaceHeight>& here,
+                      const std::vector<sim::SurfaceHeight>& there,
+                      double step_m) {
+    return std::any_of(here.begin(), here.end(), [&](const sim::SurfaceHeight& mine) {
+        return std::none_of(there.begin(), there.end(), [&](const sim::SurfaceHeight& other) {
+            return std::abs(other.z_m - mine.z_m) <= step_m;
+        });
+    });
+}
+
+/// 1 where all surfaces go on for more than the margin in all directions (distances as those of
+/// eval::away_from_edges, which sees the highest surfaces alone).
+eval::CellMask away_from_all_edges(const sim::Scene& scene,
+                                   const sim::Lattice& lattice,
+                                   const grid::Layer& dem_m,
+                                   const eval::EvalMapsConfig& config) {
+    std::vector<std::vector<sim::SurfaceHeight>> surfaces;
+    surfaces.reserve(dem_m.size());
+    for (int iy = 0; iy < lattice.ny; ++iy) {
+        for (int ix = 0; ix < lattice.nx; ++ix) {
+            const Eigen::Vector2d p = lattice.center_m(ix, iy);
+            surfaces.push_back(scene.surfaces_at(p.x(), p.y()));
+        }
+    }
+    const auto at = [&](int ix, int iy) -> const std::vector<sim::SurfaceHeight>& {
+        return surfaces[static_cast<std::size_t>(iy) * static_cast<std::size_t>(lattice.nx) +
+                        static_cast<std::size_t>(ix)];
+    };
+    eval::CellMask away = eval::away_from_edges(dem_m, config);
+    const int margin = config.edge_margin_cells;
+    for (int iy = 0; iy + 1 < lattice.ny; ++iy) {
+        for (int ix = 0; ix + 1 < lattice.nx; ++ix) {
+            for (const auto& [jx, jy] : {std::pair{ix + 1, iy}, {ix, iy + 1}}) {
+                if (!has_edge_towards(at(ix, iy), at(jx, jy), config.edge_step_m) &&
+                    !has_edge_towards(at(jx, jy), at(ix, iy), config.edge_step_m)) {
+                    continue;
+                }
+                for (int y = iy - margin; y <= jy + margin; ++y)
+                    for (int x = ix - margin; x <= jx + margin; ++x)
+                        if (away.contains(x, y)) away.at(x, y) = 0;
+            }
+        }
+    }
+    return away;
+}
+
+/// Do errors keep to the sigma that the map states? In cells whose highest surface both eyes had in
+/// view, near or far: nobody looks at the top of a wall.
+eval::SigmaCoverage sigma_of_heights(const sim::SceneTruth& truth,
+                                     const sim::Lattice& lattice,
+                                     const elevation::ElevationLayers& layers,
+                                     const grid::Layer& compared_m,
+                                     const eval::EvalMapsConfig& config,
+                                     Executor& executor) {
+    constexpr double kAnyRange_m = 100.0;
+    const eval::CellMask asked = eval::both(
+        away_from_all_edges(truth.scene, lattice, sim::dem(truth.scene, lattice), config),
+        sim::visibility_mask(truth, lattice, {.range_m = kAnyRange_m}, executor));
+    const grid::Layer height_m = layers.height_m;
+    const grid::Layer var_m2 = layers.height_var_m2;
+    std::vector<float> error_m;
+    std::vector<float> sigma_m;
+    error_m.reserve(asked.size());
+    sigma_m.reserve(asked.size());
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        if (asked.data()[i] == 0) continue;
+        error_m.push_back(height_m.data()[i] - compared_m.data()[i]);
+        sigma_m.push_back(std::sqrt(var_m2.data()[i]));
+    }
+    return eval::sigma_coverage(error_m, sigma_m);
+}
 
 /// 1 where a foot is safe at every yaw.
 eval::CellMask safe_at_all_yaws(const sim::SceneTruth& truth,
@@ -190,6 +268,7 @@ struct Results {
 };
 
 Status measure(const SceneCase& now,
+               double noise,
                const io::MachineFile& machine,
                Executor& executor,
                Results& out) {
@@ -199,6 +278,7 @@ Status measure(const SceneCase& now,
     if (Status seen = now.put_into(sim); !seen) return seen.error();
     sim.known_motion = true;
     sim.drift = {0.0, 0.0};
+    sim.noise = noise;
     auto source = sim::open_scene(sim, &executor);
     if (!source) return source.error();
     auto pipeline =
@@ -214,22 +294,21 @@ Status measure(const SceneCase& now,
     const sim::SceneTruth& truth = (*source)->truth();
     const auto visible = sim::visibility_mask(truth, lattice, {.range_m = kRange_m}, executor);
     const elevation::ElevationLayers& layers = pipeline->map().layers();
+    const grid::Layer compared_m = sim::dem_below_overhead(sim::dem(truth.scene, lattice),
+                                                           truth.scene,
+                                                           lattice,
+                                                           layers.height_m.view(),
+                                                           layers.clearance_m.view());
     const auto heights =
-        eval::elevation_errors(layers.height_m,
-                               sim::dem_below_overhead(sim::dem(truth.scene, lattice),
-                                                       truth.scene,
-                                                       lattice,
-                                                       layers.height_m.view(),
-                                                       layers.clearance_m.view()),
-                               visible,
-                               settings->maps);
+        eval::elevation_errors(layers.height_m, compared_m, visible, settings->maps);
     const auto found = pipeline->footholds();
     const TrulySafe truly_safe{
         safe_at_all_yaws(truth, machine.machine, lattice, executor),
         safe_at_all_yaws(truth, foot_alone(machine.machine), lattice, executor)};
     const auto near =
         eval::within_radius(geometry, pipeline->T_odom_body().translation_m.head<2>(), kNear_m);
-    const eval::SigmaCoverage& sigma = record.truth->maps.sigma;
+    const eval::SigmaCoverage sigma =
+        sigma_of_heights(truth, lattice, layers, compared_m, settings->maps, executor);
     out.cases.print("{},{},{},{:.2f},{:.2f},{:.4f},{:.4f},{:.4f},{:.4f}",
                     now.scene,
                     now.seed,
@@ -264,7 +343,10 @@ Status measure(const SceneCase& now,
 
 int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2)
-        return report(usage_error("terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES]]]"));
+        return report(
+            usage_error("terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [NOISE]]]]"));
+    const auto noise = words.size() > 5 ? io::parse_double(words[5]) : std::optional(1.0);
+    if (!noise || *noise < 0.0) return report(usage_error("no noise: " + words[5]));
     const auto machine = load_machine("rex");
     if (!machine) return report(machine.error());
     const auto executor = make_executor({});
@@ -287,7 +369,7 @@ int measure_all(const std::vector<std::string>& words) {
     }
     out.cases.print("\n");
     for (const SceneCase& now : experiments::scene_cases({words.begin() + 1, words.end()})) {
-        const auto done = measure(now, **machine, *executor, out);
+        const auto done = measure(now, *noise, **machine, *executor, out);
         if (!done) return report(done.error());
     }
     return kExitOk;
