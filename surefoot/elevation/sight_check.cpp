@@ -25,8 +25,7 @@ void SightCheck::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d
     geometry_ = geometry;
     camera_m_ = camera_m;
     ends_.reset(geometry, camera_m);
-    line_end_m_.resize(static_cast<std::size_t>(geometry.nx) *
-                       static_cast<std::size_t>(geometry.ny));
+    of_cell_.resize(static_cast<std::size_t>(geometry.nx) * static_cast<std::size_t>(geometry.ny));
 }
 
 std::int64_t SightCheck::apply(std::int64_t time_ns, Executor& executor, ElevationCells& cells) {
@@ -45,13 +44,13 @@ std::int64_t SightCheck::apply(std::int64_t time_ns, Executor& executor, Elevati
                               [&job](int block) { job.check.look_over_unknown(block, job.cells); });
     }
     if (!config_.cleanup) return 0;
-    gone_.assign(cells.layers().height_m.size(), 0);
+    std::fill(of_cell_.begin(), of_cell_.end(), 0.0F);
     executor.parallel_for(
         blocks, [&job](int block) { job.check.find_gone(block, job.time_ns, job.cells); });
     // Not before all have been asked: neighbours vouch for each other.
     std::int64_t forgotten = 0;
-    for (std::size_t cell = 0; cell < gone_.size(); ++cell) {
-        if (gone_[cell] == 0) continue;
+    for (std::size_t cell = 0; cell < of_cell_.size(); ++cell) {
+        if (of_cell_[cell] == 0.0F) continue;
         cells.forget(cell);
         ++forgotten;
     }
@@ -71,7 +70,7 @@ void SightCheck::collect_lines() {
     std::size_t cell = 0;
     for (int iy = 0; iy < geometry_.ny; ++iy) {
         for (int ix = 0; ix < geometry_.nx; ++ix, ++cell) {
-            if (!std::isnan(ends_.z_m(cell))) lines_.add({ix, iy}, line_end_m_[cell]);
+            if (!std::isnan(ends_.z_m(cell))) lines_.add({ix, iy}, of_cell_[cell]);
         }
     }
     lines_.finish();
@@ -102,7 +101,7 @@ void SightCheck::find_gone(int block, std::int64_t time_ns, ElevationCells& cell
         const bool stands =
             cells.bottom_m(cell) - lowest_m <= hangs_m_ || layers.count.data()[cell] == 1;
         if (!stands && !passed_through(at, height_m[cell])) return;
-        if (cells.see_through(cell) && !stands_beside(at, time_ns, layers)) gone_[cell] = 1;
+        if (cells.see_through(cell) && !stands_beside(at, time_ns, layers)) of_cell_[cell] = 1.0F;
     });
 }
 

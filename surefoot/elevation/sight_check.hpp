@@ -27,7 +27,7 @@ class SightCheck {
     /// Lines of sight ended in a cell, see `SightEnds::set`, as surely as `var_m2` says.
     void ended(std::size_t cell, float z_m, float var_m2, float bottom_m) noexcept {
         ends_.set(cell, z_m, bottom_m);
-        line_end_m_[cell] = not_above_m(z_m, var_m2);
+        of_cell_[cell] = not_above_m(z_m, var_m2);
     }
     /// So low what was seen at that height is, at `visibility.sigmas`, at least: a wrong match far
     /// below the floor, of which the matcher is not sure, shows no drop.
@@ -56,9 +56,10 @@ class SightCheck {
     grid::GridGeometry geometry_;
     Eigen::Vector3d camera_m_ = Eigen::Vector3d::Zero();
     SightEnds ends_;
-    std::vector<float> line_end_m_;  ///< per cell with an end: not higher than this
+    /// Per cell with an end: not higher than this. Once the lines are collected: 1 = the frame's
+    /// lines of sight say that its surface is gone.
+    std::vector<float> of_cell_;
     LinesOfSight lines_;
-    std::vector<std::uint8_t> gone_;  ///< per cell: the frame's lines of sight say so
 };
 
 }  // namespace surefoot::elevation
