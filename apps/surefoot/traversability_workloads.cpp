@@ -207,7 +207,9 @@ FootprintPose place(int i) {
 
 /// `ask(footprint, i, layers)` at many places and yaws.
 template <typename Ask>
-Workload asking(std::string name, Result<traversability::Footprint> footprint, const Ask& ask) {
+Workload asking(std::string name,
+                const Result<traversability::Footprint>& footprint,
+                const Ask& ask) {
     constexpr int kQueries = 1000;
     const auto prepare = [footprint, ask]() -> Result<Workload::Job> {
         if (!footprint) return footprint.error();
