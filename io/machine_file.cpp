@@ -11,6 +11,7 @@
 #include "io/file.hpp"
 #include "io/text.hpp"
 #include "io/yaml_tree.hpp"
+#include "surefoot/core/fnv1a.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -229,13 +230,6 @@ void read_document(Group& root, MachineFile& out) {
     });
     root.group("limits", [&](Group& limits) { read_limits(limits, machine.limits); });
     root.finish();
-}
-
-std::uint64_t fnv1a(std::string_view bytes) {
-    std::uint64_t hash = 0xcbf29ce484222325ULL;
-    for (const char byte : bytes)
-        hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-    return hash;
 }
 
 }  // namespace

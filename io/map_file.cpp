@@ -12,6 +12,7 @@
 #include "io/bytes.hpp"
 #include "io/file.hpp"
 #include "io/text.hpp"
+#include "surefoot/core/fnv1a.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -263,9 +264,7 @@ Status read_region(std::string_view bytes, const Outline& outline, MapFile& out)
 }  // namespace
 
 std::uint64_t map_checksum(std::string_view bytes) noexcept {
-    std::uint64_t hash = 0xcbf29ce484222325ULL;
-    for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-    return hash;
+    return fnv1a(bytes);
 }
 
 Result<std::string> format_map(const MapRegion& region) {

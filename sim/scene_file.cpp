@@ -11,23 +11,13 @@
 #include "sim/scene_motion.hpp"
 #include "sim/scene_node.hpp"
 #include "sim/scene_reader.hpp"
+#include "surefoot/core/fnv1a.hpp"
 #include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::sim {
 namespace {
 
 constexpr std::uint64_t kParameterStream = 0x706172616d;
-
-/// FNV-1a (Fowler, Noll, Vo; 64 bit): the same on every platform.
-constexpr std::uint64_t hash_of(std::string_view name) noexcept {
-    std::uint64_t hash = 0xcbf29ce484222325ULL;
-    for (const char letter : name) {
-        hash ^= static_cast<unsigned char>(letter);
-        hash *= 0x100000001b3ULL;
-    }
-    return hash;
-}
-static_assert(hash_of("a") == 0xaf63dc4c8601ec8cULL, "test vector of the authors");
 
 /// A scene within its file.
 struct Entry {
@@ -191,7 +181,7 @@ Result<ScriptedScene> read_scene(const SceneFile& file,
     const Entry* entry = choose(reader, entries, name);
     if (entry == nullptr) return *reader.error();
     // One seed must not draw the same light and the same distance in every scene.
-    const std::uint64_t scene_seed = mix_seed(seed, hash_of(entry->info.name));
+    const std::uint64_t scene_seed = mix_seed(seed, fnv1a(entry->info.name));
     ScriptedScene scene = build(reader, *root, *entry, scene_seed, carrier);
     if (reader.error()) return *reader.error();
     return scene;

@@ -18,6 +18,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "io/file.hpp"
+#include "surefoot/core/fnv1a.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -45,10 +46,8 @@ Result<SuiteConditions> conditions_of(const EvalSuiteOptions& options) {
 
 /// Everything that the figures of a case depend on beside the case itself.
 std::uint64_t conditions_hash(const EvalSuiteOptions& options, const SuiteConditions& conditions) {
-    std::uint64_t hash = hash_of(conditions.settings);
-    for (const char c : fmt::format("{} {}", options.machine, conditions.reach_m))
-        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;  // FNV-1a
-    return hash;
+    return fnv1a(fmt::format("{} {}", options.machine, conditions.reach_m),
+                 hash_of(conditions.settings));
 }
 
 /// Runs the cases that are not there yet, as many at a time as the executor has threads; each runs

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "apps/surefoot/thread_pool.hpp"
+#include "surefoot/core/fnv1a.hpp"
 #include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::app {
@@ -66,11 +67,7 @@ Status apply_overrides(const CommonOptions& options, const io::DescribeConfig& d
 }
 
 std::uint64_t hash_of(const Settings& settings) {
-    std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a, 64 bit
-    for (const char c : io::format_config_of(settings)) {
-        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-    }
-    return hash;
+    return fnv1a(io::format_config_of(settings));
 }
 
 std::unique_ptr<Executor> make_executor(const CommonOptions& options) {

@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <string_view>
 
 #include "io/config_yaml.hpp"
 #include "io/file.hpp"
+#include "io/text.hpp"
+#include "surefoot/core/fnv1a.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -17,17 +18,7 @@ Result<std::string> file_line(const std::string& path) {
     if (!io::is_file(path)) return std::string();
     const auto bytes = io::read_file(path);
     if (!bytes) return bytes.error();
-    std::uint64_t hash = 0xcbf29ce484222325U;  // FNV-1a, 64 bit
-    for (const char c : *bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-    return fmt::format("# {}: {:016x}\n", path, hash);
-}
-
-/// The first line of `text`, which becomes the rest.
-std::string_view next_line(std::string_view& text) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == text.npos ? text.size() : end + 1);
-    return line;
+    return fmt::format("# {}: {:016x}\n", path, fnv1a(*bytes));
 }
 
 }  // namespace
@@ -52,18 +43,18 @@ SimFolder compare_folder(const std::string& folder, const std::string& config) {
     const auto there = io::read_file(io::join_path(folder, "config.yaml"));
     if (!there) return {};
     if (*there == config) return {io::Recorder::Existing::renew, ""};
-    std::string_view theirs = *there;
-    std::string_view ours = config;
-    std::string_view their_line;
-    std::string_view our_line;
-    while (their_line == our_line && !(theirs.empty() && ours.empty())) {
-        their_line = next_line(theirs);
-        our_line = next_line(ours);
+    io::LineReader theirs(*there);
+    io::LineReader ours(config);
+    auto their_line = theirs.next();
+    auto our_line = ours.next();
+    while (their_line && their_line == our_line) {
+        their_line = theirs.next();
+        our_line = ours.next();
     }
     return {io::Recorder::Existing::refuse,
             fmt::format("it was made otherwise: its config.yaml says '{}', this call '{}'",
-                        their_line,
-                        our_line)};
+                        their_line.value_or(""),
+                        our_line.value_or(""))};
 }
 
 }  // namespace surefoot::app

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace surefoot {
+
+inline constexpr std::uint64_t kFnv1aStart = 0xcbf29ce484222325ULL;
+
+/// FNV-1a, 64 bit (Fowler, Noll, Vo): finds damage and tells texts apart, the same on every
+/// platform; no protection against whoever means harm. `before` is the hash of what comes before.
+[[nodiscard]] constexpr std::uint64_t fnv1a(std::string_view bytes,
+                                            std::uint64_t before = kFnv1aStart) noexcept {
+    std::uint64_t hash = before;
+    for (const char byte : bytes)
+        hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+    return hash;
+}
+
+}  // namespace surefoot
