@@ -19,7 +19,8 @@
 //                                             (no drop is asked to be a band away), clear cut
 //   truly_safe, called_unsafe, unsure, unknown  cells; the last three are of the truly safe ones
 //   near_...                                  the same within 0.7 m of the body, in view or not
-// OUT.missed.csv gets the truly unsafe cells that were called safe, one a line, in odom.
+// OUT.wrong.csv gets the truly unsafe cells that were called safe and the truly safe ones that were
+// called unsafe, one a line, in odom: what they truly are, and what they were called.
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -224,6 +225,10 @@ eval::CellMask missed_cells(const Image<traversability::Foothold>& found,
     return missed;
 }
 
+bool is_called_unsafe(traversability::Foothold call) {
+    return call > traversability::Foothold::unreachable;
+}
+
 Missed count_missed(const Image<traversability::Foothold>& found,
                     const eval::CellMask& truly_safe,
                     const eval::CellMask& visible) {
@@ -249,7 +254,7 @@ FootholdCounts compare(const Image<traversability::Foothold>& found,
         ++counts.truly_safe;
         counts.unknown += call == Foothold::unknown || call == Foothold::unreachable ? 1 : 0;
         counts.unsure += call == Foothold::unsure ? 1 : 0;
-        counts.called_unsafe += call > Foothold::unreachable ? 1 : 0;
+        counts.called_unsafe += is_called_unsafe(call) ? 1 : 0;
     }
     return counts;
 }
@@ -264,8 +269,37 @@ void print(const FootholdCounts& counts, fmt::ostream& out) {
 /// The files that results go to.
 struct Results {
     fmt::ostream cases;
-    fmt::ostream missed;
+    fmt::ostream wrong;
 };
+
+void print_wrong(const SceneCase& now,
+                 const grid::GridGeometry& geometry,
+                 const Image<traversability::Foothold>& found,
+                 const TrulySafe& truly_safe,
+                 const eval::CellMask& visible,
+                 fmt::ostream& out) {
+    for (int iy = 0; iy < geometry.ny; ++iy) {
+        for (int ix = 0; ix < geometry.nx; ++ix) {
+            const auto call = found.at(ix, iy);
+            const bool is_safe = truly_safe.all.at(ix, iy) != 0;
+            const bool is_wrong =
+                is_safe ? is_called_unsafe(call) : call == traversability::Foothold::safe;
+            if (visible.at(ix, iy) == 0 || !is_wrong) continue;
+            const Eigen::Vector2d at_m = geometry.center_m({ix, iy});
+            out.print("{},{},{},{:.4f},{:.4f},{},{}\n",
+                      now.scene,
+                      now.seed,
+                      now.profile,
+                      at_m.x(),
+                      at_m.y(),
+                      is_safe                            ? "safe"
+                      : truly_safe.alone.at(ix, iy) == 0 ? "hazard"
+                                                         : "unsafe",
+                      to_string(call));
+        }
+    }
+    out.flush();
+}
 
 Status measure(const SceneCase& now,
                double noise,
@@ -323,21 +357,7 @@ Status measure(const SceneCase& now,
         print(compare(found, truly_safe, where), out.cases);
     out.cases.print("\n");
     out.cases.flush();
-    const eval::CellMask missed = missed_cells(found, truly_safe.all, visible);
-    for (std::size_t i = 0; i < missed.size(); ++i) {
-        if (missed.data()[i] == 0) continue;
-        const auto nx = static_cast<std::size_t>(geometry.nx);
-        const Eigen::Vector2d at =
-            geometry.center_m({static_cast<int>(i % nx), static_cast<int>(i / nx)});
-        out.missed.print("{},{},{},{:.4f},{:.4f},{}\n",
-                         now.scene,
-                         now.seed,
-                         now.profile,
-                         at.x(),
-                         at.y(),
-                         truly_safe.alone.data()[i] == 0 ? 1 : 0);
-    }
-    out.missed.flush();
+    print_wrong(now, geometry, found, truly_safe, visible, out.wrong);
     return {};
 }
 
@@ -350,8 +370,8 @@ int measure_all(const std::vector<std::string>& words) {
     const auto machine = load_machine("rex");
     if (!machine) return report(machine.error());
     const auto executor = make_executor({});
-    Results out{fmt::output_file(words[0]), fmt::output_file(words[0] + ".missed.csv")};
-    out.missed.print("scene,seed,profile,x_m,y_m,hazard\n");
+    Results out{fmt::output_file(words[0]), fmt::output_file(words[0] + ".wrong.csv")};
+    out.wrong.print("scene,seed,profile,x_m,y_m,truth,called\n");
     out.cases.print("scene,seed,profile,median_mm,p90_mm,coverage,sigma_1,sigma_2,sigma_3");
     for (const char* where : {"", "near_"}) {
         for (const char* what : {"truly_unsafe",

@@ -258,7 +258,7 @@ TEST(ElevationMap, LinesOfSightShowDropsAsSurelyAsTheirEndsAreKnown) {
     for (const float sigma_m : {0.005F, 0.3F}) {
         ElevationMap map(exact_config());
         const auto deep = flat_patch(T_odom_body, 2.0, 0.0, kEnd_m, sigma_m);
-        for (int time_ns = 0; time_ns < 2; ++time_ns)
+        for (int time_ns = 0; time_ns < 3; ++time_ns)
             map.add_points(deep, {}, T_odom_body, time_ns);
         ASSERT_TRUE(std::isnan(height_at(map, 1.51, 0.01)));
         EXPECT_NEAR(at(map, map.layers().free_above_m, 1.51, 0.01),
@@ -266,6 +266,22 @@ TEST(ElevationMap, LinesOfSightShowDropsAsSurelyAsTheirEndsAreKnown) {
                     0.05F)
             << sigma_m;
     }
+}
+
+TEST(ElevationMap, WrongMatchesThatNoOtherLookAgreesWithShowNoDrop) {
+    // As sure as any, each somewhere else: the same lines of sight as those of a lower floor.
+    const Pose T_odom_body = body_at(0, 0);
+    ElevationMap map(exact_config());
+    for (int i = 0; i < 6; ++i)
+        map.add_points(flat_patch(T_odom_body, 1.8 + 0.15 * i, 0.0, -0.6), {}, T_odom_body, i);
+    EXPECT_TRUE(std::isnan(at(map, map.layers().free_above_m, 1.51, 0.01)));
+    // Nor does one in a cell whose height others agreed on.
+    const auto floor = flat_patch(T_odom_body, 2.3, 0.0, 0.0);
+    for (int i = 0; i < 3; ++i) map.add_points(floor, {}, T_odom_body, 6 + i);
+    const float over_floor_m = at(map, map.layers().free_above_m, 1.51, 0.01);
+    map.add_points(flat_patch(T_odom_body, 2.3, 0.0, -0.6), {}, T_odom_body, 9);
+    map.add_points(flat_patch(T_odom_body, 2.3, 0.0, -0.7), {}, T_odom_body, 10);
+    EXPECT_FLOAT_EQ(at(map, map.layers().free_above_m, 1.51, 0.01), over_floor_m);
 }
 
 /// Collects every key, and checks that defaults lie within their own ranges.

@@ -38,7 +38,7 @@ std::int64_t SightCheck::apply(std::int64_t time_ns, Executor& executor, Elevati
     const int blocks = RowBlocks(geometry_).count();
     executor.parallel_for(blocks, [&job](int block) { job.check.look_overhead(block, job.cells); });
     if (!config_.drops && !config_.cleanup) return 0;
-    collect_lines();
+    collect_lines(time_ns, cells.layers());
     if (config_.drops) {
         executor.parallel_for(blocks,
                               [&job](int block) { job.check.look_over_unknown(block, job.cells); });
@@ -65,12 +65,17 @@ void SightCheck::look_overhead(int block, ElevationCells& cells) const {
     });
 }
 
-void SightCheck::collect_lines() {
+void SightCheck::collect_lines(std::int64_t time_ns, const ElevationLayers& layers) {
     lines_.reset(geometry_, camera_m_);
     std::size_t cell = 0;
     for (int iy = 0; iy < geometry_.ny; ++iy) {
         for (int ix = 0; ix < geometry_.nx; ++ix, ++cell) {
-            if (!std::isnan(ends_.z_m(cell))) lines_.add({ix, iy}, of_cell_[cell]);
+            if (std::isnan(ends_.z_m(cell))) continue;
+            // A single wrong match far below the floor would make a drop of all that lies before
+            // it: an end counts once a look has agreed with another.
+            const bool is_agreed =
+                layers.seen_ns.data()[cell] == time_ns && layers.count.data()[cell] > 1;
+            if (is_agreed) lines_.add({ix, iy}, of_cell_[cell]);
         }
     }
     lines_.finish();

@@ -40,7 +40,8 @@ class SightCheck {
   private:
     void look_overhead(int block, ElevationCells& cells) const;
     void look_over_unknown(int block, ElevationCells& cells) const;
-    void collect_lines();
+    /// Of the surfaces that the frame's look, and one before it, saw alike.
+    void collect_lines(std::int64_t time_ns, const ElevationLayers& layers);
     void find_gone(int block, std::int64_t time_ns, ElevationCells& cells);
     /// Lines of sight passed through a surface at that height.
     [[nodiscard]] bool passed_through(grid::Cell cell, float z_m) const;

@@ -48,14 +48,13 @@ struct FootholdFinder::Row {
     std::vector<float> patch_low;
     std::vector<float> low_near;  ///< of low_shown_, as far as corners are looked for
     std::vector<float> low_possible;
-    std::vector<float> tight;
 
     void reset(int nx) {
         const auto n = static_cast<std::size_t>(nx);
         foot.assign(n, {});
         yz.assign(n, 0.0);
         unknown_band.assign(n, 0.0);
-        for (auto* best : {&patch_high, &patch_low, &low_near, &low_possible, &tight})
+        for (auto* best : {&patch_high, &patch_low, &low_near, &low_possible})
             best->assign(n, kNothing);
     }
 };
@@ -74,6 +73,8 @@ void FootholdFinder::shape(double resolution_m) {
     set_half_widths(foot_m + config_.band_m + config_.corner_m, resolution_m, near_);
     for (int yaw = 0; yaw < kYaws; ++yaw) turned_[static_cast<std::size_t>(yaw)] = turned_foot(yaw);
     patch_cells_ = std::max(1, static_cast<int>(std::lround(config_.patch_side_m / resolution_m)));
+    const double overhead_side = config_.overhead_side_m / resolution_m;
+    overhead_cells_ = std::max(1.0, std::round(overhead_side * overhead_side));
     foot_cells_ = 0.0;
     foot_moment_ = 0.0;
     for (int dy = -reach_of(foot_); dy <= reach_of(foot_); ++dy) {
@@ -134,7 +135,7 @@ void FootholdFinder::find(const FootholdGround& ground, Executor& executor, Imag
     sums_.resize((static_cast<std::size_t>(nx_) + 1) * static_cast<std::size_t>(ny_));
     patch_m_.resize(nx_, ny_);
     patch_doubt_m_.resize(nx_, ny_);
-    for (RunMaxima* maxima : {&patch_high_, &patch_low_, &low_shown_, &low_possible_, &tight_})
+    for (RunMaxima* maxima : {&patch_high_, &patch_low_, &low_shown_, &low_possible_})
         maxima->reset(nx_, ny_);
     rows_.resize(static_cast<std::size_t>(ny_));
     struct Job {
@@ -155,13 +156,12 @@ void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
     Sums* sums = sums_.data() + static_cast<std::ptrdiff_t>(iy) * (nx_ + 1);
     float* shown = low_shown_.row(iy);
     float* possible = low_possible_.row(iy);
-    float* tight = tight_.row(iy);
     Sums total;
     for (int ix = 0; ix < nx_; ++ix) {
         sums[ix] = total;
         const float height_m = ground.height_m.at(ix, iy);
         const float clearance_m = at_or_nan(ground.clearance_m, ix, iy);
-        tight[ix] = static_cast<double>(clearance_m) < config_.clearance_m ? 1.0F : kNothing;
+        if (static_cast<double>(clearance_m) < config_.clearance_m) total.tight += 1.0;
         if (!std::isfinite(height_m)) {
             total.unknown += 1.0;
             const float free_m = at_or_nan(ground.free_above_m, ix, iy);
@@ -181,7 +181,6 @@ void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
     sums[nx_] = total;
     low_shown_.build(iy);
     low_possible_.build(iy);
-    tight_.build(iy);
 }
 
 /// Patches that begin in the cells of a row; those with an unknown cell, or beyond the map, are no
@@ -236,7 +235,6 @@ void FootholdFinder::gather(int iy, Row& row) const {
         }
         if (std::abs(dy) > foot) continue;
         const int f = foot_[distance];
-        tight_.take(iy + dy, -f, f, row.tight.data());
         for (int ix = f; ix < nx_ - f; ++ix) {
             const Sums& begin = sums[ix - f];
             const Sums& end = sums[ix + f + 1];
@@ -246,6 +244,7 @@ void FootholdFinder::gather(int iy, Row& row) const {
             total.xz += (end.xz - begin.xz) - ix * z;
             total.var += end.var - begin.var;
             total.unknown += end.unknown - begin.unknown;
+            total.tight += end.tight - begin.tight;
             row.yz[static_cast<std::size_t>(ix)] += dy * z;
         }
         if (dy + patch_cells_ - 1 > foot) continue;
@@ -296,8 +295,8 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
         static_cast<double>(row.patch_low[at]) + (middle_m + rise_m) <= config_.max_residual_m;
     if (!level) found = judge_patches(ix, iy, middle_m, slope_x, slope_y);
     if (found == Foothold::rough) return found;
-    if (row.tight[at] > 0.0F) return Foothold::low;
-    if (slope + slope_doubt > config_.max_slope ||
+    if (foot.tight >= overhead_cells_) return Foothold::low;
+    if (foot.tight > 0.0 || slope + slope_doubt > config_.max_slope ||
         middle_m + static_cast<double>(row.low_possible[at]) > config_.drop_m ||
         drop_begins(middle_m, slope, row.low_near[at]) ||
         (slope > 0.5 * config_.max_slope && tilts_at_a_yaw(ix, iy))) {
@@ -389,6 +388,11 @@ void FootholdConfig::describe(ConfigVisitor& visitor) {
     visitor.number(
         "correlation_m", correlation_m, 0.001, 10.0, "reach of one error of the matcher");
     visitor.number("clearance_m", clearance_m, 0.0, 100.0, "free height wanted over the foot");
+    visitor.number("overhead_side_m",
+                   overhead_side_m,
+                   0.0,
+                   1.0,
+                   "what hangs over less than a square of this side may be a wrong match");
 }
 
 std::optional<std::string> FootholdConfig::problem() const {

@@ -35,6 +35,8 @@ struct FootholdConfig {
     /// Errors of a semi-global matcher are shared over 30-50 px: 0.1 m of floor 1 m away.
     double correlation_m = 0.1;
     double clearance_m = 2.05;  ///< of the tallest user on the foot plates
+    /// ASSUMPTION: single wrong matches over the floor cover one to three cells of 25 mm.
+    double overhead_side_m = 0.05;
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this cannot be used, or nothing.
@@ -78,7 +80,8 @@ struct FootholdGround {
 ///   diameter (rms);
 /// - rough: the mean of a patch within F is more than `max_residual_m` from p, at k sigma of the
 ///   mean (variance of the cells over their number, at most `independent_cells`);
-/// - low: `clearance_m` is less than wanted somewhere in F;
+/// - low: `clearance_m` is less than wanted over as many cells of F as a square of
+///   `overhead_side_m` has (over fewer it is unsure: wrong matches are as small, cables are not);
 /// - unreachable: the cell has no `reach_step_m`.
 /// What is only beyond a limit when k sigma are added is unsure. So are
 /// - what has ground in B, or within `corner_m` beyond it, that is shown to lie by more than half
@@ -109,6 +112,7 @@ class FootholdFinder {
         double xz = 0.0;  ///< x in cells from column 0
         double var = 0.0;
         double unknown = 0.0;
+        double tight = 0.0;  ///< cells whose clearance is not open
     };
     struct Row;
     /// The cells under a foot turned by one of the yaws, row by row, and their second moments about
@@ -155,6 +159,7 @@ class FootholdFinder {
     std::vector<int> near_;  ///< of B and the corners beyond it
     std::array<TurnedFoot, kYaws> turned_;
     int patch_cells_ = 1;
+    double overhead_cells_ = 0.0;    ///< of a square of `overhead_side_m`
     double foot_cells_ = 0.0;        ///< of F
     double foot_moment_ = 0.0;       ///< sum of x^2 over F [cells^2]
     double slope_sigmas_per_m_ = 0;  ///< k sigma of the slope for each metre of sigma of a cell
@@ -165,7 +170,6 @@ class FootholdFinder {
     RunMaxima patch_low_;            ///< -(mean - k sigma)
     RunMaxima low_shown_;            ///< -(height + k sigma), or -free_above
     RunMaxima low_possible_;         ///< -(height - k sigma)
-    RunMaxima tight_;                ///< 1 where the clearance is not open
     std::vector<Row> rows_;
 };
 

@@ -80,7 +80,7 @@ class Oracle {
         double n = 0, sum = 0, xz = 0, yz = 0, xx = 0, var = 0;
         bool foot_known = true;
         bool band_known = true;
-        bool tight = false;
+        int tight = 0;
         for (int dy = -reach; dy <= reach; ++dy) {
             for (int dx = -reach; dx <= reach; ++dx) {
                 if (!within(dx, dy, band)) continue;
@@ -96,7 +96,7 @@ class Oracle {
                 yz += dy * z;
                 xx += dx * dx;
                 var += variance(cx + dx, cy + dy);
-                tight = tight || clearance(cx + dx, cy + dy) < c_.clearance_m;
+                tight += clearance(cx + dx, cy + dy) < c_.clearance_m ? 1 : 0;
             }
         }
         const double k = c_.sigma_factor;
@@ -130,8 +130,10 @@ class Oracle {
         if (slope - doubt > c_.max_slope) return Foothold::tilted;
         const auto [rough, perhaps_rough] = patches(cx, cy, foot, middle, ax, ay);
         if (rough) return Foothold::rough;
-        if (tight) return Foothold::low;
-        if (perhaps_rough || perhaps_deep || slope + doubt > c_.max_slope) return Foothold::unsure;
+        const double side = c_.overhead_side_m / g_.resolution_m;
+        if (tight >= std::max(1.0, std::round(side * side))) return Foothold::low;
+        if (tight > 0 || perhaps_rough || perhaps_deep || slope + doubt > c_.max_slope)
+            return Foothold::unsure;
         if (drop_begins(cx, cy, middle, slope)) return Foothold::unsure;
         if (slope > 0.5 * c_.max_slope && tilts(cx, cy)) return Foothold::unsure;
         return std::isnan(g_.reach_step_m.at(cx, cy)) ? Foothold::unreachable : Foothold::safe;
@@ -355,11 +357,33 @@ TEST(Foothold, WhatCannotBeToldIsUnsure) {
 
 TEST(Foothold, UnderATableThereIsNoRoom) {
     Map table([](int) { return 0.0; });
-    table.clearance_m.at(30, 30) = 0.7F;
-    EXPECT_EQ(found(table).at(30 + 9, 30), Foothold::low);
-    EXPECT_EQ(found(table).at(30 + 10, 30), Foothold::safe);
-    table.clearance_m.at(30, 30) = 2.06F;
+    const auto hang = [&](float clearance_m) {
+        for (const int ix : {30, 31})
+            for (const int iy : {30, 31}) table.clearance_m.at(ix, iy) = clearance_m;
+    };
+    hang(0.7F);
+    EXPECT_EQ(found(table).at(31 + 8, 30), Foothold::low);
+    EXPECT_EQ(found(table).at(31 + 10, 30), Foothold::safe);
+    hang(2.06F);
     EXPECT_EQ(found(table).at(30, 30), Foothold::safe);
+}
+
+TEST(Foothold, UnderLessThanASquareOfWhatHangsNothingIsSure) {
+    Map floor([](int) { return 0.0; });
+    floor.clearance_m.at(30, 30) = 0.7F;
+    floor.clearance_m.at(31, 30) = 0.7F;
+    floor.clearance_m.at(32, 30) = 0.7F;
+    EXPECT_EQ(found(floor).at(30, 30), Foothold::unsure);
+    EXPECT_EQ(found(floor).at(32 + 9, 30), Foothold::unsure);
+    EXPECT_EQ(found(floor).at(32 + 10, 30), Foothold::safe);
+    // A cable across the foot.
+    floor.clearance_m.at(33, 30) = 0.7F;
+    EXPECT_EQ(found(floor).at(30, 30), Foothold::low);
+    FootholdConfig strict = narrow();
+    strict.overhead_side_m = 0.0;
+    floor.clearance_m.at(31, 30) = kNan;
+    EXPECT_EQ(found(floor, strict).at(30, 30), Foothold::low);
+    EXPECT_EQ(found(floor, strict).at(30 - 10, 30), Foothold::safe);
 }
 
 TEST(Foothold, ATableTopIsFlatAndOutOfReach) {
@@ -383,7 +407,10 @@ TEST(Foothold, SameAsTheRulesOnRandomGround) {
                                  noise_m * rng.normal();
                 map.height_m.at(ix, iy) = rng.uniform() < 2e-4 ? kNan : static_cast<float>(z);
                 map.var_m2.at(ix, iy) = static_cast<float>(1.5 * noise_m * noise_m * rng.uniform());
-                if (rng.uniform() < 1e-4) map.clearance_m.at(ix, iy) = 1.0F;
+                // Alone, or in a row of six.
+                if (rng.uniform() < 1e-4)
+                    for (int i = 0; i < (seed % 2 == 0 ? 1 : 6); ++i)
+                        map.clearance_m.at(std::min(ix + i, kSide - 1), iy) = 1.0F;
                 if (rng.uniform() < 0.1) map.reach_m.at(ix, iy) = kNan;
                 if (rng.uniform() < 0.5)
                     map.free_above_m.at(ix, iy) = static_cast<float>(z - 0.12 * rng.uniform());
