@@ -1,0 +1,86 @@
+"""What `tools/accuracy --check` and `tools/benchmarks --check` say of made-up pages, and of those that are checked in."""
+import contextlib
+import io
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import required_figures  # noqa: E402
+
+PAGE = f"""# Made up
+| other | table |
+|---|---|
+| not | asked |
+
+## Ground
+{required_figures.HEADER}
+|---|---|---|---|
+| floor | 99 % | 95 % | yes |
+| edge: height | 7 mm | 5 mm | **no** |
+| only shown | 3 mm | - | - |
+
+## Times
+{required_figures.HEADER}
+|---|---|---|---|
+| frame | 300 ms | at most 200 ms | **no** |
+
+Words behind the table.
+"""
+KNOWN = """# a comment
+made_up | edge: height | worn sensor | and old
+elsewhere | frame | of another page
+"""
+
+
+class RequiredFigures(unittest.TestCase):
+    def judge(self, page=PAGE, known=KNOWN):
+        return required_figures.complaints(required_figures.figures(page),
+                                           required_figures.known_misses(known, "made_up"))
+
+    def test_all_tables_of_required_figures_are_read_and_no_other(self):
+        self.assertEqual([row[0] for row in required_figures.figures(PAGE)], ["floor", "edge: height", "only shown", "frame"])
+
+    def test_a_new_miss_is_a_sentence_and_a_known_one_is_none(self):
+        self.assertEqual(self.judge(), ["frame: 300 ms; required at most 200 ms"])
+        self.assertEqual(self.judge(known=KNOWN + "made_up | frame | slow\n"), [])
+
+    def test_the_list_of_known_misses_does_not_rot(self):
+        both = KNOWN + "made_up | frame | slow\n"
+        self.assertEqual(self.judge(known=both + "made_up | farme | slow\n"),
+                         ["farme: known as a miss, but no row has this name"])
+        self.assertEqual(self.judge(known=KNOWN + "made_up | frame\n"), ["frame: known as a miss without a reason"])
+
+    def test_a_page_that_cannot_be_judged_is_not_passed(self):
+        self.assertEqual(self.judge("# Nothing\n", ""), ["the page holds no required figure at all"])
+        both = KNOWN + "made_up | frame | slow\n"
+        for wrong in ("| 99 % | 95 % | perhaps |", "| ms | at most 10 ms | not measured |", "| 99 % | 95 % | - |", "| 99 % |"):
+            (sentence,) = self.judge(PAGE.replace("| 99 % | 95 % | yes |", wrong), both)
+            self.assertIn("floor: not a row", sentence)
+        twice = PAGE.replace("| floor |", "| frame |")
+        self.assertEqual(self.judge(twice, both), ["frame: stands there 2 times"])
+
+    def test_the_exit_status(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page, known = pathlib.Path(folder) / "made_up.md", pathlib.Path(folder) / "known.txt"
+            page.write_text(PAGE)
+            for text, status in ((KNOWN, 1), (KNOWN + "made_up | frame | slow\n", 0)):
+                known.write_text(text)
+                said = io.StringIO()
+                with mock.patch.object(required_figures, "KNOWN_MISSES", known), contextlib.redirect_stdout(said), \
+                        contextlib.redirect_stderr(said):
+                    self.assertEqual(required_figures.check(page), status)
+                self.assertEqual("made_up.md: frame: 300 ms; required at most 200 ms" in said.getvalue(), status == 1)
+
+    def test_the_pages_that_are_checked_in_hold_no_new_miss(self):
+        for page in ("accuracy", "benchmarks"):
+            done = subprocess.run([ROOT / "tools" / page, "--check"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
