@@ -1,5 +1,7 @@
 """What `tools/accuracy --check` and `tools/benchmarks --check` say of made-up pages, and of those that are checked in."""
 import contextlib
+import importlib.machinery
+import importlib.util
 import io
 import pathlib
 import subprocess
@@ -80,6 +82,40 @@ class RequiredFigures(unittest.TestCase):
         for page in ("accuracy", "benchmarks"):
             done = subprocess.run([ROOT / "tools" / page, "--check"], capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class PartsOfThePage(unittest.TestCase):
+    """`tools/accuracy --only PART` makes one section again."""
+
+    def setUp(self):
+        loader = importlib.machinery.SourceFileLoader("accuracy", str(ROOT / "tools" / "accuracy"))
+        self.accuracy = importlib.util.module_from_spec(importlib.util.spec_from_loader("accuracy", loader))
+        loader.exec_module(self.accuracy)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.page = pathlib.Path(folder.name) / "accuracy.md"
+
+    def write(self, part, *rows, more=None):
+        runner = self.accuracy.Runner("surefoot", self.page.parent)
+        with contextlib.redirect_stdout(io.StringIO()):
+            for row in rows:
+                runner.row(*row)
+            runner.figure(f"shown of {part}", "1 mm")
+        self.accuracy.write_section(self.page, self.accuracy.PARTS[part], runner, more)
+        return required_figures.figures(self.page.read_text())
+
+    def test_one_section_is_replaced_and_the_others_stay(self):
+        self.write("stairs", ("height", "3 mm", "5 mm", True))
+        # The order is that of the parts, not of the runs.
+        rows = self.write("pairs", ("cones", "97 %", "95 %", True), more=["", "Words."])
+        self.assertEqual([row[0] for row in rows], ["cones", "shown of pairs", "height", "shown of stairs"])
+        rows = self.write("stairs", ("height", "6 mm", "5 mm", False))
+        self.assertEqual(rows, [("cones", "97 %", "95 %", "yes"), ("shown of pairs", "1 mm", "-", "-"),
+                                ("height", "6 mm", "5 mm", "**no**"), ("shown of stairs", "1 mm", "-", "-")])
+        text = self.page.read_text()
+        self.assertEqual([text.count(words) for words in ("\n## Real stereo pairs\n", "Words.", "## Reading these figures")],
+                         [1, 1, 1])
+        self.assertEqual(required_figures.complaints(rows, {}), ["height: 6 mm; required 5 mm"])
 
 
 if __name__ == "__main__":
