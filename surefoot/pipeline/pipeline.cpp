@@ -328,7 +328,8 @@ Image<traversability::Foothold> Pipeline::footholds() const {
                layers.clearance_m.view(),
                layers.free_above_m.view(),
                reach_m.view(),
-               map_.geometry().resolution_m},
+               map_.geometry().resolution_m,
+               layers.count.view()},
               *executor_,
               found);
     return found;

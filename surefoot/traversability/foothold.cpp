@@ -172,7 +172,8 @@ void FootholdFinder::sum_row(const FootholdGround& ground, int iy) {
         const auto z_m = static_cast<double>(height_m);
         const double var_m2 = variance_of(ground, ix, iy);
         const auto doubt_m = static_cast<float>(config_.sigma_factor * std::sqrt(var_m2));
-        shown[ix] = -(height_m + doubt_m);
+        const bool is_agreed = ground.looks.empty() || ground.looks.at(ix, iy) > 1;
+        shown[ix] = is_agreed ? -(height_m + doubt_m) : kNothing;
         possible[ix] = -(height_m - doubt_m);
         total.z += z_m;
         total.xz += ix * z_m;

@@ -68,13 +68,15 @@ struct FootholdGround {
     ImageView<const float> free_above_m;
     ImageView<const float> reach_step_m;  ///< see Reachability; empty = everything is reachable
     double resolution_m = 0.0;
+    /// Looks that agree on the height; empty = more than one.
+    ImageView<const std::uint32_t> looks = {};
 };
 
 /// Finds the footholds of a map. Around a cell let F be the disc of the foot plus margin, B the one
 /// wider by the band, p the least-squares plane through F, and k = `sigma_factor`.
 /// - unknown: F or B hold unknown cells (if a drop is shown in B it counts all the same);
 /// - drop: ground in B lies more than `drop_m` below the middle of p (of the cell, where F is not
-///   known), at k sigma of the ground;
+///   known), at k sigma of the ground. What one look alone saw may be a wrong match, and is unsure;
 /// - tilted: p rises by more than `max_slope`, at k sigma: those of a disc that holds an
 ///   independent error in each square of `correlation_m`, whose points lie half the radius from its
 ///   diameter (rms);
@@ -168,7 +170,7 @@ class FootholdFinder {
     Image<float> patch_doubt_m_;     ///< k sigma of it
     RunMaxima patch_high_;           ///< mean + k sigma
     RunMaxima patch_low_;            ///< -(mean - k sigma)
-    RunMaxima low_shown_;            ///< -(height + k sigma), or -free_above
+    RunMaxima low_shown_;            ///< -(height + k sigma) that looks agree on, or -free_above
     RunMaxima low_possible_;         ///< -(height - k sigma)
     std::vector<Row> rows_;
 };

@@ -27,6 +27,7 @@ struct Map {
     Image<float> clearance_m{kSide, kSide, kNan};
     Image<float> free_above_m{kSide, kSide, kNan};
     Image<float> reach_m{kSide, kSide, 0.0F};
+    Image<std::uint32_t> looks{kSide, kSide, 2U};
 
     template <typename F>
     explicit Map(const F& height) {
@@ -39,7 +40,8 @@ struct Map {
                 clearance_m.view(),
                 free_above_m.view(),
                 reach_m.view(),
-                kCell_m};
+                kCell_m,
+                looks.view()};
     }
     void forget_from(int column) {
         for (int iy = 0; iy < kSide; ++iy)
@@ -115,7 +117,7 @@ class Oracle {
                 }
                 const double z = height(x, y);
                 const double doubt = k * std::sqrt(variance(x, y));
-                deep = deep || middle - (z + doubt) > c_.drop_m;
+                deep = deep || (g_.looks.at(x, y) > 1 && middle - (z + doubt) > c_.drop_m);
                 perhaps_deep = perhaps_deep || middle - (z - doubt) > c_.drop_m;
             }
         }
@@ -158,6 +160,7 @@ class Oracle {
         for (int y = cy - reach; y <= cy + reach; ++y) {
             for (int x = cx - reach; x <= cx + reach; ++x) {
                 if (!within(x - cx, y - cy, near) || !inside(x, y)) continue;
+                if (known(x, y) && g_.looks.at(x, y) < 2) continue;
                 const double shown =
                     known(x, y) ? height(x, y) + c_.sigma_factor * std::sqrt(variance(x, y))
                                 : free_above(x, y);
@@ -386,6 +389,16 @@ TEST(Foothold, UnderLessThanASquareOfWhatHangsNothingIsSure) {
     EXPECT_EQ(found(floor, strict).at(30 - 10, 30), Foothold::safe);
 }
 
+TEST(Foothold, ADropThatOneLookAloneSawIsUnsure) {
+    Map ground([](int ix) { return ix < 40 ? 0.0 : -0.8; });
+    EXPECT_EQ(at(ground, 30), Foothold::drop);
+    ground.looks.fill(1);
+    EXPECT_EQ(at(ground, 30), Foothold::unsure);
+    EXPECT_EQ(at(ground, 20), Foothold::safe);
+    ground.looks.at(41, kSide / 2) = 2;
+    EXPECT_EQ(at(ground, 30), Foothold::drop);
+}
+
 TEST(Foothold, ATableTopIsFlatAndOutOfReach) {
     Map floor([](int) { return 0.0; });
     floor.reach_m.at(30, 30) = kNan;
@@ -412,6 +425,7 @@ TEST(Foothold, SameAsTheRulesOnRandomGround) {
                     for (int i = 0; i < (seed % 2 == 0 ? 1 : 6); ++i)
                         map.clearance_m.at(std::min(ix + i, kSide - 1), iy) = 1.0F;
                 if (rng.uniform() < 0.1) map.reach_m.at(ix, iy) = kNan;
+                if (rng.uniform() < 0.2) map.looks.at(ix, iy) = 1;
                 if (rng.uniform() < 0.5)
                     map.free_above_m.at(ix, iy) = static_cast<float>(z - 0.12 * rng.uniform());
             }
