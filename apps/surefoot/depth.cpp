@@ -77,12 +77,15 @@ Status write_depth(const MeasuredPair& measured, const std::string& folder) {
 
 void print_depth(const MeasuredPair& measured, const std::string& folder) {
     const PairFigures figures = figures_of(measured.depth);
-    fmt::print("{}x{} px, {:.1f} % matched, {:.1f} % trusted; median sigma {:.3f} px\n",
+    fmt::print("{}x{} px, {:.1f} % matched, {:.1f} % trusted",
                measured.depth.disparity_px.width(),
                measured.depth.disparity_px.height(),
                figures.density_percent,
-               figures.trusted_percent,
-               figures.median_sigma_px);
+               figures.trusted_percent);
+    // Of nothing there is no median.
+    if (!std::isnan(figures.median_sigma_px))
+        fmt::print("; median sigma {:.3f} px", figures.median_sigma_px);
+    fmt::print("\n");
     if (measured.check.enough()) {
         fmt::print("rows differ by {:.2f} px (median of {} corners)\n",
                    measured.check.row_error_px,

@@ -79,7 +79,7 @@ std::string row_problem(const stereo::PairCheck& check, bool has_rig) {
     if (check.row_error_px <= kMaxRowError_px) return {};
     return fmt::format(
         "rows differ by {:.2f} px (median of {} corners, {:+.2f} px signed; "
-        "limit {}): {}",
+        "limit {}): {}, or what they show is nearer than stereo.disparities reaches (raise it)",
         check.row_error_px,
         check.matched,
         check.row_offset_px,
