@@ -6,11 +6,10 @@
 // truth.csv    pair,matcher,count,q10,q25,q50,q75,q90,q50_far,q50_near: matched less true disparity
 //              [px] of the matches that are trusted (ours) and within 2 px; the median also of the
 //              smaller and of the larger half of the true disparities
-// pairs.csv    set,truth,pair,matcher,bad_1,bad_2,density,cpu_ms: share of the pixels that both
-//              eyes see which are wrong by more than 1 or 2 px, unknown ones filled from the
-//              smaller horizontal neighbour, all rounded to 1/16 px. Sets: "defaults", and "tuned":
-//              the same number of settings was tried for every matcher on cones and cloth3, the
-//              best (mean of bad-1 and twice bad-2) is shown on all pairs
+// pairs.csv    truth,pair,matcher,bad_1,bad_2,density,cpu_ms: every matcher as it comes; share of
+// the
+//              pixels that both eyes see which are wrong by more than 1 or 2 px, unknown ones
+//              filled from the smaller horizontal neighbour, all rounded to 1/16 px
 // sigma.csv    source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak: trusted matches
 //              that are right within 1 px; the order of sigma and, instead, that of the cost of the
 //              second best over the best, judged by eval::sparsification over all matches
@@ -103,7 +102,6 @@ void report_truth(const std::string& file, const std::vector<TruePair>& pairs) {
 }
 
 void report(fmt::ostream& out,
-            const char* set,
             const std::string& name,
             const Match& match,
             const std::vector<TruePair>& pairs) {
@@ -113,8 +111,7 @@ void report(fmt::ostream& out,
         const double cpu_ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
         for (const Truth truth : {Truth::as_published, Truth::centred}) {
             const Score s = score(pair, disparity_px, truth);
-            out.print("{},{},{},{},{:.3f},{:.3f},{:.2f},{:.1f}\n",
-                      set,
+            out.print("{},{},{},{:.3f},{:.3f},{:.2f},{:.1f}\n",
                       kTruthNames[static_cast<std::size_t>(truth)],
                       pair.name,
                       name,
@@ -126,38 +123,11 @@ void report(fmt::ostream& out,
     }
 }
 
-/// The best of its settings on cones and cloth3.
-const Match& tuned(const Candidate& candidate, const std::vector<TruePair>& pairs) {
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t best = 0;
-    for (std::size_t i = 0; i < candidate.settings.size(); ++i) {
-        double sum = 0.0;
-        for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {
-            const Score s = score(pairs[k], candidate.settings[i](pairs[k]), Truth::as_published);
-            sum += s.bad_1 + 2.0 * s.bad_2;
-        }
-        if (sum < least) {
-            least = sum;
-            best = i;
-        }
-    }
-    return candidate.settings[best];
-}
-
 void report_pairs(const std::string& file, const std::vector<TruePair>& pairs) {
     auto out = fmt::output_file(file);
-    out.print("set,truth,pair,matcher,bad_1,bad_2,density,cpu_ms\n");
-    report(out, "defaults", "our whole matcher", chain(), pairs);
-    report(out, "defaults", "our search alone", our_search({}), pairs);
-    report(out,
-           "defaults",
-           "OpenCV SGBM 3-way",
-           opencv_sgbm({.mode = cv::StereoSGBM::MODE_SGBM_3WAY}),
-           pairs);
-    report(
-        out, "defaults", "OpenCV SGBM HH4", opencv_sgbm({.mode = cv::StereoSGBM::MODE_HH4}), pairs);
+    out.print("truth,pair,matcher,bad_1,bad_2,density,cpu_ms\n");
     for (const Candidate& candidate : candidates())
-        report(out, "tuned", candidate.name, tuned(candidate, pairs), pairs);
+        report(out, candidate.name, candidate.as_it_comes, pairs);
 }
 
 /// Cost of the second best over that of the best, upside down: large = unsure.

@@ -18,23 +18,47 @@ using Match = std::function<Image<float>(const TruePair&)>;
 /// What the chain uses, as it comes.
 [[nodiscard]] Match chain();
 
+struct OurSettings {
+    stereo::SemiGlobalConfig search;
+    stereo::SettleConfig settle;
+};
 /// Our search, settled, without speckles, and the median of 3 x 3 pixels.
-[[nodiscard]] Match our_search(const stereo::SemiGlobalConfig& search);
+[[nodiscard]] Match our_search(const OurSettings& settings);
+/// The same, refined as the chain does: with its settings these are the disparities of `chain`.
+[[nodiscard]] Match our_whole(const OurSettings& settings);
 
-/// OpenCV's semi-global matcher with blocks of 3 x 3, padded on the left so that no column is lost.
+/// OpenCV's semi-global matcher, padded on the left so that no column is lost.
 struct SgbmSettings {
-    int mode = 0;        ///< cv::StereoSGBM::MODE_...
+    int mode = 0;  ///< cv::StereoSGBM::MODE_...
+    int block = 3;
     double slope = 8.0;  ///< P1 per pixel of a block
     double jump = 32.0;  ///< P2 likewise
     int prefilter_cap = 63;
+    int uniqueness_percent = 10;
 };
 [[nodiscard]] Match opencv_sgbm(const SgbmSettings& settings);
 
-/// A matcher, and the settings among which one is chosen.
+/// OpenCV's block matcher, padded on all sides.
+struct BmSettings {
+    int block = 15;
+    int prefilter_cap = 31;
+    int uniqueness_percent = 15;
+};
+[[nodiscard]] Match opencv_bm(const BmSettings& settings);
+
+/// One of a matcher's settings, in words without commas.
+struct Setting {
+    std::string words;
+    Match match;
+};
+
+/// A matcher, and the settings among which one is chosen: 36 of each.
 struct Candidate {
     std::string name;
-    std::vector<Match> settings;
+    Match as_it_comes;
+    std::vector<Setting> settings;
 };
+/// Ours, whole and the search alone, then OpenCV's modes.
 [[nodiscard]] std::vector<Candidate> candidates();
 
 }  // namespace surefoot::experiments

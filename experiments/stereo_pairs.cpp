@@ -166,12 +166,22 @@ Score score(const TruePair& pair, const Image<float>& disparity_px, Truth truth)
         if (std::isnan(truth_px)) continue;
         const float steps = std::round(all.data()[i] * kStepsPerPixel);
         const float error_px = std::abs(steps / kStepsPerPixel - truth_px);
+        const double bad_1 = error_px <= 1.0F ? 0.0 : 100.0;
+        const double bad_2 = error_px <= 2.0F ? 0.0 : 100.0;
         ++count;
-        sum.bad_1 += error_px <= 1.0F ? 0.0 : 1.0;
-        sum.bad_2 += error_px <= 2.0F ? 0.0 : 1.0;
-        sum.density += std::isnan(disparity_px.data()[i]) ? 0.0 : 1.0;
+        sum.bad_1 += bad_1;
+        sum.bad_2 += bad_2;
+        if (std::isnan(disparity_px.data()[i])) continue;
+        sum.density += 100.0;
+        sum.matched_bad_1 += bad_1;
+        sum.matched_bad_2 += bad_2;
     }
-    return {100.0 * sum.bad_1 / count, 100.0 * sum.bad_2 / count, 100.0 * sum.density / count};
+    const double matched = sum.density / 100.0;
+    return {sum.bad_1 / count,
+            sum.bad_2 / count,
+            sum.matched_bad_1 / matched,
+            sum.matched_bad_2 / matched,
+            sum.density / count};
 }
 
 }  // namespace surefoot::experiments

@@ -44,6 +44,8 @@ void forget_hidden(TruePair& pair);
 struct Score {
     double bad_1 = 0.0;  ///< wrong by more than 1 px, after filling
     double bad_2 = 0.0;
+    double matched_bad_1 = 0.0;  ///< share of the matched ones, nothing filled
+    double matched_bad_2 = 0.0;
     double density = 0.0;  ///< matched
 };
 
