@@ -10,9 +10,11 @@
 // the
 //              pixels that both eyes see which are wrong by more than 1 or 2 px, unknown ones
 //              filled from the smaller horizontal neighbour, all rounded to 1/16 px
-// sigma.csv    source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak: trusted matches
+// sigma.csv    kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak: trusted
+// matches
 //              that are right within 1 px; the order of sigma and, instead, that of the cost of the
-//              second best over the best, judged by eval::sparsification over all matches
+//              second best over the best, judged by eval::sparsification over all matches; kinds:
+//              "image", and "pooled": all matches of one kind of images together
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -145,75 +147,126 @@ Image<float> peak_doubt(const TruePair& pair) {
     return doubt;
 }
 
-void report_sigma(fmt::ostream& out, const TruePair& pair) {
+/// What sigma said of matches, and how wrong they were; of one image, or of several together.
+struct Confidences {
+    std::vector<float> errors_px;  ///< of all matches; their doubts in the same order
+    std::vector<float> sigmas_px;
+    std::vector<float> peak_doubts;
+    std::array<double, 3> within{};  ///< trusted matches within 1, 2, 3 sigma
+    double trusted = 0.0;
+    double pixels = 0.0;
+
+    void add(const TruePair& pair);
+    void add(const Confidences& other);
+    void print(fmt::ostream& out, const char* kind, const std::string& source) const;
+};
+
+void Confidences::add(const TruePair& pair) {
     const camera::DepthImage depth = chain_depth(pair);
     const Image<float> doubt = peak_doubt(pair);
-    std::vector<float> errors_px;
-    std::vector<float> sigmas_px;
-    std::vector<float> doubts;
-    std::array<double, 3> within{};
-    double judged = 0.0;
-    double all = 0.0;
     for (std::size_t i = 0; i < doubt.size(); ++i) {
         if (std::isnan(pair.truth_px.data()[i])) continue;
-        ++all;
+        ++pixels;
         const float error_px = depth.disparity_px.data()[i] - pair.truth_px.data()[i];
         if (std::isnan(error_px)) continue;
         errors_px.push_back(error_px);
         // One number for both kinds of doubt: what is likely wrong counts as wrong by pixels.
         const float p = depth.outlier_probability.data()[i];
         sigmas_px.push_back(depth.sigma_px.data()[i] + 4.0F * p);
-        doubts.push_back(doubt.data()[i]);
+        peak_doubts.push_back(doubt.data()[i]);
         if (p > kTrusted || std::abs(error_px) > 1.0F) continue;
         const double sigma_px = std::hypot(static_cast<double>(depth.sigma_px.data()[i]),
                                            pair.step_px / std::sqrt(12.0));
-        ++judged;
+        ++trusted;
         for (std::size_t k = 0; k < within.size(); ++k) {
-            within[k] +=
-                std::abs(static_cast<double>(error_px)) <= static_cast<double>(k + 1) * sigma_px
-                    ? 100.0
-                    : 0.0;
+            const double limit_px = static_cast<double>(k + 1) * sigma_px;
+            within[k] += std::abs(static_cast<double>(error_px)) <= limit_px ? 1.0 : 0.0;
         }
     }
-    out.print("{},{},{:.1f},{:.1f},{:.1f},{:.1f},{:.4f},{:.4f}\n",
-              pair.name,
-              judged,
-              within[0] / judged,
-              within[1] / judged,
-              within[2] / judged,
-              100.0 * static_cast<double>(errors_px.size()) / all,
+}
+
+void Confidences::add(const Confidences& other) {
+    const auto append = [](std::vector<float>& to, const std::vector<float>& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    append(errors_px, other.errors_px);
+    append(sigmas_px, other.sigmas_px);
+    append(peak_doubts, other.peak_doubts);
+    for (std::size_t k = 0; k < within.size(); ++k) within[k] += other.within[k];
+    trusted += other.trusted;
+    pixels += other.pixels;
+}
+
+void Confidences::print(fmt::ostream& out, const char* kind, const std::string& source) const {
+    out.print("{},{},{},{:.1f},{:.1f},{:.1f},{:.1f},{:.4f},{:.4f}\n",
+              kind,
+              source,
+              trusted,
+              100.0 * within[0] / trusted,
+              100.0 * within[1] / trusted,
+              100.0 * within[2] / trusted,
+              100.0 * static_cast<double>(errors_px.size()) / pixels,
               eval::sparsification(errors_px, sigmas_px).auc,
-              eval::sparsification(errors_px, doubts).auc);
+              eval::sparsification(errors_px, peak_doubts).auc);
+}
+
+/// Each of them, then all of them together.
+void report_sigmas_of(fmt::ostream& out,
+                      const std::string& name,
+                      const std::vector<TruePair>& pairs) {
+    Confidences all;
+    for (const TruePair& pair : pairs) {
+        Confidences one;
+        one.add(pair);
+        one.print(out, "image", pair.name);
+        all.add(one);
+    }
+    all.print(out, "pooled", name);
+}
+
+Result<std::vector<TruePair>> simulated_pairs(sim::SceneOptions options) {
+    constexpr const char* kScenes[] = {"demo_stairs",
+                                       "floor",
+                                       "sill_13",
+                                       "stairs_up_ada",
+                                       "kerb_down_150",
+                                       "table",
+                                       "glass_door",
+                                       "stripes_window"};
+    std::vector<TruePair> pairs;
+    pairs.reserve(std::size(kScenes));
+    for (const char* scene : kScenes) {
+        options.scene = scene;
+        auto pair = simulated_pair(options);
+        if (!pair) return pair.error();
+        pairs.push_back(std::move(*pair));
+        ++options.seed;
+    }
+    return pairs;
 }
 
 Status report_sigmas(const std::string& file,
-                     const std::vector<TruePair>& pairs,
+                     std::vector<TruePair> pairs,
                      std::uint64_t first_seed) {
     auto out = fmt::output_file(file);
-    out.print("source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak\n");
-    for (const TruePair& pair : pairs) {
-        if (pair.step_px < 1.0) report_sigma(out, pair);  // truth in whole pixels says nothing
-    }
+    out.print("kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak\n");
+    // Truth in whole pixels says nothing.
+    std::erase_if(pairs, [](const TruePair& pair) { return pair.step_px >= 1.0; });
+    report_sigmas_of(out, "real pairs", pairs);
     sim::SceneOptions options;
+    options.seed = first_seed;
     for (const sim::CameraProfile profile : {sim::CameraProfile::zed, sim::CameraProfile::ideal}) {
         options.profile = profile;
         for (const double noise : {1.0, 2.0}) {
             options.noise = noise;
-            options.seed = first_seed;
-            for (const char* scene : {"demo_stairs",
-                                      "floor",
-                                      "sill_13",
-                                      "stairs_up_ada",
-                                      "kerb_down_150",
-                                      "table",
-                                      "glass_door",
-                                      "stripes_window"}) {
-                options.scene = scene;
-                const auto pair = simulated_pair(options);
-                if (!pair) return pair.error();
-                report_sigma(out, *pair);
-                ++options.seed;
-            }
+            const auto seen = simulated_pairs(options);
+            if (!seen) return seen.error();
+            report_sigmas_of(
+                out,
+                fmt::format("{} x {:g}",
+                            sim::kCameraProfileNames[static_cast<std::size_t>(profile)],
+                            noise),
+                *seen);
         }
     }
     return {};
