@@ -38,27 +38,6 @@
 namespace surefoot::experiments {
 namespace {
 
-constexpr float kTrusted = 0.5F;  ///< largest outlier probability
-
-camera::DepthImage chain_depth(const TruePair& pair) {
-    stereo::MatcherConfig config;
-    config.disparities = pair.disparities;
-    Serial serial;
-    camera::DepthImage depth;
-    stereo::make_matcher(config)->match(pair.left.view(), pair.right.view(), serial, depth);
-    return depth;
-}
-
-/// Disparities of the chain that it trusts.
-Image<float> trusted(const TruePair& pair) {
-    camera::DepthImage depth = chain_depth(pair);
-    for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
-        if (depth.outlier_probability.data()[i] > kTrusted)
-            depth.disparity_px.data()[i] = std::numeric_limits<float>::quiet_NaN();
-    }
-    return depth.disparity_px;
-}
-
 /// Disorders `values`; `share` of them are smaller.
 float quantile(std::vector<float>& values, double share) {
     if (values.empty()) return std::numeric_limits<float>::quiet_NaN();
@@ -96,9 +75,10 @@ void report_residuals(fmt::ostream& out,
 void report_truth(const std::string& file, const std::vector<TruePair>& pairs) {
     auto out = fmt::output_file(file);
     out.print("pair,matcher,count,q10,q25,q50,q75,q90,q50_far,q50_near\n");
+    const Match ours = trusted_chain();
     const Match theirs = opencv_sgbm({.mode = cv::StereoSGBM::MODE_HH4});
     for (const TruePair& pair : pairs) {
-        report_residuals(out, pair, "ours", trusted(pair));
+        report_residuals(out, pair, "ours", ours(pair));
         report_residuals(out, pair, "OpenCV HH4", theirs(pair));
     }
 }

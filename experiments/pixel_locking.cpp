@@ -102,7 +102,9 @@ Status run(const std::string& file, std::uint64_t first_seed, int seeds) {
          {std::pair{"ideal", "ideal"}, std::pair{"zed", "zed_calibrated"}}) {
         const auto pairs = floors(profile, first_seed, seeds);
         if (!pairs) return pairs.error();
-        for (const Candidate& candidate : candidates()) {
+        std::vector<Candidate> matchers = candidates();
+        matchers.push_back({"our trusted matches", trusted_chain(), {}});
+        for (const Candidate& candidate : matchers) {
             Locking locking;
             for (const TruePair& pair : *pairs) locking.add(pair, candidate.as_it_comes(pair));
             locking.print(out, camera, candidate.name);

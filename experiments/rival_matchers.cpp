@@ -106,13 +106,25 @@ std::vector<Setting> settings_of_bm() {
 
 }  // namespace
 
+camera::DepthImage chain_depth(const TruePair& pair) {
+    stereo::MatcherConfig config;
+    config.disparities = pair.disparities;
+    Serial serial;
+    camera::DepthImage depth;
+    stereo::make_matcher(config)->match(pair.left.view(), pair.right.view(), serial, depth);
+    return depth;
+}
+
 Match chain() {
+    return [](const TruePair& pair) { return chain_depth(pair).disparity_px; };
+}
+
+Match trusted_chain() {
     return [](const TruePair& pair) {
-        stereo::MatcherConfig config;
-        config.disparities = pair.disparities;
-        Serial serial;
-        camera::DepthImage depth;
-        stereo::make_matcher(config)->match(pair.left.view(), pair.right.view(), serial, depth);
+        camera::DepthImage depth = chain_depth(pair);
+        for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
+            if (depth.outlier_probability.data()[i] > kTrusted) depth.disparity_px.data()[i] = kNan;
+        }
         return depth.disparity_px;
     };
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/stereo_pairs.hpp"
+#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/stereo/semi_global.hpp"
 #include "surefoot/stereo/settle.hpp"
 
@@ -17,6 +18,12 @@ using Match = std::function<Image<float>(const TruePair&)>;
 
 /// What the chain uses, as it comes.
 [[nodiscard]] Match chain();
+/// Of these, what it does not think likely to be wrong: what maps are made of.
+[[nodiscard]] Match trusted_chain();
+/// Largest outlier probability of a trusted match.
+inline constexpr float kTrusted = 0.5F;
+/// The chain's disparities with their sigma and outlier probability.
+[[nodiscard]] camera::DepthImage chain_depth(const TruePair& pair);
 
 struct OurSettings {
     stereo::SemiGlobalConfig search;
