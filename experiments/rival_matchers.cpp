@@ -26,7 +26,8 @@ Image<float> settled_px(const OurSettings& settings, const TruePair& pair) {
     stereo::SemiGlobalSearch(config).search(pair.left.view(), pair.right.view(), serial, winners);
     Image<float> settled_px;
     stereo::settle(settings.settle, winners, serial, settled_px);
-    stereo::SpeckleFilter().remove(stereo::kSpeckleSize_px, stereo::kSpeckleRange_px, settled_px);
+    stereo::SpeckleFilter().remove(
+        serial, stereo::kSpeckleSize_px, stereo::kSpeckleRange_px, settled_px);
     return settled_px;
 }
 

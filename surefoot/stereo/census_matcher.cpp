@@ -29,7 +29,7 @@ class CensusMatcher final : public Matcher {
         depth.resize(left.width, left.height);
         search_.search(left, right, executor, winners_);
         settle(settle_, winners_, executor, settled_px_);
-        speckles_.remove(kSpeckleSize_px, kSpeckleRange_px, settled_px_);
+        speckles_.remove(executor, kSpeckleSize_px, kSpeckleRange_px, settled_px_);
         finisher_.finish(left, right, settled_px_, Filter::median, executor, depth);
     }
 

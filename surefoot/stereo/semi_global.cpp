@@ -4,8 +4,9 @@
 #include <hwy/cache_control.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
-#include <mutex>
+#include <memory>
 #include <new>
 #include <span>
 #include <utility>
@@ -122,46 +123,53 @@ struct PathStates {
     }
 };
 
-/// What 64 rows need, column by column with the rows in the lanes.
+/// What 64 rows need while they are worked on, column by column with the rows in the lanes.
 struct Strip {
+    int index = 0;  ///< which one of the image
     AlignedBytes left;
     AlignedBytes right;
     AlignedBytes grey;
     PathStates from_left;  ///< as it enters each block of 64 columns
     PathStates from_right;
+    AlignedBytes sums;  ///< of one block, matching costs behind them; a free group before each
 };
 
-/// The costs of 64 x 64 pixels, as many as work at the same time. The one used last is handed out
-/// first: it lies in the cache of its processor.
-class BlockPool {
+/// How many blocks of 64 columns of each strip are done. A strip is begun by whoever has finished
+/// another one, the upper ones first, and then follows the strip above it block by block. So nobody
+/// waits for work that is not being done, whatever the executor: pieces that wait for pieces not
+/// yet begun would wait for ever where there is one thread.
+class Progress {
   public:
-    void resize(std::size_t count, std::size_t size) {
-        if (blocks_.size() != count) blocks_ = std::vector<AlignedBytes>(count);
-        free_.clear();
-        for (AlignedBytes& block : blocks_) {
-            block.resize(size);
-            free_.push_back(block.data());
+    void begin(int strips) {
+        if (strips > capacity_) {
+            done_ = std::make_unique<std::atomic<int>[]>(static_cast<std::size_t>(strips));
+            capacity_ = strips;
         }
+        for (int strip = 0; strip < strips; ++strip) at(strip).store(0, std::memory_order_relaxed);
+        next_.store(0, std::memory_order_relaxed);
     }
-    [[nodiscard]] std::uint8_t* take() {
-        const std::lock_guard lock(mutex_);
-        std::uint8_t* const block = free_.back();
-        free_.pop_back();
-        return block;
+    /// The next strip that nobody has begun; may lie beyond the last one.
+    [[nodiscard]] int take_strip() { return next_.fetch_add(1, std::memory_order_relaxed); }
+    void block_is_done(int strip) {
+        at(strip).fetch_add(1, std::memory_order_release);
+        at(strip).notify_all();
     }
-    void give_back(std::uint8_t* block) {
-        const std::lock_guard lock(mutex_);
-        free_.push_back(block);
+    void wait_for(int strip, int blocks) {
+        std::atomic<int>& done = at(strip);
+        for (int seen = done.load(std::memory_order_acquire); seen < blocks;
+             seen = done.load(std::memory_order_acquire))
+            done.wait(seen, std::memory_order_acquire);
     }
 
   private:
-    std::mutex mutex_;
-    std::vector<AlignedBytes> blocks_;
-    std::vector<std::uint8_t*> free_;
+    [[nodiscard]] std::atomic<int>& at(int strip) { return done_[static_cast<std::size_t>(strip)]; }
+    std::unique_ptr<std::atomic<int>[]> done_;  // NOLINT(*-avoid-c-arrays): of a size not constant
+    int capacity_ = 0;
+    std::atomic<int> next_ = 0;
 };
 
-/// Strips of 64 rows that are worked on together, at most. One for each thread: what is made of a
-/// strip stays in the cache until it has been used.
+/// Strips of 64 rows that are worked on at the same time, at most. One for each thread: what is
+/// made of a strip stays in the cache until it has been used.
 constexpr int kMaxStrips = 6;
 
 kernels::WinnerRows winners_at(Winners& out, int u, int v) {
@@ -196,30 +204,29 @@ struct SemiGlobalSearch::Workspace {
     Bordered right;
     CensusPlanes left_census;
     CensusPlanes right_census;
-    int strips_at_once = 0;
-    Strip strips[kMaxStrips];
-    BlockPool pool;  ///< sums, and as many matching costs behind them; a free group before each
+    Strip strips[kMaxStrips];  ///< one for each of those that work at the same time
     std::ptrdiff_t sums_size = 0;
+    Progress progress;
     PathStates from_above;  ///< per 64 columns
 
     [[nodiscard]] int column_blocks() const { return padded(width) / kLanes; }
 
-    void resize();
+    void resize(int strips_at_once);
     void take_census(int strip);
-    void turn_strip(int strip);
-    void pass_strip(int strip);
-    void follow_block(int strip, int block, Winners& out);
-    void follow_columns(int strip, int block, const std::uint8_t* sums, Winners& out);
+    void turn_strip(const Strip& s);
+    void pass_strip(const Strip& s);
+    void follow_rows(const Strip& s, int block);
+    void follow_columns(const Strip& s, int block, Winners& out);
+    void follow_strip(const Strip& s, Winners& out);
     void call_row(int u, int v, Winners& out) const;
-    [[nodiscard]] kernels::RowBlock row_block(int strip, int block) const;
+    [[nodiscard]] kernels::RowBlock row_block(const Strip& s, int block) const;
 };
 
-void SemiGlobalSearch::Workspace::resize() {
+void SemiGlobalSearch::Workspace::resize(int strips_at_once) {
     left_census.resize(width, height, 0);
     right_census.resize(width, height, config.disparities);
     const int groups = (config.disparities + kernels::kGroup - 1) / kernels::kGroup;
     sums_size = static_cast<std::ptrdiff_t>(groups + 1) * kernels::kSumsGroup;
-    pool.resize(static_cast<std::size_t>(strips_at_once), static_cast<std::size_t>(2 * sums_size));
     const auto columns = static_cast<std::size_t>(padded(width));
     const auto front = static_cast<std::size_t>(padded(config.disparities));
     for (Strip& strip : std::span(strips).first(static_cast<std::size_t>(strips_at_once))) {
@@ -228,6 +235,7 @@ void SemiGlobalSearch::Workspace::resize() {
         strip.grey.resize(columns * kLanes);
         strip.from_left.resize(column_blocks() + 1, config.disparities);
         strip.from_right.resize(1, config.disparities);
+        strip.sums.resize(static_cast<std::size_t>(2 * sums_size));
     }
     from_above.resize(column_blocks(), config.disparities);
     for (int block = 0; block < column_blocks(); ++block) {
@@ -244,9 +252,8 @@ void SemiGlobalSearch::Workspace::take_census(int strip) {
 }
 
 /// Census words and grey levels of a strip, the rows in the lanes.
-void SemiGlobalSearch::Workspace::turn_strip(int strip) {
-    const Strip& s = strips[strip % strips_at_once];
-    const int v = strip * kLanes;
+void SemiGlobalSearch::Workspace::turn_strip(const Strip& s) {
+    const int v = s.index * kLanes;
     const int front = right_census.front;
     const auto turn = [&](const std::uint8_t* rows, std::ptrdiff_t stride, std::uint8_t* out) {
         kernels::transpose(rows, stride, out, kernels::kCensusRow);
@@ -268,8 +275,7 @@ void SemiGlobalSearch::Workspace::turn_strip(int strip) {
     }
 }
 
-kernels::RowBlock SemiGlobalSearch::Workspace::row_block(int strip, int block) const {
-    const Strip& s = strips[strip % strips_at_once];
+kernels::RowBlock SemiGlobalSearch::Workspace::row_block(const Strip& s, int block) const {
     const int u = block * kLanes;
     kernels::RowBlock rows;
     rows.left = s.left.data() + u * kernels::kCensusRow;
@@ -283,16 +289,15 @@ kernels::RowBlock SemiGlobalSearch::Workspace::row_block(int strip, int block) c
 
 /// Follows the paths from the left once to note how they enter each block: their costs of a whole
 /// strip would not fit into a cache.
-void SemiGlobalSearch::Workspace::pass_strip(int strip) {
-    take_census(strip);
-    turn_strip(strip);
-    const Strip& s = strips[strip % strips_at_once];
+void SemiGlobalSearch::Workspace::pass_strip(const Strip& s) {
+    take_census(s.index);
+    turn_strip(s);
     const PathState start = s.from_left.at(0);
     kernels::begin_path(config.disparities, start.costs, start.least);
     for (int block = 0; block < column_blocks(); ++block) {
         s.from_left.copy(block, block + 1);
         if (block + 1 == column_blocks()) break;
-        kernels::RowBlock rows = row_block(strip, block);
+        kernels::RowBlock rows = row_block(s, block);
         rows.grey_before = rows.grey - (block > 0 ? kLanes : 0);
         const PathState path = s.from_left.at(block + 1);
         rows.state = path.costs;
@@ -303,13 +308,10 @@ void SemiGlobalSearch::Workspace::pass_strip(int strip) {
     kernels::begin_path(config.disparities, end.costs, end.least);
 }
 
-/// All three paths and the winners of 64 x 64 pixels. Needs the block to the right of it and the
-/// one above.
-void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& out) {
-    const Strip& s = strips[strip % strips_at_once];
-    std::uint8_t* const sums = pool.take();
-    kernels::RowBlock rows = row_block(strip, block);
-    rows.sums = sums + kernels::kSumsGroup;
+/// Both paths along the rows through 64 x 64 pixels. Needs the block to the right of it.
+void SemiGlobalSearch::Workspace::follow_rows(const Strip& s, int block) {
+    kernels::RowBlock rows = row_block(s, block);
+    rows.sums = s.sums.data() + kernels::kSumsGroup;
     rows.match = rows.sums + sums_size;
     rows.grey_before = rows.grey - (block > 0 ? kLanes : 0);
     const PathState from_left = s.from_left.at(block);
@@ -322,8 +324,6 @@ void SemiGlobalSearch::Workspace::follow_block(int strip, int block, Winners& ou
     rows.state = from_right.costs;
     rows.least = from_right.least;
     kernels::follow_left(rows);
-    follow_columns(strip, block, sums, out);
-    pool.give_back(sums);
 }
 
 /// Calls what one row of a block reads and writes: rows lie too far apart for a processor to guess
@@ -343,11 +343,8 @@ void SemiGlobalSearch::Workspace::call_row(int u, int v, Winners& out) const {
     }
 }
 
-/// Path from above and winners of a block.
-void SemiGlobalSearch::Workspace::follow_columns(int strip,
-                                                 int block,
-                                                 const std::uint8_t* sums,
-                                                 Winners& out) {
+/// Path from above and winners of a block. Needs the one above it, and the paths along its rows.
+void SemiGlobalSearch::Workspace::follow_columns(const Strip& s, int block, Winners& out) {
     const int u = block * kLanes;
     const PathState path = from_above.at(block);
     kernels::ColumnStep step;
@@ -356,8 +353,9 @@ void SemiGlobalSearch::Workspace::follow_columns(int strip,
     step.disparities = config.disparities;
     step.penalties = penalties;
     const int count = std::min(kLanes, width - u);
-    const int end = std::min(height, (strip + 1) * kLanes);
-    for (int v = strip * kLanes; v < end; ++v) {
+    const int begin = s.index * kLanes;
+    const int end = std::min(height, begin + kLanes);
+    for (int v = begin; v < end; ++v) {
         call_row(u, std::min(v + 1, end - 1), out);
         for (int byte = 0; byte < kCensusBytes; ++byte) {
             step.left[byte] = left_census.row(byte, v) + u;
@@ -365,9 +363,21 @@ void SemiGlobalSearch::Workspace::follow_columns(int strip,
         }
         step.grey = left.row(v) + u;
         step.grey_above = left.row(std::max(v - 1, 0)) + u;
-        step.sums = sums + (v - strip * kLanes) * kernels::kSumsColumn;
+        step.sums = s.sums.data() + (v - begin) * kernels::kSumsColumn;
         step.match = step.sums + sums_size;
         follow_row(step, winners_at(out, u, v), count);
+    }
+}
+
+/// From the right to the left, right behind the strip above.
+void SemiGlobalSearch::Workspace::follow_strip(const Strip& s, Winners& out) {
+    const int blocks = column_blocks();
+    for (int done = 0; done < blocks; ++done) {
+        const int block = blocks - 1 - done;
+        follow_rows(s, block);
+        if (s.index > 0) progress.wait_for(s.index - 1, done + 1);
+        follow_columns(s, block, out);
+        progress.block_is_done(s.index);
     }
 }
 
@@ -393,23 +403,21 @@ void SemiGlobalSearch::search(ImageView<const std::uint8_t> left,
     work.width = left.width;
     work.height = left.height;
     const int strips = padded(work.height) / kLanes;
-    work.strips_at_once = std::clamp(executor.threads(), 1, std::min(strips, kMaxStrips));
+    const int at_once = std::clamp(executor.threads(), 1, std::min(strips, kMaxStrips));
     work.left.copy(left);
     work.right.copy(right);
-    work.resize();
+    work.resize(at_once);
+    work.progress.begin(strips);
     out.resize(left.width, left.height);
-    const int blocks = work.column_blocks();
-    for (int first = 0; first < strips; first += work.strips_at_once) {
-        const int count = std::min(work.strips_at_once, strips - first);
-        executor.parallel_for(count, [&](int k) { work.pass_strip(first + k); });
-        // From the right to the left, every strip one block behind the one above it.
-        for (int wave = 0; wave < blocks + count - 1; ++wave) {
-            executor.parallel_for(count, [&](int k) {
-                const int block = blocks - 1 - (wave - k);
-                if (block >= 0 && block < blocks) work.follow_block(first + k, block, out);
-            });
+    executor.parallel_for(at_once, [&](int k) {
+        Strip& strip = work.strips[k];
+        for (;;) {
+            strip.index = work.progress.take_strip();
+            if (strip.index >= strips) return;
+            work.pass_strip(strip);
+            work.follow_strip(strip, out);
         }
-    }
+    });
 }
 
 }  // namespace surefoot::stereo

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <latch>
+#include <thread>
+#include <vector>
 
 #include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/rng.hpp"
@@ -96,6 +99,38 @@ TEST(SemiGlobal, SameBytesForEveryExecutorAndAfterAnotherSize) {
         search.search(small_left.view(), small_right.view(), *executor, found);
         search.search(left.view(), right.view(), *executor, found);
         EXPECT_TRUE(found == expected);
+    }
+}
+
+/// Every piece on a thread of its own, none of which begins before all are there.
+class Together final : public Executor {
+  public:
+    [[nodiscard]] int threads() const noexcept override { return 4; }
+    void parallel_for(int count, const std::function<void(int)>& work) override {
+        std::latch all_there(count);
+        std::vector<std::thread> threads;
+        threads.reserve(static_cast<std::size_t>(count));
+        for (int index = 0; index < count; ++index) {
+            threads.emplace_back([&, index] {
+                all_there.arrive_and_wait();
+                work(index);
+            });
+        }
+        for (std::thread& thread : threads) thread.join();
+    }
+};
+
+TEST(SemiGlobal, StripsWaitForTheOneAbove) {
+    const auto [left, right] = pair_of(300, 600, 7);
+    SemiGlobalSearch search{SemiGlobalConfig{}};
+    Serial serial;
+    Winners expected;
+    search.search(left.view(), right.view(), serial, expected);
+    Together together;
+    for (int repeat = 0; repeat < 10; ++repeat) {
+        Winners found;
+        search.search(left.view(), right.view(), together, found);
+        ASSERT_TRUE(found == expected) << repeat;
     }
 }
 

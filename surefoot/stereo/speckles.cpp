@@ -5,10 +5,16 @@
 #include <cmath>
 #include <limits>
 
-namespace surefoot::stereo {
+#include "surefoot/core/assert.hpp"
+#include "surefoot/stereo/row_blocks.hpp"
 
-int SpeckleFilter::root_of(int run) {
-    const auto at = [&](int index) -> Run& { return runs_[static_cast<std::size_t>(index)]; };
+namespace surefoot::stereo {
+namespace {
+
+// `at` finds a run by its number.
+
+template <typename At>
+int root_of(const At& at, int run) {
     while (at(run).parent != run) {
         at(run).parent = at(at(run).parent).parent;
         run = at(run).parent;
@@ -16,62 +22,144 @@ int SpeckleFilter::root_of(int run) {
     return run;
 }
 
-void SpeckleFilter::join(int a, int b) {
-    a = root_of(a);
-    b = root_of(b);
+/// The smaller number becomes the root: so roots do not depend on the order of joining.
+template <typename At>
+void join(const At& at, int a, int b) {
+    a = root_of(at, a);
+    b = root_of(at, b);
     if (a == b) return;
-    Run& low = runs_[static_cast<std::size_t>(std::min(a, b))];
-    Run& high = runs_[static_cast<std::size_t>(std::max(a, b))];
+    auto& low = at(std::min(a, b));
+    auto& high = at(std::max(a, b));
     high.parent = std::min(a, b);
     low.size += high.size;
 }
 
-/// Joins the runs of row v with those of the row above wherever two pixels agree.
-void SpeckleFilter::connect(const Image<float>& disparity_px, int v, float same_px) {
-    const float* const above = disparity_px.row(v - 1);
-    const float* const here = disparity_px.row(v);
-    int upper = row_first_[static_cast<std::size_t>(v - 1)];
-    const int upper_end = row_first_[static_cast<std::size_t>(v)];
-    int lower = upper_end;
-    const int lower_end = row_first_[static_cast<std::size_t>(v + 1)];
-    while (upper < upper_end && lower < lower_end) {
-        const Run& a = runs_[static_cast<std::size_t>(upper)];
-        const Run& b = runs_[static_cast<std::size_t>(lower)];
+/// Numbers of the runs of a row, from `begin` to before `end`.
+struct RowOfRuns {
+    const float* disparity_px = nullptr;
+    int begin = 0;
+    int end = 0;
+};
+
+/// Joins the runs of a row with those of the row above wherever two pixels agree.
+template <typename At>
+void connect(const At& at, const RowOfRuns& above, const RowOfRuns& here, float same_px) {
+    int upper = above.begin;
+    int lower = here.begin;
+    while (upper < above.end && lower < here.end) {
+        const auto& a = at(upper);
+        const auto& b = at(lower);
         const int first = std::max(a.first, b.first);
         const int last = std::min(a.last, b.last);
         int u = first;
-        while (u <= last && !(std::abs(above[u] - here[u]) <= same_px)) ++u;
-        if (u <= last) join(upper, lower);
+        while (u <= last && !(std::abs(above.disparity_px[u] - here.disparity_px[u]) <= same_px))
+            ++u;
+        if (u <= last) join(at, upper, lower);
         (a.last < b.last ? upper : lower) += 1;
     }
 }
 
-void SpeckleFilter::remove(int min_size, double same_px, Image<float>& disparity_px) {
-    const int width = disparity_px.width();
-    const int height = disparity_px.height();
-    const auto limit = static_cast<float>(same_px);
-    runs_.clear();
-    row_first_.clear();
-    row_first_.push_back(0);
-    for (int v = 0; v < height; ++v) {
-        in_row_.find(disparity_px.row(v), width, limit);
-        in_row_.for_each([&](int first, int last) {
-            runs_.push_back({first, last, static_cast<int>(runs_.size()), last - first + 1});
+}  // namespace
+
+SpeckleFilter::Run& SpeckleFilter::at(int number) {
+    constexpr int kPlace = (1 << kPlaceBits) - 1;
+    return bands_[static_cast<std::size_t>(number >> kPlaceBits)]
+        .runs[static_cast<std::size_t>(number & kPlace)];
+}
+
+SpeckleFilter::Band& SpeckleFilter::band_of(int v) {
+    return bands_[static_cast<std::size_t>(v / kBandRows)];
+}
+
+/// Of one band, as if there were no other.
+void SpeckleFilter::find_islands(int first_row,
+                                 int last_row,
+                                 const Image<float>& disparity_px,
+                                 float same_px) {
+    Band& band = band_of(first_row);
+    const auto found = [&] { return static_cast<int>(band.runs.size()); };
+    band.runs.clear();
+    band.row_first.assign(1, 0);
+    RowOfRuns above;
+    for (int v = first_row; v < last_row; ++v) {
+        RowOfRuns here{disparity_px.row(v), found(), 0};
+        band.in_row.find(here.disparity_px, disparity_px.width(), same_px);
+        band.in_row.for_each([&](int first, int last) {
+            band.runs.push_back({first, last, found(), last - first + 1});
         });
-        row_first_.push_back(static_cast<int>(runs_.size()));
-        if (v > 0) connect(disparity_px, v, limit);
+        here.end = found();
+        band.row_first.push_back(here.end);
+        Run* const runs = band.runs.data();
+        connect([runs](int place) -> Run& { return runs[place]; }, above, here, same_px);
+        above = here;
     }
-    for (int v = 0; v < height; ++v) {
+    // No parent stands behind its run: each has the number of its root already.
+    const int number = first_row / kBandRows << kPlaceBits;
+    for (int place = 0; place < found(); ++place) {
+        Run& run = band.runs[static_cast<std::size_t>(place)];
+        const bool is_root = run.parent == place;
+        run.parent =
+            is_root ? number + place : band.runs[static_cast<std::size_t>(run.parent)].parent;
+    }
+}
+
+/// Between rows v - 1 and v.
+void SpeckleFilter::join_over_border(int v, const Image<float>& disparity_px, float same_px) {
+    const auto row = [&](int row_v) {
+        const int band = row_v / kBandRows;
+        const std::vector<int>& first = bands_[static_cast<std::size_t>(band)].row_first;
+        const auto in_band = static_cast<std::size_t>(row_v - band * kBandRows);
+        const int number = band << kPlaceBits;
+        return RowOfRuns{
+            disparity_px.row(row_v), number + first[in_band], number + first[in_band + 1]};
+    };
+    connect([this](int number) -> Run& { return at(number); }, row(v - 1), row(v), same_px);
+}
+
+void SpeckleFilter::remove_islands(int first_row,
+                                   int last_row,
+                                   int min_size,
+                                   Image<float>& disparity_px) {
+    const Band& band = band_of(first_row);
+    int parent = -1;  // of the run before: mostly it is that of the next one too
+    bool small = false;
+    for (int v = first_row; v < last_row; ++v) {
         float* const d = disparity_px.row(v);
-        for (int run = row_first_[static_cast<std::size_t>(v)];
-             run < row_first_[static_cast<std::size_t>(v + 1)];
-             ++run) {
-            if (runs_[static_cast<std::size_t>(root_of(run))].size >= min_size) continue;
-            const Run& island = runs_[static_cast<std::size_t>(run)];
-            std::fill(
-                d + island.first, d + island.last + 1, std::numeric_limits<float>::quiet_NaN());
+        const auto row = static_cast<std::size_t>(v - first_row);
+        for (int place = band.row_first[row]; place < band.row_first[row + 1]; ++place) {
+            const Run& run = band.runs[static_cast<std::size_t>(place)];
+            if (run.parent != parent) {
+                parent = run.parent;
+                small = island_size(parent) < min_size;
+            }
+            if (small)
+                std::fill(d + run.first, d + run.last + 1, std::numeric_limits<float>::quiet_NaN());
         }
     }
+}
+
+/// Changes nothing: bands ask at the same time.
+int SpeckleFilter::island_size(int run) {
+    while (at(run).parent != run) run = at(run).parent;
+    return at(run).size;
+}
+
+void SpeckleFilter::remove(Executor& executor,
+                           int min_size,
+                           double same_px,
+                           Image<float>& disparity_px) {
+    const int height = disparity_px.height();
+    SUREFOOT_ASSERT(disparity_px.width() < kMaxSide_px && height < kMaxSide_px);
+    const auto limit = static_cast<float>(same_px);
+    const auto bands = static_cast<std::size_t>((height + kBandRows - 1) / kBandRows);
+    if (bands_.size() < bands) bands_.resize(bands);
+    for_row_blocks<kBandRows>(executor, height, [&](int first, int last) {
+        find_islands(first, last, disparity_px, limit);
+    });
+    for (int v = kBandRows; v < height; v += kBandRows) join_over_border(v, disparity_px, limit);
+    for_row_blocks<kBandRows>(executor, height, [&](int first, int last) {
+        remove_islands(first, last, min_size, disparity_px);
+    });
 }
 
 }  // namespace surefoot::stereo

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/core/executors_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::stereo {
@@ -41,19 +42,23 @@ Image<float> flooded(const Image<float>& in, int min_size, double same_px) {
     return out;
 }
 
-TEST(SpeckleFilter, IsTheFloodFill) {
+/// Of several bands: islands reach over their borders, some of them over more than one.
+TEST(SpeckleFilter, IsTheFloodFillForEveryExecutor) {
     SpeckleFilter filter;
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Backwards backwards;
+    Threads two(2);
+    Executor* const executors[] = {&serial(), &backwards, &two};
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
         Rng rng(seed);
         Image<float> image(1 + static_cast<int>(rng.uniform(0.0, 60.0)),
-                           1 + static_cast<int>(rng.uniform(0.0, 40.0)));
+                           1 + static_cast<int>(rng.uniform(0.0, 140.0)));
         for (std::size_t i = 0; i < image.size(); ++i) {
             const double luck = rng.uniform();
             image.data()[i] =
                 luck < 0.25 ? kNan : static_cast<float>(luck < 0.6 ? 10.0 : rng.uniform(8.0, 14.0));
         }
         const Image<float> expected = flooded(image, 12, 1.0);
-        filter.remove(12, 1.0, image);
+        filter.remove(*executors[seed % 3], 12, 1.0, image);
         int known = 0;
         for (std::size_t i = 0; i < image.size(); ++i) {
             const bool both_unknown = std::isnan(image.data()[i]) && std::isnan(expected.data()[i]);
@@ -66,12 +71,26 @@ TEST(SpeckleFilter, IsTheFloodFill) {
     }
 }
 
+/// A snake through all bands is one island: it stays, whole, where any of its parts alone would go.
+TEST(SpeckleFilter, JoinsOverTheBordersOfBands) {
+    constexpr int kWidth = 9;
+    constexpr int kHeight = 100;
+    for (const int min_size : {kHeight, kHeight + 1}) {
+        Image<float> image(kWidth, kHeight, kNan);
+        for (int v = 0; v < kHeight; ++v) image.at(4, v) = 10.0F;
+        Backwards backwards;
+        SpeckleFilter().remove(backwards, min_size, 1.0, image);
+        for (int v = 0; v < kHeight; ++v)
+            ASSERT_EQ(std::isnan(image.at(4, v)), min_size > kHeight) << min_size << " row " << v;
+    }
+}
+
 TEST(SpeckleFilter, NothingInNothingOut) {
     SpeckleFilter filter;
     Image<float> empty;
-    filter.remove(10, 1.0, empty);
+    filter.remove(serial(), 10, 1.0, empty);
     Image<float> unknown(5, 4, kNan);
-    filter.remove(10, 1.0, unknown);
+    filter.remove(serial(), 10, 1.0, unknown);
     EXPECT_TRUE(std::isnan(unknown.at(2, 2)));
 }
 
