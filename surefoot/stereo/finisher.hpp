@@ -11,7 +11,7 @@ namespace surefoot::stereo {
 /// its sigma and its outlier probability.
 class Finisher {
   public:
-    Finisher() : refiner_(RefineConfig{}) {}
+    explicit Finisher(const RefineConfig& refinement = {}) : refiner_(refinement) {}
 
     /// Fills all of `depth` from what was found (NaN = nothing), which may lie in
     /// `depth.disparity_px` if there is no filter. Jumps and holes are those before the filter.

@@ -45,6 +45,14 @@ const test::SyntheticPair& scene() {
     return pair;
 }
 
+/// Upside down.
+template <typename T>
+void flip(Image<T>& image) {
+    for (int v = 0; v < image.height() / 2; ++v)
+        std::swap_ranges(
+            image.row(v), image.row(v) + image.width(), image.row(image.height() - 1 - v));
+}
+
 struct Score {
     double density = 0.0;
     double bad_1 = 0.0;
@@ -246,6 +254,33 @@ TEST_P(EveryMatcher, FloorIsExactToATenthOfAPixel) {
     EXPECT_LT(std::abs(ours.mean_px), 0.02);
     EXPECT_LT(ours.bad_1, 0.002);
     EXPECT_GT(ours.density, 0.99);
+}
+
+TEST(CensusMatcher, IsNotLateOnWeakFloor) {
+    // Its paths come down the image: seen upright and upside down the floor must lie as high.
+    double mean_px[2] = {};
+    for (const bool upside_down : {false, true}) {
+        double sum_px = 0.0;
+        for (const std::uint64_t seed : {5U, 6U, 7U}) {
+            test::SceneConfig config;
+            config.seed = seed;
+            config.noise_grey = 3.0;
+            config.contrast_grey = 2.0;
+            test::SyntheticPair pair = test::Scene(config).render();
+            if (upside_down) {
+                flip(pair.left);
+                flip(pair.right);
+                flip(pair.disparity_px);
+            }
+            const camera::DepthImage depth = match(pair.left, pair.right, MatcherConfig{});
+            sum_px += score(depth.disparity_px, nullptr, pair.disparity_px, [](int, int) {
+                          return true;
+                      }).mean_px;
+        }
+        mean_px[upside_down ? 1 : 0] = sum_px / 3.0;
+    }
+    std::printf("weak floor: mean %+.3f px, upside down %+.3f px\n", mean_px[0], mean_px[1]);
+    EXPECT_LT(std::abs(mean_px[0] - mean_px[1]), 0.05);
 }
 
 TEST_P(EveryMatcher, ThreeSigmaCoverTheErrors) {

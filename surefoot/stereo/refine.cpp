@@ -58,17 +58,24 @@ void smooth_along(const float* row, int width, int radius_px, double same_surfac
     rows::smooth_along({row, before, after, radius_px, width, same_px, out});
 }
 
-void smooth_down(const Image<float>& in, int v, int radius_px, double same_surface_px, float* out) {
-    SUREFOOT_ASSERT(radius_px <= kMaxSmoothRadius_px);
+void smooth_down(const Image<float>& in,
+                 int v,
+                 int radius_px,
+                 double same_surface_px,
+                 int lag_rows,
+                 float* out) {
+    SUREFOOT_ASSERT(radius_px <= kMaxSmoothRadius_px && lag_rows >= 0);
     const float* above[kMaxSmoothRadius_px];
     const float* below[kMaxSmoothRadius_px];
-    const int steps = std::min({radius_px, v, in.height() - 1 - v});
+    const int middle = std::min(v + lag_rows, in.height() - 1);
+    const int steps = std::min({radius_px, middle, in.height() - 1 - middle});
     for (int k = 0; k < steps; ++k) {
-        above[k] = in.row(v - k - 1);
-        below[k] = in.row(v + k + 1);
+        above[k] = in.row(middle - k - 1);
+        below[k] = in.row(middle + k + 1);
     }
     const auto same_px = static_cast<float>(same_surface_px);
-    rows::smooth_along({in.row(v), above, below, steps, in.width(), same_px, out});
+    const float* const ahead = middle == v ? nullptr : in.row(middle);
+    rows::smooth_along({in.row(v), above, below, steps, in.width(), same_px, out, ahead});
 }
 
 SubpixelRefiner::SubpixelRefiner(const RefineConfig& config) : config_(config) {
@@ -120,7 +127,12 @@ void SubpixelRefiner::warp_block(int first,
     row.pairs = pairs.data();
     for (int v = first; v < last; ++v) {
         float* const disparity = disparity_px.row(v);
-        smooth_down(horizontal_, v, config_.smooth_radius_px, config_.same_surface_px, disparity);
+        smooth_down(horizontal_,
+                    v,
+                    config_.smooth_radius_px,
+                    config_.same_surface_px,
+                    config_.lag_rows,
+                    disparity);
         smooth_image_row(left, v, sums, smooth_left.data());
         smooth_image_row(right, v, sums, smooth_right.data() + 1);
         row.disparity_px = disparity;

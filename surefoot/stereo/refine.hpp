@@ -12,10 +12,13 @@ namespace surefoot::stereo {
 struct RefineConfig {
     int smooth_radius_px = 4;      ///< neighbours on the same surface are averaged over 9x9 pixels
     double same_surface_px = 1.5;  ///< largest difference to a neighbour on the same surface
-    int window_radius_px = 12;     ///< 25x25 pixels share one correction, at most 16
-    double prior_sigma_px = 0.2;   ///< how far the smoothed value is trusted, 1 sigma
-    int jump_margin_px = 2;        ///< pixels this near to a jump show mixed surfaces: not used
-    double max_step_px = 1.0;      ///< no correction is larger
+    /// What was found in a row is what the surface has so many rows farther up: a search whose
+    /// paths come down the image, but not up, follows slanted ground late.
+    int lag_rows = 0;
+    int window_radius_px = 12;    ///< 25x25 pixels share one correction, at most 16
+    double prior_sigma_px = 0.2;  ///< how far the smoothed value is trusted, 1 sigma
+    int jump_margin_px = 2;       ///< pixels this near to a jump show mixed surfaces: not used
+    double max_step_px = 1.0;     ///< no correction is larger
     /// Least grey-level noise (1 sigma, after smoothing the image) that a window is believed to
     /// have.
     double min_noise_grey = 0.4;
@@ -91,7 +94,10 @@ class SubpixelRefiner {
 /// Mean over the neighbours on the same surface along a row. They count in opposite pairs, so that
 /// a slanted plane keeps its value. On either side of the row stand `radius_px` unknown pixels.
 void smooth_along(const float* row, int width, int radius_px, double same_surface_px, float* out);
-/// The same down the columns, for row `v`; near the ends fewer neighbours count.
-void smooth_down(const Image<float>& in, int v, int radius_px, double same_surface_px, float* out);
+/// The same down the columns, for row `v`; near the ends fewer neighbours count. `lag_rows`: what
+/// counts is the row so many farther down and its neighbours, where it differs by no more than half
+/// of `same_surface_px` (edges stay where they are).
+void smooth_down(
+    const Image<float>& in, int v, int radius_px, double same_surface_px, int lag_rows, float* out);
 
 }  // namespace surefoot::stereo

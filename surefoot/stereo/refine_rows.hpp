@@ -25,6 +25,9 @@ struct SmoothRow {
     int width = 0;
     float same_surface_px = 0.0F;
     float* out = nullptr;
+    /// What counts instead of `center` where half of that difference is not exceeded; the other
+    /// lines lie around it. Or nothing.
+    const float* ahead = nullptr;
 };
 /// See stereo::smooth_along.
 void smooth_along(const SmoothRow& row);

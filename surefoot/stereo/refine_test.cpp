@@ -117,6 +117,54 @@ TEST(SmoothAlong, DoesNotMixSurfacesAndKeepsTheUnknownUnknown) {
     }
 }
 
+/// Of a column of values, each a row of `width` pixels: the first pixel of every row.
+std::vector<float> smoothed_down(const std::vector<float>& column, int lag_rows) {
+    constexpr int kWidth = 70;  // more than any register
+    Image<float> in(kWidth, static_cast<int>(column.size()));
+    for (int v = 0; v < in.height(); ++v)
+        std::fill_n(in.row(v), kWidth, column[static_cast<std::size_t>(v)]);
+    std::vector<float> out;
+    out.reserve(column.size());
+    std::vector<float> row(kWidth);
+    for (int v = 0; v < in.height(); ++v) {
+        smooth_down(in, v, 4, 1.5, lag_rows, row.data());
+        for (const float value : row) {
+            const bool is_same = value == row[0] || (std::isnan(value) && std::isnan(row[0]));
+            EXPECT_TRUE(is_same) << v;
+        }
+        out.push_back(row[0]);
+    }
+    return out;
+}
+
+TEST(SmoothDown, TakesWhatTheSearchIsLateFor) {
+    std::vector<float> plane(20);
+    for (std::size_t v = 0; v < plane.size(); ++v) plane[v] = 10.0F + 0.25F * static_cast<float>(v);
+    EXPECT_EQ(smoothed_down(plane, 0), plane);
+    const std::vector<float> ahead = smoothed_down(plane, 2);
+    for (std::size_t v = 0; v + 2 < plane.size(); ++v) EXPECT_EQ(ahead[v], plane[v + 2]) << v;
+    EXPECT_EQ(ahead[18], plane[19]) << "no farther than the image";
+    EXPECT_EQ(ahead[19], plane[19]);
+}
+
+TEST(SmoothDown, DoesNotMoveEdgesAndKeepsTheUnknownUnknown) {
+    std::vector<float> step(14, 5.0F);
+    std::fill(step.begin() + 7, step.end(), 6.0F);  // the same surface for the mean, but not ahead
+    std::vector<float> out = smoothed_down(step, 2);
+    EXPECT_FLOAT_EQ(out[4], 5.0F + 4.0F / 9.0F) << "rows 2 to 10";
+    EXPECT_FLOAT_EQ(out[5], 5.0F + 4.0F / 9.0F) << "rows 3 to 11 as seen from row 5";
+    EXPECT_FLOAT_EQ(out[7], 6.0F - 2.0F / 9.0F) << "rows 5 to 13";
+    std::fill(step.begin() + 7, step.end(), 9.0F);
+    step[3] = kNan;
+    out = smoothed_down(step, 2);
+    for (std::size_t v = 0; v < step.size(); ++v) {
+        if (v == 3)
+            EXPECT_TRUE(std::isnan(out[v]));
+        else
+            EXPECT_EQ(out[v], step[v]) << v;
+    }
+}
+
 TEST(SubpixelRefiner, RemovesALeanOfTheWholeSurface) {
     Serial serial;
     const test::SyntheticPair& pair = plane();
