@@ -122,23 +122,6 @@ struct Prior {
     }
 };
 
-/// What an image lacks in growth until it reaches its corners.
-struct Growth {
-    int places = 0;
-
-    template <typename T>
-    bool operator()(const T* lens, T* residual) const {
-        std::fill(residual, residual + kGrowthPlaces, T(0.0));
-        for (int i = 0; i < places; ++i) {
-            const double least = least_growth(growth_place(i));
-            T growth = T(0.0);
-            (void)growth_at(lens, growth_place(i), &growth);
-            if (growth < T(least)) residual[i] = kGrowthWeight_px * (T(least) - growth);
-        }
-        return true;
-    }
-};
-
 template <bool kIsFisheye>
 ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     constexpr int kLens = kIsFisheye ? kFisheye : kPinhole;
@@ -147,6 +130,11 @@ ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     auto* functor = new Functor{sight.point_board_m, sight.pixel, disc_radius_m};
     if (sight.eye == 0) return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6>(functor);
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
+}
+
+/// Lenses whose last coefficients say little but beyond the boards.
+bool may_turn_back(LensKind kind) {
+    return kind == LensKind::rational || kind == LensKind::fisheye;
 }
 
 /// Parameters of a lens that stay as they are.
@@ -185,18 +173,14 @@ class Graph {
         for (Lens& lens : lenses_) set_freedom(lens.data(), options.freedom);
     }
 
-    /// The images of rational lenses shall reach their corners. False where they do.
+    /// The images of the lenses shall reach their corners. False where they do.
     bool hold_growth() {
         bool turns_back = false;
         for (Lens& lens : lenses_) {
-            const GrowthCheck check = check_growth(lens.data(), bundle_.size);
-            turns_back = turns_back || check.turns_back;
-            if (!check.turns_back) continue;
-            problem_.AddResidualBlock(
-                new ceres::AutoDiffCostFunction<Growth, kGrowthPlaces, kPinhole>(
-                    new Growth{check.places}),
-                nullptr,
-                lens.data());
+            turns_back =
+                (bundle_.kind == LensKind::fisheye ? hold_growth_of<FisheyeGrowth>(lens)
+                                                   : hold_growth_of<PinholeGrowth>(lens)) ||
+                turns_back;
         }
         return turns_back;
     }
@@ -248,6 +232,19 @@ class Graph {
   private:
     using Lens = std::array<double, kPinhole>;
 
+    template <typename Profile>
+    bool hold_growth_of(Lens& lens) {
+        const GrowthCheck check = check_growth<Profile>(lens.data(), bundle_.size);
+        if (!check.turns_back) return false;
+        using Lack = GrowthLack<Profile>;
+        problem_.AddResidualBlock(
+            new ceres::AutoDiffCostFunction<Lack, kGrowthPlaces, Profile::kParameters>(
+                new Lack{check.places, kGrowthWeight_px}),
+            nullptr,
+            lens.data());
+        return true;
+    }
+
     std::vector<double*> shared_blocks() {
         std::vector<double*> blocks;
         for (Lens& lens : lenses_) blocks.push_back(lens.data());
@@ -294,7 +291,7 @@ std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
     const std::optional<double> cost = graph.run(options);
     if (!cost) return cost;
     graph.store(bundle);
-    if (!options.hold_growth || bundle.kind != LensKind::rational) return cost;
+    if (!options.hold_growth || !may_turn_back(bundle.kind)) return cost;
     // Half of two residuals a sight, each of a variance.
     const double variance_px2 = *cost / static_cast<double>(bundle.sights.size());
     std::optional<double> held;

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "surefoot/calibration/lens_mapping.hpp"
 #include "surefoot/calibration/synthetic_views_for_test.hpp"
 
 namespace surefoot::calibration {
@@ -90,6 +93,50 @@ TEST(MonoCalibration, RationalLensNeverDiverges) {
         for (const int i : {0, 1, 2, 3}) {
             EXPECT_NEAR(result->parameters[i], truth[i], 3.0 * std::sqrt(result->covariance(i, i)))
                 << parameter_names(LensKind::rational)[static_cast<std::size_t>(i)];
+        }
+    }
+}
+
+/// Boards all over the middle of the image, as somebody shows them who forgets the corners.
+std::vector<BoardView> views_in_the_middle(const camera::Camera& camera, Rng& rng) {
+    std::vector<BoardView> views;
+    while (views.size() < 10) {
+        const Pose T = testing::random_pose(kBoard, camera, 0.7, rng);
+        BoardView view = view_of(kBoard, camera, T, kNoise_px, rng);
+        const bool in_the_middle =
+            std::all_of(view.pixels.begin(), view.pixels.end(), [&](const Eigen::Vector2d& p) {
+                return std::abs(p.x() - 0.5 * camera.width) < 0.25 * camera.width;
+            });
+        if (in_the_middle && view.ids.size() == kBoard.points_m().size())
+            views.push_back(std::move(view));
+    }
+    return views;
+}
+
+TEST(MonoCalibration, AFisheyeReachesItsCornersWhereNoBoardWas) {
+    constexpr double kThreeSigma_sq = 11.83;  // two degrees of freedom
+    const Eigen::VectorXd lens =
+        values({280.0, 279.4, 372.2, 246.9, 0.0121, 0.0056, -0.0061, 0.0005});
+    const camera::Camera truth{model_of(LensKind::fisheye, lens), kSize.width, kSize.height};
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+        Rng rng(seed);
+        const auto result =
+            calibrate_mono(kBoard, views_in_the_middle(truth, rng), kSize, LensKind::fisheye);
+        ASSERT_TRUE(result) << result.error().message;
+        for (const double u : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+            for (const double v : {0.0, 0.5, 1.0}) {
+                const Eigen::Vector2d pixel(u * (kSize.width - 1), v * (kSize.height - 1));
+                const auto ray = camera::unproject(truth.model, pixel);
+                const auto seen = camera::project(result->camera.model, ray.value());
+                ASSERT_TRUE(seen && camera::unproject(result->camera.model, pixel))
+                    << "seed " << seed << ": no image at " << pixel.transpose();
+                const auto covariance_px2 = mapping_covariance_px2(
+                    LensKind::fisheye, result->parameters, result->covariance, *seen);
+                ASSERT_TRUE(covariance_px2) << "seed " << seed << " at " << pixel.transpose();
+                const Eigen::Vector2d error_px = *seen - pixel;
+                EXPECT_LT(error_px.dot(covariance_px2->inverse() * error_px), kThreeSigma_sq)
+                    << "seed " << seed << " at " << pixel.transpose();
+            }
         }
     }
 }
