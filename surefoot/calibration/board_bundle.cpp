@@ -132,11 +132,6 @@ ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
 }
 
-/// Lenses whose last coefficients say little but beyond the boards.
-bool may_turn_back(LensKind kind) {
-    return kind == LensKind::rational || kind == LensKind::fisheye;
-}
-
 /// Parameters of a lens that stay as they are.
 std::vector<int> fixed_parameters(LensKind kind, Freedom freedom) {
     const int block = kind == LensKind::fisheye ? kFisheye : kPinhole;
@@ -183,6 +178,11 @@ class Graph {
                 turns_back;
         }
         return turns_back;
+    }
+
+    /// Lenses without distortion, from where a run begins anew.
+    void straighten() {
+        for (Lens& lens : lenses_) std::fill(lens.begin() + 4, lens.end(), 0.0);
     }
 
     std::optional<double> run(const BundleOptions& options) {
@@ -284,6 +284,17 @@ Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& w) {
     return Eigen::Matrix3d::Identity() - a * W + b * W * W;
 }
 
+/// The cost with images that reach their corners; nothing where they do so unheld, or no step is
+/// found.
+std::optional<double> run_held(Graph& graph, const BundleOptions& options) {
+    std::optional<double> held;
+    for (int round = 0; round < kGrowthRounds && graph.hold_growth(); ++round) {
+        held = graph.run(options);
+        if (!held) return held;
+    }
+    return held;
+}
+
 }  // namespace
 
 std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
@@ -291,15 +302,18 @@ std::optional<double> solve(BoardBundle& bundle, const BundleOptions& options) {
     const std::optional<double> cost = graph.run(options);
     if (!cost) return cost;
     graph.store(bundle);
-    if (!options.hold_growth || !may_turn_back(bundle.kind)) return cost;
+    if (!options.hold_growth) return cost;
     // Half of two residuals a sight, each of a variance.
     const double variance_px2 = *cost / static_cast<double>(bundle.sights.size());
-    std::optional<double> held;
-    for (int round = 0; round < kGrowthRounds && graph.hold_growth(); ++round) {
+    const double most = *cost + 0.5 * kMostObjection * variance_px2;
+    std::optional<double> held = run_held(graph, options);
+    // What turned back may lie behind a pole, from where no step leads to a lens that grows.
+    if (held && *held > most) {
+        graph.straighten();
         held = graph.run(options);
-        if (!held) return cost;
+        if (held) held = run_held(graph, options).value_or(*held);
     }
-    if (!held || *held - *cost > 0.5 * kMostObjection * variance_px2) return cost;
+    if (!held || *held > most) return cost;
     graph.store(bundle);
     return held;
 }

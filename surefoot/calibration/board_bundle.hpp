@@ -44,7 +44,7 @@ struct BundleOptions {
     int max_iterations = 100;
     /// Relative change of the cost that ends it; on the way to other decisions less will do.
     double tolerance = 1e-12;
-    /// A rational or fisheye lens whose image would turn back before the corners is held to growing
+    /// A lens whose image would turn back before the corners is held to growing
     /// (growing_image.hpp), unless the sights object.
     bool hold_growth = false;
 };
