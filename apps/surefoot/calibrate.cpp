@@ -224,9 +224,11 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
     if (run.stereo) {
         const auto& stereo = *run.stereo;
         fmt::print(
-            ", rows after rectification {:.3f} px\nbaseline {:.2f} mm; depth error of the "
+            ", rows after rectification {:.3f} px at f {:.0f} px\nbaseline {:.2f} mm; depth error "
+            "of the "
             "calibration, one sigma:",
             stereo.row_rms_px,
+            stereo.row_focal_px,
             kMillimetres * stereo.rig.T_left_right.translation_m.norm());
         for (const calibration::DepthError& error : stereo.depth_errors)
             fmt::print(" {}", depth_words(error));

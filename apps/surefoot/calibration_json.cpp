@@ -46,6 +46,7 @@ Json advice_json(const CalibrationRun& run) {
 
 void add_stereo(const calibration::StereoCalibration& stereo, Json& json) {
     json["row_rms_px"] = stereo.row_rms_px;
+    json["row_focal_px"] = stereo.row_focal_px;
     json["rectified_focal_px"] = stereo.rectified_focal_px;
     json["baseline_m"] = stereo.rig.T_left_right.translation_m.norm();
     json["rotation_rad"] = log_so3(stereo.rig.T_left_right.rotation).norm();

@@ -56,11 +56,14 @@ void add_figures(const CalibrationRun& run, eval::ReportContent& content) {
                                fmt::format("of {}", run.views.size())});
     if (!run.stereo) return;
     const auto& stereo = *run.stereo;
-    content.figures.push_back({"Row error",
-                               fmt::format("{:.3f}", stereo.row_rms_px),
-                               "px",
-                               fmt::format("rms after rectification at a focal length of {:.0f} px",
-                                           stereo.rectified_focal_px)});
+    content.figures.push_back(
+        {"Row error",
+         fmt::format("{:.3f}", stereo.row_rms_px),
+         "px",
+         fmt::format("rms after rectification, in pixels of the lenses' focal "
+                     "length of {:.0f} px; rectified images have {:.0f} px",
+                     stereo.row_focal_px,
+                     stereo.rectified_focal_px)});
     content.figures.push_back(
         {"Baseline",
          fmt::format("{:.2f}", kMillimetres * stereo.rig.T_left_right.translation_m.norm()),

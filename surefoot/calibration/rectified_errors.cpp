@@ -76,7 +76,8 @@ Eigen::VectorXd depths_m(const StereoParameters& parameters, std::span<const Pix
 }  // namespace
 
 double row_rms_px(const camera::Rectification& plan,
-                  std::span<const std::pair<BoardView, BoardView>> pairs) {
+                  std::span<const std::pair<BoardView, BoardView>> pairs,
+                  double focal_px) {
     double square = 0.0;
     double count = 0.0;
     for (const auto& [left, right] : pairs) {
@@ -88,7 +89,7 @@ double row_rms_px(const camera::Rectification& plan,
             const auto l = rectified(plan.left, left.pixels[i++]);
             const auto r = rectified(*plan.right, right.pixels[k++]);
             if (!l || !r) continue;
-            const double row_px = plan.rig.fy_px * (l->y() - r->y());
+            const double row_px = focal_px * (l->y() - r->y());
             square += row_px * row_px;
             count += 1.0;
         }

@@ -12,10 +12,11 @@
 namespace surefoot::calibration {
 
 /// Root of the mean squared row difference of the points that both views of a pair show, after
-/// rectification [px of the rectified image]. Points without a rectified place do not count; NaN
-/// when none is left.
+/// rectification [px of an image of the focal length `focal_px`]. Points without a rectified place
+/// do not count; NaN when none is left.
 [[nodiscard]] double row_rms_px(const camera::Rectification& plan,
-                                std::span<const std::pair<BoardView, BoardView>> pairs);
+                                std::span<const std::pair<BoardView, BoardView>> pairs,
+                                double focal_px);
 
 /// A stereo calibration as one vector: left lens, right lens, and where T_left_right is.
 struct StereoParameters {

@@ -270,7 +270,9 @@ void describe_rectified(const Board& board,
     }
     const camera::Rectification plan = camera::plan_rectification(
         result.rig, camera::RectificationConfig{}, camera::Rectifier::kVirtualBaseline_m);
-    result.row_rms_px = row_rms_px(plan, used);
+    result.row_focal_px =
+        0.5 * (parameters.left.head<2>().mean() + parameters.right.head<2>().mean());
+    result.row_rms_px = row_rms_px(plan, used, result.row_focal_px);
     result.rectified_focal_px = plan.rig.fx_px;
     const std::vector<double> sigmas_m =
         depth_sigmas_m(parameters, result.covariance, kDistances_m);

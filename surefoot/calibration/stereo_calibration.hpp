@@ -39,10 +39,16 @@ struct StereoCalibration {
     /// Order: left lens, right lens (parameter_names), T_left_right (translation [m], rotation
     /// [rad]; right perturbation).
     Eigen::MatrixXd covariance;
-    double rms_px = 0.0;              ///< both images, as OpenCV defines it
-    double sigma_px = 0.0;            ///< noise of a coordinate, degrees of freedom counted
-    double row_rms_px = 0.0;          ///< row difference of the corners in the rectified images
-    double rectified_focal_px = 0.0;  ///< of those images
+    double rms_px = 0.0;    ///< both images, as OpenCV defines it
+    double sigma_px = 0.0;  ///< noise of a coordinate, degrees of freedom counted
+    /// Row difference of the corners after rectification, in pixels of `row_focal_px`, the mean
+    /// focal length of the two lenses: what is left of a corner's error stays as large as it was
+    /// found. The rectified images of `run` may be larger or smaller, by what their lens model
+    /// makes of the corners of the image, where no board need have been: in their pixels a better
+    /// model would look worse for being drawn larger.
+    double row_rms_px = 0.0;
+    double row_focal_px = 0.0;
+    double rectified_focal_px = 0.0;  ///< of the images that `camera/rectifier` makes of these
     double disc_radius_m = 0.0;       ///< of the board's circles, as the views show it, or 0
     /// Of a point straight ahead of the rectified left camera at 0.5, 1 and 2 m.
     std::array<DepthError, 3> depth_errors;

@@ -101,7 +101,7 @@ class Verbs(CliTest):
             (["calibrate", "mono", self.dir / "chess", "--eye", "left", "--board", "chessboard:8x5:0.03", "--out",
               self.dir / "camera"], "model width height views used rms_px sigma_px cameras rejected advice notes"),
             (["calibrate", "stereo", self.dir / "chess", "--board", "chessboard:8x5:0.03", "--out", self.dir / "rig"],
-             "model views used rms_px sigma_px row_rms_px rectified_focal_px baseline_m rotation_rad depth_errors "
+             "model views used rms_px sigma_px row_rms_px row_focal_px rectified_focal_px baseline_m rotation_rad depth_errors "
              "cameras rejected advice notes"),
             (["config"], "settings"),
             (["config", "--check"], "valid problem"),
