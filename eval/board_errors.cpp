@@ -78,7 +78,7 @@ std::optional<BoardErrors> board_errors(std::span<const Eigen::Vector3d> points_
     BoardErrors errors;
     errors.axial_m = plane->distance_m() - distance_m;
     errors.std_m = std::sqrt(sum_m2 / static_cast<double>(points_m.size()));
-    errors.lateral_share = errors.axial_m / distance_m;
+    errors.scale_share = errors.axial_m / distance_m;
     errors.points = static_cast<std::int64_t>(points_m.size());
     return errors;
 }
@@ -90,7 +90,7 @@ BoardErrors mean_of(std::span<const BoardErrors> looks) {
     double variance_m2 = 0.0;
     for (const BoardErrors& look : looks) {
         mean.axial_m += look.axial_m / count;
-        mean.lateral_share += look.lateral_share / count;
+        mean.scale_share += look.scale_share / count;
         variance_m2 += look.std_m * look.std_m / count;
         mean.points += look.points;
     }

@@ -30,14 +30,16 @@ struct BoardPlane {
 struct BoardErrors {
     double axial_m = 0.0;  ///< distance of the fitted plane on the axis - true distance
     double std_m = 0.0;    ///< of all depths about the fitted plane, outliers included
-    /// Error of a length on the board, as a share of it: what is taken for farther looks larger.
-    double lateral_share = 0.0;
+    /// axial_m over the distance: by this share a length on the board errs because its depth does.
+    /// A consequence, not a measurement of its own: a textured board has no marks whose distance
+    /// from each other is known, and a lens that errs across the image does not show in it.
+    double scale_share = 0.0;
     std::int64_t points = 0;
 };
 [[nodiscard]] std::optional<BoardErrors> board_errors(std::span<const Eigen::Vector3d> points_m,
                                                       double distance_m);
 
-/// Several looks at one distance: mean of the axial and lateral errors, rms of the deviations.
+/// Several looks at one distance: mean of the axial errors, rms of the deviations.
 [[nodiscard]] BoardErrors mean_of(std::span<const BoardErrors> looks);
 
 }  // namespace surefoot::eval

@@ -40,7 +40,7 @@ TEST(BoardErrors, ExactPointsGiveTheirPlane) {
     const auto errors = board_errors(points_m, 0.75);
     ASSERT_TRUE(errors);
     EXPECT_NEAR(errors->axial_m, 0.05, 1e-9);
-    EXPECT_NEAR(errors->lateral_share, 0.05 / 0.75, 1e-9);
+    EXPECT_NEAR(errors->scale_share, 0.05 / 0.75, 1e-9);
     EXPECT_NEAR(errors->std_m, 0.0, 1e-9);
     EXPECT_EQ(errors->points, 81 * 81);
 }
@@ -77,7 +77,7 @@ TEST(BoardErrors, MeanOfLooks) {
     const BoardErrors mean = mean_of(looks);
     EXPECT_NEAR(mean.axial_m, -0.005, 1e-15);
     EXPECT_NEAR(mean.std_m, std::sqrt(0.5 * (9e-4 + 16e-4)), 1e-15);
-    EXPECT_NEAR(mean.lateral_share, -0.005, 1e-15);
+    EXPECT_NEAR(mean.scale_share, -0.005, 1e-15);
     EXPECT_EQ(mean.points, 150);
 }
 

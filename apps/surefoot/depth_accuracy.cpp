@@ -24,8 +24,8 @@ namespace surefoot::app {
 namespace {
 
 constexpr double kMmPerM = 1000.0;
-/// The thesis measured lateral errors on a length of 50.0 mm.
-constexpr double kLateralLength_mm = 50.0;
+/// The thesis measured lengths on a board by one of 50.0 mm.
+constexpr double kLength_mm = 50.0;
 constexpr std::array kDesignRanges_m = {0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0};
 
 using Rows = std::vector<std::vector<std::string>>;
@@ -83,14 +83,15 @@ eval::ReportTable accuracy_table(const std::vector<DistanceAccuracy>& rows) {
     table.header = {"distance_m",
                     "axial_mm",
                     "std_mm",
-                    "lateral_mm_of_50",
+                    "scale_mm_of_50",
                     "density_percent",
                     "looks",
                     "thesis_axial_mm",
                     "thesis_std_mm"};
     table.hint =
         "Axial: distance of the plane through the points, on the optical axis, less the true one. "
-        "Std: of all depths about that plane. Lateral: error of a length of 50 mm on the board. "
+        "Std: of all depths about that plane. Scale: what 50 mm on the board err by because its "
+        "depth does (not measured: the board has no marks). "
         "Thesis: absolute axial error and standard deviation of its Table 4.1, bought cameras.";
     for (const DistanceAccuracy& row : rows) {
         const auto& e = row.errors;
@@ -100,15 +101,14 @@ eval::ReportTable accuracy_table(const std::vector<DistanceAccuracy>& rows) {
         const auto thesis = [&](double ThesisAccuracy::*figure) {
             return row.thesis ? std::optional<double>(*row.thesis.*figure) : std::nullopt;
         };
-        table.rows.push_back(
-            {fmt::format("{:g}", row.distance_m),
-             mm(value(&eval::BoardErrors::axial_m), "{:+.2f}"),
-             mm(value(&eval::BoardErrors::std_m), "{:.2f}"),
-             e ? fmt::format("{:+.3f}", kLateralLength_mm * e->lateral_share) : "-",
-             fmt::format("{:.1f}", row.density_percent),
-             fmt::format("{}", row.looks),
-             mm(thesis(&ThesisAccuracy::axial_m)),
-             mm(thesis(&ThesisAccuracy::std_m))});
+        table.rows.push_back({fmt::format("{:g}", row.distance_m),
+                              mm(value(&eval::BoardErrors::axial_m), "{:+.2f}"),
+                              mm(value(&eval::BoardErrors::std_m), "{:.2f}"),
+                              e ? fmt::format("{:+.3f}", kLength_mm * e->scale_share) : "-",
+                              fmt::format("{:.1f}", row.density_percent),
+                              fmt::format("{}", row.looks),
+                              mm(thesis(&ThesisAccuracy::axial_m)),
+                              mm(thesis(&ThesisAccuracy::std_m))});
     }
     return table;
 }

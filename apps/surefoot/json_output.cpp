@@ -446,7 +446,7 @@ std::string depth_accuracy_json(const std::string& rig,
                       {"density_percent", number(row.density_percent)},
                       {"axial_m", error(&eval::BoardErrors::axial_m)},
                       {"std_m", error(&eval::BoardErrors::std_m)},
-                      {"lateral_share", error(&eval::BoardErrors::lateral_share)}};
+                      {"scale_share", error(&eval::BoardErrors::scale_share)}};
         entry["thesis"] = row.thesis ? Json{{"camera", row.thesis->camera},
                                             {"axial_m", row.thesis->axial_m},
                                             {"std_m", row.thesis->std_m}}

@@ -134,7 +134,7 @@ class Accuracy(CliTest):
         self.assertLess(near["std_m"], 0.002)
         self.assertLess(far["std_m"], 0.011)
         self.assertGreater(near["density_percent"], 80)
-        self.assertAlmostEqual(near["lateral_share"], near["axial_m"] / 0.6, places=9)
+        self.assertAlmostEqual(near["scale_share"], near["axial_m"] / 0.6, places=9)
         self.assertIsNone(near["thesis"])
         self.assertEqual(far["thesis"], {"camera": "ZED", "axial_m": 0.018, "std_m": 0.0247})
         self.assertGreater(zed["distances"][1]["std_m"], 1.3 * far["std_m"], "the profile is worse than the ideal")
