@@ -58,7 +58,7 @@ function(surefoot_test name)
     set(test_timeout_s 1800)  # sanitizers slow code down five to twenty times
   endif()
   # Tests run in the source folder; paths in the code are relative, so that ccache serves every clone.
-  gtest_discover_tests(${target} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(${target} NO_PRETTY_VALUES TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     PROPERTIES TIMEOUT ${test_timeout_s} ENVIRONMENT "ASAN_OPTIONS=detect_leaks=1")
 endfunction()

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "apps/surefoot/rendered_calibration_for_test.hpp"
 
 namespace surefoot::app {
@@ -44,7 +46,12 @@ INSTANTIATE_TEST_SUITE_P(Boards,
                                            Case{kStaggered, LensKind::rational},
                                            Case{kStaggered, LensKind::fisheye},
                                            Case{kCharuco, LensKind::pinhole5, 2},
-                                           Case{kCharuco, LensKind::fisheye, 2}));
+                                           Case{kCharuco, LensKind::fisheye, 2}),
+                         [](const auto& now) {
+                             const std::string board = now.param.board;
+                             return board.substr(0, board.find(':')) + "_" +
+                                    calibration::kLensKindNames[static_cast<int>(now.param.lens)];
+                         });
 
 TEST_P(CalibrateRendered, TheLensIsTrueWithinThreeSigmaAllOverTheImage) {
     const calibration::Board board = calibration::parse_board(GetParam().board).value();
@@ -76,15 +83,12 @@ TEST_P(CalibrateRendered, TheLensIsTrueWithinThreeSigmaAllOverTheImage) {
         << "or sigma is far too large";
 }
 
-class CalibrateRenderedRig : public ::testing::TestWithParam<LensKind> {};
-INSTANTIATE_TEST_SUITE_P(Lenses, CalibrateRenderedRig, ::testing::Values(LensKind::pinhole4));
-
-TEST_P(CalibrateRenderedRig, TheRightEyeIsWhereItIsSaidWithinThreeSigma) {
+TEST(CalibrateRenderedRig, TheRightEyeIsWhereItIsSaidWithinThreeSigma) {
     const calibration::Board board = calibration::parse_board(kChessboard).value();
-    const camera::StereoRig truth = testing::rig_of(GetParam());
+    const camera::StereoRig truth = testing::rig_of(LensKind::pinhole4);
     const auto pairs = testing::seen_pairs(board, truth, kViews, kPoseSeed, kNoiseSeed);
     const auto estimate = calibration::calibrate_stereo(
-        board, pairs.left, pairs.right, {truth.left.width, truth.left.height}, GetParam());
+        board, pairs.left, pairs.right, {truth.left.width, truth.left.height}, LensKind::pinhole4);
     ASSERT_TRUE(estimate) << estimate.error().message;
     EXPECT_GE(estimate->pairs.size(), static_cast<std::size_t>(kViews - 2));
     for (const calibration::RejectedView& pair : estimate->rejected)
