@@ -18,14 +18,14 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kStepsPerPixel = 16.0F;
 
 struct PairFiles {
-    const char* name;
-    const char* folder;
-    const char* right;
-    const char* truth;
-    const char* right_truth;  ///< or nothing, then `mask`
-    const char* mask;
-    double scale;
-    int disparities;
+    const char* name = nullptr;
+    const char* folder = nullptr;
+    const char* right = nullptr;
+    const char* truth = nullptr;
+    const char* right_truth = nullptr;  ///< or nothing, then `mask`
+    const char* mask = nullptr;
+    double scale = 1.0;
+    int disparities = 64;
     double truth_offset_px = 0.0;
 };
 constexpr PairFiles kPairs[] = {
