@@ -147,8 +147,13 @@ Match our_whole(const OurSettings& settings) {
         Serial serial;
         camera::DepthImage depth;
         depth.resize(found_px.width(), found_px.height());
-        stereo::Finisher().finish(
-            pair.left.view(), pair.right.view(), found_px, stereo::Filter::median, serial, depth);
+        stereo::Finisher({.lag_rows = stereo::kSearchLag_rows})
+            .finish(pair.left.view(),
+                    pair.right.view(),
+                    found_px,
+                    stereo::Filter::median,
+                    serial,
+                    depth);
         return depth.disparity_px;
     };
 }

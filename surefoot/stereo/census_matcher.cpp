@@ -15,18 +15,13 @@ SemiGlobalConfig search_config(const MatcherConfig& config) {
     return search;
 }
 
-/// The search's paths come from the left, the right and above. On floor with the noise of the ZED
-/// it was 0.14 px late; two rows leave less than 0.01 px of it (experiments/pixel_locking, floor
-/// and cross_fall, seeds 21-24; docs/experiments/matching.md).
-constexpr int kLag_rows = 2;
-
 class CensusMatcher final : public Matcher {
   public:
     explicit CensusMatcher(const MatcherConfig& config)
         : settle_{config.uniqueness_percent,
                   static_cast<int>(std::lround(config.left_right_tolerance_px))},
           search_(search_config(config)),
-          finisher_({.lag_rows = kLag_rows}) {}
+          finisher_({.lag_rows = kSearchLag_rows}) {}
 
     void match(ImageView<const std::uint8_t> left,
                ImageView<const std::uint8_t> right,
