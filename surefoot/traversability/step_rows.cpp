@@ -3,6 +3,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/traversability/step_rows.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -41,6 +42,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::CappedTag<float, StepRun::kLanes> kFloats;
 using Floats = hn::VFromD<decltype(kFloats)>;
 
+/// Columns by which the memory of later stripes is asked for: down a stripe every row is another
+/// page, which no processor foresees, and maps wider than a cache would wait for each of them.
+constexpr int kAhead = 32;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -119,6 +123,7 @@ HWY_INLINE void down_the_stripe(const Figures& figures,
         row[k] = ring + static_cast<std::size_t>(k) * widths.half_widths().size();
     for (int iy = rect.iy0 - reach; iy < rect.iy0 + rect.ny + reach; ++iy) {
         std::rotate(row, row + 1, row + kept);
+        hwy::Prefetch(layer.cell(ix, iy) + kAhead);
         reduce_row(figures, layer.cell(ix, iy), widths.half_widths(), row[kept - 1]);
         if (iy < rect.iy0 + reach) continue;
         const auto run = [&](int dy) {
@@ -153,6 +158,7 @@ void step_heights_block(const PaddedLayer& height_m,
             const auto unknown = hn::IsNaN(hn::LoadU(kFloats, height_m.cell(ix, iy)));
             const Floats step_m =
                 hn::IfThenElse(unknown, hn::Set(kFloats, kNan), hn::Sub(range.b, range.a));
+            hwy::Prefetch(step_height_m.cell(ix, iy) + kAhead);
             store_some(step_m, end - ix, step_height_m.cell(ix, iy));
         };
         down_the_stripe(Range{}, height_m, widths, first_disc, rect, ix, ring, finish);
@@ -184,6 +190,7 @@ void rate_step_block(const RatingConstants& constants,
     const int end = rect.ix0 + rect.nx;
     for (int ix = rect.ix0; ix < end; ix += static_cast<int>(hn::Lanes(kFloats))) {
         const auto finish = [&](int iy, const Pair& critical) {
+            hwy::Prefetch(step.row(iy) + ix + kAhead);
             store_some(rating(constants, critical), end - ix, step.row(iy) + ix);
         };
         down_the_stripe(figures, step_height_m, widths, second_disc, rect, ix, ring, finish);

@@ -3,6 +3,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surefoot/traversability/surface_rows.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -82,6 +83,13 @@ struct RowCells {
     HWY_ALIGN double zz_low[kCells];
     HWY_ALIGN float n[kCells];
 };
+
+/// The memory of the next strip's columns: down a strip every row is another page, which no
+/// processor foresees, and maps wider than a cache would wait for each of them.
+HWY_INLINE void ask_for_next_strip(const float* row) {
+    constexpr int kLine = 16;
+    for (int i = 0; i < kStrip; i += kLine) hwy::Prefetch(row + kStrip + i);
+}
 
 HWY_INLINE void load_row(const float* from, int cells, RowCells& row) {
     for (int i = 0; i < cells; i += double_lanes()) {
@@ -485,7 +493,9 @@ void rate_strip(const Surface& surface,
     for (int k = 0; k < kept; ++k) row[k] = ring + static_cast<std::size_t>(k) * half_widths.size();
     RowCells cells[2];
     const auto load = [&](int iy) {
-        load_row(surface.height_m.cell(strip.ix0 - reach, iy), columns + 2 * reach, cells[iy & 1]);
+        const float* from = surface.height_m.cell(strip.ix0 - reach, iy);
+        ask_for_next_strip(from + 2 * reach);
+        load_row(from, columns + 2 * reach, cells[iy & 1]);
     };
     load(strip.iy0 - reach);
     DiscSums sums;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled before read
@@ -505,6 +515,7 @@ void rate_strip(const Surface& surface,
         const float* const height_m = surface.height_m.cell(strip.ix0, center);
         float* to[5];
         for (int k = 0; k < 5; ++k) to[k] = whole ? layers[k]->row(center) + strip.ix0 : beside[k];
+        for (const float* result : to) ask_for_next_strip(result);
         const StripOut results{to[0], to[1], to[2], to[3], to[4]};
         const DiscOfRuns normals = disc_of(surface.normals, row + reach);
         sum_heights(normals, columns, sums);
