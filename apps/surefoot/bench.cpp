@@ -24,6 +24,10 @@
 
 namespace surefoot::app {
 
+std::int64_t cpu_now_ns() {
+    return static_cast<std::int64_t>(std::clock()) * (1'000'000'000 / CLOCKS_PER_SEC);
+}
+
 Timing timed(int repeats, const std::function<void()>& work) {
     work();  // warm-up: allocations, caches
     std::vector<double> times_ms;
@@ -42,28 +46,41 @@ Timing timed(int repeats, const std::function<void()>& work) {
 
 namespace {
 
-/// Whole frames of the simulated stairs, stage by stage.
+/// Forty frames of the simulated stairs through the whole chain, timed by `clock`.
+Result<RunRecord> drive_stairs(const CommonOptions& common,
+                               const Settings& settings,
+                               Executor& executor,
+                               std::int64_t (*clock)()) {
+    auto source =
+        open_source({"sim:demo_stairs", "", 0.0, 40, common.seed, settings.sim}, executor);
+    if (!source) return source.error();
+    auto pipeline = pipeline::Pipeline::make(settings.pipeline, (*source)->rig(), executor, clock);
+    if (!pipeline) return pipeline.error();
+    RunSession session(*pipeline, **source, (*source)->rig(), 1, settings.maps);
+    session.drive();
+    if (session.record().error) return *session.record().error;
+    return session.record();
+}
+
+/// Whole frames, stage by stage: once by the clock on the wall, once by processor time.
 Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Executor& executor) {
     const auto settings = load_settings(common);
     if (!settings) return settings.error();
-    auto source =
-        open_source({"sim:demo_stairs", "", 0.0, 40, common.seed, settings->sim}, executor);
-    if (!source) return source.error();
-    auto pipeline =
-        pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor, steady_now_ns);
-    if (!pipeline) return pipeline.error();
-    RunSession session(*pipeline, **source, (*source)->rig(), 1, settings->maps);
-    session.drive();
-    const RunRecord& record = session.record();
-    if (record.error) return *record.error;
+    const auto wall = drive_stairs(common, *settings, executor, steady_now_ns);
+    if (!wall) return wall.error();
+    const auto cpu = drive_stairs(common, *settings, executor, cpu_now_ns);
+    if (!cpu) return cpu.error();
+    const auto line = [](std::string_view what, Percentiles wall_ms, Percentiles cpu_ms) {
+        return BenchResult{fmt::format("chain/{}", what),
+                           {wall_ms.median, wall_ms.p99, std::nullopt, cpu_ms.median}};
+    };
     std::vector<BenchResult> results;
     for (int i = 0; i < kStageCount; ++i) {
-        const Percentiles p = stage_percentiles(record, static_cast<Stage>(i));
-        results.push_back(
-            {fmt::format("chain/{}", to_string(static_cast<Stage>(i))), {p.median, p.p99}});
+        const auto stage = static_cast<Stage>(i);
+        results.push_back(line(
+            to_string(stage), stage_percentiles(*wall, stage), stage_percentiles(*cpu, stage)));
     }
-    const Percentiles frame = frame_percentiles(record);
-    results.push_back({"chain/whole_frame", {frame.median, frame.p99}});
+    results.push_back(line("whole_frame", frame_percentiles(*wall), frame_percentiles(*cpu)));
     return results;
 }
 

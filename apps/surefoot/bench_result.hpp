@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -27,6 +28,9 @@ struct BenchResult {
     /// The same job in the same run by somebody else (OpenCV), or the plain way (terrain).
     std::optional<Timing> peer = {};
 };
+
+/// Processor time of the process, all its threads [ns].
+[[nodiscard]] std::int64_t cpu_now_ns();
 
 /// Times `work`, after one call that warms up.
 [[nodiscard]] Timing timed(int repeats, const std::function<void()>& work);

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <vector>
 
@@ -24,10 +23,6 @@ constexpr double kTurning_rad_s = 0.02;
 constexpr double kRate_hz = 2.0;
 
 using Choose = std::function<void(sim::SceneOptions&)>;
-
-std::int64_t cpu_now_ns() {
-    return static_cast<std::int64_t>(std::clock()) * (1'000'000'000 / CLOCKS_PER_SEC);
-}
 
 bool moves(const sim::Motion& motion, double time_s) {
     const sim::MotionState state = motion.at(time_s);
