@@ -73,8 +73,8 @@ TEST(PixelFilter, LevelSurfacesMayBeSeenFlatterThanBridgesThatLean) {
     };
     EXPECT_TRUE(accepts(normal)) << "a table top";
     EXPECT_TRUE(accepts(-normal)) << "the sign of a fitted normal means nothing";
-    const Eigen::AngleAxisd lean(12.0 * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX());
-    EXPECT_FALSE(accepts(lean * normal)) << "leans 12 deg";
+    const Eigen::AngleAxisd lean(18.0 * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX());
+    EXPECT_FALSE(accepts(lean * normal)) << "leans 18 deg";
     EXPECT_FALSE(accepts(Eigen::Vector3d::Zero())) << "gravity unknown";
 }
 

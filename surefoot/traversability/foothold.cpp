@@ -44,6 +44,7 @@ struct FootholdFinder::Row {
     std::vector<Sums> foot;            ///< over F; xz from the cell
     std::vector<double> yz;            ///< sum of y z over F, y in cells from the cell
     std::vector<double> unknown_band;  ///< unknown cells of B
+    std::vector<double> tight_band;    ///< cells of B whose clearance is not open
     std::vector<float> patch_high;
     std::vector<float> patch_low;
     std::vector<float> low_near;  ///< of low_shown_, as far as corners are looked for
@@ -54,6 +55,7 @@ struct FootholdFinder::Row {
         foot.assign(n, {});
         yz.assign(n, 0.0);
         unknown_band.assign(n, 0.0);
+        tight_band.assign(n, 0.0);
         for (auto* best : {&patch_high, &patch_low, &low_near, &low_possible})
             best->assign(n, kNothing);
     }
@@ -231,8 +233,10 @@ void FootholdFinder::gather(int iy, Row& row) const {
         const int h = band_[distance];
         low_possible_.take(iy + dy, -h, h, row.low_possible.data());
         for (int ix = h; ix < nx_ - h; ++ix) {
-            row.unknown_band[static_cast<std::size_t>(ix)] +=
-                sums[ix + h + 1].unknown - sums[ix - h].unknown;
+            const Sums& begin = sums[ix - h];
+            const Sums& end = sums[ix + h + 1];
+            row.unknown_band[static_cast<std::size_t>(ix)] += end.unknown - begin.unknown;
+            row.tight_band[static_cast<std::size_t>(ix)] += end.tight - begin.tight;
         }
         if (std::abs(dy) > foot) continue;
         const int f = foot_[distance];
@@ -297,7 +301,7 @@ Foothold FootholdFinder::judge(const FootholdGround& ground, int ix, int iy, con
     if (!level) found = judge_patches(ix, iy, middle_m, slope_x, slope_y);
     if (found == Foothold::rough) return found;
     if (foot.tight >= overhead_cells_) return Foothold::low;
-    if (foot.tight > 0.0 || slope + slope_doubt > config_.max_slope ||
+    if (row.tight_band[at] > 0.0 || slope + slope_doubt > config_.max_slope ||
         middle_m + static_cast<double>(row.low_possible[at]) > config_.drop_m ||
         drop_begins(middle_m, slope, row.low_near[at]) ||
         (slope > 0.5 * config_.max_slope && tilts_at_a_yaw(ix, iy))) {

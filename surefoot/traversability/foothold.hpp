@@ -83,7 +83,8 @@ struct FootholdGround {
 /// - rough: the mean of a patch within F is more than `max_residual_m` from p, at k sigma of the
 ///   mean (variance of the cells over their number, at most `independent_cells`);
 /// - low: `clearance_m` is less than wanted over as many cells of F as a square of
-///   `overhead_side_m` has (over fewer it is unsure: wrong matches are as small, cables are not);
+///   `overhead_side_m` has (over fewer it is unsure: wrong matches are as small, cables are not;
+///   and over any of B: the far rim of a table top is seen too flat to be measured);
 /// - unreachable: the cell has no `reach_step_m`.
 /// What is only beyond a limit when k sigma are added is unsure. So are
 /// - what has ground in B, or within `corner_m` beyond it, that is shown to lie by more than half
