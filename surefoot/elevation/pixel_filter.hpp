@@ -20,9 +20,9 @@ struct PixelFilterConfig {
     /// leaves 2 % of the cells hidden behind drop edges invented and 97 % of the visible floor
     /// known (docs/experiments/correlated_depth.md).
     double max_incidence_deg = 70.0;
-    /// A table top is seen at 80-88 deg from afar, and what is dropped there leaves the floor under
+    /// A table top is seen at 80-84 deg from afar, and what is dropped there leaves the floor under
     /// it as the surface. It is level, which a bridge that follows the line of sight down is not.
-    double max_incidence_level_deg = 88.0;
+    double max_incidence_level_deg = 85.0;
     /// Surfaces that lean less against gravity are level. So flat, noise alone leans a table by
     /// 10 deg: with 8 deg its far half went unseen (docs/experiments/terrain.md).
     double level_deg = 15.0;
