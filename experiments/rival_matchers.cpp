@@ -17,20 +17,6 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kLeftRight_px = 1;  ///< OpenCV's check of the right eye, the same as ours
 
-/// Winners of our search without the islands: what is refined.
-Image<float> settled_px(const OurSettings& settings, const TruePair& pair) {
-    stereo::SemiGlobalConfig config = settings.search;
-    config.disparities = pair.disparities;
-    Serial serial;
-    stereo::Winners winners;
-    stereo::SemiGlobalSearch(config).search(pair.left.view(), pair.right.view(), serial, winners);
-    Image<float> settled_px;
-    stereo::settle(settings.settle, winners, serial, settled_px);
-    stereo::SpeckleFilter().remove(
-        serial, stereo::kSpeckleSize_px, stereo::kSpeckleRange_px, settled_px);
-    return settled_px;
-}
-
 /// With wider borders: OpenCV leaves them without a match.
 cv::Mat padded(const GreyImage& image, int left_px, int margin_px) {
     const cv::Mat in(
@@ -106,6 +92,19 @@ std::vector<Setting> settings_of_bm() {
 }
 
 }  // namespace
+
+Image<float> settled_px(const OurSettings& settings, const TruePair& pair) {
+    stereo::SemiGlobalConfig config = settings.search;
+    config.disparities = pair.disparities;
+    Serial serial;
+    stereo::Winners winners;
+    stereo::SemiGlobalSearch(config).search(pair.left.view(), pair.right.view(), serial, winners);
+    Image<float> settled_px;
+    stereo::settle(settings.settle, winners, serial, settled_px);
+    stereo::SpeckleFilter().remove(
+        serial, stereo::kSpeckleSize_px, stereo::kSpeckleRange_px, settled_px);
+    return settled_px;
+}
 
 camera::DepthImage chain_depth(const TruePair& pair) {
     stereo::MatcherConfig config;

@@ -29,6 +29,8 @@ struct OurSettings {
     stereo::SemiGlobalConfig search;
     stereo::SettleConfig settle;
 };
+/// Winners of our search without the islands: what is refined.
+[[nodiscard]] Image<float> settled_px(const OurSettings& settings, const TruePair& pair);
 /// Our search, settled, without speckles, and the median of 3 x 3 pixels.
 [[nodiscard]] Match our_search(const OurSettings& settings);
 /// The same, refined as the chain does: with its settings these are the disparities of `chain`.

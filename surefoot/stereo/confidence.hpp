@@ -21,18 +21,19 @@ struct MatchEvidence {
 /// the texture, part of the correction that was needed, and what jumps and holes nearby do,
 ///   sigma^2 = floor^2 + (gain residual / gradient)^2 + (share shift)^2 + (jump nearness)^2
 ///             + (hole unknown_share)^2, at most kMaxSigma_px.
-/// Fitted (likelihood of Student's t with 8 degrees of freedom) to Middlebury cones and cloth3 and
-/// to four scenes seen by the simulated ZED at one and two times its noise, then all coefficients
-/// times 1.12, so that 68 % lie within one sigma. Other pairs and scenes, and what was held out:
-/// docs/experiments/matching.md. Images of an ideal camera scatter two to three times less than it
-/// says.
+/// Fitted to Middlebury cones and cloth3 and to four scenes seen by the simulated ZED at one and
+/// two times its noise (experiments/sigma_fit.cpp: likelihood of Student's t, and of every image 68
+/// and 95 % within one and two sigma; the share of the shift was held), then all coefficients times
+/// 1.02, so that 68 % lie within one sigma on average; rounded. Other pairs and scenes, and what
+/// was held out: docs/experiments/matching.md. Images of an ideal camera scatter two to three times
+/// less than it says.
 [[nodiscard]] float match_sigma_px(const MatchEvidence& evidence) noexcept;
 
-inline constexpr float kSigmaFloor_px = 0.125F;
-inline constexpr float kSigmaGain = 0.215F;
-inline constexpr float kSigmaShiftShare = 0.65F;
-inline constexpr float kSigmaJump_px = 0.28F;
-inline constexpr float kSigmaHole_px = 0.78F;
+inline constexpr float kSigmaFloor_px = 0.134F;
+inline constexpr float kSigmaGain = 0.182F;
+inline constexpr float kSigmaShiftShare = 0.46F;
+inline constexpr float kSigmaJump_px = 0.40F;
+inline constexpr float kSigmaHole_px = 0.92F;
 inline constexpr float kMaxSigma_px = 1.5F;
 /// Nearness is 1 at a jump and 0 from here on.
 inline constexpr float kJumpReach_px = 12.0F;
