@@ -58,20 +58,27 @@ bool is_inlier(Points points, int index, const Plane& plane, const RansacPlaneOp
 }
 
 /// What speaks for a plane: its inliers, and where each point has its own tolerance, how near they
-/// are (MSAC, Torr and Zisserman 2000): planes across two levels have many at the rim.
+/// are (MSAC, Torr and Zisserman 2000): planes across two levels have many at the rim. Stops, with
+/// less, when `to_beat` is out of reach.
 double support(Points points,
                const std::vector<int>& finite,
                const Plane& plane,
-               const RansacPlaneOptions& options) {
+               const RansacPlaneOptions& options,
+               double to_beat) {
+    constexpr std::size_t kPortion = 128;
     double sum = 0.0;
-    for (const int index : finite) {
-        const auto i = static_cast<std::size_t>(index);
-        const double distance_m = plane.signed_distance_m(points[i]);
-        if (options.tolerance_of_m.empty()) {
-            sum += std::abs(distance_m) <= options.tolerance_m ? 1.0 : 0.0;
-        } else {
-            const double share = distance_m / options.tolerance_of_m[i];
-            sum += std::max(1.0 - share * share, 0.0);
+    for (std::size_t first = 0; first < finite.size(); first += kPortion) {
+        if (sum + static_cast<double>(finite.size() - first) <= to_beat) break;
+        const std::size_t last = std::min(first + kPortion, finite.size());
+        for (std::size_t k = first; k < last; ++k) {
+            const auto i = static_cast<std::size_t>(finite[k]);
+            const double distance_m = plane.signed_distance_m(points[i]);
+            if (options.tolerance_of_m.empty()) {
+                sum += std::abs(distance_m) <= options.tolerance_m ? 1.0 : 0.0;
+            } else {
+                const double share = distance_m / options.tolerance_of_m[i];
+                sum += std::max(1.0 - share * share, 0.0);
+            }
         }
     }
     return sum;
@@ -100,19 +107,20 @@ Search search(Points points,
               Rng& rng) {
     Search result;
     double best = 0.0;
-    double hit = 0.0;     // chance that a triple is all inliers of the best plane so far
+    // Chance that a triple is all inliers of the best plane so far, or of the least one wanted.
+    double hit = std::pow(std::min(options.least_inlier_ratio, 1.0), 3);
     double missed = 1.0;  // chance that all triples so far contained an outlier
     while (result.iterations < options.max_iterations && missed > 1.0 - options.confidence) {
         ++result.iterations;
         missed *= 1.0 - hit;
         const auto plane = draw_plane(points, finite, rng);
         if (!plane || !is_admissible(plane->normal)) continue;
-        const double sum = support(points, finite, *plane, options);
+        const double sum = support(points, finite, *plane, options, best);
         if (sum <= best) continue;
         best = sum;
         result.best = plane;
         const double ratio = sum / static_cast<double>(finite.size());
-        hit = ratio * ratio * ratio;
+        hit = std::max(hit, ratio * ratio * ratio);
     }
     return result;
 }

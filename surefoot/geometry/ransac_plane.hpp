@@ -24,6 +24,8 @@ struct RansacPlaneOptions {
     std::span<const double> tolerance_of_m;
     double confidence = 0.9999;  ///< of having drawn three inliers at least once; ends the search
     int max_iterations = 1000;
+    /// Share of the points; the search also ends when a plane with so many would have been found.
+    double least_inlier_ratio = 0.0;
     int max_refinements = 8;  ///< refits on the inliers until these stay the same
     std::optional<NormalCone> cone;
 };

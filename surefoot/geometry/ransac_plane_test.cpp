@@ -44,6 +44,23 @@ TEST(RansacPlane, TooFewOrCollinearPointsHaveNoPlane) {
     EXPECT_FALSE(ransac_plane(Points(20, Eigen::Vector3d(kNaN, 0, 0)), options, rng));
 }
 
+TEST(RansacPlane, EndsWhenThePlaneThatIsWantedWouldHaveBeenFound) {
+    Rng data_rng(1);
+    const Points points = plane_with_outliers(100, 900, 0.005, data_rng);
+    RansacPlaneOptions options;
+    options.tolerance_m = 0.02;
+    const auto iterations = [&](double least_inlier_ratio) {
+        options.least_inlier_ratio = least_inlier_ratio;
+        Rng rng(2);
+        return ransac_plane(points, options, rng)->iterations;
+    };
+    EXPECT_EQ(iterations(0.0), options.max_iterations);
+    // log(1 - confidence) / log(1 - ratio^3), and the first draw that does not count yet.
+    EXPECT_NEAR(iterations(0.5), 69, 1);
+    EXPECT_NEAR(iterations(0.3), 336, 1);
+    EXPECT_EQ(iterations(1.0), 1);
+}
+
 TEST(RansacPlane, KnownPlaneIsFoundAmongHalfOutliersForManySeeds) {
     constexpr double kNoise_m = 0.005;
     for (std::uint64_t seed = 1; seed <= 50; ++seed) {

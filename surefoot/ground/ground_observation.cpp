@@ -219,6 +219,9 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
                                 static_cast<std::size_t>(config.min_inlier_ratio *
                                                          static_cast<double>(rest.points.size())));
     for (int plane = 0; plane < kMaxPlanes && rest.points.size() >= least; ++plane) {
+        options.least_inlier_ratio = config.min_inlier_ratio *
+                                     static_cast<double>(cloud.points.size()) /
+                                     static_cast<double>(rest.points.size());
         const auto found = search(rest, options, rng);
         if (!found) break;
         // Where the noise is known what lies on another level is told apart and speaks against

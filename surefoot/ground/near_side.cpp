@@ -71,7 +71,7 @@ Samples samples_of(std::span<const Eigen::Vector3d> points,
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double sigma = inverse_range_sigma[i];
-        const Sighting seen = sighting_of(points[i], sigma, plane);
+        const Sighting seen = sighting_of(beam_to(points[i]), sigma, plane);
         if (!seen.is_within(band_m)) continue;
         const double off = (seen.inverse_range - seen.expected_inverse_range) / sigma;
         Sample sample;

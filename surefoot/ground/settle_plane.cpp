@@ -23,18 +23,18 @@ struct Sample {
     double residual;  ///< in sigmas
 };
 
-std::vector<Sample> samples_near(const geometry::Plane& plane,
-                                 std::span<const Eigen::Vector3d> points,
-                                 std::span<const double> inverse_range_sigma,
-                                 double band_m) {
-    std::vector<Sample> samples;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Sighting seen = sighting_of(points[i], inverse_range_sigma[i], plane);
+void find_samples(const geometry::Plane& plane,
+                  std::span<const Beam> beams,
+                  std::span<const double> inverse_range_sigma,
+                  double band_m,
+                  std::vector<Sample>& samples) {
+    samples.clear();
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+        const Sighting seen = sighting_of(beams[i], inverse_range_sigma[i], plane);
         if (!seen.is_within(band_m)) continue;
         samples.push_back(
             {seen.ray, seen.inverse_range, inverse_range_sigma[i], seen.off_m / seen.sigma_m});
     }
-    return samples;
 }
 
 double scatter(const std::vector<Sample>& samples) {
@@ -59,8 +59,13 @@ std::optional<geometry::Plane> settle_plane(std::span<const Eigen::Vector3d> poi
                                             const geometry::Plane& start,
                                             double band_m) {
     geometry::Plane plane = start;
+    std::vector<Beam> beams;
+    beams.reserve(points.size());
+    for (const auto& p : points) beams.push_back(beam_to(p));
+    std::vector<Sample> samples;
+    samples.reserve(points.size());
     for (int round = 0; round < kRounds; ++round) {
-        const auto samples = samples_near(plane, points, inverse_range_sigma, band_m);
+        find_samples(plane, beams, inverse_range_sigma, band_m, samples);
         if (samples.size() < kLeastPoints) return std::nullopt;
         const double cut = kTukey * scatter(samples);
         Eigen::Matrix3d information = Eigen::Matrix3d::Zero();

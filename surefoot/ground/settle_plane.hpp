@@ -51,15 +51,24 @@ struct Sighting {
     }
 };
 
-[[nodiscard]] inline Sighting sighting_of(const Eigen::Vector3d& p,
+/// Where a point lies, seen from the origin; no beam leads to the origin or to what is not finite.
+struct Beam {
+    Eigen::Vector3d ray = Eigen::Vector3d::Zero();  ///< unit
+    double inverse_range = 0.0;                     ///< [1/m]
+};
+[[nodiscard]] inline Beam beam_to(const Eigen::Vector3d& p) {
+    const double range_m = p.norm();
+    if (!(range_m > 0.0) || !std::isfinite(range_m)) return {};
+    return {p / range_m, 1.0 / range_m};
+}
+
+[[nodiscard]] inline Sighting sighting_of(const Beam& beam,
                                           double inverse_range_sigma,
                                           const geometry::Plane& plane) {
     Sighting sighting;
-    const double range_m = p.norm();
-    if (!(range_m > 0.0) || !std::isfinite(range_m)) return sighting;
-    sighting.ray = p / range_m;
-    sighting.inverse_range = 1.0 / range_m;
-    const double fall = -plane.normal.dot(sighting.ray);
+    sighting.ray = beam.ray;
+    sighting.inverse_range = beam.inverse_range;
+    const double fall = -plane.normal.dot(beam.ray);
     if (!(fall > 0.0) || !(plane.offset_m > 0.0)) return sighting;
     sighting.expected_inverse_range = fall / plane.offset_m;
     const double m_per_inverse = plane.offset_m / sighting.expected_inverse_range;
