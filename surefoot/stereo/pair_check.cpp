@@ -7,10 +7,12 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "surefoot/stereo/window_shift.hpp"
+
 namespace surefoot::stereo {
 namespace {
 
-constexpr int kHalf_px = 7;  ///< of the window around a corner
+constexpr int kHalf_px = kShiftHalf_px;  ///< of the window around a corner
 constexpr int kMaxCorners = 300;
 constexpr double kCornerQuality = 0.01;  ///< of the best corner
 constexpr double kMinCorrelation = 0.9;
@@ -26,22 +28,17 @@ cv::Mat as_mat(ImageView<const std::uint8_t> image) {
             static_cast<std::size_t>(image.stride)};
 }
 
-struct Shift {
-    double columns_px;  ///< right minus left
-    double rows_px;
-};
-
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
 
-/// Where a corner went: the best normalised correlation, with a parabola across the rows.
-std::optional<Shift> shift_of(const cv::Mat& left,
-                              const cv::Mat& right,
-                              const cv::Point& corner,
-                              const PairSearch& search) {
+/// Where a corner went, in whole pixels: the best normalised correlation.
+std::optional<WindowShift> whole_shift_of(const cv::Mat& left,
+                                          const cv::Mat& right,
+                                          const cv::Point& corner,
+                                          const PairSearch& search) {
     const cv::Rect window(
         corner.x - kHalf_px, corner.y - kHalf_px, 2 * kHalf_px + 1, 2 * kHalf_px + 1);
     const cv::Rect all(0, 0, left.cols, left.rows);
@@ -57,16 +54,13 @@ std::optional<Shift> shift_of(const cv::Mat& left,
     cv::minMaxLoc(score, nullptr, &best, nullptr, &at);
     // A best place on the edge of what was searched may go on beyond it.
     if (!(best >= kMinCorrelation) || at.y == 0 || at.y == score.rows - 1) return std::nullopt;
-    const auto above = static_cast<double>(score.at<float>(at.y - 1, at.x));
-    const auto below = static_cast<double>(score.at<float>(at.y + 1, at.x));
-    const double bend = above + below - 2.0 * best;
-    const double fine = bend < 0.0 ? 0.5 * (above - below) / bend : 0.0;
     const cv::Rect peak(at.x - kHalf_px / 2, at.y - kHalf_px / 2, kHalf_px, kHalf_px);
     score(peak & cv::Rect(0, 0, score.cols, score.rows)).setTo(-1.0);
     double second = 0.0;
     cv::minMaxLoc(score, nullptr, &second);
     if (second > kMaxSecond * best) return std::nullopt;
-    return Shift{static_cast<double>(strip.x + at.x - window.x), strip.y + at.y + fine - window.y};
+    return WindowShift{static_cast<double>(strip.x + at.x - window.x),
+                       static_cast<double>(strip.y + at.y - window.y)};
 }
 
 }  // namespace
@@ -86,7 +80,9 @@ Corners match_corners(ImageView<const std::uint8_t> left,
     corners.found = static_cast<int>(places.size());
     for (const cv::Point2f& place : places) {
         const cv::Point corner(place);
-        if (const auto shift = shift_of(left_mat, right_mat, corner, search)) {
+        const auto whole = whole_shift_of(left_mat, right_mat, corner, search);
+        if (!whole) continue;
+        if (const auto shift = settle_shift(left, right, corner.x, corner.y, *whole)) {
             corners.matched.push_back({static_cast<double>(corner.x),
                                        static_cast<double>(corner.y),
                                        shift->columns_px,

@@ -41,8 +41,8 @@ TEST(PairCheck, MeasuresRowsToAFractionOfAPixel) {
     for (const double rows_px : {0.0, 0.4, -1.25, 3.5}) {
         const PairCheck found = check(blobs(0, 0), blobs(-12.3, rows_px));
         ASSERT_TRUE(found.enough());
-        // The median of many corners is known better than one of them, whose noise (a parabola
-        // through three places of a correlation peak) is all that is left of the absolute value.
+        // The median of many corners is known better than one of them, whose noise is all that is
+        // left of the absolute value.
         EXPECT_NEAR(found.row_offset_px, rows_px, 0.05);
         EXPECT_NEAR(found.row_error_px, std::abs(rows_px), 0.1);
         EXPECT_FALSE(found.exchanged());

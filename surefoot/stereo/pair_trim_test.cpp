@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <variant>
 #include <vector>
 
 #include "surefoot/camera/rectifier.hpp"
@@ -74,6 +77,67 @@ TEST(PairTrim, FindsHowTheRightEyeIsTurned) {
         EXPECT_LT(trim->row_error_left_px, 0.08);
         EXPECT_GT(trim->row_error_px, trim->row_error_left_px);
     }
+}
+
+/// What an eye at `origin_m`, turned by `rotation`, sees of a plane that rises to the back, with
+/// waves of 5 to 30 px of all directions.
+GreyImage wavy_plane(const camera::PinholeRadTan& lens,
+                     const Eigen::Vector3d& origin_m,
+                     const Eigen::Quaterniond& rotation,
+                     Rng& noise) {
+    struct Wave {
+        double x, y, phase;
+    };
+    const Eigen::Vector3d normal(0.0, 0.4, 1.0);
+    constexpr double kAhead_m = 2.0;
+    Rng rng(9);
+    std::vector<Wave> waves;
+    for (int i = 0; i < 25; ++i) {
+        const double length_m = rng.uniform(5.0, 30.0) * kAhead_m / 342.0;
+        const double turn_rad = rng.uniform(0.0, std::numbers::pi);
+        const double k = 2.0 * std::numbers::pi / length_m;
+        waves.push_back({k * std::cos(turn_rad),
+                         k * std::sin(turn_rad),
+                         rng.uniform(0.0, 2.0 * std::numbers::pi)});
+    }
+    GreyImage image(672, 376);
+    for (int v = 0; v < image.height(); ++v) {
+        for (int u = 0; u < image.width(); ++u) {
+            const Eigen::Vector3d ray =
+                rotation *
+                Eigen::Vector3d((u - lens.cx_px) / lens.fx_px, (v - lens.cy_px) / lens.fy_px, 1.0);
+            const double share = (kAhead_m - normal.dot(origin_m)) / normal.dot(ray);
+            const Eigen::Vector3d p_m = origin_m + share * ray;
+            double grey = 128.0 + 2.0 * noise.normal();
+            for (const Wave& wave : waves)
+                grey += 9.0 * std::sin(wave.x * p_m.x() + wave.y * p_m.y() + wave.phase);
+            image.at(u, v) = static_cast<std::uint8_t>(std::clamp(std::lround(grey), 0L, 255L));
+        }
+    }
+    return image;
+}
+
+TEST(PairTrim, FindsAllOfTheTurnInImages) {
+    camera::StereoRig nominal = nominal_rig();
+    nominal.rectified = true;
+    const camera::RightEye eye{0.0009, 0.00037, 0.0, 0.0006};
+    const camera::StereoRig real = with_right_eye(nominal, eye);
+    Rng noise(7);
+    const auto lens_of = [](const camera::Camera& camera) {
+        return std::get<camera::PinholeRadTan>(camera.model);
+    };
+    const GreyImage left = wavy_plane(
+        lens_of(real.left), Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity(), noise);
+    const GreyImage right = wavy_plane(
+        lens_of(*real.right), real.T_left_right.translation_m, real.T_left_right.rotation, noise);
+    const Corners corners = match_corners(left.view(), right.view(), {64, 6});
+    const auto trim = estimate_trim({}, rectified(nominal), corners.matched);
+    ASSERT_TRUE(trim);
+    // A preference for whole pixels takes a tenth away from all of it.
+    EXPECT_NEAR(trim->eye.roll_rad, eye.roll_rad, 0.03e-3);
+    EXPECT_NEAR(trim->eye.pitch_rad, eye.pitch_rad, 0.012e-3);
+    EXPECT_NEAR(trim->eye.focal_share, eye.focal_share, 0.05e-3);
+    EXPECT_LT(trim->row_error_left_px, 0.03);
 }
 
 TEST(PairTrim, AGoodRigIsLeftAlone) {

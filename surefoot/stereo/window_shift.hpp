@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "surefoot/core/views.hpp"
+
+namespace surefoot::stereo {
+
+/// Where a window of one image lies in another: its centre there minus its centre here.
+struct WindowShift {
+    double columns_px = 0.0;
+    double rows_px = 0.0;
+};
+
+/// Half the side of the window, without its centre [px].
+inline constexpr int kShiftHalf_px = 7;
+
+/// Settles a whole-pixel match of the window around (u_px, v_px) of `left` to a fraction of a
+/// pixel.
+///
+/// Gauss-Newton on the grey values (Lucas and Kanade 1981; steps from the gradients of the left
+/// image alone, Baker and Matthews 2004): both shifts, how the columns slant along either side of
+/// the window (ground seen from above moves by most of a pixel within it), gain and offset. A
+/// parabola through a correlation prefers whole pixels: texture of two pixels loses a tenth of
+/// every fraction. Here only the interpolation could, which goes through six pixels; and noise
+/// pulls to no side, because that of the left image's gradients knows nothing of the right image's.
+///
+/// Nothing where the window leaves an image, has no texture in some direction, or settles farther
+/// than a pixel from `start`.
+[[nodiscard]] std::optional<WindowShift> settle_shift(ImageView<const std::uint8_t> left,
+                                                      ImageView<const std::uint8_t> right,
+                                                      int u_px,
+                                                      int v_px,
+                                                      const WindowShift& start);
+
+}  // namespace surefoot::stereo
