@@ -147,7 +147,7 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
 std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFrame> frames) {
     std::vector<stereo::CornerShift> corners;
     // First, middle and last one: neighbours show the same.
-    const std::size_t step = std::max<std::size_t>(1, frames.size() / 2);
+    const std::size_t step = std::max<std::size_t>(1, (frames.size() - 1) / 2);
     for (std::size_t i = 0; i < frames.size(); i += step) {
         const StereoFrame& frame = frames[std::min(i, frames.size() - 1)];
         if (frame.known_depth || frame.right.empty() || !frame.arrival.is_new_and_whole()) continue;
