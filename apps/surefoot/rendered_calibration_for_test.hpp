@@ -178,6 +178,25 @@ inline RigErrors rig_errors(const camera::StereoRig& truth,
     return result;
 }
 
+/// Squared error of all parameters in their own covariance. Not of rational lenses.
+inline double parameter_chi_square(const camera::Camera& truth,
+                                   const calibration::MonoCalibration& estimate) {
+    Eigen::VectorXd error = estimate.parameters;
+    if (const auto* f = std::get_if<camera::KannalaBrandt>(&truth.model)) {
+        error -= Eigen::Vector<double, 8>(
+            f->fx_px, f->fy_px, f->cx_px, f->cy_px, f->k1, f->k2, f->k3, f->k4);
+    } else if (const auto* p = std::get_if<camera::PinholeRadTan>(&truth.model)) {
+        error.head<8>() -= Eigen::Vector<double, 8>(
+            p->fx_px, p->fy_px, p->cx_px, p->cy_px, p->k1, p->k2, p->p1, p->p2);
+        if (error.size() > 8) error[8] -= p->k3;
+    }
+    const Eigen::VectorXd sigmas = estimate.covariance.diagonal().cwiseSqrt();
+    const Eigen::VectorXd scaled = error.cwiseQuotient(sigmas);
+    const Eigen::MatrixXd correlation = sigmas.cwiseInverse().asDiagonal() * estimate.covariance *
+                                        sigmas.cwiseInverse().asDiagonal();
+    return scaled.dot(correlation.ldlt().solve(scaled));
+}
+
 /// An estimate beside the truth, all over the image: where it shows the true direction of a pixel.
 struct MappingErrors {
     std::vector<double> squares;  ///< of the distance in the estimate's own standard deviations

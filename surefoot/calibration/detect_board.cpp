@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "surefoot/calibration/board_corners.hpp"
 #include "surefoot/calibration/board_order.hpp"
 #include "surefoot/calibration/charuco.hpp"
 #include "surefoot/calibration/circle_centres.hpp"
@@ -29,10 +30,8 @@ constexpr int kFewestPixelsPerPoint = 4;
 /// ours are compared with.
 constexpr int kMostHalfWindow_px = 5;
 constexpr int kLeastHalfWindow_px = 2;
-constexpr double kChessboardReach = 0.4;  ///< of the distance to the next corner
-/// Gradients of sharp or noisy edges are not what the refinement assumes: on rendered boards this
-/// much blur brings its mean error from 0.05 to 0.03 px.
-constexpr double kSmoothing_px = 1.0;
+/// Single corners may hide under a reflection; a board that shows fewer is another thing.
+constexpr int kLeastPercent = 75;
 /// With more dark spots than this the search for the grid takes minutes.
 constexpr std::size_t kMostBlobs = 600;
 /// Larger images are not enlarged to find small circles: it would take seconds.
@@ -111,9 +110,8 @@ BoardSighting find_chessboard(const Board& board,
     const auto points = ordered_points(board, points_of(corners), view);
     if (!points) return not_found("corners that do not form this chessboard");
     BoardSighting sighting = whole_board(*points);
-    cv::Mat smooth;
-    cv::GaussianBlur(image, smooth, cv::Size(), kSmoothing_px);
-    if (!refine_corners(board, smooth, kChessboardReach, sighting.view))
+    fit_corners(board, view, sighting.view);
+    if (100 * std::ssize(sighting.view.ids) < kLeastPercent * board.columns * board.rows)
         return not_found("a chessboard without clear corners (blurred?)");
     return sighting;
 }

@@ -176,6 +176,58 @@ TEST(MonoCalibration, LeavesOutWhatDoesNotBelong) {
     EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01);
 }
 
+/// The sheet bows by `bow_m` between its ends and its middle, along its rows.
+BoardView bowed_view(const camera::Camera& camera,
+                     const Pose& T_camera_board,
+                     double bow_m,
+                     Rng& rng) {
+    const double half_m = 0.5 * kBoard.points_m().back().x();
+    BoardView view = view_of(kBoard, camera, T_camera_board, 0.0, rng);
+    for (std::size_t i = 0; i < view.ids.size(); ++i) {
+        Eigen::Vector3d point = kBoard.points_m()[static_cast<std::size_t>(view.ids[i])];
+        const double from_middle = point.x() / half_m - 1.0;
+        point.z() = bow_m * (1.0 - from_middle * from_middle);
+        view.pixels[i] = camera::project(camera.model, T_camera_board * point).value() +
+                         kNoise_px * Eigen::Vector2d(rng.normal(), rng.normal());
+    }
+    return view;
+}
+
+/// Rows of the lower half as the image shows them after the board moved: a rolling shutter, or two
+/// half images.
+BoardView torn_view(const camera::Camera& camera, const Pose& T_camera_board, Rng& rng) {
+    Pose moved = T_camera_board;
+    moved.translation_m += Eigen::Vector3d(0.001, 0.0, 0.0);
+    BoardView view = view_of(kBoard, camera, T_camera_board, kNoise_px, rng);
+    const BoardView later = view_of(kBoard, camera, moved, kNoise_px, rng);
+    for (std::size_t i = 0; i < std::min(view.ids.size(), later.ids.size()); ++i)
+        if (view.ids[i] == later.ids[i] && view.ids[i] / kBoard.columns >= kBoard.rows / 2)
+            view.pixels[i] = later.pixels[i];
+    return view;
+}
+
+TEST(MonoCalibration, LeavesOutABoardThatBowsAndOneThatMoved) {
+    const Case lens = cases()[1];
+    const camera::Camera camera{model_of(lens.kind, lens.truth), kSize.width, kSize.height};
+    Uncertainty uncertainty;
+    for (const std::uint64_t seed : {31U, 32U, 33U}) {
+        Rng rng(seed);
+        SyntheticViews views = pinhole_views(12, rng);
+        views.left[3] = bowed_view(camera, views.T_left_board[3], 0.003, rng);
+        views.left[8] = torn_view(camera, views.T_left_board[8], rng);
+        const auto result = calibrate_mono(kBoard, views.left, kSize, lens.kind);
+        ASSERT_TRUE(result) << result.error().message;
+        std::vector<std::size_t> rejected;
+        for (const RejectedView& view : result->rejected) {
+            rejected.push_back(view.index);
+            EXPECT_NE(view.reason.find("the other views allow"), std::string::npos) << view.reason;
+        }
+        EXPECT_EQ(rejected, (std::vector<std::size_t>{3, 8})) << "seed " << seed;
+        uncertainty.add(result->parameters - lens.truth, result->covariance);
+    }
+    uncertainty.expect_true();
+}
+
 std::string refusal(std::span<const BoardView> views, ImageSize size = kSize) {
     const auto result = calibrate_mono(kBoard, views, size, LensKind::pinhole5);
     return result ? "" : result.error().message;

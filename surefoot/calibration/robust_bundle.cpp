@@ -37,7 +37,7 @@ double common_limit_px(const std::vector<double>& all, const RobustLimits& limit
     for (double& rms : known) rms = std::abs(rms - middle);
     return std::max({limits.view_factor * middle,
                      middle + limits.view_sigmas * kMadToSigma * median(known),
-                     3.0 * kLeastSigma_px});
+                     limits.least_px});
 }
 
 /// The view that exceeds its limit most, or comes nearest to it.
@@ -46,8 +46,9 @@ DroppedView worst_view(const BoardBundle& bundle, const RobustLimits& limits, do
     const double common_px = common_limit_px(all, limits);
     DroppedView worst{-1, 0.0, common_px};
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const double limit_px =
-            limits.view_limits_px.empty() ? common_px : limits.view_limits_px[i];
+        const double limit_px = limits.view_limits_px.empty()
+                                    ? common_px
+                                    : std::max(limits.view_limits_px[i], limits.least_px);
         if (all[i] / limit_px > worst.rms_px / worst.limit_px)
             worst = {static_cast<int>(i), all[i], limit_px};
     }
