@@ -32,8 +32,8 @@ struct CornerGuess {
 /// settle near the guess, or the edges do not show.
 ///
 /// Why not the point where gradients meet (cv::cornerSubPix): its window wants straight edges and
-/// no neighbours. With squares of 4 px it erred by 0.25 px (per coordinate), with large ones by
-/// 0.02 px where the lens bends the edges.
+/// no neighbours. On rendered boards it erred by 0.25 px (per coordinate) with squares of 4 px, and
+/// by 0.02 px with large ones, noise aside.
 [[nodiscard]] std::optional<Eigen::Vector2d> fit_corner(ImageView<const std::uint8_t> image,
                                                         const CornerGuess& guess);
 
