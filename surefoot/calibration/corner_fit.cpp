@@ -127,6 +127,18 @@ double angle_of(const Eigen::Vector2d& direction) {
     return std::atan2(direction.y(), direction.x());
 }
 
+/// Where the blur would leave its limits it is no parameter: the others must settle without it.
+void hold_blur_at_limit(const Vector7& p, System& system) {
+    const double pull = system.Jtr[kLogBlur];
+    const bool held =
+        pull < 0.0 ? p[kLogBlur] <= std::log(kLeastBlur_px) : p[kLogBlur] >= std::log(kMostBlur_px);
+    if (!held) return;
+    system.JtJ.row(kLogBlur).setZero();
+    system.JtJ.col(kLogBlur).setZero();
+    system.JtJ(kLogBlur, kLogBlur) = 1.0;
+    system.Jtr[kLogBlur] = 0.0;
+}
+
 /// Levenberg and Marquardt. Sum of the squares left, or nothing where it does not settle.
 std::optional<double> settle(const std::vector<Sample>& samples,
                              const CornerGuess& guess,
@@ -134,6 +146,7 @@ std::optional<double> settle(const std::vector<Sample>& samples,
     System system = system_at(samples, guess, p);
     double damping = 1e-3;
     for (int step = 0; step < kMostSteps; ++step) {
+        hold_blur_at_limit(p, system);
         Matrix7 damped = system.JtJ;
         damped.diagonal() *= 1.0 + damping;
         const Vector7 change = damped.ldlt().solve(system.Jtr);
@@ -141,14 +154,15 @@ std::optional<double> settle(const std::vector<Sample>& samples,
         next[kLogBlur] =
             std::clamp(next[kLogBlur], std::log(kLeastBlur_px), std::log(kMostBlur_px));
         const System there = system_at(samples, guess, next);
-        if (!(there.cost <= system.cost)) {
-            damping *= 10.0;
-            continue;
+        const bool settled = change.head<2>().norm() < kSettled_px;
+        if (there.cost <= system.cost) {
+            p = next;
+            system = there;
+            damping *= 0.1;
+        } else {
+            damping *= 10.0;  // the steps become shorter, and end where nothing is better
         }
-        p = next;
-        system = there;
-        damping *= 0.1;
-        if (change.head<2>().norm() < kSettled_px) return system.cost;
+        if (settled) return system.cost;
     }
     return std::nullopt;
 }
