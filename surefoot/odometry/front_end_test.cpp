@@ -165,7 +165,7 @@ TEST(LandmarkMap, PredictedViewIsTheDerivativeOfTheProjection) {
     const auto rectifier = small_rectifier();
     const StereoFrame frame = render_frame(testing::small_rig(), Pose{}, 0, 0.0);
     LandmarkMap map({}, rectifier);
-    map.add_keyframe(Pose{}, 0);
+    map.add_keyframe(Pose{});
     const Eigen::Vector3d p(0.2, 0.1, 2.0);
     const Eigen::Vector2d raw = *rectifier.raw_from_point(camera::Side::left, p);
     const auto slot = map.add_landmark(frame.left.view(), raw, project_stereo(rectifier.rig(), p));
@@ -196,7 +196,7 @@ TEST(LandmarkMap, ForgetsWhatItMustAndNeverWhatIsUsed) {
     config.most_landmarks = 5;
     config.most_keyframes = 3;
     LandmarkMap map(config, rectifier);
-    map.add_keyframe(Pose{}, 0);
+    map.add_keyframe(Pose{});
     for (int i = 0; i < 10; ++i) {
         const Eigen::Vector3d p(0.05 * i - 0.2, 0.0, 2.0);
         ASSERT_TRUE(map.add_landmark(frame.left.view(),
@@ -211,7 +211,7 @@ TEST(LandmarkMap, ForgetsWhatItMustAndNeverWhatIsUsed) {
     EXPECT_EQ(alive, 5);
     EXPECT_GE(map.at(0).id, 0);
     EXPECT_GE(map.at(9).id, 0);
-    for (int i = 0; i < 3; ++i) map.add_keyframe(Pose{}, 0);  // the first keyframe goes
+    for (int i = 0; i < 3; ++i) map.add_keyframe(Pose{});  // the first keyframe goes
     EXPECT_EQ(map.keyframes(), 3);
     for (int slot = 0; slot < map.slots(); ++slot) EXPECT_LT(map.at(slot).id, 0);
 }

@@ -25,9 +25,9 @@ void LandmarkMap::clear() {
     free_slots_.clear();
 }
 
-int LandmarkMap::add_keyframe(const Pose& T_odom_camera, std::int64_t time_ns) {
+int LandmarkMap::add_keyframe(const Pose& T_odom_camera) {
     if (keyframes() >= config_.most_keyframes) forget_oldest_keyframe();
-    keyframes_.push_back({next_keyframe_++, time_ns, T_odom_camera});
+    keyframes_.push_back({next_keyframe_++, T_odom_camera});
     return keyframes_.back().id;
 }
 
@@ -79,7 +79,6 @@ std::optional<int> LandmarkMap::add_landmark(ImageView<const std::uint8_t> left,
     const Pose& T_odom_camera = newest().T_odom_camera;
     Landmark& landmark = at(slot);
     landmark.id = next_landmark_++;
-    landmark.born_ns = newest().time_ns;
     landmark.p_odom_m = T_odom_camera * triangulate(rig, pixel);
     const Eigen::Matrix3d R = T_odom_camera.R();
     landmark.covariance_m2 =

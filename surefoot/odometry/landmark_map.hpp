@@ -14,7 +14,6 @@ namespace surefoot::odometry {
 /// A remembered camera pose whose measurements hold the map together.
 struct Keyframe {
     int id = 0;
-    std::int64_t time_ns = 0;
     Pose T_odom_camera;
 };
 
@@ -28,7 +27,6 @@ struct Sighting {
 /// A point of the scene with the look by which it is found again.
 struct Landmark {
     std::int64_t id = -1;  ///< never reused; -1 = empty slot
-    std::int64_t born_ns = 0;
     Eigen::Vector3d p_odom_m = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom axes, the keyframes given
     HostPatch patch;
@@ -60,7 +58,7 @@ class LandmarkMap {
 
     void clear();
     /// Appends a keyframe and forgets the oldest when there are too many, with what it hosts.
-    int add_keyframe(const Pose& T_odom_camera, std::int64_t time_ns);
+    int add_keyframe(const Pose& T_odom_camera);
     /// Makes a landmark that the newest keyframe sees at `raw_px` = `pixel`; its slot, or nothing
     /// when its patch would leave the image.
     std::optional<int> add_landmark(ImageView<const std::uint8_t> left,

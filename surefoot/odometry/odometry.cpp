@@ -85,9 +85,8 @@ struct Odometry::Impl {
                                                 const Pose& T_after,
                                                 double depth_m) const;
     [[nodiscard]] bool wants_keyframe() const;
-    Pose make_keyframe(const Pose& T, std::int64_t now_ns, Executor& executor);
-    bool seed_landmarks(std::int64_t now_ns, Executor& executor);
-    [[nodiscard]] double new_errors(std::int64_t now_ns, double dt_s) const;
+    Pose make_keyframe(const Pose& T, Executor& executor);
+    bool seed_landmarks(Executor& executor);
     MotionEstimate publish(const Pose& T_camera,
                            const Matrix6& covariance,
                            const Matrix6& extra,
@@ -161,7 +160,7 @@ MotionEstimate Odometry::Impl::begin(const StereoFrame& frame, Executor& executo
     good_time_ns = frame.time_ns;
     if (inertial) inertial->stand({T_odom_camera, Matrix6::Zero()});
     sharpness = front.left().sharpness();
-    const bool seeded = seed_landmarks(frame.time_ns, executor);
+    const bool seeded = seed_landmarks(executor);
     MotionEstimate estimate = publish(T_odom_camera, Matrix6::Zero(), Matrix6::Zero());
     estimate.tracks = front.kept();
     estimate.health = seeded ? Health::degraded : Health::lost;
@@ -170,11 +169,11 @@ MotionEstimate Odometry::Impl::begin(const StereoFrame& frame, Executor& executo
 }
 
 /// Starts a new map at the present pose; false when the image does not give enough landmarks.
-bool Odometry::Impl::seed_landmarks(std::int64_t now_ns, Executor& executor) {
+bool Odometry::Impl::seed_landmarks(Executor& executor) {
     map.clear();
     front.clear();
     still.clear();
-    static_cast<void>(make_keyframe(T_odom_camera, now_ns, executor));
+    static_cast<void>(make_keyframe(T_odom_camera, executor));
     const bool enough = static_cast<int>(front.tracks().size()) >= config.min_inliers;
     if (!enough) {
         map.clear();
@@ -252,25 +251,6 @@ Matrix6 Odometry::Impl::systematic_covariance(const Pose& T_before,
     return sigma.cwiseAbs2().asDiagonal();
 }
 
-/// The share of what two poses `dt_s` apart err that they do not have in common. They see the same
-/// landmarks, but for those that took the place of others: how fast these go follows from how many
-/// are younger than a second. ASSUMPTION: the two rates, from the mean NEES of six scenes (seeds
-/// 21-24).
-double Odometry::Impl::new_errors(std::int64_t now_ns, double dt_s) const {
-    constexpr double kOfPixels_per_s = 0.17;
-    constexpr double kOfLandmarks = 0.35;
-    constexpr double kMostYoung = 0.95;
-    constexpr std::int64_t kYoung_ns = 1'000'000'000;
-    const std::vector<Track>& tracks = front.tracks();
-    const auto young = std::count_if(tracks.begin(), tracks.end(), [&](const Track& track) {
-        return now_ns - map.at(track.slot).born_ns < kYoung_ns;
-    });
-    const double share =
-        static_cast<double>(young) / static_cast<double>(std::max<std::size_t>(tracks.size(), 1));
-    const double gone_per_s = -std::log(1.0 - std::min(share, kMostYoung));
-    return std::clamp(dt_s * (kOfPixels_per_s + kOfLandmarks * gone_per_s), kLeastNewErrors, 1.0);
-}
-
 MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
                                      const PoseSolution& pose,
                                      const HealthEvidence& evidence,
@@ -293,20 +273,23 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
     }
     frames_since_keyframe += standing ? 0 : 1;
     if (wants_keyframe()) {
-        const Pose adjusted = make_keyframe(T, frame.time_ns, executor);
+        const Pose adjusted = make_keyframe(T, executor);
         if (!standing) T = adjusted;
     }
     if (inertial) inertial->place(T);
     front.keep();
     velocity = dt_s > 0.0 ? Vector6(difference(T_odom_good, T) / dt_s) : Vector6::Zero();
     if (standing) covariance_camera.setZero();
+    // Poses that see the same landmarks share their errors.
+    const double new_errors =
+        standing ? 1.0 : std::clamp(dt_s / config.landmark_s, kLeastNewErrors, 1.0);
     const Matrix6 systematic = systematic_covariance(T_odom_good, T, evidence.scene_depth_m);
     const Pose& T_body_camera = rectifier.rig().T_body_camera;
     MotionEstimate estimate =
         publish(T,
                 covariance,
                 lost_body + camera_to_body_covariance(systematic, T_body_camera),
-                standing ? 1.0 : new_errors(frame.time_ns, dt_s));
+                new_errors);
     lost_body.setZero();
     T_odom_good = T;
     good_time_ns = frame.time_ns;
@@ -352,8 +335,7 @@ MotionEstimate Odometry::Impl::lost(const StereoFrame& frame,
     estimate.reason = verdict.reason;
     estimate.tracks = evidence.tracks;
     estimate.inliers = evidence.inliers;
-    if ((after_s > config.bridge_s || map.empty()) && front.loaded())
-        seed_landmarks(frame.time_ns, executor);
+    if ((after_s > config.bridge_s || map.empty()) && front.loaded()) seed_landmarks(executor);
     return estimate;
 }
 
@@ -380,8 +362,8 @@ bool Odometry::Impl::wants_keyframe() const {
 }
 
 /// Makes the present frame a keyframe and adjusts the map; its pose afterwards.
-Pose Odometry::Impl::make_keyframe(const Pose& T, std::int64_t now_ns, Executor& executor) {
-    map.add_keyframe(T, now_ns);
+Pose Odometry::Impl::make_keyframe(const Pose& T, Executor& executor) {
+    map.add_keyframe(T);
     for (const Track& track : front.tracks()) {
         if (map.at(track.slot).id < 0) continue;
         map.add_sighting(track.slot, track.pixel_px, track.noise_factor);

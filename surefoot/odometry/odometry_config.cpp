@@ -35,6 +35,11 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    0.1,
                    "share of a motion that the calibration may get wrong (one sigma)");
+    visitor.number("landmark_s",
+                   landmark_s,
+                   0.01,
+                   60.0,
+                   "after this time the errors of two poses count as independent");
     visitor.number(
         "lost_speed_m_s", lost_speed_m_s, 0.01, 100.0, "one sigma of the unseen speed while lost");
     visitor.number("lost_turn_rad_s",
