@@ -9,7 +9,7 @@ that of the floor itself, and what is an edge and how far the filters reach is r
   filter calls impassable, within one cell;
 * open floor: floor within reach of whose filters nothing else is known;
 * flat top: a cell at least the critical step above the floor, with half of the cells within the reach of the filters
-  known and all of these within 5 sigma of one plane; level if that plane leans at most `pixels.level_deg`.
+  known and all of these within 5 sigma of one plane; level if that plane leans at most LEVEL_DEG.
 """
 import math
 import pathlib
@@ -18,6 +18,8 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "end_to_end"))
 from surefoot_cli import read_asc  # noqa: E402
+
+LEVEL_DEG = 8.0
 
 
 def read_grid(path):
@@ -113,7 +115,7 @@ def measure(dem_path, rated):
     ground = Ground(heights, cell_m, critical_m, reach_m)
     safe = lambda cells: sum(1 for x, y in cells if ratings[y][x] >= threshold)  # NaN is not
     open_floor, tops = ground.open_floor(), ground.flat_tops()
-    level = {c for c, lean in tops.items() if lean <= math.radians(setting(config, "pixels", "level_deg"))}
+    level = {c for c, lean in tops.items() if lean <= math.radians(LEVEL_DEG)}
     return {"sigma_m": ground.sigma_m, "floor": len(open_floor), "floor_safe": safe(open_floor),
             "edges": len(ground.edges), "edges_safe": safe(ground.edges),
             "level_tops": len(level), "level_tops_safe": safe(level),
