@@ -17,16 +17,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Central differences over this share of a standard deviation: depth is straight that far.
 constexpr double kStep = 0.1;
 
-/// Direction of a raw pixel on the plane z = 1 of the rectified frame.
-std::optional<Eigen::Vector2d> rectified(const camera::RectifiedEye& eye,
-                                         const Eigen::Vector2d& raw) {
-    const auto ray = camera::unproject(eye.camera.model, raw);
-    if (!ray) return std::nullopt;
-    const Eigen::Vector3d p = eye.R_rectified_raw * *ray;
-    if (!(p.z() > 0.0)) return std::nullopt;
-    return Eigen::Vector2d(p.x() / p.z(), p.y() / p.z());
-}
-
 std::optional<Eigen::Vector2d> seen(const camera::RectifiedEye& eye,
                                     const Eigen::Vector3d& p_rectified) {
     auto raw = camera::raw_from_ray(eye, p_rectified - eye.offset_x_m * Eigen::Vector3d::UnitX());
@@ -66,14 +56,24 @@ Eigen::VectorXd depths_m(const StereoParameters& parameters, std::span<const Pix
     if (rig.problem()) return depths;
     const camera::Rectification plan = plan_of(rig);
     for (Eigen::Index i = 0; i < depths.size(); ++i) {
-        const auto left = rectified(plan.left, pixels[static_cast<std::size_t>(i)].left);
-        const auto right = rectified(*plan.right, pixels[static_cast<std::size_t>(i)].right);
+        const auto left = rectified_direction(plan.left, pixels[static_cast<std::size_t>(i)].left);
+        const auto right =
+            rectified_direction(*plan.right, pixels[static_cast<std::size_t>(i)].right);
         if (left && right) depths[i] = plan.rig.baseline_m / (left->x() - right->x());
     }
     return depths;
 }
 
 }  // namespace
+
+std::optional<Eigen::Vector2d> rectified_direction(const camera::RectifiedEye& eye,
+                                                   const Eigen::Vector2d& raw) {
+    const auto ray = camera::unproject(eye.camera.model, raw);
+    if (!ray) return std::nullopt;
+    const Eigen::Vector3d p = eye.R_rectified_raw * *ray;
+    if (!(p.z() > 0.0)) return std::nullopt;
+    return Eigen::Vector2d(p.x() / p.z(), p.y() / p.z());
+}
 
 double row_rms_px(const camera::Rectification& plan,
                   std::span<const std::pair<BoardView, BoardView>> pairs,
@@ -86,8 +86,8 @@ double row_rms_px(const camera::Rectification& plan,
                 ++(left.ids[i] < right.ids[k] ? i : k);
                 continue;
             }
-            const auto l = rectified(plan.left, left.pixels[i++]);
-            const auto r = rectified(*plan.right, right.pixels[k++]);
+            const auto l = rectified_direction(plan.left, left.pixels[i++]);
+            const auto r = rectified_direction(*plan.right, right.pixels[k++]);
             if (!l || !r) continue;
             const double row_px = focal_px * (l->y() - r->y());
             square += row_px * row_px;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "surefoot/camera/rectification.hpp"
 
 namespace surefoot::calibration {
+
+/// Direction of a raw pixel on the plane z = 1 of the rectified frame; nothing outside the lens.
+[[nodiscard]] std::optional<Eigen::Vector2d> rectified_direction(const camera::RectifiedEye& eye,
+                                                                 const Eigen::Vector2d& raw);
 
 /// Root of the mean squared row difference of the points that both views of a pair show, after
 /// rectification [px of an image of the focal length `focal_px`]. Points without a rectified place
