@@ -92,6 +92,84 @@ TEST_P(CalibrateRendered, TheLensIsTrueWithinThreeSigmaAllOverTheImage) {
     EXPECT_LT(chi_square, kMostChiSquare) << "sigma is too small";
 }
 
+/// Mean of moments of a board that moves by `motion_m` while the shutter is open, and is at
+/// `T_camera_board` in the middle of it.
+GreyImage moving_board(const calibration::Board& board,
+                       const camera::Camera& camera,
+                       const Pose& T_camera_board,
+                       const Eigen::Vector3d& motion_m) {
+    constexpr int kMoments = 16;
+    const auto sheet = calibration::print_of(board);
+    Serial serial;
+    std::vector<double> sums(static_cast<std::size_t>(camera.width * camera.height), 0.0);
+    for (int i = 0; i < kMoments; ++i) {
+        Pose moved = T_camera_board;
+        moved.translation_m += ((i + 0.5) / kMoments - 0.5) * motion_m;
+        const GreyImage moment = sim::render_board(*sheet,
+                                                   camera,
+                                                   moved,
+                                                   testing::blurred_and_noisy(),
+                                                   kNoiseSeed + static_cast<std::uint64_t>(i),
+                                                   serial);
+        for (int v = 0; v < camera.height; ++v)
+            for (int u = 0; u < camera.width; ++u)
+                sums[static_cast<std::size_t>(v * camera.width + u)] += moment.row(v)[u];
+    }
+    GreyImage image(camera.width, camera.height);
+    for (int v = 0; v < camera.height; ++v)
+        for (int u = 0; u < camera.width; ++u)
+            image.row(v)[u] = static_cast<std::uint8_t>(
+                std::lround(sums[static_cast<std::size_t>(v * camera.width + u)] / kMoments));
+    return image;
+}
+
+/// Two of ten boards move by so many pixels while the shutter is open.
+class CalibrateMoving : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Pixels, CalibrateMoving, ::testing::Values(5, 10, 14, 20));
+
+TEST_P(CalibrateMoving, BlurredViewsLeaveOrDoNoHarm) {
+    const calibration::Board board = calibration::parse_board(kChessboard).value();
+    const camera::Camera truth = testing::camera_of(LensKind::pinhole4);
+    auto views = testing::seen_boards(board, truth, kViews, kPoseSeed, kNoiseSeed);
+    Rng rng(kPoseSeed);
+    const BoardEye eye{truth, Pose{}};
+    const std::vector<Pose> poses = shown_poses(board, {&eye, 1}, kViews, rng);
+    const double focal_px = std::get<camera::PinholeRadTan>(truth.model).fx_px;
+    for (const std::size_t i : {3U, 7U}) {
+        const double m_per_px = poses[i].translation_m.z() / focal_px;
+        const Eigen::Vector3d motion_m = GetParam() * m_per_px * Eigen::Vector3d(0.8, 0.6, 0.0);
+        const GreyImage image = moving_board(board, truth, poses[i], motion_m);
+        const auto sighting = calibration::detect_board(board, image.view());
+        views[i] = sighting.view;
+        double worst_px = 0.0;
+        for (std::size_t k = 0; k < views[i].ids.size(); ++k) {
+            const Eigen::Vector3d p_m =
+                poses[i] * board.points_m()[static_cast<std::size_t>(views[i].ids[k])];
+            worst_px = std::max(worst_px,
+                                (views[i].pixels[k] - *camera::project(truth.model, p_m)).norm());
+        }
+        EXPECT_LE(worst_px, 0.02 * GetParam())
+            << "honest, or none: " << views[i].ids.size() << " corners";
+        fmt::print("view {}: {} corners, largest error {:.3f} px {}\n",
+                   i,
+                   views[i].ids.size(),
+                   worst_px,
+                   sighting.problem);
+    }
+    const auto estimate =
+        calibration::calibrate_mono(board, views, {truth.width, truth.height}, LensKind::pinhole4);
+    ASSERT_TRUE(estimate) << estimate.error().message;
+    for (const auto& left_out : estimate->rejected)
+        fmt::print("view {} left: {}\n", left_out.index, left_out.reason);
+    EXPECT_GE(estimate->views.size(), static_cast<std::size_t>(kViews - 2));
+    for (const double square : testing::mapping_errors(truth, *estimate).squares)
+        EXPECT_LT(square, testing::kThreeSigma_sq);
+    const double chi_square = testing::parameter_chi_square(truth, *estimate);
+    fmt::print("noise {:.4f} px, chi square {:.1f}\n", estimate->sigma_px, chi_square);
+    EXPECT_GT(chi_square, kLeastChiSquare) << "sigma is too large";
+    EXPECT_LT(chi_square, kMostChiSquare) << "sigma is too small";
+}
+
 class CalibrateRenderedRig : public ::testing::TestWithParam<LensKind> {};
 INSTANTIATE_TEST_SUITE_P(Lenses,
                          CalibrateRenderedRig,

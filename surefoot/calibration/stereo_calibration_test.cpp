@@ -119,6 +119,29 @@ TEST(StereoCalibration, FindsPairsThatWereNotTakenTogether) {
     EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01);
 }
 
+TEST(StereoCalibration, PairsOfFewPointsAreJudgedByWhatNoiseLeavesThem) {
+    // Alone, two poses followed the noise of 9 points in two images, together one does: expected is
+    // sqrt(30 / 24) times the rms. Uncounted, a factor of 1.05 sends away more than half of them.
+    const camera::StereoRig rig = camera::test::euroc_rig();
+    const Board few{.columns = 3, .rows = 3, .spacing_m = 0.08};
+    StereoOptions strict;
+    strict.pair_factor = 1.05;
+    int sent_away = 0;
+    int pairs = 0;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+        Rng rng(seed);
+        const SyntheticViews views = synthetic_views(few, rig, 20, kNoise_px, rng);
+        const auto result = calibrate_stereo(
+            few, views.left, views.right, size_of(rig), LensKind::pinhole4, strict);
+        ASSERT_TRUE(result) << "seed " << seed << ": " << result.error().message;
+        for (const RejectedView& view : result->rejected)
+            sent_away += view.reason.find("same moment") != std::string::npos ? 1 : 0;
+        pairs += static_cast<int>(result->pairs.size());
+    }
+    EXPECT_GT(pairs, 60);
+    EXPECT_LE(5 * sent_away, pairs) << sent_away << " beside " << pairs;
+}
+
 TEST(StereoCalibration, RefusesWhatIsNoPair) {
     const camera::StereoRig rig = camera::test::euroc_rig();
     Rng rng(6);
