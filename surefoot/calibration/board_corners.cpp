@@ -76,7 +76,7 @@ std::optional<CornerGuess> guess_of(const Board& board, const Found& found, int 
 
 std::optional<Eigen::Vector2d> fitted(ImageView<const std::uint8_t> image,
                                       const CornerGuess& guess) {
-    const auto pixel = fit_corner(image, guess);
+    auto pixel = fit_corner(image, guess);
     const double room_px = std::min(guess.along_row_px.norm(), guess.along_column_px.norm());
     if (!pixel || (*pixel - guess.pixel).norm() > kMostMove * room_px) return std::nullopt;
     return pixel;

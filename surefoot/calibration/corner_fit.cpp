@@ -31,7 +31,11 @@ using Vector7 = Eigen::Matrix<double, kParameters, 1>;
 using Matrix7 = Eigen::Matrix<double, kParameters, kParameters>;
 
 /// Order of the parameters.
-enum Parameter { kX, kY, kRowAngle, kColumnAngle, kLogBlur, kMean, kContrast };
+constexpr int kRowAngle = 2;  // after the place
+constexpr int kColumnAngle = 3;
+constexpr int kLogBlur = 4;
+constexpr int kMean = 5;
+constexpr int kContrast = 6;
 
 struct Sample {
     Eigen::Vector2d pixel;

@@ -62,7 +62,10 @@ HWY_INLINE M accepts(const SurfaceLimits& l, const Pixels& p, V ray_x, V ray_y) 
     const M level = hn::Ge(squared(upward), hn::Mul(set(l.min_level_cosine_sq), normal_sq));
     const M faces_enough = hn::Ge(facing_sq, hn::Mul(set(l.min_cosine_when_level_sq), norms_sq));
     const M leans = hn::Ne(upward, hn::Zero(D()));
-    return hn::Or(facing, hn::And(hn::And(level, faces_enough), leans));
+    const V rise =
+        hn::Add(hn::Add(hn::Mul(ray_x, set(l.up_x)), hn::Mul(ray_y, set(l.up_y))), set(l.up_z));
+    const M flat = hn::Le(squared(rise), hn::Mul(set(l.min_cosine_sq), ray_sq));
+    return hn::Or(facing, hn::And(hn::And(level, faces_enough), hn::And(leans, flat)));
 }
 
 HWY_INLINE std::int64_t count(M mask) {

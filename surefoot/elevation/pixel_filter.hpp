@@ -23,8 +23,10 @@ struct PixelFilterConfig {
     /// A table top is seen at 80-84 deg from afar, and what is dropped there leaves the floor under
     /// it as the surface. It is level, which a bridge that follows the line of sight down is not.
     double max_incidence_level_deg = 85.0;
-    /// Surfaces that lean less against gravity are level. So flat, noise alone leans a table by
-    /// 10 deg: with 8 deg its far half went unseen (docs/experiments/terrain.md).
+    /// Surfaces that lean less against gravity are level, where a level one must be seen flatter
+    /// than `max_incidence_deg`: so flat, noise alone leans a table by 10 deg (with 8 its far half
+    /// went unseen, docs/experiments/terrain.md). On steeper lines of sight what leans as little
+    /// and is seen as flat is a bridge behind a low kerb.
     double level_deg = 15.0;
 
     void describe(ConfigVisitor& visitor);
@@ -81,11 +83,14 @@ class SurfaceCheck {
             gradient(around.above_px, around.below_px, disparity_px, limit_px) * l.fy_px;
         const float c = disparity_px - a * ray_x - b * ray_y;
         const float normal_sq = a * a + b * b + c * c;
-        const float norms_sq = normal_sq * (ray_x * ray_x + ray_y * ray_y + 1.0F);
+        const float ray_sq = ray_x * ray_x + ray_y * ray_y + 1.0F;
+        const float norms_sq = normal_sq * ray_sq;
         const float facing_sq = disparity_px * disparity_px;  // comparisons are false for NaN
         if (facing_sq >= l.min_cosine_sq * norms_sq) return true;
         const float upward = a * l.up_x + b * l.up_y + c * l.up_z;
-        return upward * upward >= l.min_level_cosine_sq * normal_sq &&
+        const float rise = ray_x * l.up_x + ray_y * l.up_y + l.up_z;  // of the line of sight
+        return rise * rise <= l.min_cosine_sq * ray_sq &&
+               upward * upward >= l.min_level_cosine_sq * normal_sq &&
                facing_sq >= l.min_cosine_when_level_sq * norms_sq && upward != 0.0F;
     }
 

@@ -78,6 +78,22 @@ TEST(PixelFilter, LevelSurfacesMayBeSeenFlatterThanBridgesThatLean) {
     EXPECT_FALSE(accepts(Eigen::Vector3d::Zero())) << "gravity unknown";
 }
 
+TEST(PixelFilter, BridgesBehindLowKerbsAreNoLevelSurfaces) {
+    // They lean by 14 deg and are seen at 72 deg, from 32 deg above; then the same from 18 deg
+    // above, where a level surface is seen as flat.
+    const float d = 25.0F;
+    const auto radians = [](double deg) { return deg * std::numbers::pi / 180.0; };
+    const double angle_rad = radians(72.0);
+    const auto step_px = static_cast<float>(3.0 * std::tan(angle_rad) / kFocal_px) * d;
+    const Neighbours around{d, d, d - step_px, d + step_px};
+    const auto accepts = [&](double above_deg) {
+        const Eigen::Vector3d up(0.0, std::cos(radians(above_deg)), std::sin(radians(above_deg)));
+        return SurfaceCheck({}, kFocal_px, kFocal_px, up).accepts(around, d, 0.1F, 0.0F, 0.0F);
+    };
+    EXPECT_FALSE(accepts(32.0));
+    EXPECT_TRUE(accepts(18.0));
+}
+
 TEST(PixelFilter, RejectsJumpsAndPixelsWithoutNeighbours) {
     const PixelFilterConfig config;
     const SurfaceCheck check(config, kFocal_px, kFocal_px);
