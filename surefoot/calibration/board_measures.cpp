@@ -47,22 +47,17 @@ Triangulated triangulate(const Board& board,
                          const camera::Rectification& plan) {
     const std::vector<Eigen::Vector3d> points = board.points_m();
     Triangulated result;
-    for (std::size_t i = 0, k = 0; i < left.ids.size() && k < right.ids.size();) {
-        if (left.ids[i] != right.ids[k]) {
-            ++(left.ids[i] < right.ids[k] ? i : k);
-            continue;
-        }
-        const int id = left.ids[i];
-        const Eigen::Vector2d pixel = left.pixels[i++];
-        const auto l = rectified_direction(plan.left, pixel);
-        const auto r = rectified_direction(*plan.right, right.pixels[k++]);
-        if (!l || !r || !(l->x() > r->x())) continue;
+    const auto add = [&](int id, const Eigen::Vector2d& left_px, const Eigen::Vector2d& right_px) {
+        const auto l = rectified_direction(plan.left, left_px);
+        const auto r = rectified_direction(*plan.right, right_px);
+        if (!l || !r || !(l->x() > r->x())) return;
         const double z_m = plan.rig.baseline_m / (l->x() - r->x());
         result.ids.push_back(id);
         result.board_m.push_back(points[static_cast<std::size_t>(id)]);
-        result.left_pixels.push_back(pixel);
+        result.left_pixels.push_back(left_px);
         result.rectified_m.emplace_back(z_m * l->x(), z_m * l->y(), z_m);
-    }
+    };
+    for_each_common_point(left, right, add);
     return result;
 }
 

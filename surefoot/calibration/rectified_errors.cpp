@@ -80,20 +80,15 @@ double row_rms_px(const camera::Rectification& plan,
                   double focal_px) {
     double square = 0.0;
     double count = 0.0;
-    for (const auto& [left, right] : pairs) {
-        for (std::size_t i = 0, k = 0; i < left.ids.size() && k < right.ids.size();) {
-            if (left.ids[i] != right.ids[k]) {
-                ++(left.ids[i] < right.ids[k] ? i : k);
-                continue;
-            }
-            const auto l = rectified_direction(plan.left, left.pixels[i++]);
-            const auto r = rectified_direction(*plan.right, right.pixels[k++]);
-            if (!l || !r) continue;
-            const double row_px = focal_px * (l->y() - r->y());
-            square += row_px * row_px;
-            count += 1.0;
-        }
-    }
+    const auto add = [&](int, const Eigen::Vector2d& left_px, const Eigen::Vector2d& right_px) {
+        const auto l = rectified_direction(plan.left, left_px);
+        const auto r = rectified_direction(*plan.right, right_px);
+        if (!l || !r) return;
+        const double row_px = focal_px * (l->y() - r->y());
+        square += row_px * row_px;
+        count += 1.0;
+    };
+    for (const auto& [left, right] : pairs) for_each_common_point(left, right, add);
     return std::sqrt(square / count);
 }
 

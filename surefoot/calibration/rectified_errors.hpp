@@ -16,6 +16,20 @@ namespace surefoot::calibration {
 [[nodiscard]] std::optional<Eigen::Vector2d> rectified_direction(const camera::RectifiedEye& eye,
                                                                  const Eigen::Vector2d& raw);
 
+/// Calls f(id, left pixel, right pixel) for the points that both views show. Ids ascend in a view.
+template <typename F>
+void for_each_common_point(const BoardView& left, const BoardView& right, const F& f) {
+    for (std::size_t i = 0, k = 0; i < left.ids.size() && k < right.ids.size();) {
+        if (left.ids[i] != right.ids[k]) {
+            ++(left.ids[i] < right.ids[k] ? i : k);
+            continue;
+        }
+        f(left.ids[i], left.pixels[i], right.pixels[k]);
+        ++i;
+        ++k;
+    }
+}
+
 /// Root of the mean squared row difference of the points that both views of a pair show, after
 /// rectification [px of an image of the focal length `focal_px`]. Points without a rectified place
 /// do not count; NaN when none is left.

@@ -515,7 +515,8 @@ void rate_strip(const Surface& surface,
         const float* const height_m = surface.height_m.cell(strip.ix0, center);
         float* to[5];
         for (int k = 0; k < 5; ++k) to[k] = whole ? layers[k]->row(center) + strip.ix0 : beside[k];
-        for (const float* result : to) ask_for_next_strip(result);
+        // A narrow strip is the last one.
+        for (int k = 0; whole && k < 5; ++k) ask_for_next_strip(to[k]);
         const StripOut results{to[0], to[1], to[2], to[3], to[4]};
         const DiscOfRuns normals = disc_of(surface.normals, row + reach);
         sum_heights(normals, columns, sums);
