@@ -36,6 +36,7 @@ struct Rectifier::Impl {
     Rectification plan;
     RemapTable left;
     RemapTable right;
+    double readout_s = 0.0;
 
     [[nodiscard]] const RectifiedEye& eye(Side side) const {
         SUREFOOT_ASSERT(side == Side::left || plan.right.has_value());
@@ -57,6 +58,7 @@ Result<Rectifier> Rectifier::make(const StereoRig& rig, const RectificationConfi
         return usage_error(*problem);
     auto impl = std::make_unique<Impl>();
     impl->plan = plan_rectification(rig, config, kVirtualBaseline_m);
+    impl->readout_s = rig.readout_s;
     if (!impl->plan.identity) {
         impl->left = make_table(impl->plan.rig, impl->plan.left);
         if (impl->plan.right) impl->right = make_table(impl->plan.rig, *impl->plan.right);
@@ -70,6 +72,10 @@ const RectifiedRig& Rectifier::rig() const noexcept {
 
 bool Rectifier::is_identity() const noexcept {
     return impl_->plan.identity;
+}
+
+double Rectifier::row_offset_s(double v_raw_px) const noexcept {
+    return impl_->readout_s * ((v_raw_px + 0.5) / impl_->plan.left.camera.height - 0.5);
 }
 
 void Rectifier::rectify(const StereoFrame& frame, RectifiedPair& out) const {

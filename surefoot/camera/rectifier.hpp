@@ -55,6 +55,9 @@ class Rectifier {
     [[nodiscard]] std::optional<Eigen::Vector2d> raw_from_point(
         Side side, const Eigen::Vector3d& p_camera) const;
 
+    /// When a row of the raw images is exposed, seconds after the stamp; 0 for a global shutter.
+    [[nodiscard]] double row_offset_s(double v_raw_px) const noexcept;
+
   private:
     struct Impl;
     explicit Rectifier(std::unique_ptr<Impl> impl);

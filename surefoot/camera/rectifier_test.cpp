@@ -312,6 +312,17 @@ TEST(Rectifier, RgbdLosesItsDistortionAndKeepsItsDepth) {
     EXPECT_TRUE(pair.right.empty());
 }
 
+TEST(Rectifier, TheStampIsThatOfTheMiddleRow) {
+    StereoRig rig = test::euroc_rig();
+    EXPECT_EQ(Rectifier::make(rig)->row_offset_s(0.0), 0.0);  // global shutter
+    rig.readout_s = 0.02;
+    const auto rectifier = Rectifier::make(rig);
+    const double last = rig.left.height - 1.0;
+    EXPECT_DOUBLE_EQ(rectifier->row_offset_s(0.5 * last), 0.0);
+    EXPECT_DOUBLE_EQ(rectifier->row_offset_s(last), 0.01 * last / rig.left.height);
+    EXPECT_DOUBLE_EQ(rectifier->row_offset_s(0.0), -rectifier->row_offset_s(last));
+}
+
 TEST(Rectifier, SaysWhyARigCannotBeRectified) {
     StereoRig rig = test::euroc_rig();
     std::get<PinholeRadTan>(rig.left.model).fx_px = std::numeric_limits<double>::quiet_NaN();

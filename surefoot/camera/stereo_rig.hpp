@@ -25,8 +25,10 @@ struct StereoRig {
     /// it.
     std::optional<Pose> T_body_left;
     std::optional<ImuMount> imu;
-    double rate_hz = 0.0;    ///< nominal frame rate, 0 = unknown
-    double readout_s = 0.0;  ///< rolling-shutter read-out time of an image, 0 = global
+    double rate_hz = 0.0;  ///< nominal frame rate, 0 = unknown
+    /// Rolling-shutter read-out time of an image, first to last row; 0 = global. The stamp of a
+    /// frame is the middle of the exposure of its middle row.
+    double readout_s = 0.0;
     bool rectified = false;  ///< images are rectified already: rows match, no distortion
 
     /// First reason why the rig cannot be used, with the value; or nothing.

@@ -73,7 +73,9 @@ void FrontEnd::follow(const LandmarkMap& map, const Pose& T_odom_camera, Executo
         track.noise_factor = kFollowedNoise;
         const auto px = rectifier_.rectified_from_raw(camera::Side::left, track.raw_px);
         if (!px) continue;
-        track.pixel_px = {px->x(), px->y(), kUnknown};
+        const Eigen::Vector3d& p_odom_m = map.at(track.slot).p_odom_m;
+        track.pixel_px = at_stamp(
+            {px->x(), px->y(), kUnknown}, track.raw_px, T_odom_camera.inverse() * p_odom_m);
         tracks_.push_back(track);
     }
 }
@@ -156,6 +158,7 @@ Track FrontEnd::align_one(const LandmarkMap& map, const Pose& T, const Job& job)
     } else if (good) {
         measure_depth(map, T, landmark, track.raw_px - view->raw_px, track);
     }
+    track.pixel_px = at_stamp(track.pixel_px, track.raw_px, T.inverse() * landmark.p_odom_m);
     return track;
 }
 
@@ -195,12 +198,23 @@ int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
     int added = 0;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         if (!pixels[i]) continue;
-        const auto slot = map.add_landmark(left, corners[i], *pixels[i]);
+        const StereoPixel pixel_px =
+            at_stamp(*pixels[i], corners[i], triangulate(rectifier_.rig(), *pixels[i]));
+        const auto slot = map.add_landmark(left, corners[i], pixel_px);
         if (!slot) continue;
-        tracks_.push_back({*slot, map.at(*slot).id, corners[i], *pixels[i], 1.0, 1.0});
+        tracks_.push_back({*slot, map.at(*slot).id, corners[i], pixel_px, 1.0, 1.0});
         added += 1;
     }
     return added;
+}
+
+/// A pixel of the point, seen when its row was exposed, as it would have been at the stamp.
+StereoPixel FrontEnd::at_stamp(const StereoPixel& pixel_px,
+                               const Eigen::Vector2d& raw_px,
+                               const Eigen::Vector3d& p_camera) const {
+    const double offset_s = rectifier_.row_offset_s(raw_px.y());
+    if (offset_s == 0.0) return pixel_px;
+    return pixel_px - pixel_motion(rectifier_.rig(), p_camera, velocity_, offset_s);
 }
 
 void FrontEnd::select(std::span<const std::uint8_t> inlier) {

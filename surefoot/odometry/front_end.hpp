@@ -19,7 +19,8 @@ struct Track {
     int slot = 0;          ///< of the landmark in the map
     std::int64_t id = -1;  ///< of the landmark: a slot may be used again
     Eigen::Vector2d raw_px = Eigen::Vector2d::Zero();  ///< in the raw left image
-    StereoPixel pixel_px = StereoPixel::Zero();        ///< u_right is NaN where unknown
+    /// At the stamp of the frame, whenever its row was exposed; u_right is NaN where unknown.
+    StereoPixel pixel_px = StereoPixel::Zero();
     double noise_factor = 1.0;  ///< sigma relative to that of an aligned point
     double correlation = 0.0;   ///< with the landmark's patch; 0 = followed but not aligned
 };
@@ -43,6 +44,9 @@ class FrontEnd {
     [[nodiscard]] bool load(const StereoFrame& frame, Executor& executor);
     /// The present frame has images that fit the rig.
     [[nodiscard]] bool loaded() const noexcept { return loaded_; }
+    /// How the camera moves at the present frame, per second (right perturbation of its pose):
+    /// brings what a rolling shutter sees to the stamp, from the next `follow` or `align` on.
+    void move(const Vector6& velocity) { velocity_ = velocity; }
     /// Forgets all tracks.
     void clear();
     /// Follows the kept tracks into the present frame, starting where `T_odom_camera` predicts
@@ -79,6 +83,9 @@ class FrontEnd {
                        const Eigen::Vector2d& shift_px,
                        Track& track) const;
     void collect_jobs(const LandmarkMap& map, const Pose& T, std::vector<Job>& jobs);
+    [[nodiscard]] StereoPixel at_stamp(const StereoPixel& pixel_px,
+                                       const Eigen::Vector2d& raw_px,
+                                       const Eigen::Vector3d& p_camera) const;
     [[nodiscard]] bool rgbd() const noexcept { return !depth_m_.empty(); }
 
     FrontEndConfig config_;
@@ -93,6 +100,7 @@ class FrontEnd {
     std::vector<KltRequest> requests_;
     std::vector<KltResult> results_;
     std::vector<std::uint8_t> busy_;  ///< one per slot: has a track
+    Vector6 velocity_ = Vector6::Zero();
     bool loaded_ = false;
     int next_attempt_ = 0;  ///< slot from which landmarks are looked for again
 };

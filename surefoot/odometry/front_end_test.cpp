@@ -161,6 +161,18 @@ TEST(StereoPoints, DepthEdgesAndHolesAreRefused) {
     EXPECT_FALSE(depth_pixel(rectifier, Image<float>(), {50.0, 50.0}, {}));
 }
 
+TEST(StereoProjection, PixelMotionIsTheDerivativeByTime) {
+    const camera::RectifiedRig rig = testing::rectified_rig();
+    const Eigen::Vector3d p(0.4, -0.3, 1.7);
+    Vector6 velocity;
+    velocity << 0.3, -0.2, 0.5, 0.4, -0.6, 0.2;
+    constexpr double kDt_s = 1e-5;
+    const Pose after = perturbed(Pose{}, velocity * kDt_s);
+    const StereoPixel moved = project_stereo(rig, after.inverse() * p) - project_stereo(rig, p);
+    EXPECT_LT((pixel_motion(rig, p, velocity, kDt_s) - moved).norm(), 1e-3 * moved.norm());
+    EXPECT_GT(moved.norm(), 1e-4);
+}
+
 TEST(LandmarkMap, PredictedViewIsTheDerivativeOfTheProjection) {
     const auto rectifier = small_rectifier();
     const StereoFrame frame = render_frame(testing::small_rig(), Pose{}, 0, 0.0);

@@ -86,6 +86,20 @@ std::optional<Pose> InertialTracker::predicted() const {
     return present_->state.T_odom_imu * model_.T_imu_camera;
 }
 
+std::optional<Vector6> InertialTracker::camera_velocity() const {
+    if (!present_ || samples_.empty()) return std::nullopt;
+    const InertialState& imu = present_->state;
+    // The first sample that is left is the last one at or before the frame.
+    const Eigen::Vector3d turn_imu = samples_.front().angular_velocity_rad_s - imu.bias.gyro_rad_s;
+    const Eigen::Vector3d speed_imu = imu.T_odom_imu.rotation.conjugate() * imu.velocity_m_s;
+    const Pose& T_imu_camera = model_.T_imu_camera;
+    const Eigen::Quaterniond R_camera_imu = T_imu_camera.rotation.conjugate();
+    Vector6 velocity;
+    velocity.head<3>() = R_camera_imu * (speed_imu + turn_imu.cross(T_imu_camera.translation_m));
+    velocity.tail<3>() = R_camera_imu * turn_imu;
+    return velocity;
+}
+
 /// Of the predicted camera pose.
 Matrix6 InertialTracker::predicted_covariance() const {
     return carried_covariance(present_->covariance.topLeftCorner<6, 6>(), model_.T_imu_camera);

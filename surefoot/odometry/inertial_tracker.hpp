@@ -36,6 +36,9 @@ class InertialTracker {
     void keep(std::span<const ImuSample> samples);
     /// Where the IMU says the camera is in this frame; nothing before the start.
     [[nodiscard]] std::optional<Pose> predicted() const;
+    /// How the camera moves in this frame, per second (right perturbation of its pose); nothing
+    /// before the start.
+    [[nodiscard]] std::optional<Vector6> camera_velocity() const;
     /// The pose from vision and the IMU together; nothing when vision has to do alone. `seen` holds
     /// the points behind `visual`; `unmodelled` is what else may be wrong with the visual motion
     /// since the last frame (of the camera).

@@ -74,7 +74,7 @@ struct Odometry::Impl {
                         const HealthEvidence& evidence,
                         Executor& executor);
     [[nodiscard]] Matrix6 unseen_since_last(const CameraFix& reckoned) const;
-    PoseSolution solve(const Pose& predicted, Executor& executor);
+    PoseSolution solve(const StereoFrame& frame, Executor& executor);
     PoseSolution rough_pose(const Pose& predicted, Executor& executor);
     /// What the IMU makes of the pose that vision found; the tracks are its inliers.
     CameraFix improved(const PoseSolution& visual, double scene_depth_m);
@@ -146,8 +146,7 @@ MotionEstimate Odometry::Impl::update(const StereoFrame& frame, Executor& execut
     if (inertial) inertial->advance(frame.imu, frame.time_ns);
     if (loaded && !started) return begin(frame, executor);
     PoseSolution pose;
-    if (loaded && !map.empty())
-        pose = solve(predict(seconds_from_ns(frame.time_ns - time_ns)), executor);
+    if (loaded && !map.empty()) pose = solve(frame, executor);
     const HealthEvidence evidence = examine(frame, pose);
     if (judge(config, evidence).health == Health::lost) return lost(frame, evidence, executor);
     return found(frame, pose, evidence, executor);
@@ -199,11 +198,15 @@ PoseSolution Odometry::Impl::rough_pose(const Pose& predicted, Executor& executo
     return pose;
 }
 
-PoseSolution Odometry::Impl::solve(const Pose& predicted, Executor& executor) {
-    PoseSolution pose = rough_pose(predicted, executor);
+PoseSolution Odometry::Impl::solve(const StereoFrame& frame, Executor& executor) {
+    const std::optional<Vector6> felt = inertial ? inertial->camera_velocity() : std::nullopt;
+    front.move(felt.value_or(velocity));
+    PoseSolution pose = rough_pose(predict(seconds_from_ns(frame.time_ns - time_ns)), executor);
     if (pose.found && pose.inliers < kFewFollowed * front.kept())
         pose = rough_pose(pose.T_world_camera, executor);  // better starts find more
     if (!pose.found) return pose;
+    const double dt_s = seconds_from_ns(frame.time_ns - good_time_ns);
+    if (!felt && dt_s > 0.0) front.move(difference(T_odom_good, pose.T_world_camera) / dt_s);
     front.align(map, pose.T_world_camera, executor);
     return refine_pose(rectifier.rig(), solver, front.matches(map), pose.T_world_camera);
 }

@@ -46,6 +46,10 @@ struct OdometryConfig {
 /// camera stopped keeps that pose. While lost the pose coasts to a halt with growing covariance,
 /// and the landmarks are kept for `bridge_s` to find the way back; then they are seeded anew.
 ///
+/// Where the rig says how long its rolling shutter reads an image, points are brought to the stamp
+/// by the motion of the frame: that of the IMU, else the mean one since the frame before. The first
+/// frame is taken for one of a camera at rest.
+///
 /// With an IMU the frames' samples predict the motion, and every pose comes from the points and the
 /// preintegrated readings together (`inertial_solver`), the first second apart, from which gravity,
 /// velocity and the gyroscope's bias are found. Odom is not turned by what the IMU says about

@@ -13,7 +13,7 @@ using testing::render_frame;
 constexpr double kNoise_grey = 2.0;
 
 /// A hand-held curve: 0.3 m/s and up to 0.4 rad/s at 20 Hz.
-Pose truth_at(int index) {
+Pose truth_at(double index) {
     const double t = 0.05 * index;
     return {exp_so3({0.10 * std::sin(2.0 * t), 0.15 * std::sin(1.3 * t), 0.12 * std::sin(1.7 * t)}),
             {0.2 * std::sin(1.1 * t), 0.08 * std::sin(1.9 * t), 0.15 * t}};
@@ -58,6 +58,44 @@ TEST(Odometry, FollowsAHandHeldCurve) {
     }
     std::printf("worst position error %.2f mm\n", 1e3 * worst_m);
     EXPECT_LT(worst_m, 0.010);  // 0.3 m path, walls up to 3 m away, 352 px wide images
+}
+
+/// The curve, begun from rest within half a second.
+Pose from_rest(double index) {
+    const double t = 0.05 * std::max(index, 0.0);
+    return truth_at(20.0 * (t - 0.2 * std::tanh(t / 0.2)));
+}
+
+/// Rms position error on the way of a camera that reads its rows out in 30 ms.
+double rolling_error_m(const camera::StereoRig& camera_rig, const camera::StereoRig& told_rig) {
+    Follower run(told_rig);
+    Serial serial;
+    double sum_m2 = 0.0;
+    constexpr int kFrames = 40;
+    for (int i = 0; i < kFrames; ++i) {
+        const auto frame = testing::render_rolling_frame(
+            camera_rig, [&](double s) { return from_rest(i + 20.0 * s); }, i, kNoise_grey);
+        const auto m = run.odometry.update(frame, serial);
+        sum_m2 += (run.left_camera(m).translation_m - from_rest(i).translation_m).squaredNorm();
+    }
+    return std::sqrt(sum_m2 / kFrames);
+}
+
+TEST(Odometry, RowsOfARollingShutterAreBroughtToTheStamp) {
+    const camera::StereoRig global = testing::small_rig();
+    camera::StereoRig rolling = global;
+    rolling.readout_s = 0.03;
+    const double global_m = rolling_error_m(global, global);
+    const double told_m = rolling_error_m(rolling, rolling);
+    const double untold_m = rolling_error_m(rolling, global);
+    std::printf(
+        "rms position error: global shutter %.2f mm, rolling %.2f mm, rolling and not told "
+        "%.2f mm\n",
+        1e3 * global_m,
+        1e3 * told_m,
+        1e3 * untold_m);
+    EXPECT_LT(told_m, 2.0 * global_m);
+    EXPECT_GT(untold_m, 3.0 * told_m);
 }
 
 TEST(Odometry, FollowsDepthImages) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/pose.hpp"
 
 namespace surefoot::odometry {
 
@@ -53,6 +54,18 @@ using StereoPixel = Eigen::Vector3d;
     J.col(1) = Eigen::Vector3d(0.0, z_m / rig.fy_px, 0.0);
     J.col(2) = z_m / d_px * ray;
     return sigma_px * sigma_px * J * J.transpose();
+}
+
+/// How far a point moves in the image in `dt_s`, to first order, while the camera moves with
+/// `velocity` per second (translation, rotation; in camera axes, as a right perturbation).
+[[nodiscard]] inline StereoPixel pixel_motion(const camera::RectifiedRig& rig,
+                                              const Eigen::Vector3d& p_camera,
+                                              const Vector6& velocity,
+                                              double dt_s) {
+    Eigen::Matrix3d d_pixel_d_point;
+    static_cast<void>(project_stereo(rig, p_camera, &d_pixel_d_point));
+    const Eigen::Vector3d p_camera_m_s = -velocity.head<3>() - velocity.tail<3>().cross(p_camera);
+    return dt_s * d_pixel_d_point * p_camera_m_s;
 }
 
 }  // namespace surefoot::odometry

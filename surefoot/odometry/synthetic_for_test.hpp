@@ -117,17 +117,19 @@ inline const std::vector<Eigen::Vector3d>& rays_of(const camera::Camera& eye) {
     return cache.back().second;
 }
 
-/// Depth, where asked for, is along z of the eye.
-inline GreyImage render_eye(const camera::Camera& eye,
-                            const Pose& T_world_eye,
-                            double noise_grey,
-                            Rng& rng,
-                            Image<float>* depth_m = nullptr) {
+/// `T_world_eye_at_row` of every row; depth, where asked for, is along z of the eye.
+template <typename PoseOfRow>
+GreyImage render_rows(const camera::Camera& eye,
+                      const PoseOfRow& T_world_eye_at_row,
+                      double noise_grey,
+                      Rng& rng,
+                      Image<float>* depth_m = nullptr) {
     const auto& rays = rays_of(eye);
-    const Eigen::Matrix3d R = T_world_eye.R();
     GreyImage image(eye.width, eye.height);
     if (depth_m != nullptr) *depth_m = Image<float>(eye.width, eye.height);
     for (int v = 0; v < eye.height; ++v) {
+        const Pose T_world_eye = T_world_eye_at_row(v);
+        const Eigen::Matrix3d R = T_world_eye.R();
         for (int u = 0; u < eye.width; ++u) {
             const Eigen::Vector3d& ray = rays[static_cast<std::size_t>(v * eye.width + u)];
             double grey = 0.0;
@@ -140,6 +142,15 @@ inline GreyImage render_eye(const camera::Camera& eye,
         }
     }
     return image;
+}
+
+inline GreyImage render_eye(const camera::Camera& eye,
+                            const Pose& T_world_eye,
+                            double noise_grey,
+                            Rng& rng,
+                            Image<float>* depth_m = nullptr) {
+    return render_rows(
+        eye, [&](int) { return T_world_eye; }, noise_grey, rng, depth_m);
 }
 
 /// Frame of the rig at a pose of its left camera.
@@ -157,6 +168,26 @@ inline StereoFrame render_frame(const camera::StereoRig& rig,
     } else {
         frame.left = render_eye(rig.left, T_world_left, noise_grey, rng, &frame.depth_m);
     }
+    return frame;
+}
+
+/// Frame of a rig with a rolling shutter; `T_world_left_at` a time in seconds after the stamp. The
+/// middle of the image is exposed at the stamp.
+template <typename PoseAt>
+StereoFrame render_rolling_frame(const camera::StereoRig& rig,
+                                 const PoseAt& T_world_left_at,
+                                 int index,
+                                 double noise_grey) {
+    const auto at_row = [&](int v) {
+        return T_world_left_at(rig.readout_s * (v + 0.5 - 0.5 * rig.left.height) / rig.left.height);
+    };
+    Rng rng(mix_seed(99, static_cast<std::uint64_t>(index)));
+    StereoFrame frame;
+    frame.index = index;
+    frame.time_ns = 1'000'000'000LL + index * 50'000'000LL;
+    frame.left = render_rows(rig.left, at_row, noise_grey, rng);
+    frame.right = render_rows(
+        *rig.right, [&](int v) { return at_row(v) * rig.T_left_right; }, noise_grey, rng);
     return frame;
 }
 
