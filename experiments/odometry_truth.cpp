@@ -4,11 +4,12 @@
 //   odometry_truth out/odometry.csv floor,walk_floor 20001 30 ideal,zed 100
 //   odometry.imu.enabled=false
 //
-// Profiles: see scene_cases.hpp; FRAMES 0 = to the end of the way. Images and odometry alone, no
-// map. Motions over one second, one after the other, against the true ones. Where the machine stood
-// (less than 5 mm and 0.5 deg in that second) the odometry holds its pose, and says so with next
-// to no covariance: those count apart.
-// One line a scene, seed and profile:
+// A scene with a slash in its name is a recording, with the poses of its left camera in
+// groundtruth.tum; a seed is added to its name. Profiles: see scene_cases.hpp; FRAMES 0 = to the
+// end of the way. Images and odometry alone, no map. Motions over one second, one after the other,
+// against the true ones. Where the machine stood (less than 5 mm and 0.5 deg in that second) the
+// odometry holds its pose, and says so with next to no covariance: those count apart. One line a
+// scene, seed and profile:
 //   path_m, end_mm, end_deg   length of the true way; error at its end, about the first pose
 //   moving, nees              motions, and the mean of error^T covariance^-1 error: 6 for a
 //                             covariance that is true
@@ -24,6 +25,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -32,6 +34,7 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "experiments/scene_cases.hpp"
+#include "io/trajectory_file.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
@@ -43,6 +46,7 @@ namespace {
 constexpr double kWindow_s = 1.0;
 constexpr double kStill_m = 0.005;
 constexpr double kStill_rad = 0.5 * std::numbers::pi / 180.0;
+constexpr std::int64_t kRounding_ns = 1'000'000;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 using experiments::SceneCase;
@@ -131,6 +135,29 @@ class Tally {
     std::array<int, 3> health_{};
 };
 
+struct Recording {
+    std::unique_ptr<camera::FrameSource> source;
+    Trajectory bodies;  ///< true poses of base_link
+};
+
+Result<Recording> open_scene(sim::SceneOptions sim, const SceneCase& now, Executor& executor) {
+    if (Status seen = now.put_into(sim); !seen) return seen.error();
+    auto source = sim::open_scene(sim, &executor);
+    if (!source) return source.error();
+    const Trajectory bodies = (*source)->truth().trajectory;
+    return Recording{std::move(*source), bodies};
+}
+
+Result<Recording> open_recording(const std::string& folder, int frames, Executor& executor) {
+    auto source = open_source({.source = folder, .rig_file = {}, .max_frames = frames}, executor);
+    if (!source) return source.error();
+    auto bodies = io::read_tum_trajectory(folder + "/groundtruth.tum");
+    if (!bodies) return bodies.error();
+    const Pose T_left_body = (*source)->rig().body_from_left().inverse();
+    for (StampedPose& pose : *bodies) pose.T_world_body = pose.T_world_body * T_left_body;
+    return Recording{std::move(*source), std::move(*bodies)};
+}
+
 Status measure(const SceneCase& now,
                int frames,
                const CommonOptions& common,
@@ -138,23 +165,26 @@ Status measure(const SceneCase& now,
                fmt::ostream& out) {
     auto settings = load_settings(common);
     if (!settings) return settings.error();
-    sim::SceneOptions& sim = settings->sim;
-    if (Status seen = now.put_into(sim); !seen) return seen.error();
-    sim.frames = frames;
-    auto source = sim::open_scene(sim, &executor);
-    if (!source) return source.error();
-    auto pipeline = pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor);
+    settings->sim.frames = frames;
+    const bool recorded = now.scene.find('/') != std::string::npos;
+    auto recording =
+        recorded ? open_recording(fmt::format("{}{}", now.scene, now.seed), frames, executor)
+                 : open_scene(settings->sim, now, executor);
+    if (!recording) return recording.error();
+    auto pipeline =
+        pipeline::Pipeline::make(settings->pipeline, recording->source->rig(), executor);
     if (!pipeline) return pipeline.error();
 
-    const sim::SceneTruth& truth = (*source)->truth();
     Tally tally;
     const auto follow = [&](const StereoFrame& frame) {
         const FrameReport report = pipeline->process(frame, Work::odometry);
-        tally.add(report.motion, experiments::true_pose(truth.trajectory, frame.time_ns));
+        // Stamps of trajectory files are rounded.
+        tally.add(report.motion,
+                  experiments::true_pose(recording->bodies, frame.time_ns - kRounding_ns));
     };
     std::optional<Error> failed;
     const pipeline::NextFrame next = [&]() -> std::optional<StereoFrame> {
-        auto frame = (*source)->next();
+        auto frame = recording->source->next();
         if (!frame) failed = frame.error();
         return frame ? std::move(frame).value() : std::nullopt;
     };
