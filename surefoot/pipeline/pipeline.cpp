@@ -110,7 +110,8 @@ Pipeline::Pipeline(const PipelineConfig& config,
       map_(config.elevation),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
       imu_mount_(rig.imu),
-      mount_monitor_(config.mount) {}
+      mount_monitor_(config.mount),
+      level_keeper_(config.level) {}
 
 const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
                                  const std::optional<Pose>& T_odom_first_body) {
@@ -118,6 +119,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
     trim_right_eye(first_frames);
     alignment_ = T_odom_first_body ? told(*T_odom_first_body) : measure_alignment(first_frames);
     odometry_.start_at(alignment_.T_odom_body);
+    level_keeper_.start_at(alignment_.T_odom_body);
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
     return alignment_;
@@ -206,6 +208,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     StageTimer timer(clock_, report);
 
     report.motion = track(frame, odometry_, alignment_.T_odom_body);
+    if (!frame.known_motion) report.motion = level_keeper_.level(report.motion);
     follow(report.motion);
     timer.finished(Stage::odometry);  // with the move of the map, which follows every frame
     if (light != Light::lit) report.work = Work::odometry;  // flat grey matches anything
@@ -215,6 +218,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
         measure_depth(frame);
         timer.finished(Stage::stereo);
         report.ground = observe_ground(report.motion.T_odom_body, Eigen::Vector3d::UnitZ());
+        level_keeper_.see(report.ground);
         watch_mount(report);
         timer.finished(Stage::ground);
         report.fusion = fuse(report.motion);

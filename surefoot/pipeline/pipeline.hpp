@@ -18,6 +18,7 @@
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/pipeline/camera_monitor.hpp"
+#include "surefoot/pipeline/level_keeper.hpp"
 #include "surefoot/pipeline/mount_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
 #include "surefoot/stereo/matcher.hpp"
@@ -135,6 +136,7 @@ class Pipeline {
     MotionEstimate last_motion_;
     CameraMonitor camera_monitor_;
     MountMonitor mount_monitor_;
+    LevelKeeper level_keeper_;
     std::int64_t last_fused_ns_ = 0;
     std::uint64_t version_ = 0;  ///< counts fused frames
 };

@@ -9,6 +9,7 @@ namespace surefoot::pipeline {
 
 void PipelineConfig::describe(ConfigVisitor& visitor) {
     visitor.group("mount", mount);
+    visitor.group("level", level);
     visitor.group("camera", camera);
     visitor.group("stereo", stereo);
     visitor.group("trim", trim);

@@ -10,6 +10,7 @@
 #include "surefoot/ground/ground_config.hpp"
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
+#include "surefoot/pipeline/level_keeper.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/pair_trim.hpp"
 #include "surefoot/traversability/foothold.hpp"
@@ -20,6 +21,7 @@ namespace surefoot::pipeline {
 /// Every setting of the chain, nested by module. Defaults stand in the modules' structs.
 struct PipelineConfig {
     AlignmentConfig mount;
+    LevelConfig level;
     camera::RectificationConfig camera;
     stereo::MatcherConfig stereo;
     stereo::TrimConfig trim;
