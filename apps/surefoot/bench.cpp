@@ -228,6 +228,7 @@ int bench(const BenchOptions& options) {
     using Group = Result<std::vector<BenchResult>> (*)(const CommonOptions&, Executor&);
     const std::pair<const char*, Group> groups[] = {{"chain", bench_chain},
                                                     {"camera", bench_camera},
+                                                    {"odometry", bench_odometry},
                                                     {"stereo", bench_stereo},
                                                     {"terrain", bench_terrain},
                                                     {"gate", bench_gate},

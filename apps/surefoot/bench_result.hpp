@@ -35,6 +35,10 @@ struct BenchResult {
 /// Times `work`, after one call that warms up.
 [[nodiscard]] Timing timed(int repeats, const std::function<void()>& work);
 
+/// Frames of a moving camera of 752x480 pixels through the odometry.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_odometry(const CommonOptions& common,
+                                                              Executor& executor);
+
 /// Matching, beside OpenCV's; with two threads also two matchers at once, the most that two threads
 /// could bring.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common,

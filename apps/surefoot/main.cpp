@@ -739,9 +739,10 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
         bench,
         exit_code);
     bench_verb
-        ->add_option(
-            "group", all.bench.group, "chain, camera, stereo, terrain, gate, sim; empty = all")
-        ->check(CLI::IsMember({"chain", "camera", "stereo", "terrain", "gate", "sim"}));
+        ->add_option("group",
+                     all.bench.group,
+                     "chain, camera, odometry, stereo, terrain, gate, sim; empty = all")
+        ->check(CLI::IsMember({"chain", "camera", "odometry", "stereo", "terrain", "gate", "sim"}));
 
     CLI::App* record_verb =
         bind(add_verb(app,
