@@ -33,7 +33,8 @@ eval::Alignment alignment_named(const std::string& name) {
     return name == "yaw" ? eval::Alignment::yaw : eval::Alignment::se3;
 }
 
-/// The aligned trajectory over the true one from above, and below it the error over time.
+/// The trajectory over the true one from above, and below it the error over time. Drawn in the
+/// estimate's world, whose z is up (odom): that of the truth may be a camera's (KITTI), a target's.
 Status write_plot(const EvalTrajectoryOptions& options,
                   const Trajectory& estimate,
                   const Trajectory& truth,
@@ -47,8 +48,8 @@ Status write_plot(const EvalTrajectoryOptions& options,
         samples.push_back({seconds_from_ns(time_ns - start_ns), errors.position_error_m[k]});
     }
     const auto above =
-        eval::render_trajectory(eval::transformed(errors.T_truth_estimate, estimate),
-                                matched_truth,
+        eval::render_trajectory(estimate,
+                                eval::transformed(errors.T_truth_estimate.inverse(), matched_truth),
                                 {"Trajectory from above",
                                  fmt::format("{} poses matched over {:.2f} m, aligned: {}",
                                              errors.matched,
