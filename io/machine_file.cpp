@@ -224,6 +224,10 @@ void read_document(Group& root, MachineFile& out) {
         feet.group("right", [&](Group& box) { machine.right_foot = read_box(box); });
     });
     root.group("body", [&](Group& body) { read_body(body, machine.body); });
+    root.group("fastest", [&](Group& fastest) {
+        out.speed_m_s = fastest.number("speed_m_s", 0.0, 100.0);
+        out.turn_deg_s = fastest.number("turn_deg_s", 0.0, 3600.0);
+    });
     root.list("joints", 64, [&](Group& joint) { read_joint(joint, out.joints); });
     root.list("movements", Machine::kMovementCodes - 1, [&](Group& movement) {
         read_movement(movement, machine);

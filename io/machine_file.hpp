@@ -25,6 +25,8 @@ struct MachineFile {
     Machine machine;               ///< what the gate needs
     Pose T_body_left;              ///< the mount: left camera's optical frame in base_link
     double mount_pitch_deg = 0.0;  ///< of it, downward positive
+    double speed_m_s = 0.0;        ///< fastest motion of base_link; 0 = unknown
+    double turn_deg_s = 0.0;       ///< fastest turn of it; 0 = unknown
     std::vector<JointRange> joints;
     std::uint64_t hash = 0;  ///< FNV-1a of the file's bytes, for logs
 };

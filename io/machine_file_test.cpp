@@ -53,6 +53,8 @@ TEST(MachineFile, the_rex_is_read_completely) {
     EXPECT_EQ(m.limits.verdict_ttl_ns, 300'000'000);
     EXPECT_EQ(m.limits.drop_evidence, 128);
     EXPECT_EQ(file->joints.size(), 5U);
+    EXPECT_EQ(file->speed_m_s, 1.0);
+    EXPECT_EQ(file->turn_deg_s, 90.0);
     EXPECT_NE(file->hash, 0U);
 }
 

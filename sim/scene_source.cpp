@@ -28,6 +28,7 @@ constexpr std::uint64_t kExposureStream = 4;
 constexpr std::uint64_t kDepthStream = 5;
 constexpr std::uint64_t kAnalyticStream = 6;
 constexpr std::uint64_t kDriftStream = 7;
+constexpr std::uint64_t kMachineStream = 8;
 
 std::optional<Error> problem(const SceneOptions& options) {
     if (!(options.rate_hz >= kMinRate_hz && options.rate_hz <= kMaxRate_hz)) {
@@ -125,6 +126,9 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
                     known_motion,
                     "the start, and the motion but for analytic.drift, are known");
     visitor.integer("frames", frames, 0, kMaxFrames, "0 = to the end of the path");
+    visitor.boolean("machine_motion",
+                    machine_motion,
+                    "frames say how the machine moved, with the error of machine_drift");
     visitor.number("rate_hz", rate_hz, kMinRate_hz, kMaxRate_hz, "frames per second");
     const ImuKind imu_before = imu;
     visitor.enumeration("imu", imu, kImuNames, "its errors, below; where the rig has an IMU");
@@ -146,6 +150,7 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.group("knock", knock);
     visitor.group("imu_noise", imu_noise);
     visitor.group("depth_errors", depth_errors);
+    visitor.group("machine_drift", machine_drift);
     visitor.begin_group("analytic");
     analytic.describe(visitor);
     visitor.group("drift", drift);
@@ -181,6 +186,11 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
         source->odometry_.emplace(options.drift,
                                   source->truth_.rig.body_from_left(),
                                   mix_seed(options.seed, kDriftStream));
+    }
+    if (options.machine_motion) {
+        source->machine_.emplace(options.machine_drift,
+                                 source->truth_.rig.body_from_left(),
+                                 mix_seed(options.seed, kMachineStream));
     }
     if (rig->imu) {
         source->imu_.emplace(source->motion_,
@@ -362,6 +372,11 @@ Result<std::optional<StereoFrame>> SceneSource::next() {
         if (odometry_ && arrives) {
             frame.known_motion =
                 odometry_->follow(now.time_ns, static_cast<int>(next_pose_), carried_body(now));
+        }
+        if (machine_ && arrives) {
+            const MotionEstimate told =
+                machine_->follow(now.time_ns, static_cast<int>(next_pose_), now.T_world_body);
+            frame.machine_motion = {told.T_previous_body, told.relative_covariance};
         }
         ++next_pose_;
         if (!arrives) continue;

@@ -65,6 +65,10 @@ struct SceneOptions {
     /// always brings motion.
     bool known_motion = false;
     DriftConfig drift;
+    /// Frames bring what the machine says of its own motion: the true one with this error. The
+    /// default is a guess at joints that are read to a few tenths of a degree.
+    bool machine_motion = false;
+    DriftConfig machine_drift = {.position_m_sqrt_m = 0.01, .turn_deg_sqrt_m = 0.5};
 
     /// The numbers that a configuration file may set. Choosing another IMU or depth camera replaces
     /// its figures; what is set later, or with it, stays on top.
@@ -127,6 +131,7 @@ class SceneSource final : public camera::FrameSource {
     std::optional<DepthCamera> depth_camera_;  ///< that sensor only
     std::optional<AnalyticStereo> analytic_;   ///< that sensor only
     std::optional<ModelledOdometry> odometry_;
+    std::optional<ModelledOdometry> machine_;
     std::optional<ExposureControl> control_;
     std::optional<ImuModel> imu_;
     std::vector<InjectedFault> faults_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -268,6 +269,26 @@ TEST(SceneSourceTest, TheAnalyticSensorBringsDepthAndMotionAndNoImage) {
     EXPECT_GT(error, 0.0);
     // Under a metre of way: ten sigma of 1 mm and 0.7 mrad, three axes each.
     EXPECT_LT(error, 0.021);
+}
+
+TEST(SceneSourceTest, TheMachineMaySayHowItMoves) {
+    SceneOptions options = small("floor");
+    options.frames = 4;
+    options.rate_hz = 0.5;  // it moves
+    options.machine_motion = true;
+    auto source = open_scene(options).value();
+    const auto& poses = source->truth().trajectory;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto frame = source->next().value();
+        EXPECT_FALSE(frame->known_motion);
+        ASSERT_TRUE(frame->machine_motion);
+        if (i == 0) continue;
+        const Pose truth = poses[i - 1].T_world_body.inverse() * poses[i].T_world_body;
+        const Vector6 error = difference(truth, frame->machine_motion->T_previous_body);
+        EXPECT_GT(error.norm(), 0.0);
+        const Matrix6& covariance = frame->machine_motion->covariance;
+        EXPECT_LT(error.dot(covariance.ldlt().solve(error)), 30.0);  // 6 degrees of freedom
+    }
 }
 
 TEST(SceneSourceTest, ImagesMayComeWithTheirTrueMotion) {

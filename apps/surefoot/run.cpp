@@ -21,10 +21,17 @@ void choose_sensor_model(const camera::StereoRig& rig, Settings& settings) {
         model = elevation::SensorModel::kinect;
 }
 
-/// Where base_link stands over its own ground is known from the machine file.
-void expect_machine_height(const std::optional<io::MachineFile>& machine, Settings& settings) {
-    double& expected_m = settings.pipeline.ground.expected_height_m;
-    if (machine && expected_m == 0.0) expected_m = 1e-4 * machine->machine.sole_depth_tenth_mm;
+/// Where base_link stands over its own ground, and how fast it can move, is known from the machine
+/// file, unless the user said otherwise.
+void expect_machine(const std::optional<io::MachineFile>& machine, Settings& settings) {
+    if (!machine) return;
+    const auto unless_set = [](double& value, double known) {
+        if (value == 0.0) value = known;
+    };
+    unless_set(settings.pipeline.ground.expected_height_m,
+               1e-4 * machine->machine.sole_depth_tenth_mm);
+    unless_set(settings.pipeline.odometry.machine_speed_m_s, machine->speed_m_s);
+    unless_set(settings.pipeline.odometry.machine_turn_deg_s, machine->turn_deg_s);
 }
 
 }  // namespace
@@ -47,7 +54,7 @@ int run(const RunOptions& options) {
     if (!source) return report(source.error());
     const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);
     choose_sensor_model(rig, *settings);
-    expect_machine_height(*machine, *settings);
+    expect_machine(*machine, *settings);
     auto pipeline = pipeline::Pipeline::make(settings->pipeline, rig, *executor, steady_now_ns);
     if (!pipeline) return report(pipeline.error());
     std::optional<PlaceSession> place;

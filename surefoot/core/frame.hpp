@@ -26,15 +26,17 @@ enum class Health : std::uint8_t { ok, degraded, lost };
 /// Why the health is not ok; the first that applies is the reason reported.
 enum class HealthReason : std::uint8_t {
     none,
-    first_frame,       ///< nothing to compare with yet
-    few_tracks,        ///< too few points agree on one motion
-    poor_geometry,     ///< points too clustered to fix all six degrees of freedom
-    blur,              ///< image too blurred or too dark for corners
-    large_residual,    ///< tracks disagree with the motion more than their noise allows
-    time_gap,          ///< the source skipped longer than the tracker can bridge
-    repeated_image,    ///< the same image once more: nothing was seen at this instant
-    torn_image,        ///< parts of two images in one
-    imu_disagreement,  ///< the IMU contradicts what is seen; vision goes on alone
+    first_frame,           ///< nothing to compare with yet
+    few_tracks,            ///< too few points agree on one motion
+    poor_geometry,         ///< points too clustered to fix all six degrees of freedom
+    blur,                  ///< image too blurred or too dark for corners
+    large_residual,        ///< tracks disagree with the motion more than their noise allows
+    time_gap,              ///< the source skipped longer than the tracker can bridge
+    repeated_image,        ///< the same image once more: nothing was seen at this instant
+    torn_image,            ///< parts of two images in one
+    imu_disagreement,      ///< the IMU contradicts what is seen; vision goes on alone
+    machine_disagreement,  ///< what the machine says of its motion contradicts what is seen
+    beyond_machine,        ///< faster than the machine can move: not believed
 };
 [[nodiscard]] const char* to_string(HealthReason reason) noexcept;
 
@@ -49,6 +51,13 @@ struct MotionEstimate {
     int tracks = 0;            ///< points that were followed into this frame
     int inliers = 0;           ///< of these, points that agree with the motion
     double residual_px = 0.0;  ///< rms reprojection error of the inliers
+};
+
+/// How base_link moved since the frame before (in time order, every frame counts), as the machine
+/// itself tells it: by its joints over the foot that stands, by its wheels.
+struct MachineMotion {
+    Pose T_previous_body;
+    Matrix6 covariance = Matrix6::Zero();  ///< of T_previous_body; see pose.hpp
 };
 
 /// How a frame came in, apart from what it shows: the evidence for a stopped, frozen or torn camera
@@ -76,6 +85,7 @@ struct StereoFrame {
     GreyImage right;             ///< empty for RGB-D
     Image<float> depth_m;        ///< RGB-D only: depth along z of the left camera, NaN = unknown
     std::vector<ImuSample> imu;  ///< samples since the previous frame, in time order
+    std::optional<MachineMotion> machine_motion;
     std::optional<DepthImage> known_depth;  ///< of the rig, whose images are rectified
     /// Its odom begins at the source's first base_link.
     std::optional<MotionEstimate> known_motion;

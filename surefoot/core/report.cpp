@@ -26,6 +26,8 @@ const char* to_string(HealthReason reason) noexcept {
         case HealthReason::repeated_image: return "repeated_image";
         case HealthReason::torn_image: return "torn_image";
         case HealthReason::imu_disagreement: return "imu_disagreement";
+        case HealthReason::machine_disagreement: return "machine_disagreement";
+        case HealthReason::beyond_machine: return "beyond_machine";
     }
     return "unknown";
 }

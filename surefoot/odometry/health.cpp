@@ -25,6 +25,7 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
                  e.rotation_sigma_rad / kDegradedRotation_rad);
     if (!e.pose_found || e.inliers < config.min_inliers)
         return {Health::lost, because(HealthReason::few_tracks)};
+    if (e.beyond_machine) return {Health::lost, HealthReason::beyond_machine};
     if (!(weakness < kLostFactor)) return {Health::lost, because(HealthReason::poor_geometry)};
     if (e.inliers < config.ok_inliers || e.inliers < kMinAgreeing * e.tracks)
         return {Health::degraded, because(HealthReason::few_tracks)};
@@ -34,6 +35,7 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
         return {Health::degraded, because(HealthReason::large_residual)};
     if (gap) return {Health::degraded, HealthReason::time_gap};
     if (e.imu_disagrees) return {Health::degraded, HealthReason::imu_disagreement};
+    if (e.machine_disagrees) return {Health::degraded, HealthReason::machine_disagreement};
     return {Health::ok, HealthReason::none};
 }
 

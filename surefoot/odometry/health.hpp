@@ -18,6 +18,8 @@ struct HealthEvidence {
     double rotation_sigma_rad = 0.0;   ///< weakest direction
     double scene_depth_m = 0.0;        ///< median of the inliers; 0 = unknown
     bool imu_disagrees = false;        ///< for some time
+    bool machine_disagrees = false;    ///< likewise
+    bool beyond_machine = false;       ///< faster than the machine can be
 };
 
 struct HealthVerdict {

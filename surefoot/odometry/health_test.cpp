@@ -57,8 +57,14 @@ TEST(Health, EveryReasonHasItsCause) {
     e = good();
     e.imu_disagrees = true;
     expect(e, Health::degraded, HealthReason::imu_disagreement);
+    e.imu_disagrees = false;
+    e.machine_disagrees = true;
+    expect(e, Health::degraded, HealthReason::machine_disagreement);
     e.residual_px = 2.0;  // what vision says of itself comes first
     expect(e, Health::degraded, HealthReason::large_residual);
+    e = good();
+    e.beyond_machine = true;
+    expect(e, Health::lost, HealthReason::beyond_machine);
     e = good();
     e.sharpness_ratio = 0.2;
     expect(e, Health::degraded, HealthReason::blur);

@@ -4,11 +4,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "surefoot/core/time.hpp"
 #include "surefoot/odometry/front_end.hpp"
 #include "surefoot/odometry/health.hpp"
 #include "surefoot/odometry/inertial_tracker.hpp"
+#include "surefoot/odometry/machine_tracker.hpp"
 #include "surefoot/odometry/still_detector.hpp"
 
 namespace surefoot::odometry {
@@ -57,7 +59,8 @@ struct Odometry::Impl {
           rectifier(r),
           front(front_end_config(c, r.rig()), r),
           map(map_config(c), r),
-          still(c.still_parallax_px) {
+          still(c.still_parallax_px),
+          machine(r.rig().T_body_camera) {
         solver.sigma_px = config.sigma_px;
         T_odom_camera = r.rig().T_body_camera;
         if (imu && config.imu.enabled)
@@ -80,6 +83,7 @@ struct Odometry::Impl {
     CameraFix improved(const PoseSolution& visual, double scene_depth_m);
     [[nodiscard]] HealthEvidence examine(const StereoFrame& frame, const PoseSolution& pose) const;
     [[nodiscard]] double scene_depth_m(const PoseSolution& pose) const;
+    [[nodiscard]] bool is_beyond_machine(const StereoFrame& frame, const PoseSolution& pose) const;
     [[nodiscard]] Pose predict(double dt_s) const;
     [[nodiscard]] Matrix6 systematic_covariance(const Pose& T_before,
                                                 const Pose& T_after,
@@ -101,6 +105,7 @@ struct Odometry::Impl {
     LandmarkMap map;
     StillDetector still;
     std::optional<InertialTracker> inertial;
+    MachineTracker machine;
     PoseSolverConfig solver;
 
     Pose T_odom_camera;                           ///< as published last
@@ -139,11 +144,13 @@ MotionEstimate Odometry::update(const StereoFrame& frame, Executor& executor) {
 
 void Odometry::skip(const StereoFrame& frame) {
     if (impl_->inertial) impl_->inertial->keep(frame.imu);
+    impl_->machine.advance(frame.machine_motion);
 }
 
 MotionEstimate Odometry::Impl::update(const StereoFrame& frame, Executor& executor) {
     const bool loaded = front.load(frame, executor);
     if (inertial) inertial->advance(frame.imu, frame.time_ns);
+    machine.advance(frame.machine_motion);
     if (loaded && !started) return begin(frame, executor);
     PoseSolution pose;
     if (loaded && !map.empty()) pose = solve(frame, executor);
@@ -158,6 +165,7 @@ MotionEstimate Odometry::Impl::begin(const StereoFrame& frame, Executor& executo
     T_odom_good = T_odom_camera;
     good_time_ns = frame.time_ns;
     if (inertial) inertial->stand({T_odom_camera, Matrix6::Zero()});
+    machine.place(T_odom_camera);
     sharpness = front.left().sharpness();
     const bool seeded = seed_landmarks(executor);
     MotionEstimate estimate = publish(T_odom_camera, Matrix6::Zero(), Matrix6::Zero());
@@ -185,6 +193,7 @@ bool Odometry::Impl::seed_landmarks(Executor& executor) {
 Pose Odometry::Impl::predict(double dt_s) const {
     if (inertial)
         if (const auto predicted = inertial->predicted()) return *predicted;
+    if (const auto told = machine.reckoned()) return told->T_odom_camera;
     if (!(dt_s > 0.0 && dt_s <= config.max_gap_s)) return T_odom_camera;
     return perturbed(T_odom_camera, velocity * dt_s);
 }
@@ -231,13 +240,33 @@ HealthEvidence Odometry::Impl::examine(const StereoFrame& frame, const PoseSolut
     evidence.gap_s = seconds_from_ns(frame.time_ns - time_ns);
     evidence.sharpness_ratio = front.left().sharpness() / std::max(sharpness, 1e-9);
     evidence.imu_disagrees = inertial && inertial->disagrees();
+    evidence.machine_disagrees = machine.disagrees();
     if (!pose.found) return evidence;
+    evidence.beyond_machine = is_beyond_machine(frame, pose);
     evidence.inliers = pose.inliers;
     evidence.residual_px = pose.residual_px;
     evidence.translation_sigma_m = largest_sigma(pose.covariance.topLeftCorner<3, 3>());
     evidence.rotation_sigma_rad = largest_sigma(pose.covariance.bottomRightCorner<3, 3>());
     evidence.scene_depth_m = scene_depth_m(pose);
     return evidence;
+}
+
+/// base_link is farther from the last good frame than the machine can have moved, beyond three
+/// sigma.
+bool Odometry::Impl::is_beyond_machine(const StereoFrame& frame, const PoseSolution& pose) const {
+    const double dt_s = seconds_from_ns(frame.time_ns - good_time_ns);
+    const Vector6 motion = difference(body_from(T_odom_good), body_from(pose.T_world_camera));
+    const Matrix6 covariance =
+        camera_to_body_covariance(pose.covariance, rectifier.rig().T_body_camera);
+    const auto beyond = [&](double moved, double per_s, double sigma) {
+        return per_s > 0.0 && !(moved <= per_s * dt_s + 3.0 * sigma);
+    };
+    return beyond(motion.head<3>().norm(),
+                  config.machine_speed_m_s,
+                  largest_sigma(covariance.topLeftCorner<3, 3>())) ||
+           beyond(motion.tail<3>().norm(),
+                  config.machine_turn_deg_s * std::numbers::pi / 180.0,
+                  largest_sigma(covariance.bottomRightCorner<3, 3>()));
 }
 
 /// What a slightly wrong calibration does to a motion: a share of it, and a turn mistaken for a
@@ -269,8 +298,10 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
         // The error of a held pose is one error, not one per frame: 1/n^2 adds up to 1.64 of it.
         covariance /= static_cast<double>(still.held()) * still.held();
         if (inertial) inertial->stand({T, pose.covariance});
-    } else if (inertial) {
-        const CameraFix fix = improved(pose, evidence.scene_depth_m);
+    } else {
+        CameraFix fix{T, covariance};
+        if (inertial) fix = improved(pose, evidence.scene_depth_m);
+        fix = machine.improved(fix);
         T = fix.T_odom_camera;
         covariance = fix.covariance;
     }
@@ -280,6 +311,7 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
         if (!standing) T = adjusted;
     }
     if (inertial) inertial->place(T);
+    machine.place(T);
     front.keep();
     velocity = dt_s > 0.0 ? Vector6(difference(T_odom_good, T) / dt_s) : Vector6::Zero();
     if (standing) covariance_camera.setZero();
@@ -321,7 +353,8 @@ MotionEstimate Odometry::Impl::lost(const StereoFrame& frame,
     const double before_s = std::max(seconds_from_ns(time_ns - good_time_ns), 0.0);
     const double after_s = std::max(seconds_from_ns(frame.time_ns - good_time_ns), before_s);
     const double dt_s = after_s - before_s;
-    const std::optional<CameraFix> reckoned = inertial ? inertial->reckon() : std::nullopt;
+    std::optional<CameraFix> reckoned = inertial ? inertial->reckon() : std::nullopt;
+    if (!reckoned) reckoned = machine.reckoned();
     const Matrix6 unseen =
         reckoned ? unseen_since_last(*reckoned) : lost_covariance(config, before_s, after_s);
     lost_body += unseen;

@@ -33,6 +33,9 @@ struct OdometryConfig {
     double landmark_s = 1.3;
     double lost_speed_m_s = 0.5;
     double lost_turn_rad_s = 0.5;
+    /// What the machine can do, from its file; 0 = unknown. Faster motion is not believed.
+    double machine_speed_m_s = 0.0;
+    double machine_turn_deg_s = 0.0;
     InertialConfig imu;
     void describe(ConfigVisitor& visitor);
 };
@@ -55,6 +58,10 @@ struct OdometryConfig {
 /// velocity and the gyroscope's bias are found. Odom is not turned by what the IMU says about
 /// gravity. While lost the IMU carries the pose for `imu.dead_reckoning_s`. When it contradicts
 /// vision for some time, vision goes on alone and the health is degraded.
+///
+/// Where the frames bring what the machine says of its own motion (`machine_motion`), that predicts
+/// when there is no IMU, weighs in by its covariance, and carries the pose while lost. When it
+/// contradicts vision for some time, vision goes on alone and the health is degraded.
 ///
 /// `update` is serial apart from what it gives to the executor; any executor gives the same bytes.
 class Odometry {

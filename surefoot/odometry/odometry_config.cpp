@@ -40,6 +40,16 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                    0.01,
                    60.0,
                    "after this time the errors of two poses count as independent");
+    visitor.number("machine_speed_m_s",
+                   machine_speed_m_s,
+                   0.0,
+                   100.0,
+                   "fastest the camera can be carried; 0 = unknown; the machine file sets it");
+    visitor.number("machine_turn_deg_s",
+                   machine_turn_deg_s,
+                   0.0,
+                   3600.0,
+                   "fastest it can be turned; 0 = unknown; the machine file sets it");
     visitor.number(
         "lost_speed_m_s", lost_speed_m_s, 0.01, 100.0, "one sigma of the unseen speed while lost");
     visitor.number("lost_turn_rad_s",

@@ -183,6 +183,87 @@ TEST(Odometry, LongLossStartsANewMapWithoutAJump) {
     EXPECT_LE(recovered, 31);
 }
 
+/// What the joints say of the motion from one frame of the curve to the next.
+MachineMotion told_motion(const Follower& run, int index, double sigma_m, double sigma_rad) {
+    const Pose T_left_body = run.rig.body_from_left().inverse();
+    MachineMotion motion;
+    motion.T_previous_body =
+        (truth_at(index - 1) * T_left_body).inverse() * (truth_at(index) * T_left_body);
+    motion.covariance.diagonal().head<3>().setConstant(sigma_m * sigma_m);
+    motion.covariance.diagonal().tail<3>().setConstant(sigma_rad * sigma_rad);
+    return motion;
+}
+
+TEST(Odometry, TheMachineCarriesThePoseInTheDark) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    Matrix6 dark = Matrix6::Zero();
+    for (int i = 0; i < 40; ++i) {
+        StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+        frame.machine_motion = told_motion(run, i, 2e-3, 1e-3);
+        const bool black = i >= 8 && i < 28;  // a second, in full motion
+        if (black) {
+            frame.left.fill(0);
+            frame.right.fill(0);
+        }
+        const auto m = run.odometry.update(frame, serial);
+        expect_valid(m);
+        if (i == 0) continue;
+        // The first image after it gives the new landmarks.
+        EXPECT_EQ(m.health == Health::lost, black || i == 28) << i << " " << to_string(m.reason);
+        const double error_m =
+            (run.left_camera(m).translation_m - truth_at(i).translation_m).norm();
+        EXPECT_LT(error_m, 0.01) << i;
+        if (black) dark = compose_covariance(dark, m.T_previous_body, m.relative_covariance);
+    }
+    // Twenty motions of 2 mm each; what the turns add is the lever arm's.
+    EXPECT_GT(std::sqrt(dark(0, 0)), 2e-3 * std::sqrt(19.0));
+    EXPECT_LT(std::sqrt(dark(0, 0)), 0.02);
+}
+
+TEST(Odometry, AMachineThatSlipsIsNamedAndLeftOut) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    double worst_m = 0.0;
+    for (int i = 0; i < 20; ++i) {
+        StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+        frame.machine_motion = told_motion(run, i, 5e-4, 1e-3);
+        if (i >= 10) frame.machine_motion->T_previous_body.translation_m *= 0.3;
+        const auto m = run.odometry.update(frame, serial);
+        worst_m = std::max(worst_m,
+                           (run.left_camera(m).translation_m - truth_at(i).translation_m).norm());
+        const bool named = m.reason == HealthReason::machine_disagreement;
+        EXPECT_EQ(named, i > 12) << i;  // after three in a row
+        if (named) {
+            EXPECT_EQ(m.health, Health::degraded);
+        }
+    }
+    EXPECT_LT(worst_m, 0.010);
+}
+
+TEST(Odometry, WhatNoMachineCanDoIsNotBelieved) {
+    OdometryConfig config;
+    config.machine_speed_m_s = 0.5;
+    config.machine_turn_deg_s = 60.0;
+    Follower run(testing::small_rig(), config);
+    Serial serial;
+    Pose before;
+    for (int i = 0; i < 20; ++i) {
+        Pose T = truth_at(i);
+        if (i >= 10) T.translation_m.x() -= 0.06;  // within a frame, for 25 mm
+        const auto m = run.odometry.update(render_frame(run.rig, T, i, kNoise_grey), serial);
+        if (i == 10) {
+            EXPECT_EQ(m.health, Health::lost);
+            EXPECT_EQ(m.reason, HealthReason::beyond_machine);
+            EXPECT_LT((before.inverse() * m.T_odom_body).translation_m.norm(), 0.03);
+        } else if (i > 0 && (i < 10 || i > 14)) {  // it can have come that far by then
+            EXPECT_EQ(m.health, Health::ok) << i << " " << to_string(m.reason);
+            EXPECT_LT((run.left_camera(m).translation_m - T.translation_m).norm(), 0.01) << i;
+        }
+        before = m.T_odom_body;
+    }
+}
+
 TEST(Odometry, BlackFromTheStartWaitsForAnImage) {
     Follower run(testing::small_rig());
     Serial serial;
