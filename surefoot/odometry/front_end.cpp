@@ -32,7 +32,7 @@ struct FrontEnd::Job {
 };
 
 FrontEnd::FrontEnd(const FrontEndConfig& config, const camera::Rectifier& rectifier)
-    : config_(config), rectifier_(rectifier) {}
+    : Tracks(rectifier), config_(config) {}
 
 bool FrontEnd::load(const StereoFrame& frame, Executor& executor) {
     static_cast<void>(executor);
@@ -47,11 +47,6 @@ bool FrontEnd::load(const StereoFrame& frame, Executor& executor) {
         frame.depth_m.width() == rig.width && frame.depth_m.height() == rig.height;
     depth_m_ = depth_fits ? frame.depth_m : Image<float>();
     return true;
-}
-
-void FrontEnd::clear() {
-    kept_.clear();
-    tracks_.clear();
 }
 
 void FrontEnd::follow(const LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) {
@@ -181,6 +176,9 @@ void FrontEnd::measure_depth(const LandmarkMap& map,
 
 int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
     drop_removed(map);
+    for (const Track& track : tracks_)
+        if (track.correlation == 0.0)  // it does not look like its patch any more
+            map.renew_patch(track.slot, left_.image(), track.raw_px);
     std::vector<Eigen::Vector2d> occupied;
     for (const Track& track : tracks_) occupied.push_back(track.raw_px);
     std::vector<Eigen::Vector2d> corners;
@@ -208,48 +206,9 @@ int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
     return added;
 }
 
-/// A pixel of the point, seen when its row was exposed, as it would have been at the stamp.
-StereoPixel FrontEnd::at_stamp(const StereoPixel& pixel_px,
-                               const Eigen::Vector2d& raw_px,
-                               const Eigen::Vector3d& p_camera) const {
-    const double offset_s = rectifier_.row_offset_s(raw_px.y());
-    if (offset_s == 0.0) return pixel_px;
-    return pixel_px - pixel_motion(rectifier_.rig(), p_camera, velocity_, offset_s);
-}
-
-void FrontEnd::select(std::span<const std::uint8_t> inlier) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < tracks_.size(); ++i)
-        if (inlier[i] != 0) tracks_[kept++] = tracks_[i];
-    tracks_.resize(kept);
-}
-
-void FrontEnd::drop_removed(const LandmarkMap& map) {
-    const auto gone = [&](const Track& track) { return map.at(track.slot).id != track.id; };
-    std::erase_if(tracks_, gone);
-    std::erase_if(kept_, gone);
-}
-
-void FrontEnd::forget_excess(LandmarkMap& map) {
-    busy_.assign(static_cast<std::size_t>(map.slots()), 0);
-    for (const Track& track : tracks_) busy_[static_cast<std::size_t>(track.slot)] = 1;
-    map.limit(busy_);
-    drop_removed(map);
-}
-
 void FrontEnd::keep() {
-    kept_ = tracks_;
+    Tracks::keep();
     std::swap(left_, left_kept_);
-}
-
-std::span<const PointMatch> FrontEnd::matches(const LandmarkMap& map) {
-    matches_.clear();
-    for (const Track& track : tracks_) {
-        const Landmark& landmark = map.at(track.slot);
-        matches_.push_back(
-            {landmark.p_odom_m, landmark.covariance_m2, track.pixel_px, track.noise_factor});
-    }
-    return matches_;
 }
 
 }  // namespace surefoot::odometry

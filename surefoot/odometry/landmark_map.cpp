@@ -68,6 +68,15 @@ std::optional<int> LandmarkMap::add_landmark(ImageView<const std::uint8_t> left,
     const auto patch = cut_patch(left, raw_px);
     const auto axes = axes_at(raw_px);
     if (!patch || !axes) return std::nullopt;
+    const int slot = add_point(pixel);
+    Landmark& landmark = at(slot);
+    landmark.patch = *patch;
+    landmark.host = newest().id;
+    landmark.host_axes = *axes;
+    return slot;
+}
+
+int LandmarkMap::add_point(const StereoPixel& pixel) {
     int slot = slots();
     if (free_slots_.empty()) {
         landmarks_.emplace_back();
@@ -83,9 +92,7 @@ std::optional<int> LandmarkMap::add_landmark(ImageView<const std::uint8_t> left,
     const Eigen::Matrix3d R = T_odom_camera.R();
     landmark.covariance_m2 =
         R * point_covariance(rig, pixel, config_.bundle.sigma_px) * R.transpose();
-    landmark.patch = *patch;
-    landmark.host = newest().id;
-    landmark.host_axes = *axes;
+    landmark.host = -1;
     landmark.sightings.assign(1, {newest().id, pixel, 1.0});
     landmark.failures = 0;
     return slot;

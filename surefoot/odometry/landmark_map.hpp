@@ -30,7 +30,7 @@ struct Landmark {
     Eigen::Vector3d p_odom_m = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom axes, the keyframes given
     HostPatch patch;
-    int host = 0;  ///< id of the keyframe that the patch is from
+    int host = -1;  ///< id of the keyframe that the patch is from; -1 = it has none
     /// Steps along the host image's u and v at unit depth, in host camera axes, per pixel.
     Eigen::Matrix<double, 3, 2> host_axes = Eigen::Matrix<double, 3, 2>::Zero();
     std::vector<Sighting> sightings;
@@ -64,6 +64,8 @@ class LandmarkMap {
     std::optional<int> add_landmark(ImageView<const std::uint8_t> left,
                                     const Eigen::Vector2d& raw_px,
                                     const StereoPixel& pixel);
+    /// The same without a look: what is found again by other means than its patch. Its slot.
+    int add_point(const StereoPixel& pixel);
     /// Takes the patch anew from the newest keyframe's image.
     void renew_patch(int slot, ImageView<const std::uint8_t> left, const Eigen::Vector2d& raw_px);
     void add_sighting(int slot, const StereoPixel& pixel, double noise_factor);

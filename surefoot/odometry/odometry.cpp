@@ -11,6 +11,7 @@
 #include "surefoot/odometry/health.hpp"
 #include "surefoot/odometry/inertial_tracker.hpp"
 #include "surefoot/odometry/machine_tracker.hpp"
+#include "surefoot/odometry/point_front_end.hpp"
 #include "surefoot/odometry/still_detector.hpp"
 
 namespace surefoot::odometry {
@@ -57,7 +58,8 @@ struct Odometry::Impl {
          const std::optional<camera::ImuMount>& imu)
         : config(c),
           rectifier(r),
-          front(front_end_config(c, r.rig()), r),
+          images(front_end_config(c, r.rig()), r),
+          points(r),
           map(map_config(c), r),
           still(c.still_parallax_px),
           machine(r.rig().T_body_camera) {
@@ -67,23 +69,24 @@ struct Odometry::Impl {
             inertial.emplace(config.imu, imu->T_body_imu.inverse() * r.rig().T_body_camera);
     }
 
-    MotionEstimate update(const StereoFrame& frame, Executor& executor);
-    MotionEstimate begin(const StereoFrame& frame, Executor& executor);
-    MotionEstimate found(const StereoFrame& frame,
+    void feed_by(Tracks& source);
+    /// The frame is loaded into `front`.
+    MotionEstimate update(std::int64_t now_ns, std::span<const ImuSample> imu, Executor& executor);
+    MotionEstimate follow(std::int64_t now_ns, Executor& executor);
+    MotionEstimate begin(std::int64_t now_ns, Executor& executor);
+    MotionEstimate found(std::int64_t now_ns,
                          const PoseSolution& pose,
                          const HealthEvidence& evidence,
                          Executor& executor);
-    MotionEstimate lost(const StereoFrame& frame,
-                        const HealthEvidence& evidence,
-                        Executor& executor);
+    MotionEstimate lost(std::int64_t now_ns, const HealthEvidence& evidence, Executor& executor);
     [[nodiscard]] Matrix6 unseen_since_last(const CameraFix& reckoned) const;
-    PoseSolution solve(const StereoFrame& frame, Executor& executor);
+    PoseSolution solve(std::int64_t now_ns, Executor& executor);
     PoseSolution rough_pose(const Pose& predicted, Executor& executor);
     /// What the IMU makes of the pose that vision found; the tracks are its inliers.
     CameraFix improved(const PoseSolution& visual, double scene_depth_m);
-    [[nodiscard]] HealthEvidence examine(const StereoFrame& frame, const PoseSolution& pose) const;
+    [[nodiscard]] HealthEvidence examine(std::int64_t now_ns, const PoseSolution& pose) const;
     [[nodiscard]] double scene_depth_m(const PoseSolution& pose) const;
-    [[nodiscard]] bool is_beyond_machine(const StereoFrame& frame, const PoseSolution& pose) const;
+    [[nodiscard]] bool is_beyond_machine(std::int64_t now_ns, const PoseSolution& pose) const;
     [[nodiscard]] Pose predict(double dt_s) const;
     [[nodiscard]] Matrix6 systematic_covariance(const Pose& T_before,
                                                 const Pose& T_after,
@@ -101,7 +104,9 @@ struct Odometry::Impl {
 
     OdometryConfig config;
     const camera::Rectifier& rectifier;
-    FrontEnd front;
+    FrontEnd images;
+    PointFrontEnd points;
+    Tracks* front = nullptr;  ///< the one of these two that the odometry is fed by
     LandmarkMap map;
     StillDetector still;
     std::optional<InertialTracker> inertial;
@@ -135,11 +140,17 @@ void Odometry::start_at(const Pose& T_odom_body) {
 }
 
 MotionEstimate Odometry::update(const StereoFrame& frame, Executor& executor) {
-    MotionEstimate estimate = impl_->update(frame, executor);
-    estimate.time_ns = frame.time_ns;
-    impl_->time_ns = frame.time_ns;
-    impl_->frames += 1;
-    return estimate;
+    impl_->feed_by(impl_->images);
+    static_cast<void>(impl_->images.load(frame, executor));
+    impl_->machine.advance(frame.machine_motion);
+    return impl_->update(frame.time_ns, frame.imu, executor);
+}
+
+MotionEstimate Odometry::update(const PointFrame& frame) {
+    impl_->feed_by(impl_->points);
+    impl_->points.load(frame.points);
+    impl_->machine.advance(frame.machine_motion);
+    return impl_->update(frame.time_ns, frame.imu, serial());
 }
 
 void Odometry::skip(const StereoFrame& frame) {
@@ -147,46 +158,65 @@ void Odometry::skip(const StereoFrame& frame) {
     impl_->machine.advance(frame.machine_motion);
 }
 
-MotionEstimate Odometry::Impl::update(const StereoFrame& frame, Executor& executor) {
-    const bool loaded = front.load(frame, executor);
-    if (inertial) inertial->advance(frame.imu, frame.time_ns);
-    machine.advance(frame.machine_motion);
-    if (loaded && !started) return begin(frame, executor);
+/// The landmarks of another source mean nothing to this one.
+void Odometry::Impl::feed_by(Tracks& source) {
+    if (front == &source) return;
+    front = &source;
+    front->clear();
+    map.clear();
+    still.clear();
+    sharpness = 0.0;
+}
+
+MotionEstimate Odometry::Impl::update(std::int64_t now_ns,
+                                      std::span<const ImuSample> imu,
+                                      Executor& executor) {
+    if (inertial) inertial->advance(imu, now_ns);
+    MotionEstimate estimate = follow(now_ns, executor);
+    estimate.time_ns = now_ns;
+    time_ns = now_ns;
+    frames += 1;
+    return estimate;
+}
+
+MotionEstimate Odometry::Impl::follow(std::int64_t now_ns, Executor& executor) {
+    if (front->loaded() && !started) return begin(now_ns, executor);
     PoseSolution pose;
-    if (loaded && !map.empty()) pose = solve(frame, executor);
-    const HealthEvidence evidence = examine(frame, pose);
-    if (judge(config, evidence).health == Health::lost) return lost(frame, evidence, executor);
-    return found(frame, pose, evidence, executor);
+    if (front->loaded() && !map.empty()) pose = solve(now_ns, executor);
+    const HealthEvidence evidence = examine(now_ns, pose);
+    if (judge(config, evidence).health == Health::lost) return lost(now_ns, evidence, executor);
+    return found(now_ns, pose, evidence, executor);
 }
 
 /// The first frame: its pose is given, its landmarks are new.
-MotionEstimate Odometry::Impl::begin(const StereoFrame& frame, Executor& executor) {
+MotionEstimate Odometry::Impl::begin(std::int64_t now_ns, Executor& executor) {
     started = true;
     T_odom_good = T_odom_camera;
-    good_time_ns = frame.time_ns;
+    good_time_ns = now_ns;
     if (inertial) inertial->stand({T_odom_camera, Matrix6::Zero()});
     machine.place(T_odom_camera);
-    sharpness = front.left().sharpness();
+    sharpness = front->sharpness();
     const bool seeded = seed_landmarks(executor);
     MotionEstimate estimate = publish(T_odom_camera, Matrix6::Zero(), Matrix6::Zero());
-    estimate.tracks = front.kept();
+    estimate.tracks = front->kept();
     estimate.health = seeded ? Health::degraded : Health::lost;
-    estimate.reason = seeded ? HealthReason::first_frame : HealthReason::blur;
+    const HealthReason without = front == &images ? HealthReason::blur : HealthReason::few_tracks;
+    estimate.reason = seeded ? HealthReason::first_frame : without;
     return estimate;
 }
 
 /// Starts a new map at the present pose; false when the image does not give enough landmarks.
 bool Odometry::Impl::seed_landmarks(Executor& executor) {
     map.clear();
-    front.clear();
+    front->clear();
     still.clear();
     static_cast<void>(make_keyframe(T_odom_camera, executor));
-    const bool enough = static_cast<int>(front.tracks().size()) >= config.min_inliers;
+    const bool enough = static_cast<int>(front->tracks().size()) >= config.min_inliers;
     if (!enough) {
         map.clear();
-        front.clear();
+        front->clear();
     }
-    front.keep();
+    front->keep();
     return enough;
 }
 
@@ -199,33 +229,33 @@ Pose Odometry::Impl::predict(double dt_s) const {
 }
 
 PoseSolution Odometry::Impl::rough_pose(const Pose& predicted, Executor& executor) {
-    front.follow(map, predicted, executor);
-    const auto matches = front.matches(map);
+    front->follow(map, predicted, executor);
+    const auto matches = front->matches(map);
     const Rng rng(mix_seed(kSeed, static_cast<std::uint64_t>(frames)));
     PoseSolution pose = find_pose(rectifier.rig(), solver, matches, predicted, rng);
     if (pose.found) pose = refine_pose(rectifier.rig(), solver, matches, pose.T_world_camera);
     return pose;
 }
 
-PoseSolution Odometry::Impl::solve(const StereoFrame& frame, Executor& executor) {
+PoseSolution Odometry::Impl::solve(std::int64_t now_ns, Executor& executor) {
     const std::optional<Vector6> felt = inertial ? inertial->camera_velocity() : std::nullopt;
-    front.move(felt.value_or(velocity));
-    PoseSolution pose = rough_pose(predict(seconds_from_ns(frame.time_ns - time_ns)), executor);
-    if (pose.found && pose.inliers < kFewFollowed * front.kept())
+    front->move(felt.value_or(velocity));
+    PoseSolution pose = rough_pose(predict(seconds_from_ns(now_ns - time_ns)), executor);
+    if (pose.found && pose.inliers < kFewFollowed * front->kept())
         pose = rough_pose(pose.T_world_camera, executor);  // better starts find more
     if (!pose.found) return pose;
-    const double dt_s = seconds_from_ns(frame.time_ns - good_time_ns);
-    if (!felt && dt_s > 0.0) front.move(difference(T_odom_good, pose.T_world_camera) / dt_s);
-    front.align(map, pose.T_world_camera, executor);
-    return refine_pose(rectifier.rig(), solver, front.matches(map), pose.T_world_camera);
+    const double dt_s = seconds_from_ns(now_ns - good_time_ns);
+    if (!felt && dt_s > 0.0) front->move(difference(T_odom_good, pose.T_world_camera) / dt_s);
+    front->align(map, pose.T_world_camera, executor);
+    return refine_pose(rectifier.rig(), solver, front->matches(map), pose.T_world_camera);
 }
 
 double Odometry::Impl::scene_depth_m(const PoseSolution& pose) const {
     std::vector<double> depths;
     const Eigen::Vector3d forward = pose.T_world_camera.rotation * Eigen::Vector3d::UnitZ();
-    for (std::size_t i = 0; i < front.tracks().size(); ++i)
+    for (std::size_t i = 0; i < front->tracks().size(); ++i)
         if (pose.inlier[i] != 0)
-            depths.push_back(forward.dot(map.at(front.tracks()[i].slot).p_odom_m -
+            depths.push_back(forward.dot(map.at(front->tracks()[i].slot).p_odom_m -
                                          pose.T_world_camera.translation_m));
     if (depths.empty()) return 0.0;
     const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
@@ -233,16 +263,16 @@ double Odometry::Impl::scene_depth_m(const PoseSolution& pose) const {
     return *middle;
 }
 
-HealthEvidence Odometry::Impl::examine(const StereoFrame& frame, const PoseSolution& pose) const {
+HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& pose) const {
     HealthEvidence evidence;
     evidence.pose_found = pose.found;
-    evidence.tracks = static_cast<int>(front.tracks().size());
-    evidence.gap_s = seconds_from_ns(frame.time_ns - time_ns);
-    evidence.sharpness_ratio = front.left().sharpness() / std::max(sharpness, 1e-9);
+    evidence.tracks = static_cast<int>(front->tracks().size());
+    evidence.gap_s = seconds_from_ns(now_ns - time_ns);
+    evidence.sharpness_ratio = front->sharpness() / std::max(sharpness, 1e-9);
     evidence.imu_disagrees = inertial && inertial->disagrees();
     evidence.machine_disagrees = machine.disagrees();
     if (!pose.found) return evidence;
-    evidence.beyond_machine = is_beyond_machine(frame, pose);
+    evidence.beyond_machine = is_beyond_machine(now_ns, pose);
     evidence.inliers = pose.inliers;
     evidence.residual_px = pose.residual_px;
     evidence.translation_sigma_m = largest_sigma(pose.covariance.topLeftCorner<3, 3>());
@@ -253,8 +283,8 @@ HealthEvidence Odometry::Impl::examine(const StereoFrame& frame, const PoseSolut
 
 /// base_link is farther from the last good frame than the machine can have moved, beyond three
 /// sigma.
-bool Odometry::Impl::is_beyond_machine(const StereoFrame& frame, const PoseSolution& pose) const {
-    const double dt_s = seconds_from_ns(frame.time_ns - good_time_ns);
+bool Odometry::Impl::is_beyond_machine(std::int64_t now_ns, const PoseSolution& pose) const {
+    const double dt_s = seconds_from_ns(now_ns - good_time_ns);
     const Vector6 motion = difference(body_from(T_odom_good), body_from(pose.T_world_camera));
     const Matrix6 covariance =
         camera_to_body_covariance(pose.covariance, rectifier.rig().T_body_camera);
@@ -283,16 +313,16 @@ Matrix6 Odometry::Impl::systematic_covariance(const Pose& T_before,
     return sigma.cwiseAbs2().asDiagonal();
 }
 
-MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
+MotionEstimate Odometry::Impl::found(std::int64_t now_ns,
                                      const PoseSolution& pose,
                                      const HealthEvidence& evidence,
                                      Executor& executor) {
-    const double dt_s = seconds_from_ns(frame.time_ns - good_time_ns);
-    front.select(pose.inlier);
+    const double dt_s = seconds_from_ns(now_ns - good_time_ns);
+    front->select(pose.inlier);
     Pose T = pose.T_world_camera;
     Matrix6 covariance = pose.covariance;
     const bool standing =
-        config.still_parallax_px > 0.0 && still.update(front.tracks(), map, T, covariance);
+        config.still_parallax_px > 0.0 && still.update(front->tracks(), map, T, covariance);
     if (standing) {
         T = still.T_odom_camera();
         // The error of a held pose is one error, not one per frame: 1/n^2 adds up to 1.64 of it.
@@ -312,7 +342,8 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
     }
     if (inertial) inertial->place(T);
     machine.place(T);
-    front.keep();
+    sharpness = front->sharpness();
+    front->keep();
     velocity = dt_s > 0.0 ? Vector6(difference(T_odom_good, T) / dt_s) : Vector6::Zero();
     if (standing) covariance_camera.setZero();
     // Poses that see the same landmarks share their errors.
@@ -327,8 +358,7 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
                 new_errors);
     lost_body.setZero();
     T_odom_good = T;
-    good_time_ns = frame.time_ns;
-    sharpness = front.kept_sharpness();
+    good_time_ns = now_ns;
     const HealthVerdict verdict = judge(config, evidence);
     estimate.health = verdict.health;
     estimate.reason = verdict.reason;
@@ -340,18 +370,18 @@ MotionEstimate Odometry::Impl::found(const StereoFrame& frame,
 
 CameraFix Odometry::Impl::improved(const PoseSolution& visual, double scene_depth_m) {
     const double scale = std::max(visual.residual_scale, kMinResidualScale);
-    const VisualEvidence seen{rectifier.rig(), solver, front.matches(map), scale};
+    const VisualEvidence seen{rectifier.rig(), solver, front->matches(map), scale};
     const Matrix6 unmodelled =
         systematic_covariance(T_odom_good, visual.T_world_camera, scene_depth_m);
     return inertial->see(seen, visual, unmodelled)
         .value_or(CameraFix{visual.T_world_camera, visual.covariance});
 }
 
-MotionEstimate Odometry::Impl::lost(const StereoFrame& frame,
+MotionEstimate Odometry::Impl::lost(std::int64_t now_ns,
                                     const HealthEvidence& evidence,
                                     Executor& executor) {
     const double before_s = std::max(seconds_from_ns(time_ns - good_time_ns), 0.0);
-    const double after_s = std::max(seconds_from_ns(frame.time_ns - good_time_ns), before_s);
+    const double after_s = std::max(seconds_from_ns(now_ns - good_time_ns), before_s);
     const double dt_s = after_s - before_s;
     std::optional<CameraFix> reckoned = inertial ? inertial->reckon() : std::nullopt;
     if (!reckoned) reckoned = machine.reckoned();
@@ -371,7 +401,7 @@ MotionEstimate Odometry::Impl::lost(const StereoFrame& frame,
     estimate.reason = verdict.reason;
     estimate.tracks = evidence.tracks;
     estimate.inliers = evidence.inliers;
-    if ((after_s > config.bridge_s || map.empty()) && front.loaded()) seed_landmarks(executor);
+    if ((after_s > config.bridge_s || map.empty()) && front->loaded()) seed_landmarks(executor);
     return estimate;
 }
 
@@ -385,7 +415,7 @@ Matrix6 Odometry::Impl::unseen_since_last(const CameraFix& reckoned) const {
 bool Odometry::Impl::wants_keyframe() const {
     const int newest = map.newest().id;
     std::vector<double> parallax;
-    for (const Track& track : front.tracks()) {
+    for (const Track& track : front->tracks()) {
         const Landmark& landmark = map.at(track.slot);
         if (landmark.sightings.empty() || landmark.sightings.back().keyframe != newest) continue;
         parallax.push_back((landmark.sightings.back().pixel_px - track.pixel_px).head<2>().norm());
@@ -400,18 +430,15 @@ bool Odometry::Impl::wants_keyframe() const {
 /// Makes the present frame a keyframe and adjusts the map; its pose afterwards.
 Pose Odometry::Impl::make_keyframe(const Pose& T, Executor& executor) {
     map.add_keyframe(T);
-    for (const Track& track : front.tracks()) {
-        if (map.at(track.slot).id < 0) continue;
-        map.add_sighting(track.slot, track.pixel_px, track.noise_factor);
-        if (track.correlation == 0.0)  // it does not look like its patch any more
-            map.renew_patch(track.slot, front.left().image(), track.raw_px);
-    }
-    front.seed(map, executor);
+    for (const Track& track : front->tracks())
+        if (map.at(track.slot).id >= 0)
+            map.add_sighting(track.slot, track.pixel_px, track.noise_factor);
+    front->seed(map, executor);
     map.adjust();
-    front.drop_removed(map);
-    front.forget_excess(map);
+    front->drop_removed(map);
+    front->forget_excess(map);
     frames_since_keyframe = 0;
-    keyframe_tracks = static_cast<int>(front.tracks().size());
+    keyframe_tracks = static_cast<int>(front->tracks().size());
     return map.newest().T_odom_camera;
 }
 

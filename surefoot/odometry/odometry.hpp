@@ -9,6 +9,7 @@
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/frame.hpp"
 #include "surefoot/odometry/inertial_config.hpp"
+#include "surefoot/odometry/point_frame.hpp"
 
 namespace surefoot::odometry {
 
@@ -78,6 +79,9 @@ class Odometry {
     void start_at(const Pose& T_odom_body);
     /// Follows the frame. Never throws, never jumps; health and reason say what happened.
     [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
+    /// The same by points that were found elsewhere: all of them are used, `sigma_px` is their
+    /// noise. A change between images and points costs one LOST frame, which seeds new landmarks.
+    [[nodiscard]] MotionEstimate update(const PointFrame& frame);
     /// Instead of `update` for a frame whose images are not worth it (repeated, torn): keeps its
     /// inertial samples for the next one.
     void skip(const StereoFrame& frame);

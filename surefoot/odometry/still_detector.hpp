@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/odometry/front_end.hpp"
+#include "surefoot/odometry/tracks.hpp"
 
 namespace surefoot::odometry {
 
