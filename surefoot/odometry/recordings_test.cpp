@@ -38,36 +38,6 @@ camera::StereoRig rectified_rig(const camera::Camera& eye, double baseline_m) {
     return rig;
 }
 
-camera::StereoRig euroc_rig() {
-    const auto eye =
-        [](double fx, double fy, double cx, double cy, double k1, double k2, double p1, double p2) {
-            camera::Camera camera = pinhole(752, 480, fx, fy, cx, cy);
-            auto& model = std::get<camera::PinholeRadTan>(camera.model);
-            model.k1 = k1;
-            model.k2 = k2;
-            model.p1 = p1;
-            model.p2 = p2;
-            return camera;
-        };
-    Eigen::Matrix4d left;
-    Eigen::Matrix4d right;
-    left << 0.0148655429818, -0.999880929698, 0.00414029679422, -0.0216401454975,  //
-        0.999557249008, 0.0149672133247, 0.025715529948, -0.064676986768,          //
-        -0.0257744366974, 0.00375618835797, 0.999660727178, 0.00981073058949, 0.0, 0.0, 0.0, 1.0;
-    right << 0.0125552670891, -0.999755099723, 0.0182237714554, -0.0198435579556,  //
-        0.999598781151, 0.0130119051815, 0.0251588363115, 0.0453689425024,         //
-        -0.0253898008918, 0.0179005838253, 0.999517347078, 0.00786212447038, 0.0, 0.0, 0.0, 1.0;
-    camera::StereoRig rig;
-    rig.left = eye(
-        458.654, 457.296, 367.215, 248.375, -0.28340811, 0.07395907, 0.00019359, 1.76187114e-05);
-    rig.right =
-        eye(457.587, 456.134, 379.999, 255.238, -0.28368365, 0.07451284, -0.00010473, -3.555e-05);
-    rig.T_body_left = Pose::from_matrix(left);
-    rig.T_left_right = rig.T_body_left->inverse() * Pose::from_matrix(right);
-    rig.rate_hz = 20.0;
-    return rig;
-}
-
 std::vector<std::string> sorted_files(const std::string& folder) {
     std::vector<std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -97,22 +67,6 @@ std::optional<Recording> pair_folders(const std::string& left,
     return recording;
 }
 
-/// Poses of a TUM file, in file order.
-std::vector<Pose> read_tum(const std::string& path) {
-    std::vector<Pose> poses;
-    std::ifstream file(path);
-    for (std::string line; std::getline(file, line);) {
-        if (line.empty() || line[0] == '#') continue;
-        std::istringstream fields(line);
-        double stamp = 0.0;
-        Eigen::Vector3d t;
-        Eigen::Vector4d q;
-        fields >> stamp >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w();
-        poses.push_back({Eigen::Quaterniond(q).normalized(), t});
-    }
-    return poses;
-}
-
 std::optional<Recording> euroc_layout(const std::string& folder) {
     auto recording = pair_folders(folder + "/mav0/cam0/data",
                                   folder + "/mav0/cam1/data",
@@ -126,6 +80,75 @@ std::optional<Recording> euroc_layout(const std::string& folder) {
 std::string data_folder() {
     const char* folder = std::getenv("SUREFOOT_DATA_DIR");
     return folder != nullptr ? folder : SUREFOOT_DEFAULT_DATA_DIR;
+}
+
+camera::StereoRig euroc_rig() {
+    const auto eye =
+        [](double fx, double fy, double cx, double cy, double k1, double k2, double p1, double p2) {
+            camera::Camera camera = pinhole(752, 480, fx, fy, cx, cy);
+            auto& model = std::get<camera::PinholeRadTan>(camera.model);
+            model.k1 = k1;
+            model.k2 = k2;
+            model.p1 = p1;
+            model.p2 = p2;
+            return camera;
+        };
+    Eigen::Matrix4d left;
+    Eigen::Matrix4d right;
+    left << 0.0148655429818, -0.999880929698, 0.00414029679422, -0.0216401454975,  //
+        0.999557249008, 0.0149672133247, 0.025715529948, -0.064676986768,          //
+        -0.0257744366974, 0.00375618835797, 0.999660727178, 0.00981073058949, 0.0, 0.0, 0.0, 1.0;
+    right << 0.0125552670891, -0.999755099723, 0.0182237714554, -0.0198435579556,  //
+        0.999598781151, 0.0130119051815, 0.0251588363115, 0.0453689425024,         //
+        -0.0253898008918, 0.0179005838253, 0.999517347078, 0.00786212447038, 0.0, 0.0, 0.0, 1.0;
+    camera::StereoRig rig;
+    rig.left = eye(
+        458.654, 457.296, 367.215, 248.375, -0.28340811, 0.07395907, 0.00019359, 1.76187114e-05);
+    rig.right =
+        eye(457.587, 456.134, 379.999, 255.238, -0.28368365, 0.07451284, -0.00010473, -3.555e-05);
+    rig.T_body_left = Pose::from_matrix(left);
+    rig.T_left_right = rig.T_body_left->inverse() * Pose::from_matrix(right);
+    rig.imu = camera::ImuMount{Pose{}, 200.0};
+    rig.rate_hz = 20.0;
+    return rig;
+}
+
+std::vector<ImuSample> read_imu(const std::string& path) {
+    std::vector<ImuSample> imu;
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) {
+        if (line.empty() || line[0] == '#') continue;
+        std::replace(line.begin(), line.end(), ',', ' ');
+        std::istringstream fields(line);
+        ImuSample s;
+        auto& w = s.angular_velocity_rad_s;
+        auto& a = s.specific_force_m_s2;
+        fields >> s.time_ns >> w.x() >> w.y() >> w.z() >> a.x() >> a.y() >> a.z();
+        imu.push_back(s);
+    }
+    return imu;
+}
+
+std::vector<ImuSample> samples_between(const std::vector<ImuSample>& imu,
+                                       std::int64_t after_ns,
+                                       std::int64_t until_ns) {
+    const auto first = std::ranges::upper_bound(imu, after_ns, {}, &ImuSample::time_ns);
+    return {first, std::ranges::upper_bound(first, imu.end(), until_ns, {}, &ImuSample::time_ns)};
+}
+
+Trajectory read_tum(const std::string& path) {
+    Trajectory poses;
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) {
+        if (line.empty() || line[0] == '#') continue;
+        std::istringstream fields(line);
+        double stamp_s = 0.0;
+        Eigen::Vector3d t;
+        Eigen::Vector4d q;
+        fields >> stamp_s >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w();
+        poses.push_back({ns_from_seconds(stamp_s), {Eigen::Quaterniond(q).normalized(), t}});
+    }
+    return poses;
 }
 
 std::optional<Recording> kitti_city() {
@@ -172,7 +195,18 @@ std::optional<Recording> euroc_still() {
 
 std::optional<Recording> rendered_room(const std::string& folder) {
     auto recording = euroc_layout(folder);
-    if (recording) recording->T_world_camera = read_tum(folder + "/groundtruth.tum");
+    if (!recording) return recording;
+    for (const StampedPose& pose : read_tum(folder + "/groundtruth.tum"))
+        recording->T_world_camera.push_back(pose.T_world_body);
+    // Frames are asked for in order.
+    recording->frame = [frame = recording->frame,
+                        imu = read_imu(folder + "/mav0/imu0/data.csv"),
+                        before_ns = std::int64_t{0}](int index) mutable {
+        StereoFrame f = frame(index);
+        f.imu = samples_between(imu, index == 0 ? f.time_ns - 50'000'000 : before_ns, f.time_ns);
+        before_ns = f.time_ns;
+        return f;
+    };
     return recording;
 }
 
