@@ -85,7 +85,9 @@ std::optional<PointRecording> euroc_april() {
     recording.rig = euroc_rig();
     std::int64_t before_ns = std::numeric_limits<std::int64_t>::min();
     for (const std::int64_t time_ns : frame_stamps(archive)) {
-        PointFrame frame{time_ns, {}, samples_between(imu, before_ns, time_ns)};
+        PointFrame frame;
+        frame.time_ns = time_ns;
+        frame.imu = samples_between(imu, before_ns, time_ns);
         for (const auto& [id, px] : left[time_ns]) {
             SeenPoint point{id, px, std::nullopt};
             if (const auto it = right[time_ns].find(id); it != right[time_ns].end())
