@@ -124,6 +124,38 @@ TEST(PointFrontEnd, WhatCannotBeMeasuredIsLeftOut) {
     }
 }
 
+TEST(PointFrontEnd, RowsOfARollingShutterAreBroughtToTheStamp) {
+    camera::StereoRig rig = rig_of_rectified_images();
+    rig.readout_s = 0.03;
+    const auto rectifier = std::move(camera::Rectifier::make(rig)).value();
+    Vector6 velocity;
+    velocity << 0.2, -0.1, 0.4, 0.3, -0.5, 0.2;
+    const Eigen::Vector3d p(0.4, 0.5, 2.0);
+    SeenPoint seen;  // where its row is when it is exposed
+    for (int round = 0; round < 8; ++round) {
+        const double offset_s = rectifier.row_offset_s(seen.raw_left_px.y());
+        const Eigen::Vector3d p_then = perturbed(Pose{}, velocity * offset_s).inverse() * p;
+        seen.raw_left_px = rectifier.raw_from_point(camera::Side::left, p_then).value();
+        seen.raw_right_px = rectifier.raw_from_point(camera::Side::right, p_then);
+    }
+    Serial serial;
+    const StereoPixel at_stamp = project_stereo(rectifier.rig(), p);
+    for (const bool known : {true, false}) {
+        LandmarkMap map({}, rectifier);
+        map.add_keyframe(Pose{});
+        PointFrontEnd front(rectifier);
+        if (known) front.move(velocity);
+        front.load({&seen, 1});
+        ASSERT_EQ(front.seed(map, serial), 1);
+        const double seeded_px = (front.tracks()[0].pixel_px - at_stamp).norm();
+        front.follow(map, Pose{}, serial);
+        const double followed_px = (front.tracks()[0].pixel_px - at_stamp).norm();
+        EXPECT_EQ(seeded_px < 0.02, known) << seeded_px;
+        EXPECT_EQ(followed_px < 0.02, known) << followed_px;
+        EXPECT_GT(seeded_px, 1e-6);
+    }
+}
+
 TEST(LandmarkMap, PointsWithoutALookOutliveTheKeyframeThatSawThemFirst) {
     const auto rectifier = small_rectifier();
     LandmarkMapConfig config;
