@@ -11,7 +11,7 @@
 namespace surefoot::eval {
 namespace {
 
-constexpr int kReasonCount = static_cast<int>(HealthReason::beyond_machine) + 1;
+constexpr int kReasonCount = static_cast<int>(HealthReason::recovered) + 1;
 
 /// Digits in groups of three, apart by a narrow space.
 std::string grouped(std::int64_t number) {

@@ -31,12 +31,14 @@ enum class HealthReason : std::uint8_t {
     poor_geometry,         ///< points too clustered to fix all six degrees of freedom
     blur,                  ///< image too blurred or too dark for corners
     large_residual,        ///< tracks disagree with the motion more than their noise allows
-    time_gap,              ///< the source skipped longer than the tracker can bridge
+    time_gap,              ///< the source skipped frames, or its stamps do not grow
     repeated_image,        ///< the same image once more: nothing was seen at this instant
     torn_image,            ///< parts of two images in one
     imu_disagreement,      ///< the IMU contradicts what is seen; vision goes on alone
     machine_disagreement,  ///< what the machine says of its motion contradicts what is seen
     beyond_machine,        ///< faster than the machine can move: not believed
+    moving_scene,          ///< many points agree on another motion: somebody stands in the view
+    recovered,             ///< found again after LOST: the pose may have moved by what went unseen
 };
 [[nodiscard]] const char* to_string(HealthReason reason) noexcept;
 

@@ -28,6 +28,8 @@ const char* to_string(HealthReason reason) noexcept {
         case HealthReason::imu_disagreement: return "imu_disagreement";
         case HealthReason::machine_disagreement: return "machine_disagreement";
         case HealthReason::beyond_machine: return "beyond_machine";
+        case HealthReason::moving_scene: return "moving_scene";
+        case HealthReason::recovered: return "recovered";
     }
     return "unknown";
 }

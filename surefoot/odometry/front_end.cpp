@@ -17,6 +17,23 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kGiveUpAfter = 12;    ///< failures in a row before a landmark is forgotten
 constexpr double kBorder_px = 8.0;  ///< patches need this much image around them
 
+/// Share of the left image's structure that makes a right image worth to be looked at.
+constexpr double kRightStructure = 0.3;
+
+/// Mean square difference of pixels two columns apart, in every eighth row.
+double structure_of(ImageView<const std::uint8_t> image) {
+    constexpr int kRows = 8;
+    std::int64_t sum = 0;
+    for (int v = 0; v < image.height; v += kRows) {
+        const std::uint8_t* row = image.row(v);
+        for (int u = 2; u < image.width; ++u) {
+            const int step = row[u] - row[u - 2];
+            sum += step * step;
+        }
+    }
+    return static_cast<double>(sum);
+}
+
 bool inside(const Eigen::Vector2d& px, ImageView<const std::uint8_t> image) {
     return px.x() >= kBorder_px && px.y() >= kBorder_px && px.x() < image.width - kBorder_px &&
            px.y() < image.height - kBorder_px;
@@ -43,6 +60,8 @@ bool FrontEnd::load(const StereoFrame& frame, Executor& executor) {
     left_.build(frame.left.view());
     const bool right_fits = frame.right.width() == rig.width && frame.right.height() == rig.height;
     right_ = right_fits ? frame.right : GreyImage();
+    right_shows_something_ = right_fits && structure_of(std::as_const(right_).view()) >
+                                               kRightStructure * structure_of(frame.left.view());
     const bool depth_fits =
         frame.depth_m.width() == rig.width && frame.depth_m.height() == rig.height;
     depth_m_ = depth_fits ? frame.depth_m : Image<float>();

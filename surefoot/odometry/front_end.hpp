@@ -40,6 +40,7 @@ class FrontEnd final : public Tracks {
     /// See ImagePyramid::sharpness.
     [[nodiscard]] double sharpness() const override { return left_.sharpness(); }
     [[nodiscard]] const ImagePyramid& left() const noexcept { return left_; }
+    [[nodiscard]] bool right_shows_something() const override { return right_shows_something_; }
 
   private:
     struct Job;
@@ -59,6 +60,7 @@ class FrontEnd final : public Tracks {
     Image<float> depth_m_;
     std::vector<KltRequest> requests_;
     std::vector<KltResult> results_;
+    bool right_shows_something_ = false;
     int next_attempt_ = 0;  ///< slot from which landmarks are looked for again
 };
 

@@ -10,12 +10,20 @@ constexpr double kBlurred = 0.3;       ///< sharpness ratio; the mean square fal
 constexpr double kMinAgreeing = 0.35;  ///< share of the tracks that must agree on one motion
 constexpr double kDegradedDepthShare = 0.01;  ///< translation sigma relative to the scene's depth
 constexpr double kDegradedRotation_rad = 0.01;
+constexpr double kGapPeriods = 3.5;  ///< a gap is longer than so many usual ones
+/// A second motion is one when so many points have it, and so many for each that has the first:
+/// mismatches are fewer, and agree on nothing.
+constexpr int kOtherMotion = 15;
+constexpr double kOtherMotionShare = 0.2;
 constexpr double kLostFactor = 10.0;  ///< times these: no usable pose
 
 }  // namespace
 
 HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
-    const bool gap = e.gap_s > config.max_gap_s;
+    const bool gap = e.gap_s > config.max_gap_s || !e.stamp_grows ||
+                     (e.usual_gap_s > 0.0 && e.gap_s > kGapPeriods * e.usual_gap_s);
+    const bool two_motions =
+        e.other_motion >= kOtherMotion && e.other_motion >= kOtherMotionShare * e.inliers;
     const bool blurred = e.sharpness_ratio < kBlurred;
     const auto because = [&](HealthReason otherwise) {
         return gap ? HealthReason::time_gap : blurred ? HealthReason::blur : otherwise;
@@ -27,13 +35,18 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
         return {Health::lost, because(HealthReason::few_tracks)};
     if (e.beyond_machine) return {Health::lost, HealthReason::beyond_machine};
     if (!(weakness < kLostFactor)) return {Health::lost, because(HealthReason::poor_geometry)};
+    if (e.right_shows_something && e.inliers >= config.ok_inliers && e.depth_inliers == 0)
+        return {Health::lost, because(HealthReason::poor_geometry)};
+    if (two_motions) return {Health::degraded, HealthReason::moving_scene};
     if (e.inliers < config.ok_inliers || e.inliers < kMinAgreeing * e.tracks)
         return {Health::degraded, because(HealthReason::few_tracks)};
-    if (weakness > 1.0) return {Health::degraded, because(HealthReason::poor_geometry)};
+    if (weakness > 1.0 || e.depth_inliers < config.min_inliers)
+        return {Health::degraded, because(HealthReason::poor_geometry)};
     if (blurred) return {Health::degraded, because(HealthReason::blur)};
     if (e.residual_px > config.ok_residual_px)
         return {Health::degraded, because(HealthReason::large_residual)};
     if (gap) return {Health::degraded, HealthReason::time_gap};
+    if (e.was_lost) return {Health::degraded, HealthReason::recovered};
     if (e.imu_disagrees) return {Health::degraded, HealthReason::imu_disagreement};
     if (e.machine_disagrees) return {Health::degraded, HealthReason::machine_disagreement};
     return {Health::ok, HealthReason::none};

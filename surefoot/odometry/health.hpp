@@ -12,7 +12,15 @@ struct HealthEvidence {
     int tracks = 0;
     int inliers = 0;
     double residual_px = 0.0;
-    double gap_s = 0.0;                ///< since the previous frame
+    /// Inliers of which the depth was measured in this frame: seen by both eyes.
+    int depth_inliers = 0;
+    bool right_shows_something = false;  ///< the right image is neither missing nor dark
+    /// Points that disagree with the pose, but agree among each other on another one.
+    int other_motion = 0;
+    double gap_s = 0.0;        ///< since the previous frame
+    double usual_gap_s = 0.0;  ///< the gap before that; 0 = unknown
+    bool stamp_grows = true;
+    bool was_lost = false;             ///< the previous frame gave no pose
     double sharpness_ratio = 1.0;      ///< to the last good frame, see ImagePyramid::sharpness
     double translation_sigma_m = 0.0;  ///< weakest direction
     double rotation_sigma_rad = 0.0;   ///< weakest direction
@@ -27,7 +35,10 @@ struct HealthVerdict {
     HealthReason reason = HealthReason::few_tracks;
 };
 
-/// Lost without a pose, with fewer than `min_inliers`, or when points agree in one direction only.
+/// Lost without a pose, with fewer than `min_inliers`, or when points agree in one direction only,
+/// or when a right image shows something but not what the left one does (eyes exchanged).
+/// The first frame after that is degraded: what it finds again may lie elsewhere than the poses
+/// meanwhile said.
 /// The reason is the cause where one is known: a time gap, then blur, then what the points say.
 [[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);
 

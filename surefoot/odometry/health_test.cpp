@@ -13,6 +13,7 @@ HealthEvidence good() {
     e.pose_found = true;
     e.tracks = 200;
     e.inliers = 180;
+    e.depth_inliers = 170;
     e.residual_px = 0.3;
     e.gap_s = 0.05;
     e.translation_sigma_m = 0.0005;
@@ -72,6 +73,49 @@ TEST(Health, EveryReasonHasItsCause) {
     expect(e, Health::lost, HealthReason::blur);
     e.gap_s = 3.0;
     expect(e, Health::lost, HealthReason::time_gap);
+}
+
+TEST(Health, ASecondMotionIsAMovingScene) {
+    HealthEvidence e = good();
+    e.other_motion = 14;  // mismatches may agree by chance
+    expect(e, Health::ok, HealthReason::none);
+    e.inliers = 100;
+    e.other_motion = 15;
+    expect(e, Health::ok, HealthReason::none);
+    e.other_motion = 20;
+    expect(e, Health::degraded, HealthReason::moving_scene);
+    e.inliers = 60;  // also a minority of the tracks: the cause comes first
+    expect(e, Health::degraded, HealthReason::moving_scene);
+}
+
+TEST(Health, TheFirstPoseAfterALossIsSaid) {
+    HealthEvidence e = good();
+    e.was_lost = true;
+    expect(e, Health::degraded, HealthReason::recovered);
+}
+
+TEST(Health, GapsAreThoseLongerThanUsualAndStampsThatDoNotGrow) {
+    HealthEvidence e = good();
+    e.usual_gap_s = 0.1;
+    e.gap_s = 0.3;  // two frames dropped
+    expect(e, Health::ok, HealthReason::none);
+    e.gap_s = 0.4;
+    expect(e, Health::degraded, HealthReason::time_gap);
+    e.usual_gap_s = 0.0;  // unknown
+    expect(e, Health::ok, HealthReason::none);
+    e.stamp_grows = false;
+    expect(e, Health::degraded, HealthReason::time_gap);
+}
+
+TEST(Health, WithoutDepthOfItsOwnAFrameIsDegradedAndLostWhereTheEyesShowDifferentThings) {
+    HealthEvidence e = good();
+    e.depth_inliers = 9;
+    e.right_shows_something = true;
+    expect(e, Health::degraded, HealthReason::poor_geometry);
+    e.depth_inliers = 0;
+    expect(e, Health::lost, HealthReason::poor_geometry);
+    e.right_shows_something = false;
+    expect(e, Health::degraded, HealthReason::poor_geometry);
 }
 
 TEST(Health, NotANumberIsLost) {

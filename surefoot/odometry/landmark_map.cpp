@@ -95,6 +95,7 @@ int LandmarkMap::add_point(const StereoPixel& pixel) {
     landmark.host = -1;
     landmark.sightings.assign(1, {newest().id, pixel, 1.0});
     landmark.failures = 0;
+    landmark.agreed = 0;
     return slot;
 }
 

@@ -35,6 +35,7 @@ struct Landmark {
     Eigen::Matrix<double, 3, 2> host_axes = Eigen::Matrix<double, 3, 2>::Zero();
     std::vector<Sighting> sightings;
     int failures = 0;  ///< times in a row that it was in view and not found
+    int agreed = 0;    ///< frames whose pose it agreed with
 };
 
 /// Where a landmark should appear and how its patch is deformed there.

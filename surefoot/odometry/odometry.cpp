@@ -85,6 +85,8 @@ struct Odometry::Impl {
     /// What the IMU makes of the pose that vision found; the tracks are its inliers.
     CameraFix improved(const PoseSolution& visual, double scene_depth_m);
     [[nodiscard]] HealthEvidence examine(std::int64_t now_ns, const PoseSolution& pose) const;
+    /// How many points agree on another motion than `pose`.
+    [[nodiscard]] int other_motion(const PoseSolution& pose);
     [[nodiscard]] double scene_depth_m(const PoseSolution& pose) const;
     [[nodiscard]] bool is_beyond_machine(std::int64_t now_ns, const PoseSolution& pose) const;
     [[nodiscard]] Pose predict(double dt_s) const;
@@ -121,6 +123,8 @@ struct Odometry::Impl {
     std::int64_t good_time_ns = 0;                ///< of the last frame with a pose
     Pose T_odom_good;                             ///< camera pose then
     double sharpness = 0.0;                       ///< of the image then
+    double usual_gap_s = 0.0;                     ///< between the two frames before the present one
+    bool was_lost = false;                        ///< the previous frame
     bool started = false;
     int frames = 0;
     int frames_since_keyframe = 0;
@@ -156,6 +160,7 @@ MotionEstimate Odometry::update(const PointFrame& frame) {
 void Odometry::skip(const StereoFrame& frame) {
     if (impl_->inertial) impl_->inertial->keep(frame.imu);
     impl_->machine.advance(frame.machine_motion);
+    impl_->was_lost = impl_->started;
 }
 
 /// The landmarks of another source mean nothing to this one.
@@ -174,6 +179,8 @@ MotionEstimate Odometry::Impl::update(std::int64_t now_ns,
     if (inertial) inertial->advance(imu, now_ns);
     MotionEstimate estimate = follow(now_ns, executor);
     estimate.time_ns = now_ns;
+    usual_gap_s = frames > 0 ? std::max(seconds_from_ns(now_ns - time_ns), 0.0) : 0.0;
+    was_lost = estimate.health == Health::lost;
     time_ns = now_ns;
     frames += 1;
     return estimate;
@@ -183,7 +190,8 @@ MotionEstimate Odometry::Impl::follow(std::int64_t now_ns, Executor& executor) {
     if (front->loaded() && !started) return begin(now_ns, executor);
     PoseSolution pose;
     if (front->loaded() && !map.empty()) pose = solve(now_ns, executor);
-    const HealthEvidence evidence = examine(now_ns, pose);
+    HealthEvidence evidence = examine(now_ns, pose);
+    if (pose.found) evidence.other_motion = other_motion(pose);
     if (judge(config, evidence).health == Health::lost) return lost(now_ns, evidence, executor);
     return found(now_ns, pose, evidence, executor);
 }
@@ -268,12 +276,19 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     evidence.pose_found = pose.found;
     evidence.tracks = static_cast<int>(front->tracks().size());
     evidence.gap_s = seconds_from_ns(now_ns - time_ns);
+    evidence.usual_gap_s = usual_gap_s;
+    evidence.stamp_grows = now_ns > time_ns;
+    evidence.was_lost = was_lost;
+    evidence.right_shows_something = front->right_shows_something();
     evidence.sharpness_ratio = front->sharpness() / std::max(sharpness, 1e-9);
     evidence.imu_disagrees = inertial && inertial->disagrees();
     evidence.machine_disagrees = machine.disagrees();
     if (!pose.found) return evidence;
     evidence.beyond_machine = is_beyond_machine(now_ns, pose);
     evidence.inliers = pose.inliers;
+    for (std::size_t i = 0; i < front->tracks().size(); ++i)
+        evidence.depth_inliers +=
+            pose.inlier[i] != 0 && std::isfinite(front->tracks()[i].pixel_px.z()) ? 1 : 0;
     evidence.residual_px = pose.residual_px;
     evidence.translation_sigma_m = largest_sigma(pose.covariance.topLeftCorner<3, 3>());
     evidence.rotation_sigma_rad = largest_sigma(pose.covariance.bottomRightCorner<3, 3>());
@@ -299,6 +314,23 @@ bool Odometry::Impl::is_beyond_machine(std::int64_t now_ns, const PoseSolution& 
                   largest_sigma(covariance.bottomRightCorner<3, 3>()));
 }
 
+int Odometry::Impl::other_motion(const PoseSolution& pose) {
+    const Eigen::Matrix3d R_camera_odom = pose.T_world_camera.R().transpose();
+    std::vector<PointMatch> others;
+    for (const PointMatch& match : front->matches(map)) {
+        const Eigen::Vector3d p =
+            R_camera_odom * (match.p_world_m - pose.T_world_camera.translation_m);
+        if (p.z() > 0.0 && (project_stereo(rectifier.rig(), p) - match.pixel_px).head<2>().norm() <=
+                               solver.ransac_threshold_px)
+            continue;
+        others.push_back(match);
+        others.back().vote = 1.0;
+    }
+    const Rng rng(mix_seed(kSeed + 1, static_cast<std::uint64_t>(frames)));
+    const PoseSolution other = find_pose(rectifier.rig(), solver, others, T_odom_camera, rng);
+    return other.found ? other.inliers : 0;
+}
+
 /// What a slightly wrong calibration does to a motion: a share of it, and a turn mistaken for a
 /// shift of the scene.
 Matrix6 Odometry::Impl::systematic_covariance(const Pose& T_before,
@@ -319,10 +351,11 @@ MotionEstimate Odometry::Impl::found(std::int64_t now_ns,
                                      Executor& executor) {
     const double dt_s = seconds_from_ns(now_ns - good_time_ns);
     front->select(pose.inlier);
+    for (const Track& track : front->tracks()) map.at(track.slot).agreed += 1;
     Pose T = pose.T_world_camera;
     Matrix6 covariance = pose.covariance;
-    const bool standing =
-        config.still_parallax_px > 0.0 && still.update(front->tracks(), map, T, covariance);
+    const bool standing = config.still_parallax_px > 0.0 &&
+                          still.update(front->tracks(), map, T, covariance, pose.residual_px);
     if (standing) {
         T = still.T_odom_camera();
         // The error of a held pose is one error, not one per frame: 1/n^2 adds up to 1.64 of it.

@@ -11,11 +11,12 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
         "min_depth_m", min_depth_m, 0.05, 10.0, "nearest point matched between the eyes");
     visitor.number("sigma_px", sigma_px, 0.05, 3.0, "noise of an aligned point, per eye and axis");
     visitor.integer("window_keyframes", window_keyframes, 3, 30, "keyframes adjusted together");
-    visitor.number("still_parallax_px",
-                   still_parallax_px,
-                   0.0,
-                   3.0,
-                   "median parallax below which standing still is tested; 0 = never");
+    visitor.number(
+        "still_parallax_px",
+        still_parallax_px,
+        0.0,
+        3.0,
+        "median parallax, beside its noise, below which standing still is tested; 0 = never");
     visitor.number("bridge_s",
                    bridge_s,
                    0.0,

@@ -39,6 +39,77 @@ void expect_valid(const MotionEstimate& m) {
     EXPECT_GE(m.relative_covariance.diagonal().minCoeff(), 0.0);
 }
 
+/// Somebody before the left `share` of the view: a board 0.9 m ahead that keeps pace with the
+/// camera.
+void step_in_front(const camera::StereoRig& rig, double share, StereoFrame& frame) {
+    constexpr double kAway_m = 0.9;
+    const auto paint = [&](const camera::Camera& eye, const Pose& T_left_eye, GreyImage& image) {
+        const std::vector<Eigen::Vector3d>& rays = testing::rays_of(eye);
+        for (int v = 0; v < eye.height; ++v) {
+            for (int u = 0; u < eye.width; ++u) {
+                const Eigen::Vector3d along =
+                    T_left_eye.rotation * rays[static_cast<std::size_t>(v * eye.width + u)];
+                const Eigen::Vector3d p =
+                    T_left_eye.translation_m +
+                    (kAway_m - T_left_eye.translation_m.z()) / along.z() * along;
+                const auto seen = camera::project(rig.left.model, p);
+                if (!seen || seen->x() > share * rig.left.width) continue;
+                image.at(u, v) =
+                    static_cast<std::uint8_t>(testing::texture_grey(1, 3.0 * p.y(), 3.0 * p.x()));
+            }
+        }
+    };
+    paint(rig.left, Pose{}, frame.left);
+    paint(*rig.right, rig.T_left_right, frame.right);
+}
+
+TEST(Odometry, SomebodyWhoStepsInIsNamedAndNotFollowed) {
+    for (const double share : {0.5, 0.7}) {
+        Follower run(testing::small_rig());
+        Serial serial;
+        double worst_m = 0.0;
+        for (int i = 0; i < 20; ++i) {
+            const Pose truth = truth_at(3 * i);  // faster than 3 px a frame on the board
+            StereoFrame frame = render_frame(run.rig, truth, i, kNoise_grey);
+            if (i >= 10) step_in_front(run.rig, share, frame);
+            const auto m = run.odometry.update(frame, serial);
+            expect_valid(m);
+            if (i == 12) {  // two frames later; nothing is known of the board in its first one
+                EXPECT_EQ(m.health, Health::degraded) << share;
+                EXPECT_STREQ(to_string(m.reason), "moving_scene") << share;
+            }
+            worst_m =
+                std::max(worst_m, (run.left_camera(m).translation_m - truth.translation_m).norm());
+        }
+        std::printf("worst position error %.2f mm\n", 1e3 * worst_m);
+        EXPECT_LT(worst_m, 0.020) << share;  // the camera went 0.2 m meanwhile
+    }
+}
+
+TEST(Odometry, ExchangedEyesAreLostAndADarkRightEyeIsDegraded) {
+    for (const bool exchanged : {true, false}) {
+        Follower run(testing::small_rig());
+        Serial serial;
+        for (int i = 0; i < 16; ++i) {
+            StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+            const bool wrong = i >= 10 && i < 14;
+            if (wrong && exchanged) std::swap(frame.left, frame.right);
+            if (wrong && !exchanged) frame.right.fill(3);
+            const auto m = run.odometry.update(frame, serial);
+            expect_valid(m);
+            if (wrong) {
+                EXPECT_EQ(m.health, exchanged ? Health::lost : Health::degraded) << i;
+                EXPECT_STREQ(to_string(m.reason), "poor_geometry") << i;
+            }
+            if (!exchanged || i > 14) {
+                EXPECT_LT((run.left_camera(m).translation_m - truth_at(i).translation_m).norm(),
+                          0.010)
+                    << i;
+            }
+        }
+    }
+}
+
 TEST(Odometry, FollowsAHandHeldCurve) {
     Follower run(testing::small_rig());
     Serial serial;
@@ -134,6 +205,22 @@ TEST(Odometry, StandingStillIsExact) {
     EXPECT_LT(std::sqrt(variance), 3e-3);  // the error of a held pose does not grow
 }
 
+TEST(Odometry, AnOnsetOfThreeMillimetresIsSeenAtOnce) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    for (int i = 0; i < 12; ++i) {
+        Pose T = truth_at(0);
+        if (i >= 10) T.translation_m.z() += 0.003;
+        const auto m = run.odometry.update(render_frame(run.rig, T, i, kNoise_grey), serial);
+        if (i > 2 && i < 10) {
+            EXPECT_EQ(m.T_previous_body.translation_m, Eigen::Vector3d::Zero()) << i;
+        }
+        if (i == 10) {
+            EXPECT_NEAR(m.T_previous_body.translation_m.norm(), 0.003, 0.0015);
+        }
+    }
+}
+
 TEST(Odometry, BlackFramesAreLostForBlurAndBridged) {
     Follower run(testing::small_rig());
     Serial serial;
@@ -154,7 +241,11 @@ TEST(Odometry, BlackFramesAreLostForBlurAndBridged) {
             EXPECT_GT(unseen_sigma_m, 0.01) << i;
             EXPECT_LT(m.T_previous_body.translation_m.norm(), 0.05) << "jump in frame " << i;
         }
-        if (i > 15) {
+        if (i == 14) {
+            EXPECT_EQ(m.health, Health::degraded) << "found again must be said";
+            EXPECT_STREQ(to_string(m.reason), "recovered");
+        }
+        if (i > 14) {
             EXPECT_EQ(m.health, Health::ok) << i << " " << to_string(m.reason);
             EXPECT_LT((run.left_camera(m).translation_m - truth_at(i).translation_m).norm(), 0.010)
                 << i;
@@ -303,6 +394,41 @@ TEST(Odometry, TimeGapIsNamed) {
         const auto m = run.odometry.update(frame, serial);
         if (i == 3) {
             EXPECT_STREQ(to_string(m.reason), "time_gap");
+        }
+    }
+}
+
+TEST(Odometry, StampsThatDoNotGrowAndDroppedFramesAreNamed) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    for (int i = 0; i < 14; ++i) {
+        if (i > 7 && i < 11) continue;  // three dropped
+        StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+        if (i == 4) frame.time_ns -= 50'000'000;
+        const auto m = run.odometry.update(frame, serial);
+        expect_valid(m);
+        const bool named = m.health == Health::degraded && m.reason == HealthReason::time_gap;
+        if (i > 0) {
+            EXPECT_EQ(named, i == 4 || i == 11) << i << " " << to_string(m.reason);
+        }
+        EXPECT_LT((run.left_camera(m).translation_m - truth_at(i).translation_m).norm(), 0.010)
+            << i;
+    }
+}
+
+/// What the images show after one that was skipped is found again, not followed.
+TEST(Odometry, AfterSkippedFramesThePoseIsRecovered) {
+    Follower run(testing::small_rig());
+    Serial serial;
+    for (int i = 0; i < 8; ++i) {
+        const StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
+        if (i == 5) {
+            run.odometry.skip(frame);
+            continue;
+        }
+        const auto m = run.odometry.update(frame, serial);
+        if (i > 0) {
+            EXPECT_STREQ(to_string(m.reason), i == 6 ? "recovered" : "none") << i;
         }
     }
 }

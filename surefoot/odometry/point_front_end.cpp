@@ -11,12 +11,14 @@ PointFrontEnd::PointFrontEnd(const camera::Rectifier& rectifier) : Tracks(rectif
 void PointFrontEnd::load(std::span<const SeenPoint> points) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     loaded_ = true;
+    right_shows_something_ = false;
     tracks_.clear();
     points_.clear();
     for (const SeenPoint& point : points) {
         if (!point.raw_left_px.allFinite()) continue;
         const auto left_px = rectifier_.rectified_from_raw(camera::Side::left, point.raw_left_px);
         if (!left_px) continue;
+        right_shows_something_ |= point.raw_right_px.has_value();
         std::optional<StereoPixel> pixel;
         if (point.raw_right_px && point.raw_right_px->allFinite())
             pixel = stereo_pixel(rectifier_, point.raw_left_px, *point.raw_right_px, {});

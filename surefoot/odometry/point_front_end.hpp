@@ -30,6 +30,7 @@ class PointFrontEnd final : public Tracks {
     void clear() override;
     /// Of points nothing is known: always the same.
     [[nodiscard]] double sharpness() const override { return 1.0; }
+    [[nodiscard]] bool right_shows_something() const override { return right_shows_something_; }
 
   private:
     struct Point {
@@ -42,7 +43,8 @@ class PointFrontEnd final : public Tracks {
         std::int64_t landmark;  ///< id: a slot may be used again
     };
 
-    std::vector<Point> points_;            ///< of the present frame
+    std::vector<Point> points_;  ///< of the present frame
+    bool right_shows_something_ = false;
     std::map<std::int64_t, Known> known_;  ///< by the point's id; may hold removed landmarks
 };
 

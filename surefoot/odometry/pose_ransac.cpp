@@ -13,13 +13,18 @@ namespace {
 /// Wanted probability that one sample was free of outliers; decides when to stop early.
 constexpr double kConfidence = 0.9999;
 
-int count_agreeing(const camera::RectifiedRig& rig,
-                   std::span<const PointMatch> matches,
-                   const Pose& T_world_camera,
-                   double threshold_px,
-                   std::vector<std::uint8_t>& inlier) {
+struct Consensus {
+    int points = 0;
+    double votes = 0.0;
+};
+
+Consensus count_agreeing(const camera::RectifiedRig& rig,
+                         std::span<const PointMatch> matches,
+                         const Pose& T_world_camera,
+                         double threshold_px,
+                         std::vector<std::uint8_t>& inlier) {
     const Eigen::Matrix3d R_camera_world = T_world_camera.R().transpose();
-    int count = 0;
+    Consensus agreeing;
     for (std::size_t i = 0; i < matches.size(); ++i) {
         const Eigen::Vector3d p =
             R_camera_world * (matches[i].p_world_m - T_world_camera.translation_m);
@@ -28,9 +33,10 @@ int count_agreeing(const camera::RectifiedRig& rig,
         const Eigen::Vector2d error = (project_stereo(rig, p) - matches[i].pixel_px).head<2>();
         if (error.squaredNorm() > threshold_px * threshold_px) continue;
         inlier[i] = 1;
-        count += 1;
+        agreeing.points += 1;
+        agreeing.votes += matches[i].vote;
     }
-    return count;
+    return agreeing;
 }
 
 std::array<std::size_t, 3> three_different(std::size_t n, Rng& rng) {
@@ -94,22 +100,23 @@ PoseSolution find_pose(const camera::RectifiedRig& rig,
     best.T_world_camera = T_world_camera_predicted;
     best.inlier.assign(matches.size(), 0);
     if (matches.size() < static_cast<std::size_t>(kMinimalPoseMatches)) return best;
-    best.inliers =
+    Consensus most =
         count_agreeing(rig, matches, best.T_world_camera, config.ransac_threshold_px, best.inlier);
     std::vector<std::uint8_t> inlier(matches.size());
-    int rounds = rounds_needed(best.inliers, matches.size(), config.ransac_rounds);
+    int rounds = rounds_needed(most.points, matches.size(), config.ransac_rounds);
     for (int round = 0; round < rounds; ++round) {
         const auto sample = three_different(matches.size(), rng);
         for (const Pose& T : three_point_poses(rig, matches, sample)) {
-            const int agreeing =
+            const Consensus agreeing =
                 count_agreeing(rig, matches, T, config.ransac_threshold_px, inlier);
-            if (agreeing <= best.inliers) continue;
-            best.inliers = agreeing;
+            if (agreeing.votes <= most.votes) continue;
+            most = agreeing;
             best.T_world_camera = T;
             best.inlier.swap(inlier);
-            rounds = rounds_needed(agreeing, matches.size(), config.ransac_rounds);
+            rounds = rounds_needed(agreeing.points, matches.size(), config.ransac_rounds);
         }
     }
+    best.inliers = most.points;
     best.found = best.inliers >= kMinimalPoseMatches;
     return best;
 }

@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 namespace surefoot::odometry {
 namespace {
@@ -13,6 +15,8 @@ constexpr double kMinDepth_m = 0.02;
 /// Weakest direction of the information relative to the strongest after scaling to unit diagonal;
 /// below it the points lie on a line or in one spot.
 constexpr double kMinConditioning = 1e-7;
+/// So many points with a full vote lead alone until the pose is near.
+constexpr int kMinTrusted = 20;
 
 /// Residual of one match with its Jacobian; `rows` is 2 without a disparity, 0 behind the camera.
 struct Residual {
@@ -72,6 +76,7 @@ bool iterate(const camera::RectifiedRig& rig,
              double gate_sigmas,
              Pose& T,
              std::vector<std::uint8_t>& inlier) {
+    inlier.assign(matches.size(), 0);
     std::vector<std::uint8_t> trial_inlier(matches.size());
     VisualNormalEquations normal =
         visual_normal_equations(rig, config, matches, T, gate_sigmas, inlier);
@@ -143,11 +148,20 @@ PoseSolution refine_pose(const camera::RectifiedRig& rig,
     PoseSolution solution;
     solution.inlier.assign(matches.size(), 0);
     Pose T = T_world_camera_start;
-    // A wide gate first: the start may be a few pixels off.
-    for (const double widening : {4.0, 1.0}) {
-        if (!iterate(rig, config, matches, widening * config.gate_sigmas, T, solution.inlier))
-            return solution;
-    }
+    // A wide gate first: the start may be a few pixels off. So may somebody who walks in: what is
+    // new in the view must fit to what was there.
+    std::vector<PointMatch> trusted;
+    std::ranges::copy_if(
+        matches, std::back_inserter(trusted), [](const PointMatch& m) { return m.vote >= 1.0; });
+    const bool led = static_cast<int>(trusted.size()) >= kMinTrusted;
+    if (!iterate(rig,
+                 config,
+                 led ? std::span<const PointMatch>(trusted) : matches,
+                 4.0 * config.gate_sigmas,
+                 T,
+                 solution.inlier))
+        return solution;
+    if (!iterate(rig, config, matches, config.gate_sigmas, T, solution.inlier)) return solution;
     const VisualNormalEquations normal =
         visual_normal_equations(rig, config, matches, T, config.gate_sigmas, solution.inlier);
     if (normal.inliers < kMinimalPoseMatches || !well_conditioned(normal.H)) return solution;

@@ -17,6 +17,7 @@ struct PointMatch {
     Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of p_world_m, in world axes
     StereoPixel pixel_px;
     double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
+    double vote = 1.0;          ///< what it counts when poses are compared by those that agree
 };
 
 struct PoseSolverConfig {
@@ -42,8 +43,9 @@ struct PoseSolution {
 /// Minimal number of points for a pose with at least one to spare.
 inline constexpr int kMinimalPoseMatches = 5;
 
-/// Pose with the most points within `ransac_threshold_px` of their (u_left, v): `T_predicted`
-/// first, then three-point poses of random samples (P3P). The same seed gives the same pose.
+/// Pose with the most votes of points within `ransac_threshold_px` of their (u_left, v):
+/// `T_predicted` first, then three-point poses of random samples (P3P). The same seed gives the
+/// same pose.
 ///
 /// Fischler and Bolles 1981 (sample consensus); cv::solveP3P for the minimal problem.
 [[nodiscard]] PoseSolution find_pose(const camera::RectifiedRig& rig,
@@ -53,9 +55,10 @@ inline constexpr int kMinimalPoseMatches = 5;
                                      Rng rng);
 
 /// Robust least squares over (u_left, v, u_right) from a good start: Gauss-Newton with Huber
-/// weights and a gate. Each residual is weighted by its pixel noise plus the projected uncertainty
-/// of its point, the points taken as independent. The covariance is the inverse information, scaled
-/// up (never down below kMinResidualScale) by the residuals.
+/// weights and a gate, which is wide first; then only matches with a full vote count, if enough.
+/// Each residual is weighted by its pixel noise plus the projected uncertainty of its point, the
+/// points taken as independent. The covariance is the inverse information, scaled up (never down
+/// below kMinResidualScale) by the residuals.
 ///
 /// Not found when fewer than kMinimalPoseMatches points agree or they leave a direction open.
 [[nodiscard]] PoseSolution refine_pose(const camera::RectifiedRig& rig,

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace surefoot::odometry {
@@ -10,6 +11,9 @@ namespace {
 
 /// 99.9 % of a chi-square variable with six degrees of freedom lies below.
 constexpr double kChi2Limit = 22.46;
+/// Median distance of two measurements of a resting point, by the noise of one axis: sqrt(2) of it
+/// for the difference, sqrt(2 ln 2) for the median of a Rayleigh variable.
+constexpr double kMedianOfNoise = 1.67;
 constexpr std::size_t kMinShared = 20;  ///< points that both frames must see
 
 double median(std::vector<double>& values) {
@@ -23,7 +27,8 @@ double median(std::vector<double>& values) {
 bool StillDetector::update(std::span<const Track> tracks,
                            const LandmarkMap& map,
                            const Pose& T_odom_camera,
-                           const Matrix6& covariance) {
+                           const Matrix6& covariance,
+                           double residual_px) {
     // Marks and tracks are both few: index the marks by slot.
     std::vector<const Mark*> by_slot(static_cast<std::size_t>(map.slots()), nullptr);
     for (const Mark& mark : anchor_)
@@ -35,7 +40,8 @@ bool StillDetector::update(std::span<const Track> tracks,
             parallax_.push_back((track.pixel_px.head<2>() - mark->px).norm());
     const Vector6 motion = difference(T_odom_camera_, T_odom_camera);
     const Matrix6 sum = covariance_ + covariance;
-    if (parallax_.size() >= kMinShared && median(parallax_) < parallax_px_ &&
+    const double most_px = std::hypot(parallax_px_, kMedianOfNoise * residual_px);
+    if (parallax_.size() >= kMinShared && median(parallax_) < most_px &&
         motion.dot(sum.ldlt().solve(motion)) < kChi2Limit) {
         held_ += 1;
         return true;

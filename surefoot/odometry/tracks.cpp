@@ -2,6 +2,14 @@
 #include "surefoot/odometry/tracks.hpp"
 
 namespace surefoot::odometry {
+namespace {
+
+/// A landmark that agreed with so many poses belongs to the scene that stands; one that has just
+/// come into view may belong to somebody who walks in, however many there are.
+constexpr int kEstablished = 5;
+constexpr double kNewVote = 0.2;
+
+}  // namespace
 
 StereoPixel Tracks::at_stamp(const StereoPixel& pixel_px,
                              const Eigen::Vector2d& raw_px,
@@ -44,8 +52,11 @@ std::span<const PointMatch> Tracks::matches(const LandmarkMap& map) {
     matches_.clear();
     for (const Track& track : tracks_) {
         const Landmark& landmark = map.at(track.slot);
-        matches_.push_back(
-            {landmark.p_odom_m, landmark.covariance_m2, track.pixel_px, track.noise_factor});
+        matches_.push_back({landmark.p_odom_m,
+                            landmark.covariance_m2,
+                            track.pixel_px,
+                            track.noise_factor,
+                            landmark.agreed >= kEstablished ? 1.0 : kNewVote});
     }
     return matches_;
 }

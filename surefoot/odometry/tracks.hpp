@@ -48,6 +48,8 @@ class Tracks {
     virtual void clear();
     /// Of the present frame until `keep`; means something beside that of another frame only.
     [[nodiscard]] virtual double sharpness() const = 0;
+    /// The right eye sees about as much as the left one in the present frame.
+    [[nodiscard]] virtual bool right_shows_something() const = 0;
 
     /// Drops the tracks that are not marked.
     void select(std::span<const std::uint8_t> inlier);
