@@ -9,6 +9,8 @@ namespace surefoot::pipeline {
 namespace {
 
 constexpr double kGravity_m_s2 = 9.81;
+/// Of the known height: far more than a mount or a kerb brings about.
+constexpr double kMostHeightShare = 0.35;
 constexpr double kDegPerRad = 180.0 / M_PI;
 
 double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -121,7 +123,8 @@ Eigen::Vector3d assumed_up(const AlignmentConfig& config) {
 
 Alignment place_odom(const AlignmentConfig& config,
                      const ground::GroundAlignment& ground,
-                     const std::optional<Eigen::Vector3d>& up_imu_body) {
+                     const std::optional<Eigen::Vector3d>& up_imu_body,
+                     double expected_height_m) {
     Alignment alignment;
     const double ramp_deg =
         ground.accepted && up_imu_body ? angle_deg(ground.normal_body, *up_imu_body) : 0.0;
@@ -157,6 +160,20 @@ Alignment place_odom(const AlignmentConfig& config,
         alignment.has_ground = true;
         alignment.ground_height_m = ground.height_m / ground.normal_body.dot(up_body.normalized());
         alignment.T_odom_body.translation_m.z() = alignment.ground_height_m;
+    }
+    const double off_m = std::abs(alignment.ground_height_m - expected_height_m);
+    if (alignment.has_ground && expected_height_m > 0.0 &&
+        off_m > kMostHeightShare * expected_height_m) {
+        // Everything else would be off by as much, and nothing else shows it.
+        alignment.gravity_source = grid::GravitySource::assumed;
+        alignment.reason = fmt::format(
+            "the ground lies {:.2f} m below base_link, {:.2f} m are known "
+            "(ground.expected_height_m, from the machine file; limit {:.0f} % off): the rig's "
+            "baseline or focal length is wrong, or the machine file, or no near ground is in view; "
+            "the gate answers ERROR on such a map",
+            alignment.ground_height_m,
+            expected_height_m,
+            100.0 * kMostHeightShare);
     }
     return alignment;
 }

@@ -53,8 +53,14 @@ struct Alignment {
 
 /// Combines the averaged ground plane and the accelerometer: tilt from the plane, from the
 /// accelerometer when there is no plane or the two disagree (a ramp), else assumed.
+///
+/// Vision alone cannot tell a wrong baseline: all it sees is larger or smaller by one factor. Where
+/// the height of base_link over its ground is known (`expected_height_m`; 0 = unknown) and the
+/// plane lies by far elsewhere, the source of gravity is `assumed`, whatever told it, and the
+/// reason says so: the gate does not work on such a map.
 [[nodiscard]] Alignment place_odom(const AlignmentConfig& config,
                                    const ground::GroundAlignment& ground,
-                                   const std::optional<Eigen::Vector3d>& up_imu_body);
+                                   const std::optional<Eigen::Vector3d>& up_imu_body,
+                                   double expected_height_m = 0.0);
 
 }  // namespace surefoot::pipeline

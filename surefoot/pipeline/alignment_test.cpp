@@ -52,6 +52,19 @@ TEST(Alignment, takes_gravity_from_the_accelerometer_on_a_ramp_and_the_height_al
     EXPECT_NEAR(a.ground_height_m, 1.0 / std::cos(5 * kRadPerDeg), kRounding);
 }
 
+TEST(Alignment, a_ground_where_the_machine_cannot_stand_is_a_wrong_scale) {
+    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    for (const auto& up_imu : {std::optional<Eigen::Vector3d>(), std::optional(up)}) {
+        for (const double height_m : {2.0, 0.5}) {  // twice or half the baseline
+            const Alignment a = place_odom({}, plane(up, height_m), up_imu, 1.0);
+            EXPECT_EQ(a.gravity_source, grid::GravitySource::assumed);
+            EXPECT_NE(a.reason.find("baseline"), std::string::npos);
+        }
+        const Alignment kerb = place_odom({}, plane(up, 1.2), up_imu, 1.0);
+        EXPECT_EQ(kerb.gravity_source, grid::GravitySource::plane);
+    }
+}
+
 TEST(Alignment, without_a_plane_stays_at_base_link_and_says_what_it_used) {
     const Alignment by_imu = place_odom({}, {}, up_in_body(0.3, 0.1));
     EXPECT_EQ(by_imu.gravity_source, grid::GravitySource::imu);

@@ -143,7 +143,8 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
         calibration.add(
             in_first_body(observe_ground(motion.T_odom_body, up_hint_body), motion.T_odom_body));
     }
-    return place_odom(config_.mount, calibration.alignment(), up_imu_body);
+    return place_odom(
+        config_.mount, calibration.alignment(), up_imu_body, config_.ground.expected_height_m);
 }
 
 std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFrame> frames) {
