@@ -37,13 +37,12 @@ bool stronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
 /// The strongest corners of each cell of the grid, so that one rich spot does not take all.
 void spread(const DescribeConfig& config, cv::Size size, std::vector<cv::KeyPoint>& corners) {
     std::sort(corners.begin(), corners.end(), stronger);
-    const int cells = config.grid_columns * config.grid_rows;
-    const int most_of_cell = (kMostFeatures + cells - 1) / cells * 2;
-    std::vector<int> count(static_cast<std::size_t>(cells));
+    std::vector<int> count(static_cast<std::size_t>(config.grid_columns * config.grid_rows));
     std::erase_if(corners, [&](const cv::KeyPoint& corner) {
         const int column = static_cast<int>(corner.pt.x) * config.grid_columns / size.width;
         const int row = static_cast<int>(corner.pt.y) * config.grid_rows / size.height;
-        return ++count[static_cast<std::size_t>(row * config.grid_columns + column)] > most_of_cell;
+        return ++count[static_cast<std::size_t>(row * config.grid_columns + column)] >
+               config.cell_features;
     });
     if (corners.size() > static_cast<std::size_t>(kMostFeatures))
         corners.resize(static_cast<std::size_t>(kMostFeatures));

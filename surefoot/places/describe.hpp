@@ -12,9 +12,14 @@ namespace surefoot::places {
 struct DescribeConfig {
     int fast_threshold = 7;  ///< grey steps; low, because walls have little contrast
     int pyramid_levels = 6;  ///< each 1.2 times smaller: found again from 0.4 to 2.5 times as far
-    int corners = 2000;      ///< looked at before those without depth are left out
-    int grid_columns = 12;   ///< features are spread over this grid
+    /// Looked at before those without depth are left out: so many that a rich floor does not take
+    /// them all.
+    int corners = 6000;
+    int grid_columns = 12;  ///< features are spread over this grid
     int grid_rows = 8;
+    /// Of a cell; the cells of a floor alone (some two thirds of the image) cannot fill the list,
+    /// so that walls, doors and what stands about always have a voice.
+    int cell_features = 6;
     double max_outlier_probability = 0.3;  ///< of a feature's disparity
     double min_disparity_px = 2.0;         ///< nearer than some 20 m of a ZED
 };

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "surefoot/core/rng.hpp"
@@ -73,6 +74,22 @@ TEST(Describe, SpreadsFeaturesOverTheImage) {
         ++quarter[(feature.pixel_px.x() < kWidth / 2 ? 0U : 1U) +
                   (feature.pixel_px.y() < kHeight / 2 ? 0U : 2U)];
     for (const int count : quarter) EXPECT_GT(count, 25);
+}
+
+/// Three fifths of the image are a floor that is rich in corners, the rest a wall of little
+/// contrast.
+TEST(Describe, ARichFloorLeavesRoomForAFaintWall) {
+    constexpr int kEdge = kHeight * 2 / 5;
+    GreyImage image = blocks(0);
+    for (int v = 0; v < kEdge; ++v)
+        for (int u = 0; u < kWidth; ++u)
+            image.at(u, v) = static_cast<std::uint8_t>(100 + image.at(u, v) / 5);
+    const auto features = describe({}, image.view(), even_depth(10.0F));
+    const auto on_wall = std::count_if(
+        features.begin(), features.end(), [](const Feature& f) { return f.pixel_px.y() < kEdge; });
+    // Two fifths of the image: at least a quarter of what is described.
+    EXPECT_GT(4 * static_cast<std::size_t>(on_wall), features.size());
+    EXPECT_GT(features.size() - static_cast<std::size_t>(on_wall), 150U);
 }
 
 TEST(Describe, AnImageWithoutStructureHasNoFeatures) {

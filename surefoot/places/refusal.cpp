@@ -14,6 +14,7 @@ const char* to_string(Refusal refusal) noexcept {
         case Refusal::imprecise: return "imprecise";
         case Refusal::tilted: return "tilted";
         case Refusal::contradicted: return "contradicted";
+        case Refusal::floor_only: return "floor_only";
         case Refusal::ambiguous: return "ambiguous";
         case Refusal::unconfirmed: return "unconfirmed";
         case Refusal::inconsistent: return "inconsistent";

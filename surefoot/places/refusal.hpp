@@ -16,11 +16,12 @@ enum class Refusal : std::uint8_t {
     imprecise,     ///< they leave the pose open
     tilted,        ///< gravity would point elsewhere
     contradicted,  ///< parts of the image show something else than the place does
+    floor_only,    ///< what agrees is one level surface; a printed floor lies elsewhere too
     ambiguous,     ///< another place explains the view nearly as well
     unconfirmed,   ///< right so far, but the views after it have not said so yet
     inconsistent,  ///< does not fit what odometry and the places before it say
 };
-inline constexpr int kRefusals = 12;
+inline constexpr int kRefusals = 13;
 [[nodiscard]] const char* to_string(Refusal refusal) noexcept;
 
 }  // namespace surefoot::places

@@ -49,6 +49,7 @@ std::vector<PointMatch> point_matches(const ComparisonConfig& config,
 
 /// What the features of one view say when they are looked for in the other.
 struct Answers {
+    std::vector<int> who;                ///< features asked
     std::vector<FeatureMatch> agreeing;  ///< (feature asked, feature found)
     std::vector<int> asked;              ///< features of each part of the image of those found
     std::vector<int> found;
@@ -103,6 +104,7 @@ Answers ask(const ComparisonConfig& config,
             continue;
         const auto part = static_cast<std::size_t>(part_of(config, shown.rig, pixel));
         ++answers.asked[part];
+        answers.who.push_back(static_cast<int>(i));
         const int found = find_at(config, shown.features, pixel, asked.features[i].descriptor);
         if (found < 0) continue;
         ++answers.found[part];
@@ -119,6 +121,73 @@ void judge_parts(const ComparisonConfig& config, const Answers& answers, Compari
         ++out.parts;
         if (answers.found[part] < config.min_agreeing * answers.asked[part]) ++out.parts_against;
     }
+}
+
+/// A level surface as the camera of the candidate sees it.
+struct Level {
+    Eigen::Vector3d up;     ///< unit vector
+    double height_m = 0.0;  ///< above the camera
+
+    /// Could a point of this view lie on it, as far as its disparity can tell?
+    [[nodiscard]] bool holds(const ComparisonConfig& config,
+                             const Eigen::Vector3d& p_m,
+                             double point_disparity_px) const {
+        const double off_m = up.dot(p_m) - height_m;
+        // Along the line of sight a point moves by its range times this share.
+        const double share = config.disparity_px / point_disparity_px;
+        return std::abs(off_m) <= share * std::abs(up.dot(p_m)) + config.level_m;
+    }
+};
+
+/// The level surface that holds the most of the corners that agree on the pose.
+Level floor_of(const ComparisonConfig& config,
+               const camera::RectifiedRig& rig,
+               const std::vector<PointMatch>& points,
+               const PoseSolution& solution,
+               const Eigen::Vector3d& up_camera) {
+    Level best{up_camera};
+    int most = -1;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (solution.inlier[i] == 0) continue;
+        const Level level{up_camera, up_camera.dot(points[i].p_world_m)};
+        int held = 0;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const Eigen::Vector3d& p_m = points[k].p_world_m;
+            if (solution.inlier[k] != 0 &&
+                level.holds(config, p_m, rig.depth_to_disparity_px_m() / p_m.z()))
+                ++held;
+        }
+        if (held <= most) continue;
+        most = held;
+        best = level;
+    }
+    return best;
+}
+
+/// Counts what was asked of a view and does not lie on the floor.
+void judge_off_floor(const ComparisonConfig& config,
+                     const Level& floor,
+                     const View& view,
+                     const Pose& T_candidate_view,
+                     const Answers& answers,
+                     Comparison& out) {
+    const auto off_floor = [&](int number) {
+        const StereoPixel pixel = pixel_of(view.features[static_cast<std::size_t>(number)]);
+        const Eigen::Vector3d p_m = T_candidate_view * odometry::triangulate(view.rig, pixel);
+        return !floor.holds(config, p_m, odometry::disparity_px(pixel));
+    };
+    out.asked_off_floor +=
+        static_cast<int>(std::count_if(answers.who.begin(), answers.who.end(), off_floor));
+    out.agreeing_off_floor += static_cast<int>(std::count_if(
+        answers.agreeing.begin(), answers.agreeing.end(), [&](const FeatureMatch& match) {
+            return off_floor(match.candidate);
+        }));
+}
+
+/// What stands about must say that it is there; what is not seen says nothing.
+bool more_than_a_floor(const ComparisonConfig& config, const Comparison& found) {
+    return found.asked_off_floor >= config.min_asked_off_floor &&
+           found.agreeing_off_floor >= config.min_agreeing_off_floor * found.asked_off_floor;
 }
 
 int parts_with_inliers(const ComparisonConfig& config,
@@ -174,8 +243,17 @@ Comparison compare(const ComparisonConfig& config,
         candidate.rig.T_body_camera * T_candidate_query * query.rig.T_body_camera.inverse();
     out.covariance =
         odometry::camera_to_body_covariance(solution.covariance, query.rig.T_body_camera);
-    judge_parts(config, ask(config, candidate, query, T_candidate_query.inverse()), out);
-    judge_parts(config, ask(config, query, candidate, T_candidate_query), out);
+    const Answers of_candidate = ask(config, candidate, query, T_candidate_query.inverse());
+    const Answers of_query = ask(config, query, candidate, T_candidate_query);
+    judge_parts(config, of_candidate, out);
+    judge_parts(config, of_query, out);
+    const Level floor = floor_of(config,
+                                 candidate.rig,
+                                 points,
+                                 solution,
+                                 candidate.rig.T_body_camera.rotation.conjugate() * up_candidate);
+    judge_off_floor(config, floor, candidate, Pose{}, of_candidate, out);
+    judge_off_floor(config, floor, query, T_candidate_query, of_query, out);
     out.tilt_deg =
         kDegPerRad * std::acos(std::clamp(
                          up_candidate.dot(out.T_candidate_query.rotation * up_query), -1.0, 1.0));
@@ -188,6 +266,8 @@ Comparison compare(const ComparisonConfig& config,
     else if (out.agreeing_share() < config.min_agreeing_all ||
              out.parts_against > config.max_parts_against * out.parts)
         out.refusal = Refusal::contradicted;
+    else if (!more_than_a_floor(config, out))
+        out.refusal = Refusal::floor_only;
     else
         out.refusal = Refusal::none;
     return out;

@@ -24,10 +24,14 @@ struct ComparisonConfig {
     int part_rows = 3;
     int min_asked = 8;               ///< features of a part that can say anything
     double min_agreeing = 0.25;      ///< share of a part's features, below which it says no
-    double min_agreeing_all = 0.4;   ///< the same of all features asked
+    double min_agreeing_all = 0.35;  ///< the same of all features asked
     double max_parts_against = 0.2;  ///< share of the parts asked that may say no
-    int min_parts = 5;               ///< parts that hold an inlier
-    double max_sigma_m = 0.05;       ///< of the position
+    // Features off the level surface on which most agree (the floor) must agree on their own.
+    int min_asked_off_floor = 15;          ///< fewer cannot say yes
+    double min_agreeing_off_floor = 0.15;  ///< share of them; where the floor has moved: hardly any
+    double level_m = 0.01;                 ///< beside disparity_px: how uneven a floor may be
+    int min_parts = 5;                     ///< parts that hold an inlier
+    double max_sigma_m = 0.05;             ///< of the position
     double max_sigma_deg = 1.5;
     double max_tilt_deg = 3.0;  ///< between up here and there
 };
@@ -40,10 +44,12 @@ struct Comparison {
     int matches = 0;
     int inliers = 0;
     double tilt_deg = 0.0;
-    int asked = 0;          ///< features of both views that should be seen in the other
-    int agreeing = 0;       ///< of these, those that are
-    int parts = 0;          ///< parts of the image where enough were asked
-    int parts_against = 0;  ///< of these, those where too few agree
+    int asked = 0;               ///< features of both views that should be seen in the other
+    int agreeing = 0;            ///< of these, those that are
+    int parts = 0;               ///< parts of the image where enough were asked
+    int parts_against = 0;       ///< of these, those where too few agree
+    int asked_off_floor = 0;     ///< features asked that do not lie on the floor
+    int agreeing_off_floor = 0;  ///< of these, those that agree
     [[nodiscard]] double agreeing_share() const noexcept {
         return asked > 0 ? static_cast<double>(agreeing) / asked : 0.0;
     }
@@ -52,9 +58,12 @@ struct Comparison {
 /// Where a view was taken from as seen by a keyframe, and whether that may be believed: matches of
 /// descriptors, pose by consensus, then every feature of either view is looked for where the other
 /// should show it. Look-alikes are told by that: a door that stands in every corridor agrees, the
-/// floor before it says no. `up_candidate`, `up_query`: unit vectors in base_link of each.
+/// floor before it says no. A floor alone proves nothing: printed and woven patterns repeat, so
+/// that what stands on it must agree by itself where the floor says it is. `up_candidate`,
+/// `up_query`: unit vectors in base_link of each.
 ///
-/// Limit: a place that is a true twin, floor included, cannot be told by one view.
+/// Limit: a place that is a true twin, floor included, cannot be told by one view, nor one whose
+/// floor lies a few centimetres beside where it lay in the other.
 [[nodiscard]] Comparison compare(const ComparisonConfig& config,
                                  const View& candidate,
                                  const Eigen::Vector3d& up_candidate,

@@ -72,6 +72,73 @@ TEST(ViewComparison, RefusesALookAlikeOfWhichOnlyEveryThirdCornerIsTheSame) {
     EXPECT_LT(c.agreeing_share(), 0.4);
 }
 
+constexpr double kFloor_m = -0.95;  ///< height of it in the map
+const Pose kLookingDown{exp_so3({0.0, 0.5, 0.0}), {0.0, 0.0, 0.0}};
+
+/// A floor before the machine, and then `things` corners that stand on it.
+std::vector<Corner> room(int things, std::uint64_t seed) {
+    Rng rng(seed);
+    std::vector<Corner> corners;
+    const auto add = [&](double least_m, double most_m) {
+        const double x_m = rng.uniform(1.2, 4.5);
+        const double y_m = rng.uniform(-2.0, 2.0);
+        corners.push_back(
+            {{x_m, y_m, rng.uniform(least_m, most_m)}, testing::random_descriptor(rng)});
+    };
+    for (int i = 0; i < things; ++i) add(-0.5, 0.4);
+    for (int i = 0; i < 400; ++i) add(kFloor_m, kFloor_m);
+    return corners;
+}
+
+/// The same with all things moved on the floor.
+std::vector<Corner> moved(std::vector<Corner> corners, const Eigen::Vector3d& way_m) {
+    for (Corner& corner : corners)
+        if (corner.p_map_m.z() > kFloor_m) corner.p_map_m += way_m;
+    return corners;
+}
+
+/// Both seen with the head bowed, the second one from elsewhere.
+Comparison compare_floors(const std::vector<Corner>& here, const std::vector<Corner>& there) {
+    const Pose T_map_query = kElsewhere * kLookingDown;
+    const auto up = [](const Pose& T_map_body) -> Eigen::Vector3d {
+        return T_map_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    };
+    return compare({},
+                   view_of(here, kLookingDown, kNoise_px, 1),
+                   up(kLookingDown),
+                   view_of(there, T_map_query, kNoise_px, 2),
+                   up(T_map_query));
+}
+
+TEST(ViewComparison, AFloorAndWhatStandsOnItAreRecognised) {
+    const auto c = compare_floors(room(120, 1), room(120, 1));
+    EXPECT_EQ(c.refusal, Refusal::none);
+    EXPECT_GT(c.asked_off_floor, 50);
+    EXPECT_LT(c.asked_off_floor, c.asked / 2) << "the floor was counted";
+    EXPECT_GT(c.agreeing_off_floor, c.asked_off_floor / 2);
+}
+
+/// The floor of one house is printed everywhere alike, but lies elsewhere under the doors.
+TEST(ViewComparison, RefusesAFloorUnderOtherThings) {
+    const auto here = room(60, 1);
+    const auto c = compare_floors(here, moved(here, {0.1, 0.3, 0.0}));
+    EXPECT_EQ(c.refusal, Refusal::floor_only);
+    const Pose T_here_there = kLookingDown.inverse() * kElsewhere * kLookingDown;
+    EXPECT_LT(difference(T_here_there, c.T_candidate_query).head<3>().norm(), 0.02)
+        << "the floor was found";
+    EXPECT_GT(c.agreeing_share(), 0.5);
+    EXPECT_GT(c.asked_off_floor, 30);
+    EXPECT_LT(c.agreeing_off_floor, c.asked_off_floor / 10);
+}
+
+/// Where nothing else is seen nobody knows.
+TEST(ViewComparison, RefusesAFloorThatStandsAlone) {
+    const auto c = compare_floors(room(0, 1), room(0, 1));
+    EXPECT_EQ(c.refusal, Refusal::floor_only);
+    EXPECT_GT(c.agreeing_share(), 0.8);
+    EXPECT_LT(c.asked_off_floor, 15);
+}
+
 TEST(ViewComparison, RefusesWhatAgreesInOneSpotOnly) {
     auto corners = random_corners(300, 1);
     const Eigen::Vector3d middle_m(3.5, 0.0, 0.0);
