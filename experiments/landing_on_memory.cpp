@@ -28,6 +28,7 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
+#include "experiments/exact_depth.hpp"
 #include "sim/camera_profile.hpp"
 #include "sim/renderer.hpp"
 #include "sim/rigs.hpp"
@@ -75,17 +76,6 @@ struct Memory {
     elevation::ElevationMap map{elevation::ElevationConfig{}};
     std::vector<camera::RectifiedRig> rigs;
 };
-
-camera::DepthImage exact_depth(const sim::Scene& scene,
-                               const camera::RectifiedRig& rig,
-                               const Pose& T_world_body,
-                               Executor& executor) {
-    camera::DepthImage depth;
-    depth.disparity_px = sim::rectified_disparity_px(scene, rig, T_world_body, executor);
-    depth.sigma_px = Image<float>(rig.width, rig.height, 0.1F);
-    depth.outlier_probability = Image<float>(rig.width, rig.height, 0.0F);
-    return depth;
-}
 
 /// The moment at which a step is asked for.
 struct Decision {
@@ -216,7 +206,8 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
         const bool with_depth = i % kDepthEvery == 0 && !lost;
         std::vector<camera::DepthImage> depths;
         for (const camera::RectifiedRig& eyes : memories[1].rigs) {
-            if (with_depth) depths.push_back(exact_depth(scene, eyes, T_world_body, executor));
+            if (with_depth)
+                depths.push_back(experiments::exact_depth(scene, eyes, T_world_body, executor));
         }
         for (Memory& memory : memories) {
             memory.map.follow(estimate.T_odom_body, estimate.relative_covariance);

@@ -471,12 +471,6 @@ Status follow(const Recording& recording,
     return {};
 }
 
-/// The rig that takes the images: that of the profile and of the settings.
-camera::StereoRig true_rig(const camera::StereoRig& nominal, const sim::SceneOptions& sim) {
-    return sim::with_error(sim::with_error(nominal, sim::figures_of(sim.profile).calibration),
-                           sim.calibration_error);
-}
-
 Status measure(const SceneCase& now,
                const std::vector<Fault>& faults,
                const CommonOptions& common,
@@ -501,7 +495,7 @@ Status measure(const SceneCase& now,
         shown.T_world_body = experiments::true_pose(truth.trajectory, shown.frame.time_ns);
         recording.frames.push_back(std::move(shown));
     }
-    const camera::StereoRig eyes = true_rig(recording.rig, sim);
+    const camera::StereoRig eyes = experiments::true_rig(recording.rig, sim);
     sim::CameraConfig camera = sim.camera;
     sim::apply_profile(sim.profile, sim.noise, camera);
     auto renderer = sim::Renderer::make(truth.scene, eyes, camera, sim.seed);

@@ -133,9 +133,7 @@ Status measure_scene(const experiments::SceneCase& now,
     auto source = sim::open_scene(sim, &executor);
     if (!source) return source.error();
     const sim::SceneTruth& truth = (*source)->truth();
-    const camera::StereoRig eyes =
-        sim::with_error(sim::with_error(truth.rig, sim::figures_of(sim.profile).calibration),
-                        sim.calibration_error);
+    const camera::StereoRig eyes = experiments::true_rig(truth.rig, sim);
     sim::CameraConfig camera = sim.camera;
     sim::apply_profile(sim.profile, sim.noise, camera);
     auto renderer = sim::Renderer::make(truth.scene, eyes, camera, sim.seed);

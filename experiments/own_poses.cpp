@@ -33,9 +33,9 @@
 #include "apps/surefoot/source.hpp"
 #include "eval/map_comparison.hpp"
 #include "eval/trajectory.hpp"
+#include "experiments/exact_depth.hpp"
 #include "experiments/scene_cases.hpp"
 #include "io/text.hpp"
-#include "sim/renderer.hpp"
 #include "sim/scene_source.hpp"
 #include "sim/truth.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
@@ -52,18 +52,6 @@ struct Case {
     sim::CarriedBy carrier = sim::CarriedBy::scene;
     std::string rig;
 };
-
-camera::DepthImage exact_depth(const sim::Scene& scene,
-                               const camera::RectifiedRig& rig,
-                               const Pose& T_world_body,
-                               Executor& executor) {
-    constexpr float kSigma_px = 0.1F;
-    camera::DepthImage depth;
-    depth.disparity_px = sim::rectified_disparity_px(scene, rig, T_world_body, executor);
-    depth.sigma_px = Image<float>(rig.width, rig.height, kSigma_px);
-    depth.outlier_probability = Image<float>(rig.width, rig.height, 0.0F);
-    return depth;
-}
 
 /// The maps that the pipeline does not make.
 class Maps {
@@ -82,7 +70,8 @@ class Maps {
         if (report.motion.health == Health::lost) return;
         const std::int64_t time_ns = report.motion.time_ns;
         const camera::RectifiedRig& rig = pipeline.rig();
-        const camera::DepthImage exact = exact_depth(scene, rig, T_world_body, executor);
+        const camera::DepthImage exact =
+            experiments::exact_depth(scene, rig, T_world_body, executor);
         exact_own.add(rig, T_odom_body, exact, time_ns, executor);
         exact_true.add(rig, T_world_body, exact, time_ns, executor);
         matched_true.add(rig, T_world_body, pipeline.depth(), time_ns, executor);

@@ -58,6 +58,13 @@ struct SceneCase {
     return cases;
 }
 
+/// The rig that takes the images: the nominal one with the errors of the profile and the settings.
+[[nodiscard]] inline camera::StereoRig true_rig(const camera::StereoRig& nominal,
+                                                const sim::SceneOptions& sim) {
+    return sim::with_error(sim::with_error(nominal, sim::figures_of(sim.profile).calibration),
+                           sim.calibration_error);
+}
+
 /// base_link at a frame's stamp; the last pose after the end. `trajectory`: the truth's, not empty.
 [[nodiscard]] inline Pose true_pose(const std::vector<StampedPose>& trajectory,
                                     std::int64_t time_ns) {

@@ -45,7 +45,7 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
                    machine_speed_m_s,
                    0.0,
                    100.0,
-                   "fastest the camera can be carried; 0 = unknown; the machine file sets it");
+                   "fastest base_link can move; 0 = unknown; the machine file sets it");
     visitor.number("machine_turn_deg_s",
                    machine_turn_deg_s,
                    0.0,
