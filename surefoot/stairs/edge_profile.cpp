@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stairs/edge_profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace surefoot::stairs {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kNothing = std::numeric_limits<double>::infinity();
+constexpr double kUpper_m = 1.0;  ///< how far the ground is looked at before an edge and behind it
+constexpr double kLower_m = 1.2;
+constexpr double kLeastShare = 0.25;  ///< of a slice that must be known
+/// Neighbouring slices of level ground differ by less; a ramp of 1:8 by 3 mm in 25 mm.
+constexpr double kLevel_m = 0.012;
+constexpr double kMeasured_m = 0.15;  ///< of level ground that is used for its height
+/// Errors of a semi-global matcher hang together over 30-50 px: 0.1 m of floor 1 m away.
+constexpr double kCorrelation_m = 0.1;
+constexpr double kScatterOfMad = 1.4826;
+/// Steeper than noise makes level ground.
+constexpr double kLeastSlope = 0.06;
+
+double middle_of(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return static_cast<double>(*middle);
+}
+
+}  // namespace
+
+EdgeProfiler::Slices EdgeProfiler::slices(const Terrain& terrain,
+                                          const EdgeLine& line,
+                                          double upper_m,
+                                          double lower_m) {
+    slice(terrain, line, upper_m, lower_m);
+    return {slices_, -upper_slices_ * resolution_m_};
+}
+
+void EdgeProfiler::slice(const Terrain& terrain,
+                         const EdgeLine& line,
+                         double upper_m,
+                         double lower_m) {
+    const grid::GridGeometry& grid = terrain.geometry;
+    resolution_m_ = grid.resolution_m;
+    length_m_ = line.length_m();
+    upper_slices_ = static_cast<int>(std::ceil(upper_m / resolution_m_));
+    const int lower_slices = static_cast<int>(std::ceil(lower_m / resolution_m_));
+    slices_.assign(static_cast<std::size_t>(upper_slices_ + lower_slices), Slice{});
+    samples_.clear();
+    for (Slice& slice : slices_) slice.free_above_m = kNothing;
+
+    const Vector2d along = line.along();
+    const Vector2d down = line.down();
+    Vector2d low_m = line.from_m;
+    Vector2d high_m = line.from_m;
+    for (const double t_m : {0.0, length_m_}) {
+        for (const double s_m : {-upper_m, lower_m}) {
+            const Vector2d corner_m = line.from_m + t_m * along + s_m * down;
+            low_m = low_m.cwiseMin(corner_m);
+            high_m = high_m.cwiseMax(corner_m);
+        }
+    }
+    const auto cell_of = [&](double p_m, double origin_m, int cells) {
+        return std::clamp(
+            static_cast<int>(std::floor((p_m - origin_m) / resolution_m_)), 0, cells - 1);
+    };
+    const int first_ix = cell_of(low_m.x(), grid.origin_m.x(), grid.nx);
+    const int last_ix = cell_of(high_m.x(), grid.origin_m.x(), grid.nx);
+    const int first_iy = cell_of(low_m.y(), grid.origin_m.y(), grid.ny);
+    const int last_iy = cell_of(high_m.y(), grid.origin_m.y(), grid.ny);
+    cells_.assign(slices_.size(), 0);
+    for (int iy = first_iy; iy <= last_iy; ++iy) {
+        for (int ix = first_ix; ix <= last_ix; ++ix) {
+            const Vector2d d_m = grid.center_m({ix, iy}) - line.from_m;
+            const double t_m = d_m.dot(along);
+            if (t_m < 0.0 || t_m > length_m_) continue;
+            const int k =
+                static_cast<int>(std::floor(d_m.dot(down) / resolution_m_)) + upper_slices_;
+            if (k < 0 || k >= static_cast<int>(slices_.size())) continue;
+            Slice& slice = slices_[static_cast<std::size_t>(k)];
+            ++cells_[static_cast<std::size_t>(k)];
+            const float height_m = terrain.height_m.row(iy)[ix];
+            if (height_m == height_m) {
+                const float var_m2 =
+                    terrain.height_var_m2.empty() ? 0.0F : terrain.height_var_m2.row(iy)[ix];
+                samples_.push_back({k, height_m, var_m2});
+            } else if (!terrain.free_above_m.empty()) {
+                const auto free_m = static_cast<double>(terrain.free_above_m.row(iy)[ix]);
+                if (free_m < slice.free_above_m) slice.free_above_m = free_m;
+            }
+        }
+    }
+    std::stable_sort(samples_.begin(), samples_.end(), [](const Sample& a, const Sample& b) {
+        return a.slice < b.slice;
+    });
+    for (std::size_t begin = 0; begin < samples_.size();) {
+        const int k = samples_[begin].slice;
+        std::size_t end = begin;
+        values_.clear();
+        for (; end < samples_.size() && samples_[end].slice == k; ++end)
+            values_.push_back(samples_[end].height_m);
+        Slice& slice = slices_[static_cast<std::size_t>(k)];
+        slice.known_share =
+            static_cast<double>(values_.size()) / cells_[static_cast<std::size_t>(k)];
+        const double middle_m = middle_of(values_);
+        for (float& value : values_) value = std::abs(value - static_cast<float>(middle_m));
+        slice.scatter_m = kScatterOfMad * middle_of(values_);
+        // The mean of what agrees is truer than the middle one.
+        const double most_m = 2.5 * std::max(slice.scatter_m, 1e-4);
+        double sum_m = 0.0;
+        int agreeing = 0;
+        values_.clear();
+        for (std::size_t i = begin; i < end; ++i) {
+            values_.push_back(samples_[i].var_m2);
+            if (std::abs(static_cast<double>(samples_[i].height_m) - middle_m) > most_m) continue;
+            sum_m += static_cast<double>(samples_[i].height_m);
+            ++agreeing;
+        }
+        slice.height_m = agreeing > 0 ? sum_m / agreeing : middle_m;
+        slice.sigma_m = std::sqrt(middle_of(values_));
+        begin = end;
+    }
+}
+
+/// The first level ground from slice `first` on.
+Level EdgeProfiler::level_from(int first, int step, double least_share) const {
+    const int slices = static_cast<int>(slices_.size());
+    const auto known = [&](int k) {
+        return k >= 0 && k < slices && at(k).known_share >= least_share;
+    };
+    const auto level_with_next = [&](int k) {
+        return known(k) && known(k + step) &&
+               std::abs(at(k).height_m - at(k + step).height_m) <= kLevel_m;
+    };
+    int begin = first;
+    // Three slices that agree are ground, or the last of it before the unknown.
+    const int furthest = static_cast<int>(std::ceil(2.0 * config_.smear_m / resolution_m_));
+    for (int tried = 0; begin >= 0 && begin < slices; begin += step, ++tried) {
+        if (!known(begin)) continue;
+        if (level_with_next(begin) && (level_with_next(begin + step) || !known(begin + 2 * step)))
+            break;
+        if (tried > furthest && known(begin)) break;
+    }
+    Level level;
+    level.sigma_m = kNothing;
+    if (!known(begin)) return level;
+    int end = begin;
+    while (level_with_next(end)) end += step;
+    level.ends_unknown = !known(end + step);
+    level.begin_m = std::abs(begin - first) * resolution_m_;
+    level.end_m = (std::abs(end - first) + 1) * resolution_m_;
+
+    const int most = std::max(1, static_cast<int>(std::round(kMeasured_m / resolution_m_)));
+    double weight = 0.0, sum_m = 0.0, var_m2 = 0.0;
+    int used = 0;
+    for (int k = begin; used < most; k += step, ++used) {
+        const double share = at(k).known_share;
+        weight += share;
+        sum_m += share * at(k).height_m;
+        var_m2 += share * std::max(std::pow(at(k).scatter_m, 2), std::pow(at(k).sigma_m, 2));
+        if (k == end) {
+            ++used;
+            break;
+        }
+    }
+    level.height_m = sum_m / weight;
+    level.slope = slope_of(begin, step, used);
+    level.middle_m = level.begin_m + 0.5 * used * resolution_m_;
+    const double area_m2 = used * resolution_m_ * length_m_ * (weight / used);
+    const double independent = std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m));
+    level.sigma_m = std::sqrt(var_m2 / weight / independent);
+    return level;
+}
+
+/// Rise over run away from the edge, of `count` slices; 0 for fewer than three.
+double EdgeProfiler::slope_of(int begin, int step, int count) const {
+    if (count < 3) return 0.0;
+    const double middle = 0.5 * (count - 1);
+    double moment = 0.0, squares = 0.0;
+    for (int i = 0; i < count; ++i) {
+        moment += (i - middle) * at(begin + i * step).height_m;
+        squares += (i - middle) * (i - middle);
+    }
+    return moment / squares / resolution_m_;
+}
+
+std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine& line) {
+    slice(terrain, line, kUpper_m, kLower_m);
+    Level upper = level_from(upper_slices_ - 1, -1, kLeastShare);
+    Level lower = level_from(upper_slices_, +1, kLeastShare);
+    if (!std::isfinite(upper.sigma_m)) return std::nullopt;
+    // A slope that goes on is no edge: what it falls by on either side explains the height.
+    if (upper.slope > kLeastSlope && lower.slope < -kLeastSlope) {
+        upper.height_m -= upper.slope * upper.middle_m;
+        lower.height_m -= lower.slope * lower.middle_m;
+    }
+
+    Edge edge;
+    edge.from_m = line.from_m;
+    edge.to_m = line.to_m;
+    edge.upper_m = upper.height_m;
+    edge.upper_depth_m = upper.end_m;
+    double bound_m = kNothing;
+    double bound_at_m = kNothing;
+    const int shadow_end = std::isfinite(lower.sigma_m)
+                               ? static_cast<int>(lower.begin_m / resolution_m_ + 0.5)
+                               : static_cast<int>(config_.shadow_per_height / resolution_m_);
+    for (int k = 0; k < shadow_end && upper_slices_ + k < static_cast<int>(slices_.size()); ++k) {
+        const Slice& slice = at(upper_slices_ + k);
+        if (slice.free_above_m < bound_m) {
+            bound_m = slice.free_above_m;
+            bound_at_m = k * resolution_m_;
+        }
+    }
+    // What is seen behind a long shadow may be other ground.
+    const bool near =
+        lower.begin_m <=
+        config_.shadow_per_height * (upper.height_m - lower.height_m) + config_.smear_m;
+    edge.lower_seen = std::isfinite(lower.sigma_m) && near && lower.height_m <= bound_m + kLevel_m;
+    if (edge.lower_seen) {
+        edge.lower_m = lower.height_m;
+        edge.lower_depth_m = lower.end_m;
+        edge.height_sigma_m = std::hypot(upper.sigma_m, lower.sigma_m);
+    } else if (std::isfinite(bound_m) && bound_at_m <= kLower_m) {
+        edge.lower_m = bound_m;
+        edge.height_sigma_m = upper.sigma_m;
+    } else {
+        return std::nullopt;
+    }
+    if (!(edge.height_m() >=
+          std::max(config_.min_height_m, config_.sigma_factor * edge.height_sigma_m)))
+        return std::nullopt;
+    const double independent = std::max(1.0, line.length_m() / kCorrelation_m);
+    edge.across_sigma_m = std::max(line.rms_m, 0.25 * resolution_m_) / std::sqrt(independent);
+    edge.angle_sigma_rad = edge.across_sigma_m * std::sqrt(12.0) / std::max(line.length_m(), 0.05);
+    return edge;
+}
+
+Level EdgeProfiler::level_between(const Terrain& terrain,
+                                  const EdgeLine& line,
+                                  double begin_m,
+                                  double end_m) {
+    slice(terrain, line, kUpper_m, kLower_m);
+    const int first = upper_slices_ + static_cast<int>(std::ceil(begin_m / resolution_m_ - 1e-6));
+    const int last = upper_slices_ + static_cast<int>(std::floor(end_m / resolution_m_ + 1e-6)) - 1;
+    Level level;
+    level.begin_m = begin_m;
+    level.end_m = end_m;
+    level.sigma_m = kNothing;
+    double weight = 0.0, sum_m = 0.0, var_m2 = 0.0;
+    for (int k = std::max(0, first); k <= last && k < static_cast<int>(slices_.size()); ++k) {
+        const Slice& slice = at(k);
+        weight += slice.known_share;
+        sum_m += slice.known_share * slice.height_m;
+        var_m2 +=
+            slice.known_share * std::max(std::pow(slice.scatter_m, 2), std::pow(slice.sigma_m, 2));
+    }
+    if (!(weight > 0.0)) return level;
+    level.height_m = sum_m / weight;
+    const double area_m2 = weight * resolution_m_ * length_m_;
+    level.sigma_m =
+        std::sqrt(var_m2 / weight / std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m)));
+    return level;
+}
+
+}  // namespace surefoot::stairs

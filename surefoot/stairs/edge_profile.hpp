@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "surefoot/stairs/edge_lines.hpp"
+#include "surefoot/stairs/features.hpp"
+#include "surefoot/stairs/stairs_config.hpp"
+#include "surefoot/stairs/terrain.hpp"
+
+namespace surefoot::stairs {
+
+/// Level ground on one side of an edge.
+struct Level {
+    double height_m = 0.0;
+    double sigma_m = 0.0;
+    double begin_m = 0.0;  ///< from the edge
+    double end_m = 0.0;    ///< where it falls, rises or is no longer known
+    bool ends_unknown = false;
+    double slope = 0.0;     ///< rise over run, away from the edge
+    double middle_m = 0.0;  ///< of the ground that `height_m` is the mean of, from the edge
+};
+
+/// Ground in slices along an edge: how high it lies at which distance from it, on either side, each
+/// slice one cell deep and as long as the edge. What single cells say wrongly the middle value of
+/// a slice does not take over.
+class EdgeProfiler {
+  public:
+    explicit EdgeProfiler(const StairsConfig& config) : config_(config) {}
+
+    /// The edge with its levels; nothing where the ground does not fall there after all: a slope.
+    [[nodiscard]] std::optional<Edge> measure(const Terrain& terrain, const EdgeLine& line);
+
+    /// Ground between two distances from a line on its lower side (negative: on the upper), within
+    /// the length of the line; sigma_m is infinite where nothing is known.
+    [[nodiscard]] Level level_between(const Terrain& terrain,
+                                      const EdgeLine& line,
+                                      double begin_m,
+                                      double end_m);
+
+    struct Slice {
+        double height_m = 0.0;
+        double scatter_m = 0.0;  ///< robust standard deviation of a cell
+        double sigma_m = 0.0;    ///< median of what the map says of a cell
+        double known_share = 0.0;
+        double free_above_m = 0.0;  ///< lowest bound of unknown cells; infinite = none
+    };
+    /// The ground from `upper_m` before a line to `lower_m` behind it. The slices begin whole cells
+    /// from the line. Valid until the next call.
+    struct Slices {
+        std::span<const Slice> slices;
+        double begin_m = 0.0;  ///< of the first one, from the line; negative on the upper side
+    };
+    [[nodiscard]] Slices slices(const Terrain& terrain,
+                                const EdgeLine& line,
+                                double upper_m,
+                                double lower_m);
+
+  private:
+    struct Sample {
+        int slice;
+        float height_m;
+        float var_m2;
+    };
+    void slice(const Terrain& terrain, const EdgeLine& line, double upper_m, double lower_m);
+    [[nodiscard]] Level level_from(int first, int step, double least_share) const;
+    [[nodiscard]] double slope_of(int begin, int step, int count) const;
+    [[nodiscard]] const Slice& at(int slice) const {
+        return slices_[static_cast<std::size_t>(slice)];
+    }
+
+    StairsConfig config_;
+    double resolution_m_ = 0.0;
+    double length_m_ = 0.0;
+    int upper_slices_ =
+        0;  ///< slices before the edge; slice k begins (k - upper_slices_) cells from it
+    std::vector<Slice> slices_;
+    std::vector<int> cells_;  ///< of each slice
+    std::vector<Sample> samples_;
+    std::vector<float> values_;
+};
+
+}  // namespace surefoot::stairs

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stairs/feature_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::stairs {
+namespace {
+
+using Eigen::Vector2d;
+
+/// An edge as seen from a stance.
+LineFeature line_feature(const Edge& edge, const Vector2d& stance_m) {
+    const bool goes_down = edge.below_m(stance_m) < 0.0;
+    const Vector2d way = goes_down ? edge.down() : Vector2d(-edge.down());
+    LineFeature feature;
+    feature.pose.p_m << edge.middle_m(), goes_down ? edge.upper_m : edge.lower_m;
+    feature.pose.yaw_rad = std::atan2(way.y(), way.x());
+    feature.height_m = goes_down ? -edge.height_m() : edge.height_m();
+    feature.length_m = edge.length_m();
+    feature.sigma_m = edge.height_sigma_m;
+    feature.across_sigma_m = edge.across_sigma_m;
+    feature.bottom_seen = edge.lower_seen;
+    return feature;
+}
+
+/// A piece of the same edge, or what a ragged edge looks like beside it.
+bool is_part_of(const Edge& piece, const Edge& edge) {
+    constexpr double kNear_m = 0.1;
+    constexpr double kLeastCosine = 0.77;  // 40 deg
+    if (piece.along().dot(edge.along()) < kLeastCosine) return false;
+    if (std::abs(edge.below_m(piece.middle_m())) > kNear_m) return false;
+    const double t_m = (piece.middle_m() - edge.from_m).dot(edge.along());
+    return t_m >= -kNear_m && t_m <= edge.length_m() + kNear_m;
+}
+
+}  // namespace
+
+FeatureFinder::FeatureFinder(const StairsConfig& config)
+    : config_(config),
+      point_finder_(config),
+      line_finder_(config),
+      profiler_(config),
+      step_fitter_(config),
+      flight_finder_(config) {}
+
+void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
+    out.edges.clear();
+    out.drops.clear();
+    out.kerbs.clear();
+    out.sills.clear();
+    out.flights.clear();
+    out.doors.clear();
+    if (terrain.geometry.nx < 2 || terrain.geometry.ny < 2) return;
+    find_edges(terrain, out.edges);
+    fit_steps(terrain, out.edges);
+    for (Edge& edge : out.edges) undo_cell_reach(terrain.geometry, edge);
+    flight_finder_.find(out.edges, terrain.stance_m, out.flights, in_flight_);
+    for (std::vector<Edge>& chain : chains_) {
+        for (Edge& edge : chain) undo_cell_reach(terrain.geometry, edge);
+        const bool is_flight = flight_finder_.add_chain(chain, terrain.stance_m, out.flights);
+        out.edges.insert(out.edges.end(), chain.begin(), chain.end());
+        in_flight_.insert(in_flight_.end(), chain.size(), is_flight);
+    }
+    std::stable_sort(out.flights.begin(), out.flights.end(), [&](const Flight& a, const Flight& b) {
+        return (a.pose.p_m.head<2>() - terrain.stance_m).norm() <
+               (b.pose.p_m.head<2>() - terrain.stance_m).norm();
+    });
+    name_lines(terrain, out);
+}
+
+void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges) {
+    point_finder_.find(terrain, points_);
+    line_finder_.find(terrain.geometry, points_, lines_);
+    for (const EdgeLine& line : lines_) {
+        const std::optional<Edge> edge = profiler_.measure(terrain, line);
+        if (edge) edges.push_back(*edge);
+    }
+}
+
+/// Cells take the highest of what they hold: the upper ground reaches too far, by how much depends
+/// on how the edge crosses the cells.
+void FeatureFinder::undo_cell_reach(const grid::GridGeometry& grid, Edge& edge) const {
+    const Vector2d down = edge.down();
+    const double reach_m =
+        0.5 * config_.cell_reach * grid.resolution_m * (std::abs(down.x()) + std::abs(down.y()));
+    edge.from_m -= reach_m * down;
+    edge.to_m -= reach_m * down;
+}
+
+void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) {
+    chains_.clear();
+    std::vector<bool> taken(edges.size(), false);
+    std::vector<Edge> chain;
+    for (std::size_t i = 0; i < edges.size(); ++i) {  // longest first
+        const Edge& seed = edges[i];
+        if (taken[i] || seed.height_m() > config_.max_riser_m ||
+            seed.length_m() < config_.min_width_m)
+            continue;
+        step_fitter_.fit(terrain, points_, seed, chain);
+        if (chain.empty()) continue;
+        for (std::size_t k = 0; k < edges.size(); ++k)
+            taken[k] = taken[k] || std::any_of(chain.begin(), chain.end(), [&](const Edge& step) {
+                           return is_part_of(edges[k], step);
+                       });
+        chains_.push_back(chain);
+    }
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+        if (!taken[i]) edges[left++] = edges[i];
+    edges.resize(left);
+}
+
+void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) const {
+    for (std::size_t i = 0; i < out.edges.size(); ++i) {
+        const Edge& edge = out.edges[i];
+        const LineFeature feature = line_feature(edge, terrain.stance_m);
+        if (!in_flight_[i] && feature.height_m < -config_.drop_m) out.drops.push_back(feature);
+        if (!in_flight_[i] && edge.lower_seen && edge.height_m() <= config_.kerb_m)
+            out.kerbs.push_back(feature);
+    }
+    // The near edge of a flight down is a drop like any other.
+    for (const Flight& flight : out.flights) {
+        const LineFeature feature = line_feature(flight.edges.front(), terrain.stance_m);
+        if (feature.height_m < -config_.drop_m) out.drops.push_back(feature);
+        if (flight.steps == 1 && std::abs(feature.height_m) <= config_.kerb_m)
+            out.kerbs.push_back(feature);
+    }
+}
+
+}  // namespace surefoot::stairs

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "surefoot/stairs/edge_lines.hpp"
+#include "surefoot/stairs/edge_points.hpp"
+#include "surefoot/stairs/edge_profile.hpp"
+#include "surefoot/stairs/features.hpp"
+#include "surefoot/stairs/flights.hpp"
+#include "surefoot/stairs/stairs_config.hpp"
+#include "surefoot/stairs/step_fit.hpp"
+#include "surefoot/stairs/terrain.hpp"
+
+namespace surefoot::stairs {
+
+/// What the ground is: its edges, and what they make up. Looks at one map alone; what was seen
+/// before and is not seen now, it does not know.
+///
+/// Holds the working memory; not thread-safe. The same result for the same map.
+class FeatureFinder {
+  public:
+    explicit FeatureFinder(const StairsConfig& config);
+    [[nodiscard]] const StairsConfig& config() const noexcept { return config_; }
+    /// `config().problem()` is empty. Maps of fewer than 2 x 2 cells have no features.
+    void find(const Terrain& terrain, TerrainFeatures& out);
+
+  private:
+    void find_edges(const Terrain& terrain, std::vector<Edge>& edges);
+    /// Takes the steps of flights out of the edges and places them together.
+    void fit_steps(const Terrain& terrain, std::vector<Edge>& edges);
+    void undo_cell_reach(const grid::GridGeometry& grid, Edge& edge) const;
+    void name_lines(const Terrain& terrain, TerrainFeatures& out) const;
+
+    StairsConfig config_;
+    EdgePointFinder point_finder_;
+    EdgeLineFinder line_finder_;
+    EdgeProfiler profiler_;
+    StepFitter step_fitter_;
+    FlightFinder flight_finder_;
+    std::vector<EdgePoint> points_;
+    std::vector<EdgeLine> lines_;
+    std::vector<std::vector<Edge>> chains_;  ///< of steps placed together
+    std::vector<bool> in_flight_;
+};
+
+}  // namespace surefoot::stairs

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stairs/stairs_config.hpp"
+
+#include <fmt/format.h>
+
+namespace surefoot::stairs {
+
+void StairsConfig::describe(ConfigVisitor& visitor) {
+    visitor.number("min_height_m", min_height_m, 0.005, 1.0, "lowest edge that is reported");
+    visitor.number("sigma_factor", sigma_factor, 1.0, 10.0, "an edge stands out of the noise by");
+    visitor.number("smear_m", smear_m, 0.01, 0.5, "an edge may be spread over");
+    visitor.number("min_length_m", min_length_m, 0.05, 5.0, "shortest edge");
+    visitor.number(
+        "fit_tolerance_m", fit_tolerance_m, 0.002, 0.2, "an edge's points lie about it within");
+    visitor.number(
+        "max_gap_m", max_gap_m, 0.0, 2.0, "within one edge, where nothing is known of it");
+    visitor.number("shadow_per_height",
+                   shadow_per_height,
+                   0.0,
+                   20.0,
+                   "longest shadow behind an edge for each metre of its height");
+    visitor.number("cell_reach",
+                   cell_reach,
+                   0.0,
+                   1.0,
+                   "0: cells take the height at their centre, 1: the highest anywhere in them");
+    visitor.number(
+        "min_riser_m", min_riser_m, 0.01, 1.0, "lowest step of a flight, but for its first");
+    visitor.number("max_riser_m", max_riser_m, 0.02, 1.0, "highest step of a flight");
+    visitor.number("min_going_m", min_going_m, 0.05, 2.0, "shortest tread, from nose to nose");
+    visitor.number("max_going_m", max_going_m, 0.1, 5.0, "deepest tread; more is a landing");
+    visitor.number("min_width_m", min_width_m, 0.1, 5.0, "narrowest flight");
+    visitor.number(
+        "max_turn_deg", max_turn_deg, 0.0, 60.0, "between the edges of neighbouring steps");
+    visitor.number("kerb_m", kerb_m, 0.02, 1.0, "highest kerb");
+    visitor.number("drop_m", drop_m, 0.01, 1.0, "ground that lies lower by more is a drop");
+}
+
+std::optional<std::string> StairsConfig::problem() const {
+    if (!(min_riser_m < max_riser_m))
+        return fmt::format(
+            "stairs.min_riser_m {} must be below stairs.max_riser_m {}", min_riser_m, max_riser_m);
+    if (!(min_going_m < max_going_m))
+        return fmt::format(
+            "stairs.min_going_m {} must be below stairs.max_going_m {}", min_going_m, max_going_m);
+    return std::nullopt;
+}
+
+}  // namespace surefoot::stairs

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "surefoot/core/config.hpp"
+
+namespace surefoot::stairs {
+
+/// What counts as an edge, a step, a kerb. Lengths are those of building codes (NZ D1/AS1 Table 6,
+/// ADA 504: docs of the scenes) with some room around them.
+struct StairsConfig {
+    double min_height_m = 0.04;  ///< of an edge: a kerb of 75 mm with 3.4 sigma of 10 mm
+    double sigma_factor = 3.4;   ///< an edge stands out of the noise of both its sides, 3e-4
+    /// A matcher spreads a kerb over up to five cells of 25 mm.
+    double smear_m = 0.15;
+    double min_length_m = 0.30;  ///< of an edge: 12 cells
+    double fit_tolerance_m = 0.03;
+    double max_gap_m = 0.20;  ///< within one edge, where nothing is known of it
+    /// A shadow behind an edge is at most so many times as long as the edge is high: 2.5 m away
+    /// from a camera 1 m above the ground.
+    double shadow_per_height = 2.5;
+    /// How far the upper ground of a map reaches beyond its true edge, in shares of what a cell
+    /// that is merely touched would give: cells take the highest of their points.
+    double cell_reach = 1.0;
+
+    double min_riser_m = 0.08;
+    double max_riser_m = 0.25;
+    double min_going_m = 0.15;
+    double max_going_m = 0.55;
+    double min_width_m = 0.45;   ///< of a flight
+    double max_turn_deg = 40.0;  ///< from one edge to the next; more than 10 is a spiral
+    double kerb_m = 0.20;        ///< highest kerb
+    double drop_m = 0.05;        ///< what goes down by more is a drop (the gate's limit)
+
+    void describe(ConfigVisitor& visitor);
+    /// First reason why this cannot be used, or nothing.
+    [[nodiscard]] std::optional<std::string> problem() const;
+};
+
+}  // namespace surefoot::stairs
