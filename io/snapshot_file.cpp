@@ -25,6 +25,7 @@ void for_each_header_field(Snapshot& s, Visit visit) {
     visit(s.resolution_tenth_mm);
     visit(s.nx);
     visit(s.ny);
+    visit(s.edge_count);
     visit(s.origin_x_tenth_mm);
     visit(s.origin_y_tenth_mm);
     visit(s.body_x_tenth_mm);
@@ -46,6 +47,18 @@ void for_each_layer(Snapshot& s, Visit visit) {
     visit(s.component);
     visit(s.drop_evidence);
     visit(s.source);
+}
+
+template <typename Edge, typename Visit>
+void for_each_field(Edge& edge, Visit visit) {
+    visit(edge.from_x_tenth_mm);
+    visit(edge.from_y_tenth_mm);
+    visit(edge.to_x_tenth_mm);
+    visit(edge.to_y_tenth_mm);
+    visit(edge.upper_tenth_mm);
+    visit(edge.lower_tenth_mm);
+    visit(edge.height_sigma_tenth_mm);
+    visit(edge.across_sigma_tenth_mm);
 }
 
 /// Enums are stored as their bytes.
@@ -96,7 +109,9 @@ struct Reader {
 };
 
 bool has_sound_size(const MapSnapshot& s) noexcept {
-    return s.nx >= 1 && s.ny >= 1 && s.nx <= MapSnapshot::kMaxSide && s.ny <= MapSnapshot::kMaxSide;
+    return s.nx >= 1 && s.ny >= 1 && s.nx <= MapSnapshot::kMaxSide &&
+           s.ny <= MapSnapshot::kMaxSide && s.edge_count >= 0 &&
+           s.edge_count <= MapSnapshot::kMaxEdges;
 }
 
 std::size_t cells_of(const MapSnapshot& s) {
@@ -117,6 +132,7 @@ Result<std::string> format_snapshot(const MapSnapshot& snapshot) {
     // Cells beyond nx * ny mean nothing and are not stored; the stored checksum is of zeros there.
     const auto clean = std::make_unique<MapSnapshot>(snapshot);
     clean->padding = {};
+    std::fill(clean->edges.begin() + clean->edge_count, clean->edges.end(), grid::SnapshotEdge{});
     for_each_layer(*clean, [used = cells_of(snapshot)](auto& layer) {
         std::fill(layer.begin() + static_cast<std::ptrdiff_t>(used),
                   layer.end(),
@@ -129,6 +145,8 @@ Result<std::string> format_snapshot(const MapSnapshot& snapshot) {
     for_each_header_field(*clean, put);
     for_each_layer(
         *clean, [&](const auto& layer) { std::for_each_n(layer.begin(), cells_of(*clean), put); });
+    for (int i = 0; i < clean->edge_count; ++i)
+        for_each_field(clean->edges[static_cast<std::size_t>(i)], put);
     put(grid::snapshot_checksum(*clean));
     return out;
 }
@@ -158,14 +176,21 @@ Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
     if (!reader.complete) return damaged(file, "truncated map snapshot: its header is cut off");
     if (!has_sound_size(*snapshot)) {
         return damaged(file,
-                       fmt::format("map snapshot of {} x {} cells; 1 to {} a side are possible",
+                       fmt::format("map snapshot of {} x {} cells and {} edges; 1 to {} cells a "
+                                   "side and 0 to {} edges are possible",
                                    snapshot->nx,
                                    snapshot->ny,
-                                   MapSnapshot::kMaxSide));
+                                   snapshot->edge_count,
+                                   MapSnapshot::kMaxSide,
+                                   MapSnapshot::kMaxEdges));
     }
     for_each_layer(*snapshot, [&](auto& layer) {
         std::for_each_n(layer.begin(), cells_of(*snapshot), [&](auto& cell) { reader(cell); });
     });
+    for (int i = 0; i < snapshot->edge_count; ++i) {
+        for_each_field(snapshot->edges[static_cast<std::size_t>(i)],
+                       [&](auto& field) { reader(field); });
+    }
     reader(snapshot->checksum);
     if (!reader.complete || !reader.rest.empty()) {
         return damaged(file,

@@ -55,6 +55,7 @@ const char* to_string(Stage stage) noexcept {
         case Stage::ground: return "ground";
         case Stage::fuse: return "fuse";
         case Stage::traversability: return "traversability";
+        case Stage::stairs: return "stairs";
     }
     return "unknown";
 }

@@ -12,8 +12,8 @@ namespace surefoot {
 /// How much of the chain to run for a frame: odometry alone, or depth and map too.
 enum class Work : std::uint8_t { odometry, full };
 
-enum class Stage : std::uint8_t { rectify, odometry, stereo, ground, fuse, traversability };
-inline constexpr int kStageCount = 6;
+enum class Stage : std::uint8_t { rectify, odometry, stereo, ground, fuse, traversability, stairs };
+inline constexpr int kStageCount = 7;
 [[nodiscard]] const char* to_string(Stage stage) noexcept;
 
 /// What happened to the points of one frame on their way into the map.

@@ -52,6 +52,7 @@ std::uint64_t header_hash(const MapSnapshot& s) noexcept {
     add(s.resolution_tenth_mm);
     add(s.nx);
     add(s.ny);
+    add(s.edge_count);
     add(s.origin_x_tenth_mm);
     add(s.origin_y_tenth_mm);
     add(s.body_x_tenth_mm);
@@ -79,6 +80,7 @@ bool has_sound_header(const MapSnapshot& s) noexcept {
         s.body_cos_yaw * s.body_cos_yaw + s.body_sin_yaw * s.body_sin_yaw;  // NaN fails the test
     return s.magic == MapSnapshot::kMagic && s.layout == MapSnapshot::kLayout && s.nx >= 1 &&
            s.nx <= MapSnapshot::kMaxSide && s.ny >= 1 && s.ny <= MapSnapshot::kMaxSide &&
+           s.edge_count >= 0 && s.edge_count <= MapSnapshot::kMaxEdges &&
            s.resolution_tenth_mm >= kFinestTenthMm && s.resolution_tenth_mm <= kCoarsestTenthMm &&
            near(s.origin_x_tenth_mm) && near(s.origin_y_tenth_mm) && near(s.body_x_tenth_mm) &&
            near(s.body_y_tenth_mm) && near(s.body_z_tenth_mm) && norm_sq > 0.999 && norm_sq < 1.001;
@@ -94,7 +96,8 @@ std::uint64_t snapshot_checksum(const MapSnapshot& snapshot) noexcept {
     hash = add_layer(hash, snapshot.clearance_tenth_mm);
     hash = add_layer(hash, snapshot.component);
     hash = add_layer(hash, snapshot.drop_evidence);
-    return add_layer(hash, snapshot.source);
+    hash = add_layer(hash, snapshot.source);
+    return add_layer(hash, snapshot.edges);
 }
 
 bool is_intact(const MapSnapshot& snapshot) noexcept {

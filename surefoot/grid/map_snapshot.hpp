@@ -19,15 +19,31 @@ enum class GravitySource : std::uint8_t { assumed = 0, plane = 1, imu = 2 };
 /// Health of the motion estimate when the snapshot was taken (as core Health, fixed width).
 enum class SnapshotHealth : std::uint8_t { lost = 0, degraded = 1, ok = 2 };
 
+/// A line at which the ground falls. From the first end to the second the lower ground lies on the
+/// right hand. Plain integers, all of them 0 beyond `edge_count`.
+struct SnapshotEdge {
+    std::int32_t from_x_tenth_mm = 0;  ///< from the snapshot's origin, as the next three
+    std::int32_t from_y_tenth_mm = 0;
+    std::int32_t to_x_tenth_mm = 0;
+    std::int32_t to_y_tenth_mm = 0;
+    std::int32_t upper_tenth_mm = 0;  ///< height of the ground above the edge
+    /// Below it; where that was not seen, the ground lies no higher.
+    std::int32_t lower_tenth_mm = 0;
+    std::int32_t height_sigma_tenth_mm = 0;  ///< of upper less lower, rounded up
+    std::int32_t across_sigma_tenth_mm = 0;  ///< of the place of the line, rounded up
+    friend bool operator==(const SnapshotEdge&, const SnapshotEdge&) = default;
+};
+
 /// Everything that the step gate knows about the ground: a plain block of memory that can be
 /// copied, stored and shared between processes. Lengths are integers in units of 0.1 mm
 /// ("tenth_mm"), so that a decision is the same on every machine. Layer element = iy * nx + ix;
 /// cell (ix, iy) covers [origin + i * resolution, origin + (i + 1) * resolution) in odom.
 struct MapSnapshot {
     static constexpr std::uint32_t kMagic = 0x54465253;  // "SRFT"
-    static constexpr std::uint32_t kLayout = 2;
+    static constexpr std::uint32_t kLayout = 3;
     static constexpr int kMaxSide = 256;
     static constexpr int kMaxCells = kMaxSide * kMaxSide;
+    static constexpr int kMaxEdges = 128;
     static constexpr std::int32_t kUnknownHeight = std::numeric_limits<std::int32_t>::min();
     static constexpr std::uint16_t kNoCeiling = 0xffff;
     static constexpr std::uint16_t kNoComponent = 0;
@@ -41,6 +57,7 @@ struct MapSnapshot {
     std::int32_t resolution_tenth_mm = 0;
     std::int32_t nx = 0;
     std::int32_t ny = 0;
+    std::int32_t edge_count = 0;
     std::int64_t origin_x_tenth_mm = 0;
     std::int64_t origin_y_tenth_mm = 0;
     /// base_link in odom.
@@ -64,6 +81,9 @@ struct MapSnapshot {
     std::array<std::uint8_t, kMaxCells>
         drop_evidence{};  ///< 0..255, 255 = a ray proved a drop here
     std::array<EvidenceSource, kMaxCells> source{};
+    /// Nearest to the body first. What the cells say holds without them: an edge that nobody found
+    /// as a line is still a drop in the cells.
+    std::array<SnapshotEdge, kMaxEdges> edges{};
 
     std::uint64_t checksum = 0;  ///< of everything above; see snapshot_checksum()
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace surefoot::grid {
 namespace {
@@ -119,6 +120,7 @@ void clear_cells(MapSnapshot& out) {
     clear(out.component, MapSnapshot::kNoComponent);
     clear(out.drop_evidence, std::uint8_t{0});
     clear(out.source, EvidenceSource::unknown);
+    out.edges.fill({});
 }
 
 void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std::size_t at) {
@@ -146,6 +148,56 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
             out.clearance_tenth_mm[at] = static_cast<std::uint16_t>(scaled);
     }
     out.source[at] = EvidenceSource::measured;
+}
+
+double distance_m(const SnapshotInput::Edge& edge, const Eigen::Vector2d& point_m) {
+    const Eigen::Vector2d way_m = edge.to_m - edge.from_m;
+    const double square_m2 = way_m.squaredNorm();
+    const double share = square_m2 > 0.0
+                             ? std::clamp((point_m - edge.from_m).dot(way_m) / square_m2, 0.0, 1.0)
+                             : 0.0;
+    return (edge.from_m + share * way_m - point_m).norm();
+}
+
+bool is_sound(const SnapshotInput::Edge& edge) {
+    constexpr double kFarthestM = 1e5;
+    return edge.from_m.allFinite() && edge.to_m.allFinite() &&
+           edge.from_m.cwiseAbs().maxCoeff() <= kFarthestM &&
+           edge.to_m.cwiseAbs().maxCoeff() <= kFarthestM && std::abs(edge.upper_m) <= kHighestM &&
+           std::abs(edge.lower_m) <= kHighestM && edge.height_sigma_m >= 0.0 &&
+           edge.height_sigma_m <= kHighestM && edge.across_sigma_m >= 0.0 &&
+           edge.across_sigma_m <= kHighestM;
+}
+
+/// The nearest edges, nearest first; broken numbers are left out.
+void write_edges(const SnapshotInput& input, MapSnapshot& out) {
+    std::vector<std::pair<double, const SnapshotInput::Edge*>> sorted;
+    const Eigen::Vector2d body_m = input.T_odom_body.translation_m.head<2>();
+    for (const SnapshotInput::Edge& edge : input.edges)
+        if (is_sound(edge)) sorted.emplace_back(distance_m(edge, body_m), &edge);
+    std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
+        return a.first < b.first;
+    });
+    const std::size_t count =
+        std::min(sorted.size(), static_cast<std::size_t>(MapSnapshot::kMaxEdges));
+    out.edge_count = static_cast<std::int32_t>(count);
+    const auto from_origin = [](double p_m, std::int64_t origin_tenth_mm) {
+        return static_cast<std::int32_t>(tenth_mm(p_m) - origin_tenth_mm);
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        const SnapshotInput::Edge& edge = *sorted[i].second;
+        SnapshotEdge& to = out.edges[i];
+        to.from_x_tenth_mm = from_origin(edge.from_m.x(), out.origin_x_tenth_mm);
+        to.from_y_tenth_mm = from_origin(edge.from_m.y(), out.origin_y_tenth_mm);
+        to.to_x_tenth_mm = from_origin(edge.to_m.x(), out.origin_x_tenth_mm);
+        to.to_y_tenth_mm = from_origin(edge.to_m.y(), out.origin_y_tenth_mm);
+        to.upper_tenth_mm = static_cast<std::int32_t>(tenth_mm(edge.upper_m));
+        to.lower_tenth_mm = static_cast<std::int32_t>(tenth_mm(edge.lower_m));
+        to.height_sigma_tenth_mm =
+            static_cast<std::int32_t>(std::ceil(edge.height_sigma_m * kTenthMmPerM));
+        to.across_sigma_tenth_mm =
+            static_cast<std::int32_t>(std::ceil(edge.across_sigma_m * kTenthMmPerM));
+    }
 }
 
 /// Flood fill with an explicit stack: every cell is pushed once, and its index fits 16 bits.
@@ -282,6 +334,7 @@ Status build_snapshot(const SnapshotInput& input, MapSnapshot& out) {
     }
     Labeller(out, static_cast<std::int32_t>(tenth_mm(input.connect_step_m))).label_all();
     mark_drops(input, window, out);
+    write_edges(input, out);
     out.checksum = snapshot_checksum(out);
     return {};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/result.hpp"
@@ -25,6 +26,16 @@ struct SnapshotInput {
     ImageView<const float> free_above_m;
     ImageView<const float>
         drop_evidence;  ///< optional: 0..1 from rays that passed below the ground
+    /// A line in odom at which the ground falls; see SnapshotEdge.
+    struct Edge {
+        Eigen::Vector2d from_m = Eigen::Vector2d::Zero();
+        Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
+        double upper_m = 0.0;
+        double lower_m = 0.0;
+        double height_sigma_m = 0.0;
+        double across_sigma_m = 0.0;
+    };
+    std::span<const Edge> edges;  ///< optional; beyond kMaxEdges the farthest are left out
     Pose T_odom_body;
     std::int64_t frame_time_ns = 0;
     std::int64_t pose_time_ns = 0;

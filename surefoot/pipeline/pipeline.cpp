@@ -109,6 +109,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
       matcher_(stereo::make_matcher(config.stereo)),
       map_(config.elevation),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
+      feature_finder_(config.stairs),
       imu_mount_(rig.imu),
       mount_monitor_(config.mount),
       level_keeper_(config.level) {}
@@ -226,6 +227,8 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
         timer.finished(Stage::fuse);
         rate();
         timer.finished(Stage::traversability);
+        find_features();
+        timer.finished(Stage::stairs);
         report.depth_pixels = count_valid(depth_.disparity_px);
         report.image_pixels = static_cast<std::int64_t>(depth_.disparity_px.size());
     } else if (rated_at_m_ != map_.geometry().origin_m) {
@@ -313,6 +316,18 @@ void Pipeline::rate() {
     rater_.rate(map_.layers().height_m.view(), map_.geometry().resolution_m, *executor_, rating_);
 }
 
+void Pipeline::find_features() {
+    const elevation::ElevationLayers& layers = map_.layers();
+    feature_finder_.find({.geometry = map_.geometry(),
+                          .height_m = layers.height_m.view(),
+                          .height_var_m2 = layers.height_var_m2.view(),
+                          .free_above_m = layers.free_above_m.view(),
+                          .clearance_m = layers.clearance_m.view(),
+                          .looks = layers.count.view(),
+                          .stance_m = last_motion_.T_odom_body.translation_m.head<2>()},
+                         features_);
+}
+
 grid::Layer Pipeline::reach_step_m() const {
     grid::Layer step_m;
     traversability::Reachability(config_.traversability.reach)
@@ -349,6 +364,15 @@ Status Pipeline::snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) con
     input.drift_m = layers.horizontal_drift_m.view();
     input.clearance_m = layers.clearance_m.view();
     input.free_above_m = layers.free_above_m.view();
+    std::vector<grid::SnapshotInput::Edge> edges;
+    for (const stairs::Edge& edge : features_.edges)
+        edges.push_back({edge.from_m,
+                         edge.to_m,
+                         edge.upper_m,
+                         edge.lower_m,
+                         edge.height_sigma_m,
+                         edge.across_sigma_m});
+    input.edges = edges;
     input.T_odom_body = last_motion_.T_odom_body;
     input.frame_time_ns = last_fused_ns_;
     input.pose_time_ns = last_motion_.time_ns;

@@ -21,6 +21,7 @@
 #include "surefoot/pipeline/level_keeper.hpp"
 #include "surefoot/pipeline/mount_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
+#include "surefoot/stairs/feature_finder.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/pair_trim.hpp"
 #include "surefoot/traversability/traversability.hpp"
@@ -72,6 +73,8 @@ class Pipeline {
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return rating_;
     }
+    /// Edges, drops, stairs of the map, as of the last full frame.
+    [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept { return features_; }
     /// Rectified pair (empty without images) and depth of the last full frame.
     [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
     [[nodiscard]] const camera::DepthImage& depth() const noexcept { return depth_; }
@@ -114,6 +117,7 @@ class Pipeline {
     void follow(const MotionEstimate& motion);
     [[nodiscard]] FusionCounts fuse(const MotionEstimate& motion);
     void rate();
+    void find_features();
 
     PipelineConfig config_;
     Executor* executor_;
@@ -126,6 +130,8 @@ class Pipeline {
     elevation::ElevationMap map_;
     traversability::Traversability rater_;
     traversability::TraversabilityLayers rating_;
+    stairs::FeatureFinder feature_finder_;
+    stairs::TerrainFeatures features_;
     Eigen::Vector2d rated_at_m_ = Eigen::Vector2d::Zero();  ///< corner of the window rated last
     Alignment alignment_;
 

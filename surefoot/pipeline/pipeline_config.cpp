@@ -18,6 +18,7 @@ void PipelineConfig::describe(ConfigVisitor& visitor) {
     visitor.group("elevation", elevation);
     visitor.group("traversability", traversability);
     visitor.group("foothold", foothold);
+    visitor.group("stairs", stairs);
 }
 
 std::optional<std::string> PipelineConfig::problem() const {
@@ -31,6 +32,7 @@ std::optional<std::string> PipelineConfig::problem() const {
             elevation.resolution_m);
     }
     if (auto found = foothold.problem()) return found;
+    if (auto found = stairs.problem()) return found;
     return traversability.widened_to(elevation.resolution_m).problem(elevation.resolution_m);
 }
 

@@ -11,6 +11,7 @@
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/pipeline/level_keeper.hpp"
+#include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/pair_trim.hpp"
 #include "surefoot/traversability/foothold.hpp"
@@ -30,6 +31,7 @@ struct PipelineConfig {
     elevation::ElevationConfig elevation;
     traversability::TraversabilityConfig traversability;
     traversability::FootholdConfig foothold;
+    stairs::StairsConfig stairs;
 
     void describe(ConfigVisitor& visitor);
     /// First contradiction between values that are each in range, or nothing.

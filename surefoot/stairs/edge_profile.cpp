@@ -22,6 +22,7 @@ constexpr double kCorrelation_m = 0.1;
 constexpr double kScatterOfMad = 1.4826;
 /// Steeper than noise makes level ground.
 constexpr double kLeastSlope = 0.06;
+constexpr double kSloping_m = 0.3;  ///< of ground that is asked for its slope
 
 double middle_of(std::vector<float>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -167,11 +168,13 @@ Level EdgeProfiler::level_from(int first, int step, double least_share) const {
         }
     }
     level.height_m = sum_m / weight;
-    level.slope = slope_of(begin, step, used);
+    const int most_sloping = std::max(1, static_cast<int>(std::round(kSloping_m / resolution_m_)));
+    level.slope = slope_of(begin, step, std::min(most_sloping, std::abs(end - begin) + 1));
     level.middle_m = level.begin_m + 0.5 * used * resolution_m_;
     const double area_m2 = used * resolution_m_ * length_m_ * (weight / used);
     const double independent = std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m));
     level.sigma_m = std::sqrt(var_m2 / weight / independent);
+    level.scatter_m = std::sqrt(var_m2 / weight);
     return level;
 }
 
@@ -187,15 +190,38 @@ double EdgeProfiler::slope_of(int begin, int step, int count) const {
     return moment / squares / resolution_m_;
 }
 
+/// Moves the edge to where the upper ground ends; rms of the points about it.
+double EdgeProfiler::place(const Terrain& terrain,
+                           const EdgeLine& line,
+                           const Level& upper,
+                           Edge& edge) {
+    BorderSearch search;
+    search.upper_m = edge.upper_m;
+    search.below_m = upper_tolerance_m(upper.scatter_m, edge.height_m());
+    search.inside_m = config_.smear_m;
+    borders_.clear();
+    add_border_points(terrain, line, search, borders_);
+    ParallelEdge placed{.rms_m = line.rms_m};
+    const double middle_t_m = 0.5 * length_m_;
+    const double turn_rad = fit_parallel(borders_, middle_t_m, {&placed, 1});
+    if (placed.points < 3) return line.rms_m;
+    const Vector2d along = (line.along() + turn_rad * line.down()).normalized();
+    const Vector2d middle_m = line.from_m + middle_t_m * line.along() + placed.at_m * line.down();
+    edge.from_m = middle_m - middle_t_m * along;
+    edge.to_m = middle_m + middle_t_m * along;
+    return placed.rms_m;
+}
+
 std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine& line) {
     slice(terrain, line, kUpper_m, kLower_m);
     Level upper = level_from(upper_slices_ - 1, -1, kLeastShare);
     Level lower = level_from(upper_slices_, +1, kLeastShare);
     if (!std::isfinite(upper.sigma_m)) return std::nullopt;
-    // A slope that goes on is no edge: what it falls by on either side explains the height.
-    if (upper.slope > kLeastSlope && lower.slope < -kLeastSlope) {
-        upper.height_m -= upper.slope * upper.middle_m;
-        lower.height_m -= lower.slope * lower.middle_m;
+    // A slope that goes on is no edge: what both sides fall by explains the height.
+    const double slope = std::min(upper.slope, -lower.slope);
+    if (slope > kLeastSlope) {
+        upper.height_m -= slope * upper.middle_m;
+        lower.height_m += slope * lower.middle_m;
     }
 
     Edge edge;
@@ -233,8 +259,9 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
     if (!(edge.height_m() >=
           std::max(config_.min_height_m, config_.sigma_factor * edge.height_sigma_m)))
         return std::nullopt;
+    const double rms_m = place(terrain, line, upper, edge);
     const double independent = std::max(1.0, line.length_m() / kCorrelation_m);
-    edge.across_sigma_m = std::max(line.rms_m, 0.25 * resolution_m_) / std::sqrt(independent);
+    edge.across_sigma_m = std::max(rms_m, 0.25 * resolution_m_) / std::sqrt(independent);
     edge.angle_sigma_rad = edge.across_sigma_m * std::sqrt(12.0) / std::max(line.length_m(), 0.05);
     return edge;
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "surefoot/stairs/edge_border.hpp"
 #include "surefoot/stairs/edge_lines.hpp"
 #include "surefoot/stairs/features.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
@@ -16,8 +17,9 @@ namespace surefoot::stairs {
 struct Level {
     double height_m = 0.0;
     double sigma_m = 0.0;
-    double begin_m = 0.0;  ///< from the edge
-    double end_m = 0.0;    ///< where it falls, rises or is no longer known
+    double scatter_m = 0.0;  ///< of a cell
+    double begin_m = 0.0;    ///< from the edge
+    double end_m = 0.0;      ///< where it falls, rises or is no longer known
     bool ends_unknown = false;
     double slope = 0.0;     ///< rise over run, away from the edge
     double middle_m = 0.0;  ///< of the ground that `height_m` is the mean of, from the edge
@@ -66,6 +68,7 @@ class EdgeProfiler {
     };
     void slice(const Terrain& terrain, const EdgeLine& line, double upper_m, double lower_m);
     [[nodiscard]] Level level_from(int first, int step, double least_share) const;
+    double place(const Terrain& terrain, const EdgeLine& line, const Level& upper, Edge& edge);
     [[nodiscard]] double slope_of(int begin, int step, int count) const;
     [[nodiscard]] const Slice& at(int slice) const {
         return slices_[static_cast<std::size_t>(slice)];
@@ -78,6 +81,7 @@ class EdgeProfiler {
         0;  ///< slices before the edge; slice k begins (k - upper_slices_) cells from it
     std::vector<Slice> slices_;
     std::vector<int> cells_;  ///< of each slice
+    std::vector<BorderPoint> borders_;
     std::vector<Sample> samples_;
     std::vector<float> values_;
 };

@@ -9,6 +9,8 @@ namespace {
 
 using Eigen::Vector2d;
 
+constexpr double kStance_m = 0.3;
+
 /// An edge as seen from a stance.
 LineFeature line_feature(const Edge& edge, const Vector2d& stance_m) {
     const bool goes_down = edge.below_m(stance_m) < 0.0;
@@ -42,7 +44,8 @@ FeatureFinder::FeatureFinder(const StairsConfig& config)
       line_finder_(config),
       profiler_(config),
       step_fitter_(config),
-      flight_finder_(config) {}
+      flight_finder_(config),
+      reachability_({.max_step_m = config.walk_step_m, .stance_radius_m = kStance_m}) {}
 
 void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     out.edges.clear();
@@ -54,6 +57,9 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     if (terrain.geometry.nx < 2 || terrain.geometry.ny < 2) return;
     find_edges(terrain, out.edges);
     fit_steps(terrain, out.edges);
+    reachability_.reach(terrain.geometry, terrain.height_m, terrain.stance_m, walk_step_m_);
+    find_walkable(terrain, out.edges);
+    for (std::vector<Edge>& chain : chains_) find_walkable(terrain, chain);
     for (Edge& edge : out.edges) undo_cell_reach(terrain.geometry, edge);
     flight_finder_.find(out.edges, terrain.stance_m, out.flights, in_flight_);
     for (std::vector<Edge>& chain : chains_) {
@@ -78,14 +84,42 @@ void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges)
     }
 }
 
-/// Cells take the highest of what they hold: the upper ground reaches too far, by how much depends
-/// on how the edge crosses the cells.
+/// Where a cell holds the highest of all that it touches, the middle of the last upper cell of a
+/// row (add_border_points) lies beyond the edge by as much as that runs askew within the cell;
+/// where it holds what is at its middle, it lies half a cell before it.
 void FeatureFinder::undo_cell_reach(const grid::GridGeometry& grid, Edge& edge) const {
     const Vector2d down = edge.down();
-    const double reach_m =
-        0.5 * config_.cell_reach * grid.resolution_m * (std::abs(down.x()) + std::abs(down.y()));
+    const double across = std::max(std::abs(down.x()), std::abs(down.y()));
+    const double askew = std::min(std::abs(down.x()), std::abs(down.y()));
+    const double reach_m = 0.5 * grid.resolution_m *
+                           (config_.cell_reach * askew - (1.0 - config_.cell_reach) * across);
     edge.from_m -= reach_m * down;
     edge.to_m -= reach_m * down;
+}
+
+void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const {
+    constexpr double kLeastShare = 0.25;
+    constexpr int kDeep_cells = 6;  ///< beyond two, which may be half of either ground
+    const double cell_m = terrain.geometry.resolution_m;
+    for (Edge& edge : edges) {
+        const auto walkable = [&](double way) {
+            int known = 0, reached = 0;
+            for (double t_m = 0.5 * cell_m; t_m < edge.length_m(); t_m += cell_m) {
+                for (int k = 3; k < 3 + kDeep_cells; ++k) {
+                    const Vector2d p_m =
+                        edge.from_m + t_m * edge.along() + way * k * cell_m * edge.down();
+                    const auto cell = terrain.geometry.cell_at(p_m.x(), p_m.y());
+                    if (!cell || !terrain.known(cell->ix, cell->iy)) continue;
+                    ++known;
+                    const float step_m = walk_step_m_.at(cell->ix, cell->iy);
+                    reached += step_m == step_m ? 1 : 0;
+                }
+            }
+            return known > 0 && reached >= kLeastShare * known;
+        };
+        edge.upper_walkable = walkable(-1.0);
+        edge.lower_walkable = walkable(+1.0);
+    }
 }
 
 void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) {
@@ -97,7 +131,7 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
         if (taken[i] || seed.height_m() > config_.max_riser_m ||
             seed.length_m() < config_.min_width_m)
             continue;
-        step_fitter_.fit(terrain, points_, seed, chain);
+        step_fitter_.fit(terrain, seed, chain);
         if (chain.empty()) continue;
         for (std::size_t k = 0; k < edges.size(); ++k)
             taken[k] = taken[k] || std::any_of(chain.begin(), chain.end(), [&](const Edge& step) {
@@ -115,9 +149,11 @@ void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) con
     for (std::size_t i = 0; i < out.edges.size(); ++i) {
         const Edge& edge = out.edges[i];
         const LineFeature feature = line_feature(edge, terrain.stance_m);
-        if (!in_flight_[i] && feature.height_m < -config_.drop_m) out.drops.push_back(feature);
-        if (!in_flight_[i] && edge.lower_seen && edge.height_m() <= config_.kerb_m)
-            out.kerbs.push_back(feature);
+        if (in_flight_[i]) continue;
+        const bool goes_down = feature.height_m < 0.0;
+        if (goes_down ? !edge.upper_walkable : !edge.lower_walkable) continue;
+        if (feature.height_m < -config_.drop_m) out.drops.push_back(feature);
+        if (edge.lower_seen && edge.height_m() <= config_.kerb_m) out.kerbs.push_back(feature);
     }
     // The near edge of a flight down is a drop like any other.
     for (const Flight& flight : out.flights) {

@@ -11,6 +11,7 @@
 #include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stairs/step_fit.hpp"
 #include "surefoot/stairs/terrain.hpp"
+#include "surefoot/traversability/reachability.hpp"
 
 namespace surefoot::stairs {
 
@@ -29,6 +30,8 @@ class FeatureFinder {
     void find_edges(const Terrain& terrain, std::vector<Edge>& edges);
     /// Takes the steps of flights out of the edges and places them together.
     void fit_steps(const Terrain& terrain, std::vector<Edge>& edges);
+    /// Which sides of the edges can be walked to.
+    void find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const;
     void undo_cell_reach(const grid::GridGeometry& grid, Edge& edge) const;
     void name_lines(const Terrain& terrain, TerrainFeatures& out) const;
 
@@ -38,6 +41,8 @@ class FeatureFinder {
     EdgeProfiler profiler_;
     StepFitter step_fitter_;
     FlightFinder flight_finder_;
+    traversability::Reachability reachability_;
+    grid::Layer walk_step_m_;  ///< NaN = not to be walked to
     std::vector<EdgePoint> points_;
     std::vector<EdgeLine> lines_;
     std::vector<std::vector<Edge>> chains_;  ///< of steps placed together

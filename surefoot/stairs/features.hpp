@@ -22,8 +22,9 @@ struct Edge {
     /// The ground goes on as far as this on either side before the next edge or the unknown.
     double upper_depth_m = 0.0;
     double lower_depth_m = 0.0;
-    bool from_end_seen = false;  ///< known ground lies beyond that end: the edge truly ends there
-    bool to_end_seen = false;
+
+    bool upper_walkable = false;  ///< one comes to it from the stance without taking a step
+    bool lower_walkable = false;
 
     [[nodiscard]] double height_m() const { return upper_m - lower_m; }
     [[nodiscard]] double length_m() const { return (to_m - from_m).norm(); }
@@ -73,8 +74,7 @@ struct Flight {
     double going_sigma_m = 0.0;
     double going_spread_m = 0.0;
     double width_m = 0.0;
-    bool width_complete = false;  ///< both sides were seen
-    double landing_m = 0.0;       ///< level ground behind the last edge, as far as it is known
+    double landing_m = 0.0;  ///< level ground behind the last edge, as far as it is known
     /// Lines of its edges, from the stance on.
     std::vector<Edge> edges;
     double turn_rad = 0.0;  ///< how far the way turns from the first edge to the last: spirals

@@ -16,6 +16,11 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// Treads lean and maps are bent by less, over the depth of a tread.
 constexpr double kTread_m = 0.035;
+/// Steps of one flight differ by 5 mm by the code (NZ D1/AS1, Table 6); twice that is allowed for.
+constexpr double kUnevenRiser_m = 0.01;
+constexpr double kUnevenGoing_m = 0.015;
+/// No level of a map is known better: errors that its cells share.
+constexpr double kTreadSigma_m = 0.001;
 constexpr double kParallel_rad = 10.0 * kRadPerDeg;
 
 double cross(const Vector2d& a, const Vector2d& b) {
@@ -31,29 +36,49 @@ double overlap_m(const Edge& a, const Edge& b) {
 }
 
 struct Line {
+    double at_0 = 0.0;
     double slope = 0.0;
-    double sigma = 0.0;  ///< of the slope
+    double slope_sigma = 0.0;
 };
 
-/// y over 0, 1, 2 ... ; `least_sigma` of a y.
-Line regress(const std::vector<double>& x, const std::vector<double>& y, double least_sigma) {
-    const auto n = static_cast<double>(x.size());
-    double mean_x = 0.0, mean_y = 0.0, xx = 0.0, xy = 0.0, square = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        mean_x += x[i] / n;
-        mean_y += y[i] / n;
+/// y over x = 0, 1, 2 ...; weighted by the sigmas of the y, at least two of them.
+Line regress(std::span<const double> y, std::span<const double> sigma) {
+    double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        const auto x = static_cast<double>(i);
+        const double weight = 1.0 / (sigma[i] * sigma[i]);
+        w += weight;
+        wx += weight * x;
+        wy += weight * y[i];
+        wxx += weight * x * x;
+        wxy += weight * x * y[i];
     }
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        xx += (x[i] - mean_x) * (x[i] - mean_x);
-        xy += (x[i] - mean_x) * (y[i] - mean_y);
-    }
+    const double determinant = w * wxx - wx * wx;
     Line line;
-    line.slope = xy / xx;
-    for (std::size_t i = 0; i < x.size(); ++i)
-        square += std::pow(y[i] - mean_y - line.slope * (x[i] - mean_x), 2);
-    const double scatter = n > 2.0 ? std::sqrt(square / (n - 2.0)) : 0.0;
-    line.sigma = std::max(scatter, least_sigma) / std::sqrt(xx);
+    line.slope = (w * wxy - wx * wy) / determinant;
+    line.at_0 = (wy - line.slope * wx) / w;
+    line.slope_sigma = std::sqrt(w / determinant);
+    // Steps that are less regular than their sigmas say make it less sure.
+    double square = 0.0;
+    for (std::size_t i = 0; i < y.size(); ++i)
+        square += std::pow((y[i] - line.at_0 - line.slope * static_cast<double>(i)) / sigma[i], 2);
+    if (y.size() > 2)
+        line.slope_sigma *= std::max(1.0, std::sqrt(square / static_cast<double>(y.size() - 2)));
     return line;
+}
+
+/// How many of them, from the first on, lie on one line within `uneven` and three sigma of what
+/// those before foretell. The far end of a flight is seen worst: where it leaves the line, it was
+/// not measured.
+std::size_t steady(std::span<const double> y, std::span<const double> sigma, double uneven) {
+    std::size_t count = std::min<std::size_t>(2, y.size());
+    while (count < y.size()) {
+        const Line line = regress(y.first(count), sigma.first(count));
+        const double foretold = line.at_0 + line.slope * static_cast<double>(count);
+        if (!(std::abs(y[count] - foretold) <= uneven + 3.0 * sigma[count])) break;
+        ++count;
+    }
+    return count;
 }
 
 double scatter_of(const std::vector<double>& values) {
@@ -141,103 +166,128 @@ bool FlightFinder::add_chain(std::span<const Edge> from_below,
     std::size_t below = 0;
     while (below < from_below.size() && from_below[below].below_m(stance_m) < 0.0) ++below;
     const std::size_t before = flights.size();
-    if (below > 0) add_flight(from_below.first(below), FlightKind::down, flights);
-    if (below < from_below.size()) add_flight(from_below.subspan(below), FlightKind::up, flights);
+    if (below > 0) add_flight(from_below.first(below), FlightKind::down, stance_m, flights);
+    if (below < from_below.size())
+        add_flight(from_below.subspan(below), FlightKind::up, stance_m, flights);
     return flights.size() > before;
+}
+
+/// A single step is one if one can walk to it, and towards it.
+bool FlightFinder::is_step_ahead(const Edge& edge,
+                                 FlightKind kind,
+                                 const Vector2d& stance_m) const {
+    const bool up = kind == FlightKind::up;
+    if (up ? !edge.lower_walkable : !edge.upper_walkable) return false;
+    const Vector2d way = up ? Vector2d(-edge.down()) : edge.down();
+    const Vector2d to_m = edge.middle_m() - stance_m;
+    return to_m.dot(way) >= std::cos(config_.max_facing_deg * kRadPerDeg) * to_m.norm();
 }
 
 void FlightFinder::add_flight(std::span<const Edge> from_below,
                               FlightKind kind,
+                              const Vector2d& stance_m,
                               std::vector<Flight>& flights) const {
     // Single low or high steps at the ends may be kerbs; a flight has real steps.
     std::vector<double> heights_m;
     for (const Edge& edge : from_below) heights_m.push_back(edge.height_m());
     if (median_of(heights_m) < config_.min_riser_m) return;
+    if (from_below.size() == 1 && !is_step_ahead(from_below.front(), kind, stance_m)) return;
 
+    const bool up = kind == FlightKind::up;
     Flight flight;
     flight.kind = kind;
     flight.edges.assign(from_below.begin(), from_below.end());
+    if (!up) std::reverse(flight.edges.begin(), flight.edges.end());
+    flight.steps = static_cast<int>(from_below.size());
+    const Edge& first = flight.edges.front();
+    const Edge& last = flight.edges.back();
+
     Vector2d down = Vector2d::Zero();
     for (const Edge& edge : from_below) down += std::pow(edge.length_m(), 3) * edge.down();
     down.normalize();
-    const Edge& lowest = from_below.front();
-    const Edge& highest = from_below.back();
-    flight.turn_rad =
-        std::atan2(cross(lowest.down(), highest.down()), lowest.down().dot(highest.down()));
-    const bool straight = std::abs(flight.turn_rad) <= kParallel_rad;
-
-    // Places of the edges along the way up, heights of the ground between them.
-    std::vector<double> at_m{0.0};
-    std::vector<double> level_m{lowest.lower_m};
-    std::vector<double> length_m;
-    double least_across_m = 0.0, least_level_m = 0.0;
-    for (std::size_t i = 0; i < from_below.size(); ++i) {
-        const Edge& edge = from_below[i];
-        length_m.push_back(edge.length_m());
-        least_across_m += edge.across_sigma_m / static_cast<double>(from_below.size());
-        least_level_m +=
-            edge.height_sigma_m / std::sqrt(2.0) / static_cast<double>(from_below.size());
-        if (i > 0) {
-            const Vector2d step_m = edge.middle_m() - from_below[i - 1].middle_m();
-            const Vector2d mean_down = (edge.down() + from_below[i - 1].down()).normalized();
-            at_m.push_back(at_m.back() - step_m.dot(straight ? down : mean_down));
-        }
-        level_m.push_back(i + 1 < from_below.size() && from_below[i + 1].lower_seen
-                              ? 0.5 * (edge.upper_m + from_below[i + 1].lower_m)
-                              : edge.upper_m);
-    }
-    // An edge that was missed leaves a going that is twice as deep.
-    std::vector<double> goings_m;
-    for (std::size_t i = 1; i < at_m.size(); ++i) goings_m.push_back(at_m[i] - at_m[i - 1]);
-    flight.steps = static_cast<int>(from_below.size());
-    std::vector<double> number(level_m.size());
-    for (std::size_t i = 0; i < number.size(); ++i) number[i] = static_cast<double>(i);
-    const bool bottom_known = lowest.lower_seen;
-    if (!bottom_known && from_below.size() > 1) {
-        level_m.erase(level_m.begin());
-        number.erase(number.begin());
-    }
-    std::vector<double> risers_m;
-    for (std::size_t i = 1; i < level_m.size(); ++i)
-        risers_m.push_back(level_m[i] - level_m[i - 1]);
-    if (risers_m.size() > 1) {
-        const Line rise = regress(number, level_m, least_level_m);
-        flight.riser_m = rise.slope;
-        flight.riser_sigma_m = rise.sigma;
-        flight.riser_spread_m = scatter_of(risers_m);
-    } else {
-        flight.riser_m = risers_m.front();
-        flight.riser_sigma_m = std::max(lowest.height_sigma_m, highest.height_sigma_m);
-    }
-    if (goings_m.size() > 1) {
-        number.resize(at_m.size());
-        for (std::size_t i = 0; i < number.size(); ++i) number[i] = static_cast<double>(i);
-        const Line going = regress(number, at_m, least_across_m);
-        flight.going_m = going.slope;
-        flight.going_sigma_m = going.sigma;
-        flight.going_spread_m = scatter_of(goings_m);
-    } else if (goings_m.size() == 1) {
-        flight.going_m = goings_m.front();
-        flight.going_sigma_m = std::sqrt(2.0) * least_across_m;
-        flight.going_spread_m = 0.0;
-    } else {
-        flight.going_m = flight.going_sigma_m = flight.going_spread_m = kUnknown;
-    }
-    flight.width_m = median_of(length_m);
-    flight.width_complete = std::all_of(from_below.begin(), from_below.end(), [](const Edge& edge) {
-        return edge.from_end_seen && edge.to_end_seen;
-    });
-    const bool up = kind == FlightKind::up;
-    if (!up) std::reverse(flight.edges.begin(), flight.edges.end());
-    const Edge& first = flight.edges.front();
-    const Edge& last = flight.edges.back();
+    flight.turn_rad = std::atan2(cross(first.down(), last.down()), first.down().dot(last.down()));
     const Vector2d way = up ? Vector2d(-down) : down;
     flight.pose.p_m << first.middle_m(), up ? first.lower_m : first.upper_m;
     flight.pose.yaw_rad = std::atan2(way.y(), way.x());
+    measure_goings(way, flight);
+    measure_risers(flight);
+    std::vector<double> length_m;
+    for (const Edge& edge : from_below) length_m.push_back(edge.length_m());
+    flight.width_m = median_of(length_m);
     flight.landing_m = up ? last.upper_depth_m : last.lower_depth_m;
     flight.cut = up ? last.upper_depth_m < config_.max_going_m
                     : !last.lower_seen || last.lower_depth_m < config_.max_going_m;
     flights.push_back(std::move(flight));
+}
+
+void FlightFinder::measure_goings(const Vector2d& way, Flight& flight) {
+    flight.going_m = flight.going_sigma_m = flight.going_spread_m = kUnknown;
+    const bool straight = std::abs(flight.turn_rad) <= kParallel_rad;
+    std::vector<double> at_m;
+    std::vector<double> sigma_m;
+    for (std::size_t i = 0; i < flight.edges.size(); ++i) {
+        const Edge& edge = flight.edges[i];
+        sigma_m.push_back(edge.across_sigma_m);
+        if (i == 0) {
+            at_m.push_back(0.0);
+            continue;
+        }
+        const Vector2d step_m = edge.middle_m() - flight.edges[i - 1].middle_m();
+        const double turned = (edge.down() + flight.edges[i - 1].down()).normalized().dot(step_m);
+        at_m.push_back(at_m.back() + (straight ? way.dot(step_m) : std::abs(turned)));
+    }
+    const std::size_t count = steady(at_m, sigma_m, kUnevenGoing_m);
+    if (count < 2) return;
+    const Line line = regress(std::span(at_m).first(count), std::span(sigma_m).first(count));
+    flight.going_m = line.slope;
+    flight.going_sigma_m = line.slope_sigma;
+    std::vector<double> goings_m;
+    for (std::size_t i = 1; i < count; ++i) goings_m.push_back(at_m[i] - at_m[i - 1]);
+    flight.going_spread_m = scatter_of(goings_m);
+}
+
+void FlightFinder::measure_risers(Flight& flight) {
+    const bool up = flight.kind == FlightKind::up;
+    const auto near_m = [&](const Edge& edge) { return up ? edge.lower_m : edge.upper_m; };
+    const auto far_m = [&](const Edge& edge) { return up ? edge.upper_m : edge.lower_m; };
+    std::vector<double> level_m;  // upward, or downward
+    std::vector<double> sigma_m;
+    const auto add = [&](double height_m, double edge_sigma_m) {
+        level_m.push_back(up ? height_m : -height_m);
+        sigma_m.push_back(std::hypot(edge_sigma_m / std::sqrt(2.0), kTreadSigma_m));
+    };
+    const std::vector<Edge>& edges = flight.edges;
+    add(near_m(edges.front()), edges.front().height_sigma_m);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (!edges[i].lower_seen) break;
+        // Each tread was measured from both of its edges.
+        const bool measured_twice = i + 1 < edges.size();
+        const double height_m =
+            measured_twice ? 0.5 * (far_m(edges[i]) + near_m(edges[i + 1])) : far_m(edges[i]);
+        // Of the last tread that is seen of a flight up only a strip may be seen, near eye level.
+        const double depth_m = edges[i].upper_depth_m;
+        if (up && !measured_twice && i > 0 && depth_m < 0.6 * flight.going_m) break;
+        add(height_m, edges[i].height_sigma_m);
+    }
+    if (level_m.size() < 2) {  // not even the ground below the first edge was seen
+        flight.riser_m = edges.front().height_m();
+        flight.riser_sigma_m = edges.front().height_sigma_m;
+        return;
+    }
+    std::vector<double> risers_m;
+    for (std::size_t i = 1; i < level_m.size(); ++i)
+        risers_m.push_back(level_m[i] - level_m[i - 1]);
+    // The first step may be almost level with the floor.
+    const bool odd_first =
+        risers_m.size() > 2 && std::abs(risers_m.front() - median_of(risers_m)) > kUnevenRiser_m;
+    const auto levels = std::span<const double>(level_m).subspan(odd_first ? 1 : 0);
+    const auto sigmas = std::span<const double>(sigma_m).subspan(odd_first ? 1 : 0);
+    const std::size_t count = steady(levels, sigmas, kUnevenRiser_m);
+    const Line line = regress(levels.first(count), sigmas.first(count));
+    flight.riser_m = line.slope;
+    flight.riser_sigma_m = line.slope_sigma;
+    risers_m.resize(std::min(risers_m.size(), count - 1 + (odd_first ? 1 : 0)));
+    flight.riser_spread_m = scatter_of(risers_m);
 }
 
 }  // namespace surefoot::stairs

@@ -32,7 +32,13 @@ class FlightFinder {
     [[nodiscard]] double going_to(const Edge& edge, const Edge& next) const;
     void add_flight(std::span<const Edge> from_below,
                     FlightKind kind,
+                    const Eigen::Vector2d& stance_m,
                     std::vector<Flight>& flights) const;
+    static void measure_goings(const Eigen::Vector2d& way, Flight& flight);
+    static void measure_risers(Flight& flight);
+    [[nodiscard]] bool is_step_ahead(const Edge& edge,
+                                     FlightKind kind,
+                                     const Eigen::Vector2d& stance_m) const;
 
     StairsConfig config_;
     std::vector<int> next_;

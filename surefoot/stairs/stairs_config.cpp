@@ -32,6 +32,17 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
     visitor.number("min_width_m", min_width_m, 0.1, 5.0, "narrowest flight");
     visitor.number(
         "max_turn_deg", max_turn_deg, 0.0, 60.0, "between the edges of neighbouring steps");
+    visitor.number("max_facing_deg",
+                   max_facing_deg,
+                   10.0,
+                   90.0,
+                   "single steps seen more from the side are no flights");
+    visitor.number(
+        "walk_step_m",
+        walk_step_m,
+        0.01,
+        0.5,
+        "ground on which no neighbouring cells differ by more is walked on without steps");
     visitor.number("kerb_m", kerb_m, 0.02, 1.0, "highest kerb");
     visitor.number("drop_m", drop_m, 0.01, 1.0, "ground that lies lower by more is a drop");
 }

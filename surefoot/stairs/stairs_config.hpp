@@ -21,18 +21,19 @@ struct StairsConfig {
     /// A shadow behind an edge is at most so many times as long as the edge is high: 2.5 m away
     /// from a camera 1 m above the ground.
     double shadow_per_height = 2.5;
-    /// How far the upper ground of a map reaches beyond its true edge, in shares of what a cell
-    /// that is merely touched would give: cells take the highest of their points.
+    /// 1: cells hold the highest of all that they touch; 0: what is at their middle.
     double cell_reach = 1.0;
 
     double min_riser_m = 0.08;
-    double max_riser_m = 0.25;
+    double max_riser_m = 0.23;
     double min_going_m = 0.15;
     double max_going_m = 0.55;
-    double min_width_m = 0.45;   ///< of a flight
-    double max_turn_deg = 40.0;  ///< from one edge to the next; more than 10 is a spiral
-    double kerb_m = 0.20;        ///< highest kerb
-    double drop_m = 0.05;        ///< what goes down by more is a drop (the gate's limit)
+    double min_width_m = 0.45;     ///< of a flight
+    double max_turn_deg = 40.0;    ///< from one edge to the next; more than 10 is a spiral
+    double max_facing_deg = 60.0;  ///< of a single step: one walks towards it, not along it
+    double walk_step_m = 0.06;     ///< what one walks over without taking a step
+    double kerb_m = 0.20;          ///< highest kerb
+    double drop_m = 0.05;          ///< what goes down by more is a drop (the gate's limit)
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this cannot be used, or nothing.

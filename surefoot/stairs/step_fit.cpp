@@ -17,7 +17,6 @@ constexpr double kLevel_m = 0.015;   ///< neighbouring slices of a tread differ 
 /// Edge points further from where the treads pass into each other belong to something else.
 constexpr double kNear_m = 0.07;
 constexpr double kSide_m = 0.4;  ///< a step may be so much wider than the seed, on either side
-constexpr double kHuber_m = 0.012;
 /// Ground that the seed was measured on.
 constexpr double kTread_m = 0.03;
 /// Steps of a flight differ by 5 mm by the code (NZ D1/AS1), by more where they are badly made.
@@ -49,15 +48,23 @@ void StepFitter::find_treads(const Terrain& terrain, const EdgeLine& line) {
             weight += slices[last].known_share;
         }
         if (last - first + 1 >= least) {
-            for (std::size_t k = first; k <= last; ++k)
-                var_m2 += slices[k].known_share * std::max(std::pow(slices[k].scatter_m, 2),
-                                                           std::pow(slices[k].sigma_m, 2));
+            // Its border slices may hold what belongs to its neighbours.
+            const std::size_t depth = last - first + 1;
+            const std::size_t margin = depth >= 8 ? 2 : depth >= 4 ? 1 : 0;
+            sum_m = weight = 0.0;
+            for (std::size_t k = first + margin; k + margin <= last; ++k) {
+                const double scatter_m = std::max(slices[k].scatter_m, slices[k].sigma_m);
+                sum_m += slices[k].known_share * slices[k].height_m;
+                weight += slices[k].known_share;
+                var_m2 += slices[k].known_share * scatter_m * scatter_m;
+            }
             const double area_m2 = weight * cell_m * length_m_;
             const double independent = std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m));
             treads_.push_back({begin_m + static_cast<double>(first) * cell_m,
                                begin_m + static_cast<double>(last + 1) * cell_m,
                                sum_m / weight,
-                               std::sqrt(var_m2 / weight / independent)});
+                               std::sqrt(var_m2 / weight / independent),
+                               std::sqrt(var_m2 / weight)});
         }
         first = last + 1;
     }
@@ -75,6 +82,7 @@ void StepFitter::join_treads() {
             last.height_m = (a_m * last.height_m + b_m * tread.height_m) / (a_m + b_m);
             last.end_m = tread.end_m;
             last.sigma_m = std::min(last.sigma_m, tread.sigma_m);
+            last.scatter_m = std::max(last.scatter_m, tread.scatter_m);
         } else {
             joined.push_back(tread);
         }
@@ -145,80 +153,30 @@ bool StepFitter::grow(int& from, int way) {
     return false;
 }
 
-void StepFitter::take_points(std::span<const EdgePoint> points, const EdgeLine& line) {
-    members_.clear();
-    const Vector2d along = line.along();
-    const Vector2d down = line.down();
-    for (const EdgePoint& point : points) {
-        const Vector2d d_m = point.at_m.cast<double>() - line.from_m;
-        const double t_m = d_m.dot(along);
-        if (t_m < -kSide_m || t_m > length_m_ + kSide_m) continue;
-        const double s_m = d_m.dot(down);
-        const Vector2d side(point.side == Side::plus_x    ? 1.0
-                            : point.side == Side::minus_x ? -1.0
-                                                          : 0.0,
-                            point.side == Side::plus_y    ? 1.0
-                            : point.side == Side::minus_y ? -1.0
-                                                          : 0.0);
-        if (side.dot(down) < 0.1) continue;
-        for (std::size_t k = 0; k < steps_.size(); ++k) {
-            const Tread& upper = steps_[k].upper;
-            const Tread& lower = steps_[k].lower;
-            // In a shadow the edge is where the upper tread ends.
-            if (s_m < upper.end_m - kNear_m || s_m > lower.begin_m + kNear_m) continue;
-            if (std::abs(static_cast<double>(point.upper_m) - upper.height_m) > kNear_m) continue;
-            members_.push_back({k, s_m, t_m});
-            break;
-        }
+void StepFitter::find_borders(const Terrain& terrain, const EdgeLine& line) {
+    borders_.clear();
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+        const Step& step = steps_[k];
+        const double rise_m = step.upper.height_m - step.lower.height_m;
+        BorderSearch search;
+        search.edge = static_cast<int>(k);
+        search.at_m = step.upper.end_m;
+        search.upper_m = step.upper.height_m;
+        search.below_m = upper_tolerance_m(step.upper.scatter_m, rise_m);
+        search.beside_m = kSide_m;
+        add_border_points(terrain, line, search, borders_);
     }
 }
 
+/// Turn of the common direction [rad].
 double StepFitter::place_steps() {
-    // s = offset of the step + turn t: Gauss-Newton with Huber's weights, the offsets eliminated.
-    for (Step& step : steps_) {
-        along_m_.clear();
-        for (const Member& member : members_)
-            if (&steps_[member.step] == &step) along_m_.push_back(member.s_m);
-        step.points = static_cast<int>(along_m_.size());
-        if (along_m_.empty()) continue;
-        const auto middle = along_m_.begin() + static_cast<std::ptrdiff_t>(along_m_.size() / 2);
-        std::nth_element(along_m_.begin(), middle, along_m_.end());
-        step.at_m = *middle;
-    }
-    const double middle_t_m = 0.5 * length_m_;
-    double turn_rad = 0.0;
-    struct Sums {
-        double w = 0.0, t = 0.0, s = 0.0, tt = 0.0, ts = 0.0, ss = 0.0;
-    };
-    std::vector<Sums> sums(steps_.size());
-    for (int round = 0; round < 6; ++round) {
-        std::fill(sums.begin(), sums.end(), Sums{});
-        for (const Member& member : members_) {
-            const double t_m = member.t_m - middle_t_m;
-            const double residual_m = member.s_m - steps_[member.step].at_m - turn_rad * t_m;
-            const double size_m = std::abs(residual_m);
-            const double w = size_m <= kHuber_m ? 1.0 : kHuber_m / size_m;
-            Sums& sum = sums[member.step];
-            sum.w += w;
-            sum.t += w * t_m;
-            sum.s += w * member.s_m;
-            sum.tt += w * t_m * t_m;
-            sum.ts += w * t_m * member.s_m;
-            sum.ss += w * residual_m * residual_m;
-        }
-        double tt = 0.0, ts = 0.0;
-        for (const Sums& sum : sums) {
-            if (!(sum.w > 0.0)) continue;
-            tt += sum.tt - sum.t * sum.t / sum.w;
-            ts += sum.ts - sum.t * sum.s / sum.w;
-        }
-        if (!(tt > 0.0)) return 0.0;
-        turn_rad = ts / tt;
-        for (std::size_t k = 0; k < steps_.size(); ++k) {
-            if (!(sums[k].w > 0.0)) continue;
-            steps_[k].at_m = (sums[k].s - turn_rad * sums[k].t) / sums[k].w;
-            steps_[k].rms_m = std::sqrt(sums[k].ss / sums[k].w);
-        }
+    places_.assign(steps_.size(), ParallelEdge{});
+    for (std::size_t k = 0; k < steps_.size(); ++k) places_[k].at_m = steps_[k].upper.end_m;
+    const double turn_rad = fit_parallel(borders_, 0.5 * length_m_, places_);
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+        steps_[k].at_m = places_[k].at_m;
+        steps_[k].rms_m = places_[k].rms_m;
+        steps_[k].points = places_[k].points;
     }
     return turn_rad;
 }
@@ -226,8 +184,10 @@ double StepFitter::place_steps() {
 void StepFitter::measure_extents(const grid::GridGeometry& grid) {
     for (std::size_t k = 0; k < steps_.size(); ++k) {
         along_m_.clear();
-        for (const Member& member : members_)
-            if (member.step == k) along_m_.push_back(member.t_m);
+        for (const BorderPoint& point : borders_)
+            if (point.edge == static_cast<int>(k) &&
+                std::abs(point.s_m - steps_[k].at_m) <= kNear_m)
+                along_m_.push_back(point.t_m);
         if (along_m_.empty()) continue;
         std::sort(along_m_.begin(), along_m_.end());
         double best_m = -1.0;
@@ -245,10 +205,7 @@ void StepFitter::measure_extents(const grid::GridGeometry& grid) {
     }
 }
 
-void StepFitter::fit(const Terrain& terrain,
-                     std::span<const EdgePoint> points,
-                     const Edge& seed,
-                     std::vector<Edge>& out) {
+void StepFitter::fit(const Terrain& terrain, const Edge& seed, std::vector<Edge>& out) {
     out.clear();
     EdgeLine line;
     line.from_m = seed.from_m;
@@ -259,7 +216,7 @@ void StepFitter::fit(const Terrain& terrain,
         join_treads();
         find_steps(seed);
         if (steps_.size() < 2) return;
-        take_points(points, line);
+        find_borders(terrain, line);
         const double turn_rad = place_steps();
         if (round + 1 == kRounds) break;
         // The line turns about its middle.

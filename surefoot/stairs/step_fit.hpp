@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "surefoot/stairs/edge_points.hpp"
+#include "surefoot/stairs/edge_border.hpp"
 #include "surefoot/stairs/edge_profile.hpp"
 #include "surefoot/stairs/features.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
@@ -25,17 +24,15 @@ class StepFitter {
     explicit StepFitter(const StairsConfig& config) : config_(config), profiler_(config) {}
     /// Edges of the flight that `seed` belongs to, lowest first; fewer than two if it has no
     /// neighbours. Lines lie where the cells have them (see StairsConfig::cell_reach).
-    void fit(const Terrain& terrain,
-             std::span<const EdgePoint> points,
-             const Edge& seed,
-             std::vector<Edge>& out);
+    void fit(const Terrain& terrain, const Edge& seed, std::vector<Edge>& out);
 
   private:
     struct Tread {
         double begin_m = 0.0;  ///< along the way down
         double end_m = 0.0;
         double height_m = 0.0;
-        double sigma_m = 0.0;
+        double sigma_m = 0.0;    ///< of the height
+        double scatter_m = 0.0;  ///< of a cell
     };
     struct Step {
         double at_m = 0.0;  ///< of its edge, from the seed's line along the way down
@@ -50,8 +47,7 @@ class StepFitter {
     void join_treads();
     void find_steps(const Edge& seed);
     [[nodiscard]] bool grow(int& from, int way);
-    void take_points(std::span<const EdgePoint> points, const EdgeLine& line);
-    /// Turn of the common direction [rad]; places the steps.
+    void find_borders(const Terrain& terrain, const EdgeLine& line);
     [[nodiscard]] double place_steps();
     void measure_extents(const grid::GridGeometry& grid);
 
@@ -60,12 +56,8 @@ class StepFitter {
     double length_m_ = 0.0;
     std::vector<Tread> treads_;
     std::vector<Step> steps_;
-    struct Member {
-        std::size_t step;
-        double s_m;  ///< down
-        double t_m;  ///< along
-    };
-    std::vector<Member> members_;
+    std::vector<BorderPoint> borders_;
+    std::vector<ParallelEdge> places_;
     std::vector<double> along_m_;
 };
 
