@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "experiments/stairs_look.hpp"
+
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "io/dem_file.hpp"
+#include "io/text.hpp"
+
+namespace surefoot::experiments {
+namespace {
+
+/// Columns and rows that hold anything, with a rim.
+struct Box {
+    int min_x = std::numeric_limits<int>::max();
+    int min_y = std::numeric_limits<int>::max();
+    int max_x = -1;
+    int max_y = -1;
+};
+
+Box known_box(const Look& look) {
+    constexpr int kRim = 4;
+    Box box;
+    for (int iy = 0; iy < look.geometry.ny; ++iy) {
+        for (int ix = 0; ix < look.geometry.nx; ++ix) {
+            if (std::isnan(look.height_m.at(ix, iy)) && std::isnan(look.free_above_m.at(ix, iy)))
+                continue;
+            box.min_x = std::min(box.min_x, std::max(ix - kRim, 0));
+            box.min_y = std::min(box.min_y, std::max(iy - kRim, 0));
+            box.max_x = std::max(box.max_x, std::min(ix + kRim, look.geometry.nx - 1));
+            box.max_y = std::max(box.max_y, std::min(iy + kRim, look.geometry.ny - 1));
+        }
+    }
+    return box.max_x < 0 ? Box{0, 0, 0, 0} : box;
+}
+
+template <typename From>
+grid::Layer cut(const Image<From>& layer, const Box& box) {
+    grid::Layer part(box.max_x - box.min_x + 1, box.max_y - box.min_y + 1);
+    for (int iy = 0; iy < part.height(); ++iy)
+        for (int ix = 0; ix < part.width(); ++ix)
+            part.at(ix, iy) = static_cast<float>(layer.at(box.min_x + ix, box.min_y + iy));
+    return part;
+}
+
+/// Every number of truth.txt.
+std::vector<std::pair<const char*, std::reference_wrapper<double>>> numbers(Look& look) {
+    TrueFeature& truth = look.truth;
+    return {{"noise_px", look.noise_px},
+            {"bias_px", look.bias_px},
+            {"said_px", look.said_px},
+            {"riser_m", truth.riser_m},
+            {"going_m", truth.going_m},
+            {"width_m", truth.width_m},
+            {"sill_m", truth.sill_m},
+            {"middle_x_m", truth.middle_m.x()},
+            {"middle_y_m", truth.middle_m.y()},
+            {"yaw_rad", truth.yaw_rad},
+            {"ahead_m", truth.ahead_m},
+            {"stance_x_m", look.stance_m.x()},
+            {"stance_y_m", look.stance_m.y()}};
+}
+
+Status write_truth(Look look, const std::string& path) {
+    auto out = fmt::output_file(path);
+    out.print("scene {}\nseed {}\nmode {}\nframe {}\nkind {}\nsteps {}\n",
+              look.scene,
+              look.seed,
+              look.mode,
+              look.frame,
+              kTrueKindNames[static_cast<int>(look.truth.kind)],
+              look.truth.steps);
+    for (const auto& [name, value] : numbers(look)) out.print("{} {:.9g}\n", name, value.get());
+    return {};
+}
+
+Status read_truth(const std::string& path, Look& look) {
+    std::ifstream file(path);
+    std::map<std::string, std::string> words;
+    for (std::string name, word; file >> name >> word;) words[name] = word;
+    if (words.empty()) return input_error(path + " says nothing");
+    look.scene = words["scene"];
+    look.mode = words["mode"];
+    look.seed = static_cast<std::uint64_t>(io::parse_int64(words["seed"]).value_or(0));
+    look.frame = static_cast<int>(io::parse_int64(words["frame"]).value_or(0));
+    look.truth.steps = static_cast<int>(io::parse_int64(words["steps"]).value_or(0));
+    for (int kind = 0; kind < static_cast<int>(std::size(kTrueKindNames)); ++kind)
+        if (words["kind"] == kTrueKindNames[kind]) look.truth.kind = static_cast<TrueKind>(kind);
+    for (const auto& [name, value] : numbers(look)) {
+        const auto number = io::parse_double(words[name]);
+        if (!number) return input_error(fmt::format("{}: no {}", path, name));
+        value.get() = *number;
+    }
+    return {};
+}
+
+}  // namespace
+
+stairs::Terrain Look::terrain() const {
+    stairs::Terrain terrain;
+    terrain.geometry = geometry;
+    terrain.height_m = height_m.view();
+    terrain.height_var_m2 = height_var_m2.view();
+    terrain.free_above_m = free_above_m.view();
+    terrain.clearance_m = clearance_m.view();
+    terrain.looks = looks.view();
+    terrain.stance_m = stance_m;
+    return terrain;
+}
+
+std::string Look::folder_name() const {
+    // A scene file is called by the name behind its '#', or by its own.
+    std::string name = scene.substr(scene.find_last_of("#/") + 1);
+    name = name.substr(0, name.find('.'));
+    return fmt::format("{}_{}_f{}", name, seed, frame);
+}
+
+Status save_look(const Look& look, const std::string& folder) {
+    std::filesystem::create_directories(folder);
+    const Box box = known_box(look);
+    grid::GridGeometry geometry = look.geometry;
+    geometry.origin_m += geometry.resolution_m * Eigen::Vector2d(box.min_x, box.min_y);
+    geometry.nx = box.max_x - box.min_x + 1;
+    geometry.ny = box.max_y - box.min_y + 1;
+    const std::pair<const char*, grid::Layer> layers[] = {
+        {"height", cut(look.height_m, box)},
+        {"variance", cut(look.height_var_m2, box)},
+        {"free_above", cut(look.free_above_m, box)},
+        {"clearance", cut(look.clearance_m, box)},
+        {"looks", cut(look.looks, box)}};
+    for (const auto& [name, layer] : layers) {
+        const auto path = fmt::format("{}/{}.asc", folder, name);
+        if (Status written = io::write_esri_grid(path, geometry, layer); !written) return written;
+    }
+    return write_truth(look, folder + "/truth.txt");
+}
+
+Result<Look> read_look(const std::string& folder) {
+    Look look;
+    if (Status read = read_truth(folder + "/truth.txt", look); !read) return read.error();
+    grid::Layer looks;
+    const std::pair<const char*, grid::Layer*> layers[] = {{"height", &look.height_m},
+                                                           {"variance", &look.height_var_m2},
+                                                           {"free_above", &look.free_above_m},
+                                                           {"clearance", &look.clearance_m},
+                                                           {"looks", &looks}};
+    for (const auto& [name, layer] : layers) {
+        auto dem = io::read_esri_grid(fmt::format("{}/{}.asc", folder, name));
+        if (!dem) return dem.error();
+        look.geometry = dem->geometry;
+        *layer = std::move(dem->values);
+    }
+    look.looks.resize(looks.width(), looks.height());
+    std::transform(looks.data(), looks.data() + looks.size(), look.looks.data(), [](float count) {
+        return std::isnan(count) ? 0U : static_cast<std::uint32_t>(count);
+    });
+    return look;
+}
+
+}  // namespace surefoot::experiments

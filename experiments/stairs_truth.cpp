@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// Are stairs, drops, kerbs and doors found in the map, and how true is what is said of them?
+// Usage: stairs_truth OUT.csv SCENES [FIRST_SEED [SEEDS [MODES [EVERY [MAPS [KEY=VALUE...]]]]]]
+//        stairs_truth OUT.csv MAPS
+//   stairs_truth out/up.csv experiments/stairs_up.yaml#up_common 80001 200 analytic_0.25
+//   stairs_truth out/false.csv floor,room 80001 5 images_0.25,images_0.5 5
+//
+// Modes, and what the seed draws beside the scene: see stairs_scene.hpp. Poses are true ones unless
+// settings say sim.known_motion=false. EVERY: the map is looked at after so many frames; 0 = at the
+// end of the way. MAPS: a folder that gets what the finder was given ('-' = none); given alone, all
+// that is in it is judged again, without a simulation (its maps are cut to what is known, so that
+// the finder takes less time).
+//
+// One line a look. Lengths in mm, angles in deg; empty or nan = not found:
+//   noise_px, bias_px, said_px   scatter and mean of disparity errors on level floor, stated sigma
+//   kind, steps, riser, going, width, sill, ahead   what is true; ahead: from the left camera
+//   found              the flight whose first edge lies within 0.1 m of the true one, within 10 deg
+//   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _width_complete, _cut  of it
+//   across, turn       of its first edge at the truth's middle, + = farther; of its yaw
+//   flights            all that are there but that one
+//   drop, drop_across, drop_height, drop_sigma, bottom_seen   the same of drops; height downward
+//   drops              all that are there but that one
+//   door, door_width, door_width_sigma, door_sill   of the opening within 0.3 m, within 15 deg
+//   sill_height        of the sill within 0.3 m
+//   find_us            time of one call
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "experiments/stairs_look.hpp"
+#include "experiments/stairs_scene.hpp"
+#include "io/text.hpp"
+#include "surefoot/stairs/feature_finder.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using experiments::Look;
+using experiments::StairsCase;
+using experiments::TrueFeature;
+using experiments::TrueKind;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kNear_m = 0.1;
+constexpr double kBeside_m = 1.0;
+constexpr double kTurn_rad = 10.0 / kDegPerRad;
+constexpr double kDoorNear_m = 0.3;
+constexpr double kDoorTurn_rad = 15.0 / kDegPerRad;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+double turned_rad(const stairs::FeaturePose& found, const TrueFeature& truth) {
+    return std::remainder(found.yaw_rad - truth.yaw_rad, 2.0 * std::numbers::pi);
+}
+
+/// How much farther than the truth's middle the line through a feature lies.
+double across_m(const stairs::FeaturePose& found, const TrueFeature& truth) {
+    const Eigen::Vector2d way(std::cos(found.yaw_rad), std::sin(found.yaw_rad));
+    return way.dot(found.p_m.head<2>() - truth.middle_m);
+}
+
+bool is_line_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
+    return (found.p_m.head<2>() - truth.middle_m).norm() < kBeside_m &&
+           std::abs(across_m(found, truth)) < kNear_m &&
+           std::abs(turned_rad(found, truth)) < kTurn_rad;
+}
+
+/// Of those that are the truth's the nearest.
+template <typename Feature, typename Matches>
+const Feature* nearest(const std::vector<Feature>& features,
+                       const TrueFeature& truth,
+                       const Matches& matches) {
+    const Feature* best = nullptr;
+    for (const Feature& feature : features) {
+        if (!matches(feature)) continue;
+        if (best == nullptr ||
+            std::abs(across_m(feature.pose, truth)) < std::abs(across_m(best->pose, truth))) {
+            best = &feature;
+        }
+    }
+    return best;
+}
+
+constexpr double mm(double length_m) {
+    return 1e3 * length_m;
+}
+
+std::string flight_columns(const std::vector<stairs::Flight>& flights, const TrueFeature& truth) {
+    const auto* const found = nearest(flights, truth, [&](const stairs::Flight& flight) {
+        const bool is_up = flight.kind == stairs::FlightKind::up;
+        return truth.kind == (is_up ? TrueKind::up : TrueKind::down) &&
+               is_line_of(flight.pose, truth);
+    });
+    const std::size_t others = flights.size() - (found != nullptr ? 1 : 0);
+    if (found == nullptr) return fmt::format(",0{:,>11}{}", "", others);
+    return fmt::format(",1,{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f},{},{},{:.2f},{:.3f},{}",
+                       found->steps,
+                       mm(found->riser_m),
+                       mm(found->riser_sigma_m),
+                       mm(found->going_m),
+                       mm(found->going_sigma_m),
+                       mm(found->width_m),
+                       found->width_complete ? 1 : 0,
+                       found->cut ? 1 : 0,
+                       mm(across_m(found->pose, truth)),
+                       kDegPerRad * turned_rad(found->pose, truth),
+                       others);
+}
+
+std::string drop_columns(const std::vector<stairs::LineFeature>& drops, const TrueFeature& truth) {
+    const bool is_drop = truth.kind == TrueKind::down || truth.kind == TrueKind::kerb;
+    const auto* const found = nearest(drops, truth, [&](const stairs::LineFeature& drop) {
+        return is_drop && is_line_of(drop.pose, truth);
+    });
+    const std::size_t others = drops.size() - (found != nullptr ? 1 : 0);
+    if (found == nullptr) return fmt::format(",0{:,>5}{}", "", others);
+    return fmt::format(",1,{:.2f},{:.2f},{:.2f},{},{}",
+                       mm(across_m(found->pose, truth)),
+                       mm(-found->height_m),
+                       mm(found->sigma_m),
+                       found->bottom_seen ? 1 : 0,
+                       others);
+}
+
+/// A door may be told from either side.
+bool is_opening_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
+    const double turn_rad = std::abs(turned_rad(found, truth));
+    return truth.kind == TrueKind::door &&
+           (found.p_m.head<2>() - truth.middle_m).norm() < kDoorNear_m &&
+           std::min(turn_rad, std::numbers::pi - turn_rad) < kDoorTurn_rad;
+}
+
+std::string door_columns(const stairs::TerrainFeatures& features, const TrueFeature& truth) {
+    const auto* const door = nearest(features.doors, truth, [&](const stairs::Door& candidate) {
+        return is_opening_of(candidate.pose, truth);
+    });
+    const auto* const sill =
+        nearest(features.sills, truth, [&](const stairs::LineFeature& candidate) {
+            return is_opening_of(candidate.pose, truth);
+        });
+    const std::string told = door == nullptr ? std::string(",0,,,")
+                                             : fmt::format(",1,{:.2f},{:.2f},{:.2f}",
+                                                           mm(door->width_m),
+                                                           mm(door->width_sigma_m),
+                                                           mm(door->sill_m));
+    return fmt::format("{},{:.2f}", told, sill == nullptr ? kNone : mm(sill->height_m));
+}
+
+constexpr const char* kHeader =
+    "scene,seed,mode,frame,noise_px,bias_px,said_px,kind,steps,riser,going,width,sill,ahead,"
+    "found,found_steps,found_riser,riser_sigma,found_going,going_sigma,found_width,width_complete,"
+    "cut,across,turn,flights,drop,drop_across,drop_height,drop_sigma,bottom_seen,drops,"
+    "door,door_width,door_width_sigma,door_sill,sill_height,find_us\n";
+
+std::string row(const Look& look, stairs::FeatureFinder& finder) {
+    const TrueFeature& truth = look.truth;
+    const stairs::Terrain terrain = look.terrain();
+    stairs::TerrainFeatures features;
+    finder.find(terrain, features);  // the first call of a size allocates
+    const std::int64_t start_ns = steady_now_ns();
+    finder.find(terrain, features);
+    const std::int64_t took_ns = steady_now_ns() - start_ns;
+    return fmt::format(
+        "{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.2f},{:.1f},{:.1f},{:.1f}{}{}{},{}\n",
+        look.scene,
+        look.seed,
+        look.mode,
+        look.frame,
+        look.noise_px,
+        look.bias_px,
+        look.said_px,
+        experiments::kTrueKindNames[static_cast<int>(truth.kind)],
+        truth.steps,
+        mm(truth.riser_m),
+        mm(truth.going_m),
+        mm(truth.width_m),
+        mm(truth.sill_m),
+        mm(truth.ahead_m),
+        flight_columns(features.flights, truth),
+        drop_columns(features.drops, truth),
+        door_columns(features, truth),
+        took_ns / 1000);
+}
+
+struct Done {
+    std::string rows;
+    std::optional<Error> error;
+};
+
+Done judge(const StairsCase& now, const std::string& maps, const Settings& settings) {
+    Serial alone;
+    const auto looks = look_at(now, settings, alone);
+    if (!looks) return {{}, looks.error()};
+    stairs::FeatureFinder finder(stairs::StairsConfig{});
+    Done done;
+    for (const Look& look : *looks) {
+        done.rows += row(look, finder);
+        if (maps == "-") continue;
+        if (Status saved = save_look(look, maps + "/" + now.mode + "/" + look.folder_name());
+            !saved)
+            return {{}, saved.error()};
+    }
+    return done;
+}
+
+Done judge_saved(const std::string& folder) {
+    const auto look = experiments::read_look(folder);
+    if (!look) return {{}, look.error()};
+    stairs::FeatureFinder finder(stairs::StairsConfig{});
+    return {row(*look, finder), {}};
+}
+
+std::vector<StairsCase> cases_of(const std::vector<std::string>& words) {
+    const auto number = [&](std::size_t i, std::uint64_t otherwise) {
+        return words.size() > i ? std::strtoull(words[i].c_str(), nullptr, 10) : otherwise;
+    };
+    const std::string modes = words.size() > 4 ? words[4] : "analytic_0.25";
+    std::vector<StairsCase> cases;
+    for (const std::string_view mode : io::split(modes, ",")) {
+        for (const std::string_view scene : io::split(words[1], ",")) {
+            for (std::uint64_t k = 0; k < number(3, 1); ++k) {
+                cases.push_back({std::string(scene),
+                                 number(2, 1) + k,
+                                 std::string(mode),
+                                 static_cast<int>(number(5, 0))});
+            }
+        }
+    }
+    return cases;
+}
+
+std::vector<std::string> saved_looks(const std::string& maps) {
+    std::vector<std::string> folders;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(maps))
+        if (entry.path().filename() == "truth.txt")
+            folders.push_back(entry.path().parent_path().string());
+    std::sort(folders.begin(), folders.end(), io::natural_less);
+    return folders;
+}
+
+/// Cases side by side, written in order.
+int write_all(int count, const std::string& path, const std::function<Done(int)>& make) {
+    const auto executor = make_executor({});
+    auto out = fmt::output_file(path);
+    out.print("{}", kHeader);
+    const int block = 2 * executor->threads();
+    for (int first = 0; first < count; first += block) {
+        std::vector<Done> done(static_cast<std::size_t>(std::min(block, count - first)));
+        executor->parallel_for(static_cast<int>(done.size()),
+                               [&](int i) { done[static_cast<std::size_t>(i)] = make(first + i); });
+        for (const Done& one : done) {
+            if (one.error) return report(*one.error);
+            out.print("{}", one.rows);
+        }
+        out.flush();
+    }
+    return kExitOk;
+}
+
+int measure_all(const std::vector<std::string>& words) {
+    if (words.size() < 2) {
+        return report(usage_error(
+            "stairs_truth OUT.csv SCENES [FIRST_SEED [SEEDS [MODES [EVERY [MAPS [KEY=VALUE...]]]]]]"
+            ", or stairs_truth OUT.csv MAPS"));
+    }
+    if (words.size() == 2 && std::filesystem::is_directory(words[1])) {
+        const std::vector<std::string> folders = saved_looks(words[1]);
+        return write_all(static_cast<int>(folders.size()), words[0], [&](int i) {
+            return judge_saved(folders[static_cast<std::size_t>(i)]);
+        });
+    }
+    CommonOptions common;
+    common.settings = {"sim.known_motion=true",
+                       "sim.analytic.drift.position_m_sqrt_m=0",
+                       "sim.analytic.drift.turn_deg_sqrt_m=0"};
+    if (words.size() > 7)
+        common.settings.insert(common.settings.end(), words.begin() + 7, words.end());
+    const auto settings = load_settings(common);
+    if (!settings) return report(settings.error());
+    const std::string maps = words.size() > 6 ? words[6] : "-";
+    const std::vector<StairsCase> cases = cases_of(words);
+    return write_all(static_cast<int>(cases.size()), words[0], [&](int i) {
+        return judge(cases[static_cast<std::size_t>(i)], maps, *settings);
+    });
+}
+
+}  // namespace
+}  // namespace surefoot::app
+
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    return surefoot::app::measure_all({argv + 1, argv + argc});
+}
