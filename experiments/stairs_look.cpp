@@ -53,6 +53,15 @@ grid::Layer cut(const Image<From>& layer, const Box& box) {
     return part;
 }
 
+/// The layer of a map in which `part` begins at a cell.
+grid::Layer whole(const grid::Layer& part, const grid::GridGeometry& map, const grid::Cell& begin) {
+    grid::Layer layer(map.nx, map.ny, std::numeric_limits<float>::quiet_NaN());
+    for (int iy = 0; iy < part.height(); ++iy)
+        for (int ix = 0; ix < part.width(); ++ix)
+            layer.at(begin.ix + ix, begin.iy + iy) = part.at(ix, iy);
+    return layer;
+}
+
 /// Every number of truth.txt.
 std::vector<std::pair<const char*, std::reference_wrapper<double>>> numbers(Look& look) {
     TrueFeature& truth = look.truth;
@@ -68,19 +77,23 @@ std::vector<std::pair<const char*, std::reference_wrapper<double>>> numbers(Look
             {"yaw_rad", truth.yaw_rad},
             {"ahead_m", truth.ahead_m},
             {"stance_x_m", look.stance_m.x()},
-            {"stance_y_m", look.stance_m.y()}};
+            {"stance_y_m", look.stance_m.y()},
+            {"origin_x_m", look.geometry.origin_m.x()},
+            {"origin_y_m", look.geometry.origin_m.y()}};
 }
 
 Status write_truth(Look look, const std::string& path) {
     auto out = fmt::output_file(path);
-    out.print("scene {}\nseed {}\nmode {}\nframe {}\nkind {}\nsteps {}\n",
+    out.print("scene {}\nseed {}\nmode {}\nframe {}\nkind {}\nsteps {}\nnx {}\nny {}\n",
               look.scene,
               look.seed,
               look.mode,
               look.frame,
               kTrueKindNames[static_cast<int>(look.truth.kind)],
-              look.truth.steps);
-    for (const auto& [name, value] : numbers(look)) out.print("{} {:.9g}\n", name, value.get());
+              look.truth.steps,
+              look.geometry.nx,
+              look.geometry.ny);
+    for (const auto& [name, value] : numbers(look)) out.print("{} {}\n", name, value.get());
     return {};
 }
 
@@ -92,8 +105,13 @@ Status read_truth(const std::string& path, Look& look) {
     look.scene = words["scene"];
     look.mode = words["mode"];
     look.seed = static_cast<std::uint64_t>(io::parse_int64(words["seed"]).value_or(0));
-    look.frame = static_cast<int>(io::parse_int64(words["frame"]).value_or(0));
-    look.truth.steps = static_cast<int>(io::parse_int64(words["steps"]).value_or(0));
+    const auto integer = [&](const char* name) {
+        return static_cast<int>(io::parse_int64(words[name]).value_or(0));
+    };
+    look.frame = integer("frame");
+    look.truth.steps = integer("steps");
+    look.geometry.nx = integer("nx");
+    look.geometry.ny = integer("ny");
     for (int kind = 0; kind < static_cast<int>(std::size(kTrueKindNames)); ++kind)
         if (words["kind"] == kTrueKindNames[kind]) look.truth.kind = static_cast<TrueKind>(kind);
     for (const auto& [name, value] : numbers(look)) {
@@ -119,10 +137,12 @@ stairs::Terrain Look::terrain() const {
 }
 
 std::string Look::folder_name() const {
-    // A scene file is called by the name behind its '#', or by its own.
-    std::string name = scene.substr(scene.find_last_of("#/") + 1);
-    name = name.substr(0, name.find('.'));
-    return fmt::format("{}_{}_f{}", name, seed, frame);
+    return fmt::format("{}_{}_f{}", short_name(scene), seed, frame);
+}
+
+std::string short_name(const std::string& scene) {
+    const std::string name = scene.substr(scene.find_last_of("#/") + 1);
+    return name.substr(0, name.find('.'));
 }
 
 Status save_look(const Look& look, const std::string& folder) {
@@ -157,8 +177,13 @@ Result<Look> read_look(const std::string& folder) {
     for (const auto& [name, layer] : layers) {
         auto dem = io::read_esri_grid(fmt::format("{}/{}.asc", folder, name));
         if (!dem) return dem.error();
-        look.geometry = dem->geometry;
-        *layer = std::move(dem->values);
+        look.geometry.resolution_m = dem->geometry.resolution_m;
+        const auto begin = look.geometry.cell_at(dem->geometry.center_m({0, 0}).x(),
+                                                 dem->geometry.center_m({0, 0}).y());
+        const grid::Cell last{dem->geometry.nx - 1, dem->geometry.ny - 1};
+        if (!begin || !look.geometry.contains({begin->ix + last.ix, begin->iy + last.iy}))
+            return input_error(folder + ": lies beyond the map of truth.txt");
+        *layer = whole(dem->values, look.geometry, *begin);
     }
     look.looks.resize(looks.width(), looks.height());
     std::transform(looks.data(), looks.data() + looks.size(), look.looks.data(), [](float count) {

@@ -54,9 +54,13 @@ struct Look {
     [[nodiscard]] std::string folder_name() const;  ///< "up_common_21_f32"
 };
 
-/// Cuts away what is unknown all round and writes the rest to a new folder: height.asc,
-/// variance.asc, free_above.asc, clearance.asc, looks.asc, and what is true into truth.txt.
+/// A scene file is called by what stands behind its '#', or by its own name.
+[[nodiscard]] std::string short_name(const std::string& scene);
+
+/// Writes a folder: height.asc, variance.asc, free_above.asc, clearance.asc, looks.asc, cut to what
+/// is known, and last truth.txt with what is true and the size of the whole map.
 [[nodiscard]] Status save_look(const Look& look, const std::string& folder);
+/// The whole map again.
 [[nodiscard]] Result<Look> read_look(const std::string& folder);
 
 }  // namespace surefoot::experiments

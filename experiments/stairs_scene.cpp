@@ -61,6 +61,7 @@ TrueKind kind_of(const sim::ScriptedScene& script) {
 TrueFeature truth_in_world(const sim::ScriptedScene& script) {
     TrueFeature truth;
     truth.kind = kind_of(script);
+    if (truth.kind == TrueKind::none) return truth;
     truth.steps = static_cast<int>(number(script, "steps", truth.kind == TrueKind::kerb ? 1 : 10));
     truth.riser_m = number(script, "rise_m", number(script, "kerb_m"));
     truth.going_m = number(script, "going_m");

@@ -7,9 +7,8 @@
 //
 // Modes, and what the seed draws beside the scene: see stairs_scene.hpp. Poses are true ones unless
 // settings say sim.known_motion=false. EVERY: the map is looked at after so many frames; 0 = at the
-// end of the way. MAPS: a folder that gets what the finder was given ('-' = none); given alone, all
-// that is in it is judged again, without a simulation (its maps are cut to what is known, so that
-// the finder takes less time).
+// end of the way. MAPS: a folder that keeps what the finder is given; what it has is not simulated
+// again ('-' = none). Given alone, all that is in it is judged.
 //
 // One line a look. Lengths in mm, angles in deg; empty or nan = not found:
 //   noise_px, bias_px, said_px   scatter and mean of disparity errors on level floor, stated sigma
@@ -17,7 +16,7 @@
 //   found              the flight whose first edge lies within 0.1 m of the true one, within 10 deg
 //   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _width_complete, _cut  of it
 //   across, turn       of its first edge at the truth's middle, + = farther; of its yaw
-//   flights            all that are there but that one
+//   flights, of_2      all that are there but that one; those of them with two steps or more
 //   drop, drop_across, drop_height, drop_sigma, bottom_seen   the same of drops; height downward
 //   drops              all that are there but that one
 //   door, door_width, door_width_sigma, door_sill   of the opening within 0.3 m, within 15 deg
@@ -30,11 +29,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
@@ -103,8 +104,11 @@ std::string flight_columns(const std::vector<stairs::Flight>& flights, const Tru
                is_line_of(flight.pose, truth);
     });
     const std::size_t others = flights.size() - (found != nullptr ? 1 : 0);
-    if (found == nullptr) return fmt::format(",0{:,>11}{}", "", others);
-    return fmt::format(",1,{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f},{},{},{:.2f},{:.3f},{}",
+    const auto of_2 = std::count_if(flights.begin(), flights.end(), [&](const auto& flight) {
+        return &flight != found && flight.steps >= 2;
+    });
+    if (found == nullptr) return fmt::format(",0{:,>11}{},{}", "", others, of_2);
+    return fmt::format(",1,{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f},{},{},{:.2f},{:.3f},{},{}",
                        found->steps,
                        mm(found->riser_m),
                        mm(found->riser_sigma_m),
@@ -115,7 +119,8 @@ std::string flight_columns(const std::vector<stairs::Flight>& flights, const Tru
                        found->cut ? 1 : 0,
                        mm(across_m(found->pose, truth)),
                        kDegPerRad * turned_rad(found->pose, truth),
-                       others);
+                       others,
+                       of_2);
 }
 
 std::string drop_columns(const std::vector<stairs::LineFeature>& drops, const TrueFeature& truth) {
@@ -160,7 +165,7 @@ std::string door_columns(const stairs::TerrainFeatures& features, const TrueFeat
 constexpr const char* kHeader =
     "scene,seed,mode,frame,noise_px,bias_px,said_px,kind,steps,riser,going,width,sill,ahead,"
     "found,found_steps,found_riser,riser_sigma,found_going,going_sigma,found_width,width_complete,"
-    "cut,across,turn,flights,drop,drop_across,drop_height,drop_sigma,bottom_seen,drops,"
+    "cut,across,turn,flights,of_2,drop,drop_across,drop_height,drop_sigma,bottom_seen,drops,"
     "door,door_width,door_width_sigma,door_sill,sill_height,find_us\n";
 
 std::string row(const Look& look, stairs::FeatureFinder& finder) {
@@ -198,19 +203,62 @@ struct Done {
     std::optional<Error> error;
 };
 
-Done judge(const StairsCase& now, const std::string& maps, const Settings& settings) {
+/// Looks that are kept in a folder: one a line in a file that is written last.
+class Keep {
+  public:
+    Keep(std::string maps, const StairsCase& now)
+        : folder_(std::move(maps) + "/" + now.mode), list_(folder_ + "/" + list_name(now)) {}
+
+    [[nodiscard]] bool has_it() const { return std::filesystem::exists(list_); }
+    [[nodiscard]] Result<std::vector<Look>> read() const {
+        std::vector<Look> looks;
+        std::ifstream list(list_);
+        for (std::string name; std::getline(list, name);) {
+            auto look = experiments::read_look(folder_ + "/" + name);
+            if (!look) return look.error();
+            looks.push_back(std::move(*look));
+        }
+        return looks;
+    }
+    [[nodiscard]] Status write(const std::vector<Look>& looks) const {
+        std::string names;
+        for (const Look& look : looks) {
+            names += look.folder_name() + "\n";
+            const std::string folder = folder_ + "/" + look.folder_name();
+            if (Status saved = save_look(look, folder); !saved) return saved;
+        }
+        fmt::output_file(list_).print("{}", names);
+        return {};
+    }
+
+  private:
+    static std::string list_name(const StairsCase& now) {
+        return fmt::format(
+            "{}_{}_every{}.txt", experiments::short_name(now.scene), now.seed, now.every);
+    }
+
+    std::string folder_;
+    std::string list_;
+};
+
+Result<std::vector<Look>> looks_of(const StairsCase& now,
+                                   const std::string& maps,
+                                   const Settings& settings) {
+    const Keep keep(maps, now);
+    if (maps != "-" && keep.has_it()) return keep.read();
     Serial alone;
-    const auto looks = look_at(now, settings, alone);
+    auto looks = look_at(now, settings, alone);
+    if (!looks || maps == "-") return looks;
+    if (Status kept = keep.write(*looks); !kept) return kept.error();
+    return looks;
+}
+
+Done judge(const StairsCase& now, const std::string& maps, const Settings& settings) {
+    const auto looks = looks_of(now, maps, settings);
     if (!looks) return {{}, looks.error()};
     stairs::FeatureFinder finder(stairs::StairsConfig{});
     Done done;
-    for (const Look& look : *looks) {
-        done.rows += row(look, finder);
-        if (maps == "-") continue;
-        if (Status saved = save_look(look, maps + "/" + now.mode + "/" + look.folder_name());
-            !saved)
-            return {{}, saved.error()};
-    }
+    for (const Look& look : *looks) done.rows += row(look, finder);
     return done;
 }
 
