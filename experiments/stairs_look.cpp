@@ -131,6 +131,7 @@ stairs::Terrain Look::terrain() const {
     terrain.height_var_m2 = height_var_m2.view();
     terrain.free_above_m = free_above_m.view();
     terrain.clearance_m = clearance_m.view();
+    terrain.density_ratio = density_ratio.view();
     terrain.looks = looks.view();
     terrain.stance_m = stance_m;
     return terrain;
@@ -157,6 +158,7 @@ Status save_look(const Look& look, const std::string& folder) {
         {"variance", cut(look.height_var_m2, box)},
         {"free_above", cut(look.free_above_m, box)},
         {"clearance", cut(look.clearance_m, box)},
+        {"density", cut(look.density_ratio, box)},
         {"looks", cut(look.looks, box)}};
     for (const auto& [name, layer] : layers) {
         const auto path = fmt::format("{}/{}.asc", folder, name);
@@ -173,6 +175,7 @@ Result<Look> read_look(const std::string& folder) {
                                                            {"variance", &look.height_var_m2},
                                                            {"free_above", &look.free_above_m},
                                                            {"clearance", &look.clearance_m},
+                                                           {"density", &look.density_ratio},
                                                            {"looks", &looks}};
     for (const auto& [name, layer] : layers) {
         auto dem = io::read_esri_grid(fmt::format("{}/{}.asc", folder, name));

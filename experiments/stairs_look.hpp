@@ -46,6 +46,7 @@ struct Look {
     grid::Layer height_var_m2;
     grid::Layer free_above_m;
     grid::Layer clearance_m;
+    grid::Layer density_ratio;
     Image<std::uint32_t> looks;
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
 
@@ -57,7 +58,7 @@ struct Look {
 /// A scene file is called by what stands behind its '#', or by its own name.
 [[nodiscard]] std::string short_name(const std::string& scene);
 
-/// Writes a folder: height.asc, variance.asc, free_above.asc, clearance.asc, looks.asc, cut to what
+/// Writes a folder: height.asc, variance.asc, free_above.asc, clearance.asc, density.asc, looks.asc, cut to what
 /// is known, and last truth.txt with what is true and the size of the whole map.
 [[nodiscard]] Status save_look(const Look& look, const std::string& folder);
 /// The whole map again.

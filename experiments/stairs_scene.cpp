@@ -252,6 +252,7 @@ class Run {
         look.height_var_m2 = layers.height_var_m2;
         look.free_above_m = layers.free_above_m;
         look.clearance_m = layers.clearance_m;
+        look.density_ratio = layers.density_ratio;
         look.looks = layers.count;
         look.stance_m = pipeline.T_odom_body().translation_m.head<2>();
         measure_noise(scene, pipeline, T_world_body, executor_, look);

@@ -14,7 +14,7 @@
 //   noise_px, bias_px, said_px   scatter and mean of disparity errors on level floor, stated sigma
 //   kind, steps, riser, going, width, sill, ahead   what is true; ahead: from the left camera
 //   found              the flight whose first edge lies within 0.1 m of the true one, within 10 deg
-//   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _width_complete, _cut  of it
+//   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _cut  of it
 //   across, turn       of its first edge at the truth's middle, + = farther; of its yaw
 //   flights, of_2      all that are there but that one; those of them with two steps or more
 //   drop, drop_across, drop_height, drop_sigma, bottom_seen   the same of drops; height downward
@@ -107,15 +107,14 @@ std::string flight_columns(const std::vector<stairs::Flight>& flights, const Tru
     const auto of_2 = std::count_if(flights.begin(), flights.end(), [&](const auto& flight) {
         return &flight != found && flight.steps >= 2;
     });
-    if (found == nullptr) return fmt::format(",0{:,>11}{},{}", "", others, of_2);
-    return fmt::format(",1,{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f},{},{},{:.2f},{:.3f},{},{}",
+    if (found == nullptr) return fmt::format(",0{:,>10}{},{}", "", others, of_2);
+    return fmt::format(",1,{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f},{},{:.2f},{:.3f},{},{}",
                        found->steps,
                        mm(found->riser_m),
                        mm(found->riser_sigma_m),
                        mm(found->going_m),
                        mm(found->going_sigma_m),
                        mm(found->width_m),
-                       found->width_complete ? 1 : 0,
                        found->cut ? 1 : 0,
                        mm(across_m(found->pose, truth)),
                        kDegPerRad * turned_rad(found->pose, truth),
@@ -164,7 +163,7 @@ std::string door_columns(const stairs::TerrainFeatures& features, const TrueFeat
 
 constexpr const char* kHeader =
     "scene,seed,mode,frame,noise_px,bias_px,said_px,kind,steps,riser,going,width,sill,ahead,"
-    "found,found_steps,found_riser,riser_sigma,found_going,going_sigma,found_width,width_complete,"
+    "found,found_steps,found_riser,riser_sigma,found_going,going_sigma,found_width,"
     "cut,across,turn,flights,of_2,drop,drop_across,drop_height,drop_sigma,bottom_seen,drops,"
     "door,door_width,door_width_sigma,door_sill,sill_height,find_us\n";
 

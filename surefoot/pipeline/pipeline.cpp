@@ -323,6 +323,7 @@ void Pipeline::find_features() {
                           .height_var_m2 = layers.height_var_m2.view(),
                           .free_above_m = layers.free_above_m.view(),
                           .clearance_m = layers.clearance_m.view(),
+                          .density_ratio = layers.density_ratio.view(),
                           .looks = layers.count.view(),
                           .stance_m = last_motion_.T_odom_body.translation_m.head<2>()},
                          features_);

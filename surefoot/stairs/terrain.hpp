@@ -19,6 +19,9 @@ struct Terrain {
     /// NaN = nothing is known.
     ImageView<const float> free_above_m;
     ImageView<const float> clearance_m;  ///< free height above the cell; empty or NaN = open
+    /// Points seen over points that level ground would show: vertical faces show many times more.
+    /// Empty or NaN = nothing is known.
+    ImageView<const float> density_ratio;
     /// Looks that agree on the height; empty = more than one.
     ImageView<const std::uint32_t> looks;
     /// Where the machine stands: what goes down from there is a drop, what goes up is not.
