@@ -26,59 +26,132 @@ double upper_tolerance_m(double scatter_m, double rise_m) {
     return std::clamp(kSigmas * scatter_m, kShare * rise_m, 0.6 * rise_m);
 }
 
+/// The rows (columns where the line runs along the rows) that cross an edge.
+class Rows {
+  public:
+    Rows(const Terrain& terrain, const EdgeLine& line, const BorderSearch& search)
+        : grid_(terrain.geometry),
+          line_(line),
+          down_(line.down()),
+          axis_(std::abs(down_.x()) >= std::abs(down_.y()) ? 0 : 1) {
+        const Vector2d along = line.along();
+        from_m_ = line.from_m - search.beside_m * along + search.at_m * down_;
+        to_m_ = line.to_m + search.beside_m * along + search.at_m * down_;
+        const int other = 1 - axis_;
+        const auto row_of = [&](double p_m) {
+            return static_cast<int>(std::floor((p_m - grid_.origin_m[other]) / grid_.resolution_m));
+        };
+        first_ = std::max(0, row_of(std::min(from_m_[other], to_m_[other])));
+        last_ = std::min(rows() - 1, row_of(std::max(from_m_[other], to_m_[other])));
+    }
+    [[nodiscard]] int first() const { return first_; }
+    [[nodiscard]] int last() const { return last_; }
+    /// Cells of a row go this way over the edge.
+    [[nodiscard]] int way() const { return down_[axis_] > 0.0 ? 1 : -1; }
+    /// False where the row does not cross the edge between its ends, or what is asked for lies
+    /// beyond the map.
+    bool enter(int row, double inside_m, double outside_m) {
+        row_ = row;
+        const int other = 1 - axis_;
+        const double at_row_m = grid_.origin_m[other] + (row + 0.5) * grid_.resolution_m;
+        const double share = (at_row_m - from_m_[other]) / (to_m_[other] - from_m_[other]);
+        if (!(share >= 0.0 && share <= 1.0)) return false;
+        cross_m_ = from_m_[axis_] + share * (to_m_[axis_] - from_m_[axis_]);
+        begin_ = cell_of(-inside_m);
+        end_ = cell_of(outside_m);
+        const int cells = axis_ == 0 ? grid_.nx : grid_.ny;
+        return begin_ >= 0 && begin_ < cells && end_ >= 0 && end_ < cells;
+    }
+    [[nodiscard]] int begin() const { return begin_; }
+    [[nodiscard]] int end() const { return end_; }
+    [[nodiscard]] int edge() const { return cell_of(0.0); }
+    [[nodiscard]] double value(ImageView<const float> layer, int cell) const {
+        return static_cast<double>(axis_ == 0 ? layer.row(row_)[cell] : layer.row(cell)[row_]);
+    }
+    /// A place in this row, in cells from the middle of the first, in the frame of the line.
+    [[nodiscard]] BorderPoint point(double cells, int edge) const {
+        Vector2d p_m;
+        p_m[axis_] = grid_.origin_m[axis_] + (cells + 0.5) * grid_.resolution_m;
+        p_m[1 - axis_] = grid_.origin_m[1 - axis_] + (row_ + 0.5) * grid_.resolution_m;
+        const Vector2d d_m = p_m - line_.from_m;
+        return {d_m.dot(down_), d_m.dot(line_.along()), edge};
+    }
+
+  private:
+    [[nodiscard]] int rows() const { return axis_ == 0 ? grid_.ny : grid_.nx; }
+    /// Of the point that far behind the edge, across it.
+    [[nodiscard]] int cell_of(double s_m) const {
+        const double p_m = cross_m_ + s_m / down_[axis_];
+        return static_cast<int>(std::floor((p_m - grid_.origin_m[axis_]) / grid_.resolution_m));
+    }
+
+    const grid::GridGeometry& grid_;
+    const EdgeLine& line_;
+    Vector2d down_;
+    int axis_;  ///< of the walk
+    Vector2d from_m_;
+    Vector2d to_m_;
+    int first_ = 0;
+    int last_ = -1;
+    int row_ = 0;
+    double cross_m_ = 0.0;
+    int begin_ = 0;
+    int end_ = 0;
+};
+
 void add_border_points(const Terrain& terrain,
                        const EdgeLine& line,
                        const BorderSearch& search,
                        std::vector<BorderPoint>& out) {
-    const grid::GridGeometry& grid = terrain.geometry;
-    const Vector2d along = line.along();
-    const Vector2d down = line.down();
-    const int axis = std::abs(down.x()) >= std::abs(down.y()) ? 0 : 1;  // of the walk
-    const int other = 1 - axis;
-    const double length_m = line.length_m();
-    const Vector2d from_m = line.from_m - search.beside_m * along + search.at_m * down;
-    const Vector2d to_m = line.from_m + (length_m + search.beside_m) * along + search.at_m * down;
-    const auto row_of = [&](double p_m) {
-        return static_cast<int>(std::floor((p_m - grid.origin_m[other]) / grid.resolution_m));
-    };
-    const int rows = axis == 0 ? grid.ny : grid.nx;
-    const int cells = axis == 0 ? grid.nx : grid.ny;
-    const int first = std::max(0, row_of(std::min(from_m[other], to_m[other])));
-    const int last = std::min(rows - 1, row_of(std::max(from_m[other], to_m[other])));
-    const int way = down[axis] > 0.0 ? 1 : -1;
+    Rows rows(terrain, line, search);
+    // Where a cell holds the highest of all that it touches, the middle of the last upper cell of a
+    // row lies beyond the edge by as much as that runs askew within the cell; where it holds what
+    // is at its middle, it lies half a cell before it.
+    const Vector2d down = line.down().cwiseAbs();
+    const double reach_m =
+        0.5 * terrain.geometry.resolution_m *
+        (search.cell_reach * down.minCoeff() - (1.0 - search.cell_reach) * down.maxCoeff());
     const double least_m = search.upper_m - search.below_m;
-    const auto height_at = [&](int cell, int row) {
-        return static_cast<double>(axis == 0 ? terrain.height_m.row(row)[cell]
-                                             : terrain.height_m.row(cell)[row]);
-    };
-    const auto is_upper = [&](int cell, int row) { return height_at(cell, row) >= least_m; };
-    for (int row = first; row <= last; ++row) {
-        const double at_row_m = grid.origin_m[other] + (row + 0.5) * grid.resolution_m;
-        // Where the edge crosses the middle of the row, in cells.
-        const double share = (at_row_m - from_m[other]) / (to_m[other] - from_m[other]);
-        if (!(share >= 0.0 && share <= 1.0)) continue;
-        const double cross_m = from_m[axis] + share * (to_m[axis] - from_m[axis]);
-        const auto cell_of = [&](double s_m) {
-            const double p_m = cross_m + s_m / down[axis];
-            return static_cast<int>(std::floor((p_m - grid.origin_m[axis]) / grid.resolution_m));
-        };
-        int cell = cell_of(-search.inside_m);
-        const int end = cell_of(search.outside_m);
-        if (cell < 0 || cell >= cells || end < 0 || end >= cells) continue;
+    const auto is_upper = [&](int cell) { return rows.value(terrain.height_m, cell) >= least_m; };
+    for (int row = rows.first(); row <= rows.last(); ++row) {
+        if (!rows.enter(row, search.inside_m, search.outside_m)) continue;
+        int cell = rows.begin();
         // A bad cell inside is skipped; the ground has to begin before the edge.
-        while (!is_upper(cell, row) && (end - cell) * way > 0 && cell != cell_of(0.0)) cell += way;
-        if (!is_upper(cell, row)) continue;
-        while (cell != end && is_upper(cell + way, row)) cell += way;
-        if (cell == end) continue;  // no end: not this edge
+        while (!is_upper(cell) && cell != rows.edge() && cell != rows.end()) cell += rows.way();
+        if (!is_upper(cell)) continue;
+        while (cell != rows.end() && is_upper(cell + rows.way())) cell += rows.way();
+        if (cell == rows.end()) continue;  // no end: not this edge
         // Between the middles of the cells, as far as the next one is known.
-        const double height_m = height_at(cell, row);
-        const double next_m = height_at(cell + way, row);
+        const double height_m = rows.value(terrain.height_m, cell);
+        const double next_m = rows.value(terrain.height_m, cell + rows.way());
         const double beyond = next_m < least_m ? (height_m - least_m) / (height_m - next_m) : 0.0;
-        Vector2d border_m;
-        border_m[axis] = grid.origin_m[axis] + (cell + 0.5 + way * beyond) * grid.resolution_m;
-        border_m[other] = at_row_m;
-        const Vector2d d_m = border_m - line.from_m;
-        out.push_back({d_m.dot(down), d_m.dot(along), search.edge});
+        BorderPoint point = rows.point(cell + rows.way() * beyond, search.edge);
+        point.s_m -= reach_m;
+        out.push_back(point);
+    }
+}
+
+void add_face_points(const Terrain& terrain,
+                     const EdgeLine& line,
+                     const BorderSearch& search,
+                     std::vector<BorderPoint>& out) {
+    constexpr double kLevel = 1.2;  ///< of level ground, with some room
+    constexpr double kLeast = 1.5;  ///< points beyond that, for each point of level ground
+    if (terrain.density_ratio.empty()) return;
+    Rows rows(terrain, line, search);
+    for (int row = rows.first(); row <= rows.last(); ++row) {
+        if (!rows.enter(row, search.inside_m, search.outside_m)) continue;
+        double sum = 0.0;
+        double moment = 0.0;
+        for (int cell = rows.begin();; cell += rows.way()) {
+            const double excess = rows.value(terrain.density_ratio, cell) - kLevel;
+            if (excess > 0.0) {
+                sum += excess;
+                moment += excess * cell;
+            }
+            if (cell == rows.end()) break;
+        }
+        if (sum >= kLeast) out.push_back(rows.point(moment / sum, search.edge));
     }
 }
 

@@ -24,6 +24,7 @@ struct BorderSearch {
     double below_m = 0.0;     ///< that ground is lower nowhere by more
     double inside_m = 0.07;   ///< the walk begins so far before the edge, on the upper ground ...
     double outside_m = 0.12;  ///< ... and ends so far behind it
+    double cell_reach = 1.0;  ///< see StairsConfig
     double beside_m = 0.0;    ///< rows beyond the ends of the line that are looked at too
 };
 
@@ -40,6 +41,15 @@ void add_border_points(const Terrain& terrain,
                        const EdgeLine& line,
                        const BorderSearch& search,
                        std::vector<BorderPoint>& out);
+
+/// The same, but adds where the vertical face below the edge stands: the middle of the points that
+/// its cells show beyond those of level ground (`Terrain::density_ratio`), in each row that shows
+/// enough of them. Depth noise moves them both ways, so that their middle stays; the cells' heights
+/// take the highest and move one way.
+void add_face_points(const Terrain& terrain,
+                     const EdgeLine& line,
+                     const BorderSearch& search,
+                     std::vector<BorderPoint>& out);
 
 /// One of several parallel edges.
 struct ParallelEdge {

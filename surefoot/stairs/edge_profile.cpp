@@ -199,6 +199,7 @@ double EdgeProfiler::place(const Terrain& terrain,
     search.upper_m = edge.upper_m;
     search.below_m = upper_tolerance_m(upper.scatter_m, edge.height_m());
     search.inside_m = config_.smear_m;
+    search.cell_reach = config_.cell_reach;
     borders_.clear();
     add_border_points(terrain, line, search, borders_);
     ParallelEdge placed{.rms_m = line.rms_m};

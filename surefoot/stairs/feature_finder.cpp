@@ -60,10 +60,8 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     reachability_.reach(terrain.geometry, terrain.height_m, terrain.stance_m, walk_step_m_);
     find_walkable(terrain, out.edges);
     for (std::vector<Edge>& chain : chains_) find_walkable(terrain, chain);
-    for (Edge& edge : out.edges) undo_cell_reach(terrain.geometry, edge);
     flight_finder_.find(out.edges, terrain.stance_m, out.flights, in_flight_);
-    for (std::vector<Edge>& chain : chains_) {
-        for (Edge& edge : chain) undo_cell_reach(terrain.geometry, edge);
+    for (const std::vector<Edge>& chain : chains_) {
         const bool is_flight = flight_finder_.add_chain(chain, terrain.stance_m, out.flights);
         out.edges.insert(out.edges.end(), chain.begin(), chain.end());
         in_flight_.insert(in_flight_.end(), chain.size(), is_flight);
@@ -82,19 +80,6 @@ void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges)
         const std::optional<Edge> edge = profiler_.measure(terrain, line);
         if (edge) edges.push_back(*edge);
     }
-}
-
-/// Where a cell holds the highest of all that it touches, the middle of the last upper cell of a
-/// row (add_border_points) lies beyond the edge by as much as that runs askew within the cell;
-/// where it holds what is at its middle, it lies half a cell before it.
-void FeatureFinder::undo_cell_reach(const grid::GridGeometry& grid, Edge& edge) const {
-    const Vector2d down = edge.down();
-    const double across = std::max(std::abs(down.x()), std::abs(down.y()));
-    const double askew = std::min(std::abs(down.x()), std::abs(down.y()));
-    const double reach_m = 0.5 * grid.resolution_m *
-                           (config_.cell_reach * askew - (1.0 - config_.cell_reach) * across);
-    edge.from_m -= reach_m * down;
-    edge.to_m -= reach_m * down;
 }
 
 void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const {

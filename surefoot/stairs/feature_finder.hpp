@@ -32,7 +32,6 @@ class FeatureFinder {
     void fit_steps(const Terrain& terrain, std::vector<Edge>& edges);
     /// Which sides of the edges can be walked to.
     void find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const;
-    void undo_cell_reach(const grid::GridGeometry& grid, Edge& edge) const;
     void name_lines(const Terrain& terrain, TerrainFeatures& out) const;
 
     StairsConfig config_;

@@ -22,6 +22,8 @@ constexpr double kTread_m = 0.03;
 /// Steps of a flight differ by 5 mm by the code (NZ D1/AS1), by more where they are badly made.
 constexpr double kUneven_m = 0.02;
 constexpr double kCorrelation_m = 0.1;
+constexpr double kFace_m = 0.08;  ///< points of a riser lie within, but not those of the next
+constexpr std::size_t kLeastPoints = 10;
 
 }  // namespace
 
@@ -163,8 +165,16 @@ void StepFitter::find_borders(const Terrain& terrain, const EdgeLine& line) {
         search.at_m = step.upper.end_m;
         search.upper_m = step.upper.height_m;
         search.below_m = upper_tolerance_m(step.upper.scatter_m, rise_m);
+        search.cell_reach = config_.cell_reach;
         search.beside_m = kSide_m;
-        add_border_points(terrain, line, search, borders_);
+        const std::size_t before = borders_.size();
+        if (sees_faces_) {
+            search.at_m = step.at_m;
+            search.inside_m = search.outside_m = kFace_m;
+            add_face_points(terrain, line, search, borders_);
+        }
+        if (borders_.size() < before + kLeastPoints)
+            add_border_points(terrain, line, search, borders_);
     }
 }
 
@@ -211,6 +221,7 @@ void StepFitter::fit(const Terrain& terrain, const Edge& seed, std::vector<Edge>
     line.from_m = seed.from_m;
     line.to_m = seed.to_m;
     length_m_ = line.length_m();
+    sees_faces_ = !terrain.density_ratio.empty() && seed.below_m(terrain.stance_m) > 0.0;
     for (int round = 0; round < kRounds; ++round) {
         find_treads(terrain, line);
         join_treads();

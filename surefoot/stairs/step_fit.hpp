@@ -54,6 +54,7 @@ class StepFitter {
     StairsConfig config_;
     EdgeProfiler profiler_;
     double length_m_ = 0.0;
+    bool sees_faces_ = false;  ///< the stance is where risers show their faces
     std::vector<Tread> treads_;
     std::vector<Step> steps_;
     std::vector<BorderPoint> borders_;
