@@ -78,6 +78,20 @@ std::vector<std::pair<const char*, std::reference_wrapper<double>>> numbers(Look
             {"ahead_m", truth.ahead_m},
             {"stance_x_m", look.stance_m.x()},
             {"stance_y_m", look.stance_m.y()},
+            {"camera_x_m", look.view.T_map_camera.translation_m.x()},
+            {"camera_y_m", look.view.T_map_camera.translation_m.y()},
+            {"camera_z_m", look.view.T_map_camera.translation_m.z()},
+            {"camera_qx", look.view.T_map_camera.rotation.x()},
+            {"camera_qy", look.view.T_map_camera.rotation.y()},
+            {"camera_qz", look.view.T_map_camera.rotation.z()},
+            {"camera_qw", look.view.T_map_camera.rotation.w()},
+            {"width_px", look.view.width_px},
+            {"height_px", look.view.height_px},
+            {"fx_px", look.view.fx_px},
+            {"fy_px", look.view.fy_px},
+            {"cx_px", look.view.cx_px},
+            {"cy_px", look.view.cy_px},
+            {"baseline_m", look.view.baseline_m},
             {"origin_x_m", look.geometry.origin_m.x()},
             {"origin_y_m", look.geometry.origin_m.y()}};
 }
@@ -134,6 +148,7 @@ stairs::Terrain Look::terrain() const {
     terrain.density_ratio = density_ratio.view();
     terrain.looks = looks.view();
     terrain.stance_m = stance_m;
+    terrain.view = view;
     return terrain;
 }
 

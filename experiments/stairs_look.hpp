@@ -49,6 +49,7 @@ struct Look {
     grid::Layer density_ratio;
     Image<std::uint32_t> looks;
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
+    stairs::View view;  ///< of the last frame
 
     /// Views of the layers.
     [[nodiscard]] stairs::Terrain terrain() const;
@@ -58,8 +59,9 @@ struct Look {
 /// A scene file is called by what stands behind its '#', or by its own name.
 [[nodiscard]] std::string short_name(const std::string& scene);
 
-/// Writes a folder: height.asc, variance.asc, free_above.asc, clearance.asc, density.asc, looks.asc, cut to what
-/// is known, and last truth.txt with what is true and the size of the whole map.
+/// Writes a folder: height.asc, variance.asc, free_above.asc, clearance.asc, density.asc,
+/// looks.asc, cut to what is known, and last truth.txt with what is true and the size of the whole
+/// map.
 [[nodiscard]] Status save_look(const Look& look, const std::string& folder);
 /// The whole map again.
 [[nodiscard]] Result<Look> read_look(const std::string& folder);

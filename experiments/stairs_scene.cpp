@@ -255,6 +255,7 @@ class Run {
         look.density_ratio = layers.density_ratio;
         look.looks = layers.count;
         look.stance_m = pipeline.T_odom_body().translation_m.head<2>();
+        look.view = pipeline.view();
         measure_noise(scene, pipeline, T_world_body, executor_, look);
         looks_.push_back(std::move(look));
     }

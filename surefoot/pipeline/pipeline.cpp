@@ -316,6 +316,17 @@ void Pipeline::rate() {
     rater_.rate(map_.layers().height_m.view(), map_.geometry().resolution_m, *executor_, rating_);
 }
 
+stairs::View Pipeline::view() const {
+    return {.T_map_camera = last_motion_.T_odom_body * rig().T_body_camera,
+            .width_px = static_cast<double>(rig().width),
+            .height_px = static_cast<double>(rig().height),
+            .fx_px = rig().fx_px,
+            .fy_px = rig().fy_px,
+            .cx_px = rig().cx_px,
+            .cy_px = rig().cy_px,
+            .baseline_m = rig().baseline_m};
+}
+
 void Pipeline::find_features() {
     const elevation::ElevationLayers& layers = map_.layers();
     feature_finder_.find({.geometry = map_.geometry(),
@@ -325,7 +336,8 @@ void Pipeline::find_features() {
                           .clearance_m = layers.clearance_m.view(),
                           .density_ratio = layers.density_ratio.view(),
                           .looks = layers.count.view(),
-                          .stance_m = last_motion_.T_odom_body.translation_m.head<2>()},
+                          .stance_m = last_motion_.T_odom_body.translation_m.head<2>(),
+                          .view = view()},
                          features_);
 }
 

@@ -75,6 +75,8 @@ class Pipeline {
     }
     /// Edges, drops, stairs of the map, as of the last full frame.
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept { return features_; }
+    /// The camera at the last frame.
+    [[nodiscard]] stairs::View view() const;
     /// Rectified pair (empty without images) and depth of the last full frame.
     [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
     [[nodiscard]] const camera::DepthImage& depth() const noexcept { return depth_; }

@@ -48,6 +48,14 @@ void EdgePointFinder::find(const Terrain& terrain, std::vector<EdgePoint>& out) 
                     grid.center_m({point.ix, point.iy}) +
                     (along_x ? Eigen::Vector2d(step_m, 0.0) : Eigen::Vector2d(0.0, step_m));
                 point.at_m = border_m.cast<float>();
+                if (found.ends) {
+                    const double behind_m = (reversed ? -1.0 : 1.0) * config_.smear_m;
+                    const Eigen::Vector2d p_m =
+                        border_m +
+                        (along_x ? Eigen::Vector2d(behind_m, 0.0) : Eigen::Vector2d(0.0, behind_m));
+                    if (!terrain.view || !terrain.view->shows({p_m.x(), p_m.y(), found.upper_m}))
+                        continue;
+                }
                 out.push_back(point);
             }
         }
@@ -133,6 +141,13 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
     found.lower_seen = low >= 0 && line.height_m[low] <= bound_m;
     found.lower_m = found.lower_seen ? line.height_m[low] : bound_m;
     found.upper_m = top_m;
+    found.ends = low < 0 && !(bound_m < top_m);
+    if (found.ends) {
+        // The next window is unknown from its beginning.
+        if (k <= window_cells_ || cell - window_cells_ < 0) return false;
+        found.lower_m = top_m - static_cast<float>(config_.max_riser_m);  // of no meaning
+        return true;
+    }
     const auto height_m = static_cast<double>(top_m - found.lower_m);
     const float var_m2 = line.var_m2[top] + (found.lower_seen ? line.var_m2[low] : 0.0F);
     const double least_m = std::max(config_.min_height_m,

@@ -31,6 +31,9 @@ struct EdgePoint {
 /// left for the ground in between. It is an edge point if top - low reaches the least height at
 /// `sigma_factor` sigma of both, the cell lies above the middle of them and the next one below it,
 /// or is unknown.
+///
+/// Where nothing is known of what lies behind, though ground that goes on would be seen there
+/// (Terrain::view), the ground ends: it may go down so steeply that nothing of it is in sight.
 class EdgePointFinder {
   public:
     explicit EdgePointFinder(const StairsConfig& config) : config_(config) {}
@@ -50,6 +53,7 @@ class EdgePointFinder {
         float upper_m = 0.0F;
         float lower_m = 0.0F;
         bool lower_seen = false;
+        bool ends = false;  ///< nothing at all is known of what lies behind
     };
     void scan(const Line& line);
     [[nodiscard]] bool falls_at(const Line& line, int cell, Found& found) const;

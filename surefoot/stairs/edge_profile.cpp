@@ -20,6 +20,8 @@ constexpr double kMeasured_m = 0.15;  ///< of level ground that is used for its 
 /// Errors of a semi-global matcher hang together over 30-50 px: 0.1 m of floor 1 m away.
 constexpr double kCorrelation_m = 0.1;
 constexpr double kScatterOfMad = 1.4826;
+constexpr double kEnd_m = 0.25;  ///< where ground ends: known before it and unknown behind it
+constexpr double kEndRms_m = 0.015;
 /// Steeper than noise makes level ground.
 constexpr double kLeastSlope = 0.06;
 constexpr double kSloping_m = 0.3;  ///< of ground that is asked for its slope
@@ -190,6 +192,33 @@ double EdgeProfiler::slope_of(int begin, int step, int count) const {
     return moment / squares / resolution_m_;
 }
 
+/// The ground is known and level before the line, nothing is known behind it, and what is there
+/// would be seen if it were level.
+bool EdgeProfiler::ground_ends(const Terrain& terrain,
+                               const EdgeLine& line,
+                               const Level& upper) const {
+    constexpr double kKnownShare = 0.9;
+    constexpr double kUnknownShare = 0.1;
+    if (!terrain.view || upper.end_m < kEnd_m || line.rms_m > kEndRms_m ||
+        line.length_m() < config_.min_width_m)
+        return false;
+    // Seen from the front: what ends along the line of sight is the end of the view.
+    const Vector2d middle_m = 0.5 * (line.from_m + line.to_m);
+    const Vector2d look_m = middle_m - terrain.view->T_map_camera.translation_m.head<2>();
+    if (look_m.dot(line.down()) < 0.7 * look_m.norm()) return false;
+    const int cells = static_cast<int>(kEnd_m / resolution_m_);
+    for (int k = 1; k < cells; ++k) {  // without those that the edge itself crosses
+        if (at(upper_slices_ - 1 - k).known_share < kKnownShare ||
+            at(upper_slices_ + k).known_share > kUnknownShare)
+            return false;
+    }
+    for (const double share : {0.1, 0.5, 0.9}) {
+        const Vector2d p_m = line.from_m + share * (line.to_m - line.from_m) + kEnd_m * line.down();
+        if (!terrain.view->shows({p_m.x(), p_m.y(), upper.height_m})) return false;
+    }
+    return true;
+}
+
 /// Moves the edge to where the upper ground ends; rms of the points about it.
 double EdgeProfiler::place(const Terrain& terrain,
                            const EdgeLine& line,
@@ -253,6 +282,14 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
         edge.height_sigma_m = std::hypot(upper.sigma_m, lower.sigma_m);
     } else if (std::isfinite(bound_m) && bound_at_m <= kLower_m) {
         edge.lower_m = bound_m;
+        edge.height_sigma_m = upper.sigma_m;
+    } else if (ground_ends(terrain, line, upper)) {
+        // What a line of sight over the edge passes, as far as nothing is seen.
+        const Eigen::Vector3d& camera_m = terrain.view->T_map_camera.translation_m;
+        const Vector2d middle_m = 0.5 * (line.from_m + line.to_m);
+        const double fall =
+            (camera_m.z() - upper.height_m) / (camera_m.head<2>() - middle_m).norm();
+        edge.lower_m = upper.height_m - kEnd_m * fall;
         edge.height_sigma_m = upper.sigma_m;
     } else {
         return std::nullopt;

@@ -68,6 +68,9 @@ class EdgeProfiler {
     };
     void slice(const Terrain& terrain, const EdgeLine& line, double upper_m, double lower_m);
     [[nodiscard]] Level level_from(int first, int step, double least_share) const;
+    [[nodiscard]] bool ground_ends(const Terrain& terrain,
+                                   const EdgeLine& line,
+                                   const Level& upper) const;
     double place(const Terrain& terrain, const EdgeLine& line, const Level& upper, Edge& edge);
     [[nodiscard]] double slope_of(int begin, int step, int count) const;
     [[nodiscard]] const Slice& at(int slice) const {

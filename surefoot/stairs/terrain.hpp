@@ -3,11 +3,28 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
+#include "surefoot/core/pose.hpp"
 #include "surefoot/core/views.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 
 namespace surefoot::stairs {
+
+/// The camera that sees the ground now: rectified left eye of a pair.
+struct View {
+    Pose T_map_camera;  ///< optical frame: z forward, x right, y down
+    double width_px = 0.0;
+    double height_px = 0.0;
+    double fx_px = 0.0;
+    double fy_px = 0.0;
+    double cx_px = 0.0;
+    double cy_px = 0.0;
+    double baseline_m = 0.0;
+
+    /// Both eyes see the place, if nothing is in between, and not at the border of their images.
+    [[nodiscard]] bool shows(const Eigen::Vector3d& p_map_m) const;
+};
 
 /// What is known of the ground; all layers have the size of `geometry`, row iy, column ix. Lengths
 /// and places are those of the map's frame (odom, z up).
@@ -26,6 +43,8 @@ struct Terrain {
     ImageView<const std::uint32_t> looks;
     /// Where the machine stands: what goes down from there is a drop, what goes up is not.
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
+    /// Where ground that goes on would be seen; without it nothing is said of ground that ends.
+    std::optional<View> view;
 
     [[nodiscard]] bool known(int ix, int iy) const {
         return height_m.row(iy)[ix] == height_m.row(iy)[ix];

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stairs/terrain.hpp"
+
+namespace surefoot::stairs {
+
+bool View::shows(const Eigen::Vector3d& p_map_m) const {
+    constexpr double kBorder_px = 12.0;  // matchers see less there
+    const Eigen::Vector3d p_camera_m = T_map_camera.inverse() * p_map_m;
+    if (!(p_camera_m.z() > 0.0)) return false;
+    const double u_px = fx_px * p_camera_m.x() / p_camera_m.z() + cx_px;
+    const double v_px = fy_px * p_camera_m.y() / p_camera_m.z() + cy_px;
+    const double disparity_px = fx_px * baseline_m / p_camera_m.z();
+    return u_px - disparity_px >= kBorder_px && u_px <= width_px - 1.0 - kBorder_px &&
+           v_px >= kBorder_px && v_px <= height_px - 1.0 - kBorder_px;
+}
+
+}  // namespace surefoot::stairs
