@@ -324,7 +324,8 @@ stairs::View Pipeline::view() const {
             .fy_px = rig().fy_px,
             .cx_px = rig().cx_px,
             .cy_px = rig().cy_px,
-            .baseline_m = rig().baseline_m};
+            .baseline_m = rig().baseline_m,
+            .unmapped_px = static_cast<double>(config_.elevation.pixels.reach_px)};
 }
 
 void Pipeline::find_features() {

@@ -111,6 +111,11 @@ void add_border_points(const Terrain& terrain,
     const double reach_m =
         0.5 * terrain.geometry.resolution_m *
         (search.cell_reach * down.minCoeff() - (1.0 - search.cell_reach) * down.maxCoeff());
+    const Vector2d middle_m = 0.5 * (line.from_m + line.to_m) + search.at_m * line.down();
+    const double unmapped_m =
+        terrain.view
+            ? terrain.view->unmapped_m({middle_m.x(), middle_m.y(), search.upper_m}, line.down())
+            : 0.0;
     const double least_m = search.upper_m - search.below_m;
     const auto is_upper = [&](int cell) { return rows.value(terrain.height_m, cell) >= least_m; };
     for (int row = rows.first(); row <= rows.last(); ++row) {
@@ -126,7 +131,7 @@ void add_border_points(const Terrain& terrain,
         const double next_m = rows.value(terrain.height_m, cell + rows.way());
         const double beyond = next_m < least_m ? (height_m - least_m) / (height_m - next_m) : 0.0;
         BorderPoint point = rows.point(cell + rows.way() * beyond, search.edge);
-        point.s_m -= reach_m;
+        point.s_m += next_m == next_m ? -reach_m : unmapped_m - reach_m;
         out.push_back(point);
     }
 }
@@ -153,6 +158,17 @@ void add_face_points(const Terrain& terrain,
         }
         if (sum >= kLeast) out.push_back(rows.point(moment / sum, search.edge));
     }
+}
+
+double across_sigma_m(const grid::GridGeometry& grid, const EdgeLine& line, double rms_m) {
+    constexpr double kCorrelation_m = 0.1;  // of a semi-global matcher's errors, 1 m away
+    const double length_m = std::max(line.length_m(), grid.resolution_m);
+    const double scatter_m = std::max(rms_m, 0.25 * grid.resolution_m) /
+                             std::sqrt(std::max(1.0, length_m / kCorrelation_m));
+    // Rows of an edge that runs along the cells all see it in the same part of a cell.
+    const Vector2d along = line.along().cwiseAbs();
+    const double parts = std::max(1.0, length_m * along.minCoeff() / grid.resolution_m);
+    return std::hypot(scatter_m, grid.resolution_m / std::sqrt(12.0 * parts));
 }
 
 double fit_parallel(std::span<const BorderPoint> points,
@@ -202,6 +218,24 @@ double fit_parallel(std::span<const BorderPoint> points,
         }
     }
     return turn_rad;
+}
+
+Extent longest_run(
+    std::span<const BorderPoint> points, int edge, double at_m, double near_m, double max_gap_m) {
+    std::vector<double> along_m;
+    for (const BorderPoint& point : points)
+        if (point.edge == edge && std::abs(point.s_m - at_m) <= near_m)
+            along_m.push_back(point.t_m);
+    std::sort(along_m.begin(), along_m.end());
+    Extent longest;
+    for (std::size_t begin = 0; begin < along_m.size();) {
+        std::size_t end = begin + 1;
+        while (end < along_m.size() && along_m[end] - along_m[end - 1] <= max_gap_m) ++end;
+        if (along_m[end - 1] - along_m[begin] > longest.to_m - longest.from_m)
+            longest = {along_m[begin], along_m[end - 1]};
+        begin = end;
+    }
+    return longest;
 }
 
 }  // namespace surefoot::stairs

@@ -65,4 +65,18 @@ double fit_parallel(std::span<const BorderPoint> points,
                     double middle_t_m,
                     std::span<ParallelEdge> edges);
 
+/// One sigma of where an edge lies, from the scatter of its points about it.
+[[nodiscard]] double across_sigma_m(const grid::GridGeometry& grid,
+                                    const EdgeLine& line,
+                                    double rms_m);
+
+/// The longest piece of an edge that its points show, without gaps of more than `max_gap_m`; points
+/// further than `near_m` across from `at_m` do not count. Ends before it begins if there is none.
+struct Extent {
+    double from_m = 0.0;
+    double to_m = -1.0;
+};
+[[nodiscard]] Extent longest_run(
+    std::span<const BorderPoint> points, int edge, double at_m, double near_m, double max_gap_m);
+
 }  // namespace surefoot::stairs

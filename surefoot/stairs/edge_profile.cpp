@@ -20,7 +20,9 @@ constexpr double kMeasured_m = 0.15;  ///< of level ground that is used for its 
 /// Errors of a semi-global matcher hang together over 30-50 px: 0.1 m of floor 1 m away.
 constexpr double kCorrelation_m = 0.1;
 constexpr double kScatterOfMad = 1.4826;
-constexpr double kEnd_m = 0.25;  ///< where ground ends: known before it and unknown behind it
+constexpr double kBeside_m = 0.3;   ///< an edge may go on beyond the ends of its line
+constexpr double kHalfTurn = 0.02;  ///< half of the turn of a line that is still its own
+constexpr double kEnd_m = 0.25;     ///< where ground ends: known before it and unknown behind it
 constexpr double kEndRms_m = 0.015;
 /// Steeper than noise makes level ground.
 constexpr double kLeastSlope = 0.06;
@@ -229,6 +231,7 @@ double EdgeProfiler::place(const Terrain& terrain,
     search.below_m = upper_tolerance_m(upper.scatter_m, edge.height_m());
     search.inside_m = config_.smear_m;
     search.cell_reach = config_.cell_reach;
+    search.beside_m = kBeside_m;
     borders_.clear();
     add_border_points(terrain, line, search, borders_);
     ParallelEdge placed{.rms_m = line.rms_m};
@@ -237,8 +240,15 @@ double EdgeProfiler::place(const Terrain& terrain,
     if (placed.points < 3) return line.rms_m;
     const Vector2d along = (line.along() + turn_rad * line.down()).normalized();
     const Vector2d middle_m = line.from_m + middle_t_m * line.along() + placed.at_m * line.down();
-    edge.from_m = middle_m - middle_t_m * along;
-    edge.to_m = middle_m + middle_t_m * along;
+    Extent extent = longest_run(borders_,
+                                0,
+                                placed.at_m,
+                                config_.fit_tolerance_m + kHalfTurn * length_m_,
+                                config_.max_gap_m);
+    if (extent.to_m - extent.from_m < 0.5 * length_m_) extent = {0.0, length_m_};
+    const double half_cell_m = 0.5 * resolution_m_;
+    edge.from_m = middle_m + (extent.from_m - half_cell_m - middle_t_m) * along;
+    edge.to_m = middle_m + (extent.to_m + half_cell_m - middle_t_m) * along;
     return placed.rms_m;
 }
 
@@ -298,8 +308,7 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
           std::max(config_.min_height_m, config_.sigma_factor * edge.height_sigma_m)))
         return std::nullopt;
     const double rms_m = place(terrain, line, upper, edge);
-    const double independent = std::max(1.0, line.length_m() / kCorrelation_m);
-    edge.across_sigma_m = std::max(rms_m, 0.25 * resolution_m_) / std::sqrt(independent);
+    edge.across_sigma_m = across_sigma_m(terrain.geometry, {edge.from_m, edge.to_m}, rms_m);
     edge.angle_sigma_rad = edge.across_sigma_m * std::sqrt(12.0) / std::max(line.length_m(), 0.05);
     return edge;
 }

@@ -11,9 +11,8 @@ using Eigen::Vector2d;
 
 constexpr double kStance_m = 0.3;
 
-/// An edge as seen from a stance.
-LineFeature line_feature(const Edge& edge, const Vector2d& stance_m) {
-    const bool goes_down = edge.below_m(stance_m) < 0.0;
+/// An edge as met by who goes down or up over it.
+LineFeature line_feature(const Edge& edge, bool goes_down) {
     const Vector2d way = goes_down ? edge.down() : Vector2d(-edge.down());
     LineFeature feature;
     feature.pose.p_m << edge.middle_m(), goes_down ? edge.upper_m : edge.lower_m;
@@ -133,16 +132,19 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
 void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) const {
     for (std::size_t i = 0; i < out.edges.size(); ++i) {
         const Edge& edge = out.edges[i];
-        const LineFeature feature = line_feature(edge, terrain.stance_m);
         if (in_flight_[i]) continue;
-        const bool goes_down = feature.height_m < 0.0;
-        if (goes_down ? !edge.upper_walkable : !edge.lower_walkable) continue;
+        // Ground above it that can be walked to makes it a drop, from whichever side one stands.
+        const bool both = edge.upper_walkable && edge.lower_walkable;
+        const bool goes_down = both ? edge.below_m(terrain.stance_m) < 0.0 : edge.upper_walkable;
+        if (!goes_down && !edge.lower_walkable) continue;
+        const LineFeature feature = line_feature(edge, goes_down);
         if (feature.height_m < -config_.drop_m) out.drops.push_back(feature);
         if (edge.lower_seen && edge.height_m() <= config_.kerb_m) out.kerbs.push_back(feature);
     }
     // The near edge of a flight down is a drop like any other.
     for (const Flight& flight : out.flights) {
-        const LineFeature feature = line_feature(flight.edges.front(), terrain.stance_m);
+        const LineFeature feature =
+            line_feature(flight.edges.front(), flight.kind == FlightKind::down);
         if (feature.height_m < -config_.drop_m) out.drops.push_back(feature);
         if (flight.steps == 1 && std::abs(feature.height_m) <= config_.kerb_m)
             out.kerbs.push_back(feature);

@@ -193,25 +193,10 @@ double StepFitter::place_steps() {
 
 void StepFitter::measure_extents(const grid::GridGeometry& grid) {
     for (std::size_t k = 0; k < steps_.size(); ++k) {
-        along_m_.clear();
-        for (const BorderPoint& point : borders_)
-            if (point.edge == static_cast<int>(k) &&
-                std::abs(point.s_m - steps_[k].at_m) <= kNear_m)
-                along_m_.push_back(point.t_m);
-        if (along_m_.empty()) continue;
-        std::sort(along_m_.begin(), along_m_.end());
-        double best_m = -1.0;
-        for (std::size_t begin = 0; begin < along_m_.size();) {
-            std::size_t end = begin + 1;
-            while (end < along_m_.size() && along_m_[end] - along_m_[end - 1] <= config_.max_gap_m)
-                ++end;
-            if (along_m_[end - 1] - along_m_[begin] > best_m) {
-                best_m = along_m_[end - 1] - along_m_[begin];
-                steps_[k].from_m = along_m_[begin] - 0.5 * grid.resolution_m;
-                steps_[k].to_m = along_m_[end - 1] + 0.5 * grid.resolution_m;
-            }
-            begin = end;
-        }
+        const Extent extent =
+            longest_run(borders_, static_cast<int>(k), steps_[k].at_m, kNear_m, config_.max_gap_m);
+        steps_[k].from_m = extent.from_m - 0.5 * grid.resolution_m;
+        steps_[k].to_m = extent.to_m + 0.5 * grid.resolution_m;
     }
 }
 
@@ -250,9 +235,8 @@ void StepFitter::fit(const Terrain& terrain, const Edge& seed, std::vector<Edge>
         edge.lower_m = lower.height_m;
         edge.lower_seen = true;
         edge.height_sigma_m = std::hypot(upper.sigma_m, lower.sigma_m);
-        const double independent = std::max(1.0, (step->to_m - step->from_m) / kCorrelation_m);
         edge.across_sigma_m =
-            std::max(step->rms_m, 0.25 * terrain.geometry.resolution_m) / std::sqrt(independent);
+            across_sigma_m(terrain.geometry, {edge.from_m, edge.to_m}, step->rms_m);
         edge.angle_sigma_rad = edge.across_sigma_m * std::sqrt(12.0) / edge.length_m() /
                                std::sqrt(static_cast<double>(steps_.size()));
         edge.upper_depth_m = step->at_m - upper.begin_m;

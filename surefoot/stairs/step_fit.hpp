@@ -59,7 +59,6 @@ class StepFitter {
     std::vector<Step> steps_;
     std::vector<BorderPoint> borders_;
     std::vector<ParallelEdge> places_;
-    std::vector<double> along_m_;
 };
 
 }  // namespace surefoot::stairs

@@ -14,4 +14,14 @@ bool View::shows(const Eigen::Vector3d& p_map_m) const {
            v_px >= kBorder_px && v_px <= height_px - 1.0 - kBorder_px;
 }
 
+double View::unmapped_m(const Eigen::Vector3d& p_map_m, const Eigen::Vector2d& way) const {
+    const Eigen::Vector3d ray_m = p_map_m - T_map_camera.translation_m;
+    const double along_m = ray_m.head<2>().dot(way);
+    if (!(fy_px > 0.0 && along_m > 0.0 && ray_m.z() < 0.0)) return 0.0;
+    // An angle of a pixel moves the ray's end by range^2 / height along the ground.
+    const double range_sq_m2 = ray_m.squaredNorm();
+    const double ahead_m = unmapped_px / fy_px * range_sq_m2 / -ray_m.z();
+    return ahead_m * along_m / ray_m.head<2>().norm();
+}
+
 }  // namespace surefoot::stairs

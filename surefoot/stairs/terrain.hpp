@@ -21,9 +21,15 @@ struct View {
     double cx_px = 0.0;
     double cy_px = 0.0;
     double baseline_m = 0.0;
+    /// So near to where nothing is matched pixels are not mapped (elevation.pixels.reach_px).
+    double unmapped_px = 0.0;
 
     /// Both eyes see the place, if nothing is in between, and not at the border of their images.
     [[nodiscard]] bool shows(const Eigen::Vector3d& p_map_m) const;
+    /// How far level ground goes on, along `way`, beyond the last place of it that is mapped [m]:
+    /// `unmapped_px` on the ground. `way`: unit vector that leads away from the camera.
+    [[nodiscard]] double unmapped_m(const Eigen::Vector3d& p_map_m,
+                                    const Eigen::Vector2d& way) const;
 };
 
 /// What is known of the ground; all layers have the size of `geometry`, row iy, column ix. Lengths

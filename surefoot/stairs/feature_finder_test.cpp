@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stairs/feature_finder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "surefoot/stairs/terrain_for_test.hpp"
+
+namespace surefoot::stairs {
+namespace {
+
+using testing::Ground;
+using testing::kRadPerDeg;
+using testing::TestFlight;
+using testing::TestMap;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+/// An edge along the rows lies anywhere within its cells, half a cell from their middles at most;
+/// one that crosses them is known far better.
+constexpr double kAcross_m = 0.0131;
+const double kYaws_deg[] = {0.0, 7.0, 31.0, 45.0, 90.0, 133.0, 200.0, 270.0};
+
+TerrainFeatures find(const Terrain& terrain) {
+    FeatureFinder finder{StairsConfig{}};
+    TerrainFeatures found;
+    finder.find(terrain, found);
+    return found;
+}
+
+Ground ground_of(const TestFlight& flight) {
+    return [flight](double x_m, double y_m) { return flight.at(x_m, y_m); };
+}
+
+/// The stance is the camera's place on the floor.
+TerrainFeatures seen_from(TestMap& map, double x_m, double height_m = 1.0) {
+    map.hide_from({x_m, 0.0, height_m});
+    return find(map.terrain({x_m, 0.0}));
+}
+
+TEST(FeatureFinder, flights_up_have_all_their_steps_at_any_yaw) {
+    for (const double yaw_deg : kYaws_deg) {
+        for (const int steps : {1, 2, 3, 5}) {
+            const TestFlight flight{.steps = steps, .riser_m = 0.18, .going_m = 0.31};
+            const TestMap map(ground_of(flight), yaw_deg * kRadPerDeg, {0.013, -0.007});
+            const TerrainFeatures found = find(map.terrain());
+            SCOPED_TRACE(::testing::Message() << yaw_deg << " deg, " << steps << " steps");
+            ASSERT_EQ(found.flights.size(), 1U);
+            const Flight& f = found.flights.front();
+            EXPECT_EQ(f.kind, FlightKind::up);
+            EXPECT_EQ(f.steps, steps);
+            EXPECT_NEAR(f.riser_m, flight.riser_m, 1e-4);
+            if (steps > 1) {
+                EXPECT_NEAR(f.going_m, flight.going_m, 2.0 * kAcross_m / (steps - 1));
+            }
+            EXPECT_NEAR(
+                std::remainder(f.pose.yaw_rad - yaw_deg * kRadPerDeg, 2.0 * std::numbers::pi),
+                0.0,
+                1.0 * kRadPerDeg);
+            EXPECT_NEAR(map.to_world(f.pose.p_m.head<2>()).x(), 0.0, kAcross_m);
+            EXPECT_NEAR(f.pose.p_m.z(), 0.0, 1e-4);
+            EXPECT_NEAR(f.width_m, flight.width_m, 0.06);
+            EXPECT_TRUE(found.drops.empty());
+        }
+    }
+}
+
+TEST(FeatureFinder, flights_down_are_read_from_the_strips_of_their_treads_that_are_in_sight) {
+    for (const double yaw_deg : kYaws_deg) {
+        const TestFlight flight{.steps = 4, .riser_m = -0.17, .going_m = 0.29};
+        TestMap map(ground_of(flight), yaw_deg * kRadPerDeg, {-0.004, 0.011});
+        const TerrainFeatures found = seen_from(map, -0.7);
+        SCOPED_TRACE(::testing::Message() << yaw_deg << " deg");
+        ASSERT_EQ(found.flights.size(), 1U);
+        const Flight& f = found.flights.front();
+        EXPECT_EQ(f.kind, FlightKind::down);
+        EXPECT_EQ(f.steps, 4);
+        EXPECT_NEAR(f.riser_m, 0.17, 1e-3);
+        EXPECT_NEAR(f.going_m, 0.29, 0.005);
+        EXPECT_NEAR(map.to_world(f.pose.p_m.head<2>()).x(), 0.0, kAcross_m);
+        // Its first edge is a drop, of one step.
+        bool drop = false;
+        for (const LineFeature& d : found.drops)
+            drop = drop || (std::abs(map.to_world(d.pose.p_m.head<2>()).x()) <= kAcross_m &&
+                            std::abs(d.height_m + 0.17) <= 1e-3);
+        EXPECT_TRUE(drop);
+    }
+}
+
+TEST(FeatureFinder, noise_of_3_mm_changes_a_riser_by_less_than_1_mm) {
+    const TestFlight flight{.steps = 4, .riser_m = 0.15, .going_m = 0.28};
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        TestMap map(ground_of(flight), 0.3 * static_cast<double>(seed), {0.0, 0.0});
+        map.add_noise(0.003, seed);
+        const TerrainFeatures found = find(map.terrain());
+        ASSERT_EQ(found.flights.size(), 1U) << "seed " << seed;
+        EXPECT_EQ(found.flights[0].steps, 4) << "seed " << seed;
+        EXPECT_NEAR(found.flights[0].riser_m, 0.15, 1e-3) << "seed " << seed;
+        EXPECT_NEAR(found.flights[0].going_m, 0.28, 0.006) << "seed " << seed;
+    }
+}
+
+TEST(FeatureFinder, a_first_step_almost_level_with_the_floor_is_a_step) {
+    const TestFlight flight{.steps = 4, .riser_m = 0.18, .going_m = 0.31, .first_riser_m = 0.05};
+    const TestMap map(ground_of(flight), 0.5, {0.0, 0.0});
+    const TerrainFeatures found = find(map.terrain());
+    ASSERT_EQ(found.flights.size(), 1U);
+    EXPECT_EQ(found.flights[0].steps, 4);
+    EXPECT_NEAR(found.flights[0].riser_m, 0.18, 1e-3);
+    EXPECT_NEAR(map.to_world(found.flights[0].pose.p_m.head<2>()).x(), 0.0, kAcross_m);
+}
+
+TEST(FeatureFinder, who_stands_on_a_stair_has_a_flight_up_and_one_down) {
+    const TestFlight flight{.steps = 5, .riser_m = 0.18, .going_m = 0.31};
+    const TestMap map(ground_of(flight), 0.0, {0.0, 0.0});
+    const TerrainFeatures found = find(map.terrain({0.45, 0.0}));
+    ASSERT_EQ(found.flights.size(), 2U);
+    int up = 0;
+    int down = 0;
+    for (const Flight& f : found.flights) (f.kind == FlightKind::up ? up : down) += f.steps;
+    EXPECT_EQ(up, 3);
+    EXPECT_EQ(down, 2);
+}
+
+TEST(FeatureFinder, a_kerb_down_is_a_drop_and_a_kerb_where_the_ground_above_it_ends) {
+    for (const double height_m : {0.075, 0.1, 0.15}) {
+        for (const double yaw_deg : kYaws_deg) {
+            TestMap map([&](double x_m, double) { return x_m < 0.3 ? 0.0 : -height_m; },
+                        yaw_deg * kRadPerDeg,
+                        {0.006, 0.001});
+            map.add_noise(0.003, 5);
+            const TerrainFeatures found = seen_from(map, -1.0);
+            SCOPED_TRACE(::testing::Message() << yaw_deg << " deg, " << height_m << " m");
+            ASSERT_EQ(found.drops.size(), 1U);
+            EXPECT_NEAR(found.drops[0].height_m, -height_m, 0.003);
+            const Eigen::Vector2d p_m = map.to_world(found.drops[0].pose.p_m.head<2>());
+            EXPECT_NEAR(p_m.x(), 0.3, kAcross_m);
+            EXPECT_GT(found.drops[0].length_m, 3.0);
+            EXPECT_TRUE(found.drops[0].bottom_seen);
+            ASSERT_EQ(found.kerbs.size(), 1U);
+            EXPECT_EQ(found.kerbs[0].height_m, found.drops[0].height_m);
+        }
+    }
+}
+
+TEST(FeatureFinder, a_kerb_up_is_a_kerb_and_no_drop) {
+    const TestMap map([](double x_m, double) { return x_m < 0.3 ? 0.0 : 0.12; }, 0.2, {0.0, 0.0});
+    const TerrainFeatures found = find(map.terrain());
+    EXPECT_TRUE(found.drops.empty());
+    ASSERT_EQ(found.kerbs.size(), 1U);
+    EXPECT_NEAR(found.kerbs[0].height_m, 0.12, 1e-4);
+}
+
+TEST(FeatureFinder, what_cannot_be_walked_to_is_no_drop) {
+    // A table: its far rim is 0.7 m above the floor, but nobody stands on it.
+    const TestMap map(
+        [](double x_m, double y_m) {
+            return x_m > 0.2 && x_m < 1.0 && std::abs(y_m) < 0.6 ? 0.7 : 0.0;
+        },
+        0.0,
+        {0.0, 0.0});
+    const TerrainFeatures found = find(map.terrain());
+    EXPECT_FALSE(found.edges.empty());
+    EXPECT_TRUE(found.drops.empty());
+    EXPECT_TRUE(found.flights.empty());
+    EXPECT_TRUE(found.kerbs.empty());
+}
+
+TEST(FeatureFinder, the_rim_of_a_hole_is_a_drop_on_all_sides) {
+    const TestMap map(
+        [](double x_m, double y_m) {
+            return x_m > 0.2 && x_m < 1.4 && std::abs(y_m) < 0.7 ? -0.4 : 0.0;
+        },
+        0.4,
+        {0.0, 0.0});
+    const TerrainFeatures found = find(map.terrain());
+    double rim_m = 0.0;
+    for (const LineFeature& d : found.drops) rim_m += d.length_m;
+    EXPECT_NEAR(rim_m, 2.0 * (1.2 + 1.4), 0.3);
+    EXPECT_TRUE(found.flights.empty());
+}
+
+TEST(FeatureFinder, slopes_are_no_edges) {
+    for (const double slope : {0.02, 0.083, 0.125, 0.2, 0.3}) {
+        const TestMap map([&](double x_m, double) { return slope * x_m; }, 0.3, {0.0, 0.0});
+        const TerrainFeatures found = find(map.terrain());
+        EXPECT_TRUE(found.edges.empty()) << slope;
+    }
+}
+
+TEST(FeatureFinder, two_flights_side_by_side_are_two) {
+    const TestFlight left{.steps = 3, .riser_m = 0.18, .going_m = 0.31, .width_m = 1.0};
+    const TestFlight right{.steps = 3, .riser_m = 0.15, .going_m = 0.28, .width_m = 1.0};
+    const TestMap map(
+        [&](double x_m, double y_m) {
+            return y_m > 0.0 ? left.at(x_m, y_m - 0.8) : right.at(x_m - 0.1, y_m + 0.8);
+        },
+        0.0,
+        {0.0, 0.0});
+    const TerrainFeatures found = find(map.terrain());
+    ASSERT_EQ(found.flights.size(), 2U);
+    const Flight& first = found.flights[0].pose.p_m.y() > 0.0 ? found.flights[0] : found.flights[1];
+    const Flight& second =
+        found.flights[0].pose.p_m.y() > 0.0 ? found.flights[1] : found.flights[0];
+    EXPECT_NEAR(first.riser_m, 0.18, 1e-3);
+    EXPECT_NEAR(second.riser_m, 0.15, 1e-3);
+    EXPECT_EQ(first.steps, 3);
+    EXPECT_EQ(second.steps, 3);
+}
+
+TEST(FeatureFinder, a_flight_that_the_map_cuts_off_says_so) {
+    const TestFlight flight{.steps = 20, .riser_m = 0.17, .going_m = 0.28};
+    const TestMap map(ground_of(flight), 0.0, {1.0, 0.0});  // 1.5 m of it are in the map
+    const TerrainFeatures found = find(map.terrain());
+    ASSERT_EQ(found.flights.size(), 1U);
+    EXPECT_EQ(found.flights[0].steps, 6);
+    EXPECT_TRUE(found.flights[0].cut);
+}
+
+TEST(FeatureFinder, cells_may_be_small_or_large) {
+    const TestFlight flight{.steps = 3, .riser_m = 0.18, .going_m = 0.31};
+    for (const double resolution_m : {0.01, 0.02, 0.05}) {
+        const TestMap map(ground_of(flight), 0.35, {0.0, 0.0}, resolution_m, 3.0);
+        const TerrainFeatures found = find(map.terrain());
+        ASSERT_EQ(found.flights.size(), 1U) << resolution_m;
+        EXPECT_EQ(found.flights[0].steps, 3) << resolution_m;
+        EXPECT_NEAR(found.flights[0].riser_m, 0.18, 1e-3) << resolution_m;
+        EXPECT_NEAR(found.flights[0].going_m, 0.31, 0.25 * resolution_m) << resolution_m;
+    }
+}
+
+TEST(FeatureFinder, heights_of_8_bits_and_holes_are_no_trouble) {
+    const TestFlight flight{.steps = 4, .riser_m = 0.18, .going_m = 0.31};
+    TestMap map(ground_of(flight), 0.9, {0.0, 0.0});
+    Rng rng(3);
+    for (std::size_t i = 0; i < map.height_m.size(); ++i) {
+        float& z_m = map.height_m.data()[i];
+        z_m = std::round(z_m / 0.0049F) * 0.0049F;
+        if (rng.uniform() < 0.05) z_m = kNaN;
+    }
+    const TerrainFeatures found = find(map.terrain());
+    ASSERT_EQ(found.flights.size(), 1U);
+    EXPECT_EQ(found.flights[0].steps, 4);
+    EXPECT_NEAR(found.flights[0].riser_m, 0.18, 0.002);
+}
+
+TEST(FeatureFinder, nothing_sensible_gives_nothing) {
+    const auto expect_nothing = [](const Terrain& terrain, const char* what) {
+        const TerrainFeatures found = find(terrain);
+        EXPECT_TRUE(found.flights.empty()) << what;
+        EXPECT_TRUE(found.drops.empty()) << what;
+        EXPECT_TRUE(found.kerbs.empty()) << what;
+    };
+    const TestMap flat([](double, double) { return 0.4; }, 0.0, {0.0, 0.0});
+    expect_nothing(flat.terrain(), "flat");
+    TestMap unknown = flat;
+    unknown.height_m.fill(kNaN);
+    expect_nothing(unknown.terrain(), "unknown");
+    TestMap broken = flat;
+    broken.height_m.fill(std::numeric_limits<float>::infinity());
+    expect_nothing(broken.terrain(), "infinite");
+    TestMap noise = flat;
+    noise.add_noise(0.1, 7);
+    expect_nothing(noise.terrain(), "noise");
+    noise.var_m2.fill(0.0F);  // and sure of it
+    EXPECT_TRUE(find(noise.terrain()).flights.empty());
+    TestMap nowhere = flat;
+    Terrain terrain = nowhere.terrain();
+    terrain.stance_m.setConstant(std::numeric_limits<double>::quiet_NaN());
+    expect_nothing(terrain, "no stance");
+
+    grid::Layer cell(1, 1, 0.0F);
+    Terrain one;
+    one.geometry = {0.025, 1, 1, {0.0, 0.0}};
+    one.height_m = cell.view();
+    expect_nothing(one, "one cell");
+    expect_nothing(Terrain{}, "no map");
+}
+
+TEST(FeatureFinder, a_riser_at_the_border_of_the_map_does_not_invent_a_flight) {
+    const TestFlight flight{.steps = 6};
+    const TestMap map(ground_of(flight), 0.0, {2.45, 0.0});  // 50 mm of the first tread
+    for (const Flight& f : find(map.terrain()).flights) EXPECT_EQ(f.steps, 1);
+}
+
+/// 1 m above the place, 32 deg down, as the ZED of the REX.
+View view_from(const TestMap& map, double x_m, double yaw_rad) {
+    const Eigen::Vector2d p_m = map.to_map({x_m, 0.0});
+    const double pitch_rad = 32.0 * kRadPerDeg;
+    Eigen::Matrix3d level_camera;  // columns: right, down, ahead of a camera that looks along +x
+    level_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    View view;
+    view.T_map_camera.translation_m = {p_m.x(), p_m.y(), 1.0};
+    view.T_map_camera.rotation = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()) *
+                                 Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()) *
+                                 Eigen::Quaterniond(level_camera);
+    view.width_px = 672.0;
+    view.height_px = 376.0;
+    view.fx_px = view.fy_px = 350.0;
+    view.cx_px = 336.0;
+    view.cy_px = 188.0;
+    view.baseline_m = 0.12;
+    return view;
+}
+
+TEST(FeatureFinder, ground_that_ends_in_sight_is_a_drop_whose_bottom_is_not_seen) {
+    TestMap map([](double x_m, double) { return x_m < 1.5 ? 0.0 : -3.0; }, 0.6, {-0.8, -0.6});
+    for (std::size_t i = 0; i < map.height_m.size(); ++i)
+        if (map.height_m.data()[i] < -1.0F) map.height_m.data()[i] = kNaN;
+    Terrain terrain = map.terrain({0.0, 0.0});
+    EXPECT_TRUE(find(terrain).drops.empty());  // who knows where the camera looked?
+    terrain.view = view_from(map, 0.0, 0.6);
+    const TerrainFeatures found = find(terrain);
+    ASSERT_EQ(found.drops.size(), 1U);
+    EXPECT_FALSE(found.drops[0].bottom_seen);
+    EXPECT_NEAR(map.to_world(found.drops[0].pose.p_m.head<2>()).x(), 1.5, 0.02);
+    // The end of the view itself is no drop.
+    terrain.view = view_from(map, 0.0, 0.6 + 2.5);
+    EXPECT_TRUE(find(terrain).drops.empty());
+}
+
+TEST(FeatureFinder, points_on_a_riser_place_its_edge_where_cells_before_it_hold_some) {
+    const TestFlight flight{.steps = 3, .riser_m = 0.18, .going_m = 0.31};
+    const double yaw_rad = 0.3;
+    TestMap map(ground_of(flight), yaw_rad, {0.0, 0.0});
+    // Depth noise puts points of each riser into the two cells before it and behind it.
+    grid::Layer density(map.geometry.nx, map.geometry.ny, 0.7F);
+    for (int iy = 0; iy < map.geometry.ny; ++iy) {
+        for (int ix = 0; ix < map.geometry.nx; ++ix) {
+            const Eigen::Vector2d p_m = map.to_world(map.geometry.center_m({ix, iy}));
+            for (int step = 0; step < 3; ++step) {
+                const double s_m = p_m.x() - 0.31 * step;
+                if (std::abs(p_m.y()) > 0.6 || std::abs(s_m) > 0.05) continue;
+                density.at(ix, iy) = 8.0F;
+                if (s_m < 0.0) map.height_m.at(ix, iy) += 0.16F;
+            }
+        }
+    }
+    Terrain terrain = map.terrain();
+    const double without_m = map.to_world(find(terrain).flights.at(0).pose.p_m.head<2>()).x();
+    EXPECT_LT(without_m, -0.02);
+    terrain.density_ratio = density.view();
+    const TerrainFeatures found = find(terrain);
+    ASSERT_EQ(found.flights.size(), 1U);
+    EXPECT_NEAR(map.to_world(found.flights[0].pose.p_m.head<2>()).x(), 0.0, 0.003);
+    EXPECT_NEAR(found.flights[0].going_m, 0.31, 0.002);
+}
+
+TEST(FeatureFinder, the_same_map_gives_the_same_features) {
+    const TestFlight flight{.steps = 4};
+    TestMap map(ground_of(flight), 0.7, {0.0, 0.0});
+    map.add_noise(0.004, 2);
+    FeatureFinder finder{StairsConfig{}};
+    TerrainFeatures first;
+    TerrainFeatures second;
+    finder.find(map.terrain(), first);
+    finder.find(map.terrain(), second);
+    ASSERT_EQ(first.edges.size(), second.edges.size());
+    for (std::size_t i = 0; i < first.edges.size(); ++i) {
+        EXPECT_EQ(first.edges[i].from_m, second.edges[i].from_m);
+        EXPECT_EQ(first.edges[i].upper_m, second.edges[i].upper_m);
+    }
+    EXPECT_EQ(first.flights.at(0).riser_m, second.flights.at(0).riser_m);
+}
+
+}  // namespace
+}  // namespace surefoot::stairs
