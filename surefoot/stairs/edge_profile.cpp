@@ -19,6 +19,8 @@ constexpr double kLevel_m = 0.012;
 constexpr double kMeasured_m = 0.15;  ///< of level ground that is used for its height
 /// Errors of a semi-global matcher hang together over 30-50 px: 0.1 m of floor 1 m away.
 constexpr double kCorrelation_m = 0.1;
+constexpr double kStrip_m = 0.2;  ///< no tread of which more is in sight lies between shadows
+constexpr double kStripRange_m = 0.06;
 constexpr double kScatterOfMad = 1.4826;
 constexpr double kBeside_m = 0.3;   ///< an edge may go on beyond the ends of its line
 constexpr double kHalfTurn = 0.02;  ///< half of the turn of a line that is still its own
@@ -41,7 +43,24 @@ EdgeProfiler::Slices EdgeProfiler::slices(const Terrain& terrain,
                                           double upper_m,
                                           double lower_m) {
     slice(terrain, line, upper_m, lower_m);
-    return {slices_, -upper_slices_ * resolution_m_};
+    return {slices_, -upper_slices_ * resolution_m_, resolution_m_};
+}
+
+bool EdgeProfiler::Slices::known(int slice) const {
+    return slice >= 0 && slice < count() && at(slice).known_share >= kLeastShare;
+}
+
+int EdgeProfiler::Slices::strip(int slice, int way) const {
+    if (!known(slice) || known(slice - way)) return 0;
+    const int most = static_cast<int>(kStrip_m / cell_m);
+    double lowest_m = at(slice).height_m;
+    double highest_m = lowest_m;
+    int length = 1;
+    for (; known(slice + length * way); ++length) {
+        lowest_m = std::min(lowest_m, at(slice + length * way).height_m);
+        highest_m = std::max(highest_m, at(slice + length * way).height_m);
+    }
+    return length <= most && highest_m - lowest_m <= kStripRange_m ? length : 0;
 }
 
 void EdgeProfiler::slice(const Terrain& terrain,
@@ -131,11 +150,10 @@ void EdgeProfiler::slice(const Terrain& terrain,
 }
 
 /// The first level ground from slice `first` on.
-Level EdgeProfiler::level_from(int first, int step, double least_share) const {
-    const int slices = static_cast<int>(slices_.size());
-    const auto known = [&](int k) {
-        return k >= 0 && k < slices && at(k).known_share >= least_share;
-    };
+Level EdgeProfiler::level_from(int first, int step) const {
+    const Slices all{slices_, 0.0, resolution_m_};
+    const int slices = all.count();
+    const auto known = [&](int k) { return all.known(k); };
     const auto level_with_next = [&](int k) {
         return known(k) && known(k + step) &&
                std::abs(at(k).height_m - at(k + step).height_m) <= kLevel_m;
@@ -145,6 +163,7 @@ Level EdgeProfiler::level_from(int first, int step, double least_share) const {
     const int furthest = static_cast<int>(std::ceil(2.0 * config_.smear_m / resolution_m_));
     for (int tried = 0; begin >= 0 && begin < slices; begin += step, ++tried) {
         if (!known(begin)) continue;
+        if (all.strip(begin, step) > 0) break;
         if (level_with_next(begin) && (level_with_next(begin + step) || !known(begin + 2 * step)))
             break;
         if (tried > furthest && known(begin)) break;
@@ -153,7 +172,11 @@ Level EdgeProfiler::level_from(int first, int step, double least_share) const {
     level.sigma_m = kNothing;
     if (!known(begin)) return level;
     int end = begin;
-    while (level_with_next(end)) end += step;
+    if (const int strip = all.strip(begin, step); strip > 0) {
+        end += (strip - 1) * step;
+    } else {
+        while (level_with_next(end)) end += step;
+    }
     level.ends_unknown = !known(end + step);
     level.begin_m = std::abs(begin - first) * resolution_m_;
     level.end_m = (std::abs(end - first) + 1) * resolution_m_;
@@ -254,8 +277,8 @@ double EdgeProfiler::place(const Terrain& terrain,
 
 std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine& line) {
     slice(terrain, line, kUpper_m, kLower_m);
-    Level upper = level_from(upper_slices_ - 1, -1, kLeastShare);
-    Level lower = level_from(upper_slices_, +1, kLeastShare);
+    Level upper = level_from(upper_slices_ - 1, -1);
+    Level lower = level_from(upper_slices_, +1);
     if (!std::isfinite(upper.sigma_m)) return std::nullopt;
     // A slope that goes on is no edge: what both sides fall by explains the height.
     const double slope = std::min(upper.slope, -lower.slope);

@@ -54,6 +54,16 @@ class EdgeProfiler {
     struct Slices {
         std::span<const Slice> slices;
         double begin_m = 0.0;  ///< of the first one, from the line; negative on the upper side
+        double cell_m = 0.0;
+
+        [[nodiscard]] int count() const { return static_cast<int>(slices.size()); }
+        [[nodiscard]] const Slice& at(int slice) const {
+            return slices[static_cast<std::size_t>(slice)];
+        }
+        [[nodiscard]] bool known(int slice) const;
+        /// How many slices, from this one on in steps of `way`, are a strip of ground between two
+        /// shadows: what is in sight of a tread that lies lower; 0 where it is none.
+        [[nodiscard]] int strip(int slice, int way) const;
     };
     [[nodiscard]] Slices slices(const Terrain& terrain,
                                 const EdgeLine& line,
@@ -67,7 +77,7 @@ class EdgeProfiler {
         float var_m2;
     };
     void slice(const Terrain& terrain, const EdgeLine& line, double upper_m, double lower_m);
-    [[nodiscard]] Level level_from(int first, int step, double least_share) const;
+    [[nodiscard]] Level level_from(int first, int step) const;
     [[nodiscard]] bool ground_ends(const Terrain& terrain,
                                    const EdgeLine& line,
                                    const Level& upper) const;

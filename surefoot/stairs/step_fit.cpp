@@ -12,8 +12,8 @@ using Eigen::Vector2d;
 
 constexpr double kReach_m = 2.5;  ///< to either side of the seed
 constexpr int kRounds = 3;
-constexpr double kLeastShare = 0.3;  ///< of a slice that must be known
-constexpr double kLevel_m = 0.015;   ///< neighbouring slices of a tread differ by less
+constexpr double kLeastTread_m = 0.05;
+constexpr double kLevel_m = 0.015;  ///< neighbouring slices of a tread differ by less
 /// Edge points further from where the treads pass into each other belong to something else.
 constexpr double kNear_m = 0.07;
 constexpr double kSide_m = 0.4;  ///< a step may be so much wider than the seed, on either side
@@ -29,47 +29,60 @@ constexpr std::size_t kLeastPoints = 10;
 
 void StepFitter::find_treads(const Terrain& terrain, const EdgeLine& line) {
     treads_.clear();
-    const auto [slices, begin_m] = profiler_.slices(terrain, line, kReach_m, kReach_m);
-    const double cell_m = terrain.geometry.resolution_m;
-    const auto known = [&](std::size_t k) { return slices[k].known_share >= kLeastShare; };
-    const auto least = static_cast<std::size_t>(std::max(2.0, std::floor(0.05 / cell_m + 0.5)));
-    for (std::size_t first = 0; first < slices.size();) {
-        if (!known(first)) {
+    const EdgeProfiler::Slices all = profiler_.slices(terrain, line, kReach_m, kReach_m);
+    const int least = std::max(2, static_cast<int>(std::lround(kLeastTread_m / all.cell_m)));
+    for (int first = 0; first < all.count();) {
+        if (!all.known(first)) {
             ++first;
             continue;
         }
-        std::size_t last = first;
-        double sum_m = slices[first].height_m * slices[first].known_share;
-        double weight = slices[first].known_share;
-        double var_m2 = 0.0;
-        while (last + 1 < slices.size() && known(last + 1) &&
-               std::abs(slices[last + 1].height_m - slices[last].height_m) <= kLevel_m &&
-               std::abs(slices[last + 1].height_m - sum_m / weight) <= 2.0 * kLevel_m) {
-            ++last;
-            sum_m += slices[last].height_m * slices[last].known_share;
-            weight += slices[last].known_share;
+        int length = all.strip(first, +1);
+        if (length > 0) {
+            add_tread(all, first, length, 0);
+        } else {
+            length = level_run(all, first);
+            // The border slices of a tread may hold what belongs to its neighbours.
+            if (length >= least)
+                add_tread(all, first, length, length >= 8 ? 2 : length >= 4 ? 1 : 0);
         }
-        if (last - first + 1 >= least) {
-            // Its border slices may hold what belongs to its neighbours.
-            const std::size_t depth = last - first + 1;
-            const std::size_t margin = depth >= 8 ? 2 : depth >= 4 ? 1 : 0;
-            sum_m = weight = 0.0;
-            for (std::size_t k = first + margin; k + margin <= last; ++k) {
-                const double scatter_m = std::max(slices[k].scatter_m, slices[k].sigma_m);
-                sum_m += slices[k].known_share * slices[k].height_m;
-                weight += slices[k].known_share;
-                var_m2 += slices[k].known_share * scatter_m * scatter_m;
-            }
-            const double area_m2 = weight * cell_m * length_m_;
-            const double independent = std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m));
-            treads_.push_back({begin_m + static_cast<double>(first) * cell_m,
-                               begin_m + static_cast<double>(last + 1) * cell_m,
-                               sum_m / weight,
-                               std::sqrt(var_m2 / weight / independent),
-                               std::sqrt(var_m2 / weight)});
-        }
-        first = last + 1;
+        first += length;
     }
+}
+
+/// Slices from one on that are level with each other.
+int StepFitter::level_run(const EdgeProfiler::Slices& all, int first) {
+    double sum_m = all.at(first).height_m * all.at(first).known_share;
+    double weight = all.at(first).known_share;
+    int length = 1;
+    for (; all.known(first + length); ++length) {
+        const EdgeProfiler::Slice& next = all.at(first + length);
+        if (std::abs(next.height_m - all.at(first + length - 1).height_m) > kLevel_m ||
+            std::abs(next.height_m - sum_m / weight) > 2.0 * kLevel_m)
+            break;
+        sum_m += next.height_m * next.known_share;
+        weight += next.known_share;
+    }
+    return length;
+}
+
+void StepFitter::add_tread(const EdgeProfiler::Slices& all, int first, int length, int margin) {
+    double sum_m = 0.0;
+    double weight = 0.0;
+    double var_m2 = 0.0;
+    for (int k = first + margin; k < first + length - margin; ++k) {
+        const EdgeProfiler::Slice& slice = all.at(k);
+        const double scatter_m = std::max(slice.scatter_m, slice.sigma_m);
+        sum_m += slice.known_share * slice.height_m;
+        weight += slice.known_share;
+        var_m2 += slice.known_share * scatter_m * scatter_m;
+    }
+    const double area_m2 = weight * all.cell_m * length_m_;
+    const double independent = std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m));
+    treads_.push_back({all.begin_m + first * all.cell_m,
+                       all.begin_m + (first + length) * all.cell_m,
+                       sum_m / weight,
+                       std::sqrt(var_m2 / weight / independent),
+                       std::sqrt(var_m2 / weight)});
 }
 
 void StepFitter::join_treads() {

@@ -44,6 +44,8 @@ class StepFitter {
         int points = 0;
     };
     void find_treads(const Terrain& terrain, const EdgeLine& line);
+    [[nodiscard]] static int level_run(const EdgeProfiler::Slices& all, int first);
+    void add_tread(const EdgeProfiler::Slices& all, int first, int length, int margin);
     void join_treads();
     void find_steps(const Edge& seed);
     [[nodiscard]] bool grow(int& from, int way);
