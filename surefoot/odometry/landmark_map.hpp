@@ -58,6 +58,9 @@ class LandmarkMap {
     LandmarkMap(const LandmarkMapConfig& config, const camera::Rectifier& rectifier);
 
     void clear();
+    /// One sigma of a measurement that comes from now on, and of those that are remembered when
+    /// they are adjusted next.
+    void set_noise(double sigma_px) { config_.bundle.sigma_px = sigma_px; }
     /// Appends a keyframe and forgets the oldest when there are too many, with what it hosts.
     int add_keyframe(const Pose& T_odom_camera);
     /// Makes a landmark that the newest keyframe sees at `raw_px` = `pixel`; its slot, or nothing

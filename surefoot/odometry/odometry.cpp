@@ -11,6 +11,7 @@
 #include "surefoot/odometry/health.hpp"
 #include "surefoot/odometry/inertial_tracker.hpp"
 #include "surefoot/odometry/machine_tracker.hpp"
+#include "surefoot/odometry/measured_noise.hpp"
 #include "surefoot/odometry/point_front_end.hpp"
 #include "surefoot/odometry/still_detector.hpp"
 
@@ -62,8 +63,8 @@ struct Odometry::Impl {
           points(r),
           map(map_config(c), r),
           still(c.still_parallax_px),
+          noise(c.sigma_px),
           machine(r.rig().T_body_camera) {
-        solver.sigma_px = config.sigma_px;
         T_odom_camera = r.rig().T_body_camera;
         if (imu && config.imu.enabled)
             inertial.emplace(config.imu, imu->T_body_imu.inverse() * r.rig().T_body_camera);
@@ -82,6 +83,7 @@ struct Odometry::Impl {
     [[nodiscard]] Matrix6 unseen_since_last(const CameraFix& reckoned) const;
     PoseSolution solve(std::int64_t now_ns, Executor& executor);
     PoseSolution rough_pose(const Pose& predicted, Executor& executor);
+    void learn_noise(const Pose& T_odom_camera_seen);
     /// What the IMU makes of the pose that vision found; the tracks are its inliers.
     CameraFix improved(const PoseSolution& visual, double scene_depth_m);
     [[nodiscard]] HealthEvidence examine(std::int64_t now_ns, const PoseSolution& pose) const;
@@ -111,6 +113,7 @@ struct Odometry::Impl {
     Tracks* front = nullptr;  ///< the one of these two that the odometry is fed by
     LandmarkMap map;
     StillDetector still;
+    MeasuredNoise noise;
     std::optional<InertialTracker> inertial;
     MachineTracker machine;
     PoseSolverConfig solver;
@@ -176,6 +179,8 @@ void Odometry::Impl::feed_by(Tracks& source) {
 MotionEstimate Odometry::Impl::update(std::int64_t now_ns,
                                       std::span<const ImuSample> imu,
                                       Executor& executor) {
+    solver.sigma_px = noise.sigma_px();
+    map.set_noise(solver.sigma_px);
     if (inertial) inertial->advance(imu, now_ns);
     MotionEstimate estimate = follow(now_ns, executor);
     estimate.time_ns = now_ns;
@@ -350,6 +355,7 @@ MotionEstimate Odometry::Impl::found(std::int64_t now_ns,
                                      const HealthEvidence& evidence,
                                      Executor& executor) {
     const double dt_s = seconds_from_ns(now_ns - good_time_ns);
+    learn_noise(pose.T_world_camera);
     front->select(pose.inlier);
     for (const Track& track : front->tracks()) map.at(track.slot).agreed += 1;
     Pose T = pose.T_world_camera;
@@ -399,6 +405,11 @@ MotionEstimate Odometry::Impl::found(std::int64_t now_ns,
     estimate.inliers = pose.inliers;
     estimate.residual_px = pose.residual_px;
     return estimate;
+}
+
+/// From all tracks of the frame, before those that disagree are dropped; for the next one.
+void Odometry::Impl::learn_noise(const Pose& T_odom_camera_seen) {
+    noise.listen(rectifier.rig(), solver, front->matches(map), T_odom_camera_seen);
 }
 
 CameraFix Odometry::Impl::improved(const PoseSolution& visual, double scene_depth_m) {

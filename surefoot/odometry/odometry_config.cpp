@@ -9,7 +9,11 @@ void OdometryConfig::describe(ConfigVisitor& visitor) {
     visitor.integer("grid_rows", grid_rows, 2, 100, "cells over which corners are spread");
     visitor.number(
         "min_depth_m", min_depth_m, 0.05, 10.0, "nearest point matched between the eyes");
-    visitor.number("sigma_px", sigma_px, 0.05, 3.0, "noise of an aligned point, per eye and axis");
+    visitor.number("sigma_px",
+                   sigma_px,
+                   0.05,
+                   3.0,
+                   "noise of an aligned point, per eye and axis; more where it is measured");
     visitor.integer("window_keyframes", window_keyframes, 3, 30, "keyframes adjusted together");
     visitor.number(
         "still_parallax_px",

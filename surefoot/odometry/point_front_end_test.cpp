@@ -197,6 +197,27 @@ TEST(PointOdometry, FollowsAHandHeldCurve) {
     EXPECT_LT(worst_m, 0.010);
 }
 
+/// Gates of half the noise would leave out a third of the points.
+TEST(PointOdometry, TwiceTheExpectedNoiseCostsNoPoints) {
+    const auto rectifier = small_rectifier();
+    const auto mean_inliers = [&](double expected_px) {
+        OdometryConfig config;
+        config.sigma_px = expected_px;
+        Odometry odometry(config, rectifier);
+        odometry.start_at(testing::small_rig().body_from_left().inverse());
+        double sum = 0.0;
+        for (int i = 0; i < 80; ++i) {
+            const MotionEstimate m = odometry.update(seen_at(rectifier, i, kNoise_px));
+            if (i >= 40) sum += m.inliers / 40.0;
+        }
+        return sum;
+    };
+    const double half = mean_inliers(0.5 * kNoise_px);
+    const double all = mean_inliers(kNoise_px);
+    std::printf("of 60 points agree: %.1f, half of the noise expected %.1f\n", all, half);
+    EXPECT_GT(half, 0.95 * all);
+}
+
 TEST(PointOdometry, FramesWithoutPointsAreLostForWantOfTracks) {
     const auto rectifier = small_rectifier();
     Odometry odometry(point_config(), rectifier);

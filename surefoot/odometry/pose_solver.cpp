@@ -17,6 +17,9 @@ constexpr double kMinDepth_m = 0.02;
 constexpr double kMinConditioning = 1e-7;
 /// So many points with a full vote lead alone until the pose is near.
 constexpr int kMinTrusted = 20;
+/// Medians of the norm of two and of three normal errors: roots of those of chi-square.
+constexpr double kMedianOfTwo = 1.1774;
+constexpr double kMedianOfThree = 1.5382;
 
 /// Residual of one match with its Jacobian; `rows` is 2 without a disparity, 0 behind the camera.
 struct Residual {
@@ -67,6 +70,15 @@ bool well_conditioned(const Matrix6& H) {
     const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(scaled, Eigen::EigenvaluesOnly);
     return eigen.info() == Eigen::Success &&
            eigen.eigenvalues().minCoeff() > kMinConditioning * eigen.eigenvalues().maxCoeff();
+}
+
+/// Those that are to lead: with a full vote; none where they are too few.
+std::vector<PointMatch> trusted_of(std::span<const PointMatch> matches) {
+    std::vector<PointMatch> trusted;
+    std::ranges::copy_if(
+        matches, std::back_inserter(trusted), [](const PointMatch& m) { return m.vote >= 1.0; });
+    if (std::ssize(trusted) < kMinTrusted) trusted.clear();
+    return trusted;
 }
 
 /// Levenberg-Marquardt at a fixed gate; false when the points do not fix the pose.
@@ -150,13 +162,10 @@ PoseSolution refine_pose(const camera::RectifiedRig& rig,
     Pose T = T_world_camera_start;
     // A wide gate first: the start may be a few pixels off. So may somebody who walks in: what is
     // new in the view must fit to what was there.
-    std::vector<PointMatch> trusted;
-    std::ranges::copy_if(
-        matches, std::back_inserter(trusted), [](const PointMatch& m) { return m.vote >= 1.0; });
-    const bool led = static_cast<int>(trusted.size()) >= kMinTrusted;
+    const std::vector<PointMatch> trusted = trusted_of(matches);
     if (!iterate(rig,
                  config,
-                 led ? std::span<const PointMatch>(trusted) : matches,
+                 trusted.empty() ? matches : std::span<const PointMatch>(trusted),
                  4.0 * config.gate_sigmas,
                  T,
                  solution.inlier))
@@ -174,6 +183,27 @@ PoseSolution refine_pose(const camera::RectifiedRig& rig,
     solution.residual_px = std::sqrt(normal.square_px / (2.0 * normal.inliers));
     solution.found = T.all_finite() && solution.covariance.allFinite();
     return solution;
+}
+
+std::optional<double> residual_scale_of_all(const camera::RectifiedRig& rig,
+                                            const PoseSolverConfig& config,
+                                            std::span<const PointMatch> matches,
+                                            const Pose& T_world_camera) {
+    const std::vector<PointMatch> trusted = trusted_of(matches);
+    const Eigen::Matrix3d R_camera_world = T_world_camera.R().transpose();
+    std::vector<double> ratios;
+    for (const PointMatch& match : trusted.empty() ? matches : std::span(trusted)) {
+        const Residual residual = residual_of(rig, match, T_world_camera);
+        if (residual.rows == 0 || !(residual.value.head<2>().norm() <= config.ransac_threshold_px))
+            continue;
+        const Eigen::Matrix3d W = weight_of(residual, match, R_camera_world, config.sigma_px);
+        ratios.push_back(std::sqrt(residual.value.dot(W * residual.value)) /
+                         (residual.rows == 3 ? kMedianOfThree : kMedianOfTwo));
+    }
+    if (std::ssize(ratios) < kMinTrusted) return std::nullopt;
+    const auto middle = ratios.begin() + std::ssize(ratios) / 2;
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    return *middle;
 }
 
 Matrix6 adjoint(const Pose& T_a_b) {

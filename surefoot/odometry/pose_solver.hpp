@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,6 +66,15 @@ inline constexpr int kMinimalPoseMatches = 5;
                                        const PoseSolverConfig& config,
                                        std::span<const PointMatch> matches,
                                        const Pose& T_world_camera_start);
+
+/// How many times as far as expected the matches are off a pose: the median of their residuals in
+/// sigmas over that of normal errors. No gate: this is the noise as long as fewer than half are
+/// outliers; those beyond `ransac_threshold_px` are left out. Matches with a full vote count, if
+/// enough. Nothing when too few are left.
+[[nodiscard]] std::optional<double> residual_scale_of_all(const camera::RectifiedRig& rig,
+                                                          const PoseSolverConfig& config,
+                                                          std::span<const PointMatch> matches,
+                                                          const Pose& T_world_camera);
 
 /// Normal equations of all matches at one pose, H step = b for a perturbation of the camera pose.
 struct VisualNormalEquations {
