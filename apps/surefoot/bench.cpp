@@ -232,6 +232,7 @@ int bench(const BenchOptions& options) {
                                                     {"stereo", bench_stereo},
                                                     {"terrain", bench_terrain},
                                                     {"gate", bench_gate},
+                                                    {"places", bench_places},
                                                     {"sim", bench_sim}};
     std::vector<BenchResult> all;
     for (const auto& [name, group] : groups) {

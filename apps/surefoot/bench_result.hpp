@@ -39,6 +39,11 @@ struct BenchResult {
 [[nodiscard]] Result<std::vector<BenchResult>> bench_odometry(const CommonOptions& common,
                                                               Executor& executor);
 
+/// A view among as many keyframes as a place may hold, description included: in corridors that are
+/// remembered, and in others like them.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_places(const CommonOptions& common,
+                                                            Executor& executor);
+
 /// Matching, beside OpenCV's; with two threads also two matchers at once, the most that two threads
 /// could bring.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common,

@@ -741,8 +741,9 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     bench_verb
         ->add_option("group",
                      all.bench.group,
-                     "chain, camera, odometry, stereo, terrain, gate, sim; empty = all")
-        ->check(CLI::IsMember({"chain", "camera", "odometry", "stereo", "terrain", "gate", "sim"}));
+                     "chain, camera, odometry, stereo, terrain, gate, places, sim; empty = all")
+        ->check(CLI::IsMember(
+            {"chain", "camera", "odometry", "stereo", "terrain", "gate", "places", "sim"}));
 
     CLI::App* record_verb =
         bind(add_verb(app,

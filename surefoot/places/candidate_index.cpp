@@ -5,12 +5,14 @@
 #include <array>
 #include <numeric>
 
+#include "surefoot/core/assert.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::places {
 namespace {
 
 constexpr std::size_t kTables = 8;
+constexpr std::size_t kChunk = 14;
 constexpr std::size_t kKeyBits = 16;
 constexpr std::size_t kBuckets = std::size_t{1} << kKeyBits;
 constexpr std::uint16_t kCrowded = 200;     ///< entries from which on a bucket tells nothing
@@ -48,35 +50,42 @@ std::size_t bucket_of(std::size_t table, const Descriptor& descriptor) {
 CandidateIndex::CandidateIndex() : first_(kTables * kBuckets, -1), sizes_(kTables * kBuckets, 0) {}
 
 void CandidateIndex::add(int keyframe, std::span<const Feature> features) {
+    SUREFOOT_ASSERT(keyframe >= 0 && keyframe < kMostKeyframes);
     for (const Feature& feature : features) {
         for (std::size_t table = 0; table < kTables; ++table) {
             const std::size_t bucket = bucket_of(table, feature.descriptor);
             if (sizes_[bucket] == kCrowded) continue;
-            ++sizes_[bucket];
-            entries_.push_back({keyframe, first_[bucket]});
-            first_[bucket] = static_cast<std::int32_t>(entries_.size()) - 1;
+            const std::size_t at = sizes_[bucket]++ % kChunk;
+            if (at == 0) {
+                chunks_.push_back({{}, first_[bucket]});
+                first_[bucket] = static_cast<std::int32_t>(chunks_.size()) - 1;
+            }
+            chunks_[static_cast<std::size_t>(first_[bucket])].keyframes[at] =
+                static_cast<std::uint16_t>(keyframe);
         }
     }
 }
 
 std::vector<Candidate> CandidateIndex::find(std::span<const Feature> features, int end) const {
-    std::vector<Candidate> candidates(static_cast<std::size_t>(std::max(end, 0)));
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-        candidates[i].keyframe = static_cast<int>(i);
+    std::array<std::int64_t, kMostKeyframes> votes{};
     for (const Feature& feature : features) {
         for (std::size_t table = 0; table < kTables; ++table) {
             const std::size_t bucket = bucket_of(table, feature.descriptor);
-            if (sizes_[bucket] == kCrowded) continue;
-            for (std::int32_t at = first_[bucket]; at >= 0;
-                 at = entries_[static_cast<std::size_t>(at)].next) {
-                const int keyframe = entries_[static_cast<std::size_t>(at)].keyframe;
-                if (keyframe < end)
-                    candidates[static_cast<std::size_t>(keyframe)].votes +=
-                        kVoteScale / sizes_[bucket];
+            if (sizes_[bucket] == 0 || sizes_[bucket] == kCrowded) continue;
+            const std::int64_t vote = kVoteScale / sizes_[bucket];
+            std::size_t held = (sizes_[bucket] - 1U) % kChunk + 1;  // of the first chunk
+            for (std::int32_t at = first_[bucket]; at >= 0;) {
+                const Chunk& chunk = chunks_[static_cast<std::size_t>(at)];
+                for (std::size_t i = 0; i < held; ++i) votes[chunk.keyframes[i]] += vote;
+                at = chunk.next;
+                held = kChunk;
             }
         }
     }
-    std::erase_if(candidates, [](const Candidate& candidate) { return candidate.votes == 0; });
+    std::vector<Candidate> candidates;
+    for (int keyframe = 0; keyframe < std::min(end, kMostKeyframes); ++keyframe)
+        if (const std::int64_t all = votes[static_cast<std::size_t>(keyframe)]; all > 0)
+            candidates.push_back({keyframe, all});
     std::stable_sort(candidates.begin(),
                      candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.votes > b.votes; });

@@ -37,6 +37,22 @@ TEST(CandidateIndex, AsksNoKeyframeFromTheEndOn) {
     EXPECT_TRUE(index.find(features_of(7, 0), 0).empty());
 }
 
+/// Of a bucket that is shared by `count`, which are stored by fourteen.
+TEST(CandidateIndex, EveryKeyframeOfABucketHasOneVoteInEachTable) {
+    for (const int count : {1, 13, 14, 15, 28, 29, 199}) {
+        CandidateIndex index;
+        const std::vector<Feature> one(1);
+        for (int keyframe = 0; keyframe < count; ++keyframe) index.add(keyframe, one);
+        const auto found = index.find(one, count);
+        ASSERT_EQ(found.size(), static_cast<std::size_t>(count));
+        for (int keyframe = 0; keyframe < count; ++keyframe) {
+            const Candidate& candidate = found[static_cast<std::size_t>(keyframe)];
+            EXPECT_EQ(candidate.keyframe, keyframe) << count;
+            EXPECT_EQ(candidate.votes, 8 * (50400 / count)) << count;
+        }
+    }
+}
+
 TEST(CandidateIndex, WhatEveryKeyframeShowsTellsNothing) {
     CandidateIndex index;
     for (int keyframe = 0; keyframe < 10; ++keyframe) {
