@@ -274,6 +274,32 @@ TEST(InertialOdometry, AnImuThatContradictsIsNamedAndLeftOut) {
     EXPECT_GE(named, 10);
 }
 
+/// A jump of the bias is learnt within a frame or two; it is said all the same, and for some time.
+TEST(InertialOdometry, AJumpOfTheBiasIsNamedWithinTwoFrames) {
+    constexpr int kJump = 32;
+    for (const bool turns : {true, false}) {
+        Machine machine;
+        Follower run(machine, true);
+        Serial serial;
+        int named = 0;
+        for (int i = 0; i < 60; ++i) {
+            if (i == kJump && turns) machine.bias.gyro_rad_s.z() += 1.0;
+            if (i == kJump && !turns) machine.bias.accel_m_s2.x() += 10.0;
+            const auto m = run.odometry.update(machine.frame(i), serial);
+            EXPECT_LT(run.error_m(m, machine.truth(i)), 0.01) << i;
+            named += m.reason == HealthReason::imu_disagreement ? 1 : 0;
+            if (i < kJump) {
+                EXPECT_EQ(named, 0) << i;
+            }
+            if (i == kJump + 2) {
+                EXPECT_GT(named, 0) << turns;
+            }
+        }
+        std::printf("%s: named in %d frames\n", turns ? "1 rad/s" : "10 m/s2", named);
+        EXPECT_GE(named, 10) << turns;
+    }
+}
+
 TEST(InertialOdometry, BadSamplesAreLeftOut) {
     Machine machine;
     Follower run(machine, true);

@@ -12,6 +12,9 @@ namespace {
 constexpr double kChi2Limit = 22.46;
 /// So many frames in a row beyond the limit are a contradiction, not an accident.
 constexpr int kContradictions = 8;
+/// Fifteen sigma is no accident of either: a bias has jumped, or vision follows something else. It
+/// is said at once, whether or not the state learns to live with it.
+constexpr double kChi2Jump = 225.0;
 constexpr int kAgreements = 20;  ///< and so many within it end one
 /// A start that fits worse is none: the rig's IMU is not where or what it is said to be.
 constexpr double kStartResidual_m = 0.02;
@@ -129,6 +132,7 @@ bool InertialTracker::still_agrees(double chi2) {
     contradictions_ = agrees ? 0 : contradictions_ + 1;
     agreements_ = agrees ? agreements_ + 1 : 0;
     if (agreements_ >= kAgreements) disagrees_ = false;
+    if (!(chi2 <= kChi2Jump)) disagrees_ = true;
     if (contradictions_ < kContradictions) return true;
     give_up();
     disagrees_ = true;

@@ -52,7 +52,7 @@ class InertialTracker {
     [[nodiscard]] std::optional<CameraFix> reckon();
     /// Where the present frame was put in the end.
     void place(const Pose& T_odom_camera);
-    /// Vision and the IMU have contradicted each other for some time.
+    /// Vision and the IMU have contradicted each other for some time, or once beyond any accident.
     [[nodiscard]] bool disagrees() const noexcept { return disagrees_; }
     /// The state after the last frame; nothing before the start.
     [[nodiscard]] const std::optional<InertialBelief>& belief() const noexcept { return belief_; }
