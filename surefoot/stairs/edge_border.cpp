@@ -136,16 +136,17 @@ void add_border_points(const Terrain& terrain,
     }
 }
 
-void add_face_points(const Terrain& terrain,
-                     const EdgeLine& line,
-                     const BorderSearch& search,
-                     std::vector<BorderPoint>& out) {
+namespace {
+
+void add_faces_near(const Terrain& terrain,
+                    const EdgeLine& line,
+                    const BorderSearch& search,
+                    std::vector<BorderPoint>& out) {
     constexpr double kLevel = 1.2;  ///< of level ground, with some room
     constexpr double kLeast = 1.5;  ///< points beyond that, for each point of level ground
-    if (terrain.density_ratio.empty()) return;
     Rows rows(terrain, line, search);
     for (int row = rows.first(); row <= rows.last(); ++row) {
-        if (!rows.enter(row, search.inside_m, search.outside_m)) continue;
+        if (!rows.enter(row, kFace_m, kFace_m)) continue;
         double sum = 0.0;
         double moment = 0.0;
         for (int cell = rows.begin();; cell += rows.way()) {
@@ -158,6 +159,27 @@ void add_face_points(const Terrain& terrain,
         }
         if (sum >= kLeast) out.push_back(rows.point(moment / sum, search.edge));
     }
+}
+
+}  // namespace
+
+void add_face_points(const Terrain& terrain,
+                     const EdgeLine& line,
+                     const BorderSearch& search,
+                     std::vector<BorderPoint>& out) {
+    if (terrain.density_ratio.empty()) return;
+    // Heights alone begin too early: the window moves to where the face is.
+    BorderSearch centred = search;
+    std::vector<BorderPoint> found;
+    for (int round = 0; round < 3; ++round) {
+        found.clear();
+        add_faces_near(terrain, line, centred, found);
+        if (found.size() < kLeastPoints) return;
+        std::vector<double> across_m;
+        for (const BorderPoint& point : found) across_m.push_back(point.s_m);
+        centred.at_m = median_of(across_m);
+    }
+    out.insert(out.end(), found.begin(), found.end());
 }
 
 double across_sigma_m(const grid::GridGeometry& grid, const EdgeLine& line, double rms_m) {

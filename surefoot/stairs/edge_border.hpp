@@ -42,10 +42,15 @@ void add_border_points(const Terrain& terrain,
                        const BorderSearch& search,
                        std::vector<BorderPoint>& out);
 
+/// Points of a riser lie within this much of it, but not those of the next.
+inline constexpr double kFace_m = 0.08;
+/// An edge with fewer points of its face is placed by the ground above it.
+inline constexpr std::size_t kLeastPoints = 10;
+
 /// The same, but adds where the vertical face below the edge stands: the middle of the points that
 /// its cells show beyond those of level ground (`Terrain::density_ratio`), in each row that shows
-/// enough of them. Depth noise moves them both ways, so that their middle stays; the cells' heights
-/// take the highest and move one way.
+/// enough of them, if enough rows do. Depth noise moves them both ways, so that their middle stays;
+/// the cells' heights take the highest and move one way.
 void add_face_points(const Terrain& terrain,
                      const EdgeLine& line,
                      const BorderSearch& search,

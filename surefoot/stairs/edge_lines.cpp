@@ -113,7 +113,8 @@ void EdgeLineFinder::chain(const grid::GridGeometry& grid, std::span<const EdgeP
 
 void EdgeLineFinder::keep_longest_run(std::span<const EdgePoint> points,
                                       const Vector2d& at_m,
-                                      const Vector2d& along) {
+                                      const Vector2d& along,
+                                      std::size_t least_points) {
     const Vector2d down = right_of(along);
     run_.clear();
     for (const std::int32_t i : left_) {
@@ -124,6 +125,7 @@ void EdgeLineFinder::keep_longest_run(std::span<const EdgePoint> points,
         if (down_of(point.side).dot(down) < 0.1) continue;
         run_.push_back({from_line_m.dot(along), i});
     }
+    if (run_.size() < least_points) return run_.clear();  // too few to be longer than the best
     std::sort(run_.begin(), run_.end(), [](const Placed& a, const Placed& b) {
         return a.t_m < b.t_m || (a.t_m == b.t_m && a.point < b.point);
     });
@@ -142,6 +144,7 @@ void EdgeLineFinder::keep_longest_run(std::span<const EdgePoint> points,
         }
         begin = end;
     }
+    if (run_.empty()) return;
     run_.erase(run_.begin() + static_cast<std::ptrdiff_t>(best_end), run_.end());
     run_.erase(run_.begin(), run_.begin() + static_cast<std::ptrdiff_t>(best_begin));
 }
@@ -166,7 +169,11 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
             if (apart_m < 0.4 * least_m || apart_m > kNear_m) continue;
             along /= apart_m;
             if (down_of(first.side).dot(right_of(along)) < 0.0) along = -along;
-            keep_longest_run(points, place_of(first), along);
+            // A line that is longer than the best has about as many points at least.
+            keep_longest_run(points,
+                             place_of(first),
+                             along,
+                             std::max(least_points, best.members.size() * 2 / 3));
             if (run_.size() < least_points) continue;
             const double length_m = run_.back().t_m - run_.front().t_m;
             if (length_m <= best_m) continue;
@@ -179,7 +186,7 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
         if (best_m < least_m) return;
         for (int round = 0; round < 2; ++round) {
             if (!fit(points, best)) break;
-            keep_longest_run(points, best.line.from_m, best.line.along());
+            keep_longest_run(points, best.line.from_m, best.line.along(), least_points);
             if (run_.size() < least_points) break;
             best.members.clear();
             for (const Placed& placed : run_) best.members.push_back(placed.point);

@@ -50,7 +50,8 @@ class EdgeLineFinder {
     [[nodiscard]] bool fit(std::span<const EdgePoint> points, Piece& piece) const;
     void keep_longest_run(std::span<const EdgePoint> points,
                           const Eigen::Vector2d& at_m,
-                          const Eigen::Vector2d& along);
+                          const Eigen::Vector2d& along,
+                          std::size_t least_points);
     void join(std::span<const EdgePoint> points);
     [[nodiscard]] bool belong_together(const Piece& a, const Piece& b) const;
 

@@ -11,6 +11,9 @@ namespace {
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
+/// A single cell need not stand out: the edges that the points make up have to.
+constexpr double kPointSigmas = 1.5;
+
 bool known(float value) {
     return value == value;
 }
@@ -150,8 +153,8 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
     }
     const auto height_m = static_cast<double>(top_m - found.lower_m);
     const float var_m2 = line.var_m2[top] + (found.lower_seen ? line.var_m2[low] : 0.0F);
-    const double least_m = std::max(config_.min_height_m,
-                                    config_.sigma_factor * std::sqrt(static_cast<double>(var_m2)));
+    const double least_m =
+        std::max(config_.min_height_m, kPointSigmas * std::sqrt(static_cast<double>(var_m2)));
     if (!(height_m >= least_m)) return false;
     const float middle_m = 0.5F * (top_m + found.lower_m);
     const float next_m = line.height_m[cell + 1];

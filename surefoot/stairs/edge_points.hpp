@@ -28,9 +28,9 @@ struct EdgePoint {
 /// it let `top` be the highest of the cells up to `smear_m` before it, `low` the lowest of those up
 /// to `smear_m` behind it. Where the known ground ends there, the next known cell counts too, if it
 /// lies no further than the shadow of such an edge, and so does the bound that lines of sight have
-/// left for the ground in between. It is an edge point if top - low reaches the least height at
-/// `sigma_factor` sigma of both, the cell lies above the middle of them and the next one below it,
-/// or is unknown.
+/// left for the ground in between. It is an edge point if top - low reaches the least height and
+/// stands out of the noise of both a little, the cell lies above the middle of them and the next
+/// one below it, or is unknown.
 ///
 /// Where nothing is known of what lies behind, though ground that goes on would be seen there
 /// (Terrain::view), the ground ends: it may go down so steeply that nothing of it is in sight.

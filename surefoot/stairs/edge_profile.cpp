@@ -25,7 +25,8 @@ constexpr double kScatterOfMad = 1.4826;
 constexpr double kBeside_m = 0.3;   ///< an edge may go on beyond the ends of its line
 constexpr double kHalfTurn = 0.02;  ///< half of the turn of a line that is still its own
 constexpr double kEnd_m = 0.25;     ///< where ground ends: known before it and unknown behind it
-constexpr double kEndRms_m = 0.015;
+constexpr double kEndRms_m = 0.025;
+constexpr double kRagged_m = 0.075;  ///< where ground ends it does so in some rows sooner
 /// Steeper than noise makes level ground.
 constexpr double kLeastSlope = 0.06;
 constexpr double kSloping_m = 0.3;  ///< of ground that is asked for its slope
@@ -67,45 +68,66 @@ void EdgeProfiler::slice(const Terrain& terrain,
                          const EdgeLine& line,
                          double upper_m,
                          double lower_m) {
-    const grid::GridGeometry& grid = terrain.geometry;
-    resolution_m_ = grid.resolution_m;
+    resolution_m_ = terrain.geometry.resolution_m;
     length_m_ = line.length_m();
     upper_slices_ = static_cast<int>(std::ceil(upper_m / resolution_m_));
-    const int lower_slices = static_cast<int>(std::ceil(lower_m / resolution_m_));
-    slices_.assign(static_cast<std::size_t>(upper_slices_ + lower_slices), Slice{});
-    samples_.clear();
+    const auto slices = static_cast<std::size_t>(
+        upper_slices_ + static_cast<int>(std::ceil(lower_m / resolution_m_)));
+    slices_.assign(slices, Slice{});
     for (Slice& slice : slices_) slice.free_above_m = kNothing;
+    cells_.assign(slices, 0);
+    samples_.clear();
+    gather(terrain, line);
 
-    const Vector2d along = line.along();
-    const Vector2d down = line.down();
-    Vector2d low_m = line.from_m;
-    Vector2d high_m = line.from_m;
-    for (const double t_m : {0.0, length_m_}) {
-        for (const double s_m : {-upper_m, lower_m}) {
-            const Vector2d corner_m = line.from_m + t_m * along + s_m * down;
-            low_m = low_m.cwiseMin(corner_m);
-            high_m = high_m.cwiseMax(corner_m);
-        }
-    }
-    const auto cell_of = [&](double p_m, double origin_m, int cells) {
-        return std::clamp(
-            static_cast<int>(std::floor((p_m - origin_m) / resolution_m_)), 0, cells - 1);
-    };
-    const int first_ix = cell_of(low_m.x(), grid.origin_m.x(), grid.nx);
-    const int last_ix = cell_of(high_m.x(), grid.origin_m.x(), grid.nx);
-    const int first_iy = cell_of(low_m.y(), grid.origin_m.y(), grid.ny);
-    const int last_iy = cell_of(high_m.y(), grid.origin_m.y(), grid.ny);
-    cells_.assign(slices_.size(), 0);
-    for (int iy = first_iy; iy <= last_iy; ++iy) {
-        for (int ix = first_ix; ix <= last_ix; ++ix) {
-            const Vector2d d_m = grid.center_m({ix, iy}) - line.from_m;
-            const double t_m = d_m.dot(along);
-            if (t_m < 0.0 || t_m > length_m_) continue;
-            const int k =
-                static_cast<int>(std::floor(d_m.dot(down) / resolution_m_)) + upper_slices_;
-            if (k < 0 || k >= static_cast<int>(slices_.size())) continue;
-            Slice& slice = slices_[static_cast<std::size_t>(k)];
-            ++cells_[static_cast<std::size_t>(k)];
+    // Samples of a slice side by side, in the order of the rows.
+    first_.assign(slices + 1, 0);
+    for (const Sample& sample : samples_) ++first_[static_cast<std::size_t>(sample.slice) + 1];
+    for (std::size_t k = 0; k < slices; ++k) first_[k + 1] += first_[k];
+    sorted_.resize(samples_.size());
+    next_.assign(first_.begin(), first_.end());
+    for (const Sample& sample : samples_)
+        sorted_[next_[static_cast<std::size_t>(sample.slice)]++] = sample;
+    for (std::size_t k = 0; k < slices; ++k)
+        if (first_[k + 1] > first_[k])
+            measure_slice(std::span(sorted_).subspan(first_[k], first_[k + 1] - first_[k]),
+                          cells_[k],
+                          slices_[k]);
+}
+
+/// The cells of the slices, row by row: of each those between the ends of the line and of the
+/// slices.
+void EdgeProfiler::gather(const Terrain& terrain, const EdgeLine& line) {
+    const grid::GridGeometry& grid = terrain.geometry;
+    const Vector2d along = line.along() / resolution_m_;
+    const Vector2d down = line.down() / resolution_m_;
+    const double length = length_m_ / resolution_m_;
+    const auto slices = static_cast<double>(slices_.size());
+    for (int iy = 0; iy < grid.ny; ++iy) {
+        // Along a row both coordinates are linear in ix [cells].
+        const Vector2d first_m = grid.center_m({0, iy}) - line.from_m;
+        const double t = first_m.dot(along);
+        const double s = first_m.dot(down) + upper_slices_;
+        const double t_step = along.x() * resolution_m_;
+        const double s_step = down.x() * resolution_m_;
+        double low = 0.0;
+        double high = grid.nx - 1;
+        const auto keep = [&](double value, double step, double most) {
+            if (std::abs(step) < 1e-9) {
+                if (value < 0.0 || value >= most) high = -1.0;
+                return;
+            }
+            const double a = -value / step;
+            const double b = (most - value) / step;
+            low = std::max(low, std::min(a, b));
+            high = std::min(high, std::max(a, b));
+        };
+        keep(t, t_step, length);
+        keep(s, s_step, slices);
+        for (int ix = static_cast<int>(std::ceil(low)); ix <= high; ++ix) {
+            const int k = static_cast<int>(s + s_step * ix);
+            if (k >= static_cast<int>(slices_.size())) continue;  // by rounding
+            const auto slice = static_cast<std::size_t>(k);
+            ++cells_[slice];
             const float height_m = terrain.height_m.row(iy)[ix];
             if (height_m == height_m) {
                 const float var_m2 =
@@ -113,40 +135,34 @@ void EdgeProfiler::slice(const Terrain& terrain,
                 samples_.push_back({k, height_m, var_m2});
             } else if (!terrain.free_above_m.empty()) {
                 const auto free_m = static_cast<double>(terrain.free_above_m.row(iy)[ix]);
-                if (free_m < slice.free_above_m) slice.free_above_m = free_m;
+                if (free_m < slices_[slice].free_above_m) slices_[slice].free_above_m = free_m;
             }
         }
     }
-    std::stable_sort(samples_.begin(), samples_.end(), [](const Sample& a, const Sample& b) {
-        return a.slice < b.slice;
-    });
-    for (std::size_t begin = 0; begin < samples_.size();) {
-        const int k = samples_[begin].slice;
-        std::size_t end = begin;
-        values_.clear();
-        for (; end < samples_.size() && samples_[end].slice == k; ++end)
-            values_.push_back(samples_[end].height_m);
-        Slice& slice = slices_[static_cast<std::size_t>(k)];
-        slice.known_share =
-            static_cast<double>(values_.size()) / cells_[static_cast<std::size_t>(k)];
-        const double middle_m = middle_of(values_);
-        for (float& value : values_) value = std::abs(value - static_cast<float>(middle_m));
-        slice.scatter_m = kScatterOfMad * middle_of(values_);
-        // The mean of what agrees is truer than the middle one.
-        const double most_m = 2.5 * std::max(slice.scatter_m, 1e-4);
-        double sum_m = 0.0;
-        int agreeing = 0;
-        values_.clear();
-        for (std::size_t i = begin; i < end; ++i) {
-            values_.push_back(samples_[i].var_m2);
-            if (std::abs(static_cast<double>(samples_[i].height_m) - middle_m) > most_m) continue;
-            sum_m += static_cast<double>(samples_[i].height_m);
-            ++agreeing;
-        }
-        slice.height_m = agreeing > 0 ? sum_m / agreeing : middle_m;
-        slice.sigma_m = std::sqrt(middle_of(values_));
-        begin = end;
+}
+
+void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Slice& slice) {
+    slice.known_share = static_cast<double>(samples.size()) / cells;
+    values_.clear();
+    double var_m2 = 0.0;
+    for (const Sample& sample : samples) {
+        values_.push_back(sample.height_m);
+        var_m2 += static_cast<double>(sample.var_m2);
     }
+    const double middle_m = middle_of(values_);
+    for (float& value : values_) value = std::abs(value - static_cast<float>(middle_m));
+    slice.scatter_m = kScatterOfMad * middle_of(values_);
+    slice.sigma_m = std::sqrt(var_m2 / static_cast<double>(samples.size()));
+    // The mean of what agrees is truer than the middle one.
+    const double most_m = 2.5 * std::max(slice.scatter_m, 1e-4);
+    double sum_m = 0.0;
+    int agreeing = 0;
+    for (const Sample& sample : samples) {
+        if (std::abs(static_cast<double>(sample.height_m) - middle_m) > most_m) continue;
+        sum_m += static_cast<double>(sample.height_m);
+        ++agreeing;
+    }
+    slice.height_m = agreeing > 0 ? sum_m / agreeing : middle_m;
 }
 
 /// The first level ground from slice `first` on.
@@ -223,7 +239,7 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
                                const EdgeLine& line,
                                const Level& upper) const {
     constexpr double kKnownShare = 0.9;
-    constexpr double kUnknownShare = 0.1;
+    constexpr double kUnknownShare = 0.15;
     if (!terrain.view || upper.end_m < kEnd_m || line.rms_m > kEndRms_m ||
         line.length_m() < config_.min_width_m)
         return false;
@@ -232,7 +248,8 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
     const Vector2d look_m = middle_m - terrain.view->T_map_camera.translation_m.head<2>();
     if (look_m.dot(line.down()) < 0.7 * look_m.norm()) return false;
     const int cells = static_cast<int>(kEnd_m / resolution_m_);
-    for (int k = 1; k < cells; ++k) {  // without those that the edge itself crosses
+    const int ragged = static_cast<int>(kRagged_m / resolution_m_);
+    for (int k = ragged; k < cells; ++k) {
         if (at(upper_slices_ - 1 - k).known_share < kKnownShare ||
             at(upper_slices_ + k).known_share > kUnknownShare)
             return false;
@@ -256,7 +273,11 @@ double EdgeProfiler::place(const Terrain& terrain,
     search.cell_reach = config_.cell_reach;
     search.beside_m = kBeside_m;
     borders_.clear();
-    add_border_points(terrain, line, search, borders_);
+    const Vector2d to_stance_m = terrain.stance_m - line.from_m;
+    if (to_stance_m.dot(line.down()) > 0.0) {  // the face is on that side
+        add_face_points(terrain, line, search, borders_);
+    }
+    if (borders_.size() < kLeastPoints) add_border_points(terrain, line, search, borders_);
     ParallelEdge placed{.rms_m = line.rms_m};
     const double middle_t_m = 0.5 * length_m_;
     const double turn_rad = fit_parallel(borders_, middle_t_m, {&placed, 1});
@@ -308,14 +329,20 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
     const bool near =
         lower.begin_m <=
         config_.shadow_per_height * (upper.height_m - lower.height_m) + config_.smear_m;
-    edge.lower_seen = std::isfinite(lower.sigma_m) && near && lower.height_m <= bound_m + kLevel_m;
-    if (edge.lower_seen) {
+    const auto stands_out = [&](double lower_m, double sigma_m) {
+        return upper.height_m - lower_m >=
+               std::max(config_.min_height_m, config_.sigma_factor * sigma_m);
+    };
+    const double both_sigma_m = std::hypot(upper.sigma_m, lower.sigma_m);
+    edge.height_sigma_m = upper.sigma_m;
+    if (std::isfinite(lower.sigma_m) && near && lower.height_m <= bound_m + kLevel_m &&
+        stands_out(lower.height_m, both_sigma_m)) {
+        edge.lower_seen = true;
         edge.lower_m = lower.height_m;
         edge.lower_depth_m = lower.end_m;
-        edge.height_sigma_m = std::hypot(upper.sigma_m, lower.sigma_m);
-    } else if (std::isfinite(bound_m) && bound_at_m <= kLower_m) {
+        edge.height_sigma_m = both_sigma_m;
+    } else if (bound_at_m <= kLower_m && stands_out(bound_m, upper.sigma_m)) {
         edge.lower_m = bound_m;
-        edge.height_sigma_m = upper.sigma_m;
     } else if (ground_ends(terrain, line, upper)) {
         // What a line of sight over the edge passes, as far as nothing is seen.
         const Eigen::Vector3d& camera_m = terrain.view->T_map_camera.translation_m;
@@ -323,13 +350,9 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
         const double fall =
             (camera_m.z() - upper.height_m) / (camera_m.head<2>() - middle_m).norm();
         edge.lower_m = upper.height_m - kEnd_m * fall;
-        edge.height_sigma_m = upper.sigma_m;
     } else {
         return std::nullopt;
     }
-    if (!(edge.height_m() >=
-          std::max(config_.min_height_m, config_.sigma_factor * edge.height_sigma_m)))
-        return std::nullopt;
     const double rms_m = place(terrain, line, upper, edge);
     edge.across_sigma_m = across_sigma_m(terrain.geometry, {edge.from_m, edge.to_m}, rms_m);
     edge.angle_sigma_rad = edge.across_sigma_m * std::sqrt(12.0) / std::max(line.length_m(), 0.05);

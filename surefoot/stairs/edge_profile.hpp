@@ -72,11 +72,13 @@ class EdgeProfiler {
 
   private:
     struct Sample {
-        int slice;
-        float height_m;
-        float var_m2;
+        int slice = 0;
+        float height_m = 0.0F;
+        float var_m2 = 0.0F;
     };
     void slice(const Terrain& terrain, const EdgeLine& line, double upper_m, double lower_m);
+    void gather(const Terrain& terrain, const EdgeLine& line);
+    void measure_slice(std::span<const Sample> samples, int cells, Slice& slice);
     [[nodiscard]] Level level_from(int first, int step) const;
     [[nodiscard]] bool ground_ends(const Terrain& terrain,
                                    const EdgeLine& line,
@@ -96,6 +98,9 @@ class EdgeProfiler {
     std::vector<int> cells_;  ///< of each slice
     std::vector<BorderPoint> borders_;
     std::vector<Sample> samples_;
+    std::vector<Sample> sorted_;
+    std::vector<std::size_t> first_;  ///< of each slice in `sorted_`
+    std::vector<std::size_t> next_;
     std::vector<float> values_;
 };
 

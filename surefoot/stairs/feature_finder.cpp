@@ -28,9 +28,13 @@ LineFeature line_feature(const Edge& edge, bool goes_down) {
 /// A piece of the same edge, or what a ragged edge looks like beside it.
 bool is_part_of(const Edge& piece, const Edge& edge) {
     constexpr double kNear_m = 0.1;
+    constexpr double kSame_m = 0.04;
     constexpr double kLeastCosine = 0.77;  // 40 deg
     if (piece.along().dot(edge.along()) < kLeastCosine) return false;
-    if (std::abs(edge.below_m(piece.middle_m())) > kNear_m) return false;
+    const bool same_ground = std::abs(piece.upper_m - edge.upper_m) <= kSame_m &&
+                             std::abs(piece.lower_m - edge.lower_m) <= kSame_m;
+    if (std::abs(edge.below_m(piece.middle_m())) > (same_ground ? 2.0 : 1.0) * kNear_m)
+        return false;
     const double t_m = (piece.middle_m() - edge.from_m).dot(edge.along());
     return t_m >= -kNear_m && t_m <= edge.length_m() + kNear_m;
 }
@@ -106,6 +110,17 @@ void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edg
     }
 }
 
+/// A ragged seed may lead to the steps of a flight that is already there.
+bool FeatureFinder::shares_a_step(std::span<const Edge> chain) const {
+    for (const std::vector<Edge>& other : chains_)
+        for (const Edge& step : other)
+            if (std::any_of(chain.begin(), chain.end(), [&](const Edge& edge) {
+                    return is_part_of(edge, step);
+                }))
+                return true;
+    return false;
+}
+
 void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) {
     chains_.clear();
     std::vector<bool> taken(edges.size(), false);
@@ -116,7 +131,7 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
             seed.length_m() < config_.min_width_m)
             continue;
         step_fitter_.fit(terrain, seed, chain);
-        if (chain.empty()) continue;
+        if (chain.empty() || shares_a_step(chain)) continue;
         for (std::size_t k = 0; k < edges.size(); ++k)
             taken[k] = taken[k] || std::any_of(chain.begin(), chain.end(), [&](const Edge& step) {
                            return is_part_of(edges[k], step);

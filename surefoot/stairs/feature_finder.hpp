@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "surefoot/stairs/edge_lines.hpp"
@@ -32,6 +33,7 @@ class FeatureFinder {
     void fit_steps(const Terrain& terrain, std::vector<Edge>& edges);
     /// Which sides of the edges can be walked to.
     void find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const;
+    [[nodiscard]] bool shares_a_step(std::span<const Edge> chain) const;
     void name_lines(const Terrain& terrain, TerrainFeatures& out) const;
 
     StairsConfig config_;

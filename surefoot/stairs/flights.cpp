@@ -177,7 +177,7 @@ bool FlightFinder::is_step_ahead(const Edge& edge,
                                  FlightKind kind,
                                  const Vector2d& stance_m) const {
     const bool up = kind == FlightKind::up;
-    if (up ? !edge.lower_walkable : !edge.upper_walkable) return false;
+    if (!edge.lower_seen || (up ? !edge.lower_walkable : !edge.upper_walkable)) return false;
     const Vector2d way = up ? Vector2d(-edge.down()) : edge.down();
     const Vector2d to_m = edge.middle_m() - stance_m;
     return to_m.dot(way) >= std::cos(config_.max_facing_deg * kRadPerDeg) * to_m.norm();

@@ -22,8 +22,6 @@ constexpr double kTread_m = 0.03;
 /// Steps of a flight differ by 5 mm by the code (NZ D1/AS1), by more where they are badly made.
 constexpr double kUneven_m = 0.02;
 constexpr double kCorrelation_m = 0.1;
-constexpr double kFace_m = 0.08;  ///< points of a riser lie within, but not those of the next
-constexpr std::size_t kLeastPoints = 10;
 
 }  // namespace
 
@@ -182,9 +180,9 @@ void StepFitter::find_borders(const Terrain& terrain, const EdgeLine& line) {
         search.beside_m = kSide_m;
         const std::size_t before = borders_.size();
         if (sees_faces_) {
-            search.at_m = step.at_m;
-            search.inside_m = search.outside_m = kFace_m;
-            add_face_points(terrain, line, search, borders_);
+            BorderSearch face = search;
+            face.at_m = step.at_m;
+            add_face_points(terrain, line, face, borders_);
         }
         if (borders_.size() < before + kLeastPoints)
             add_border_points(terrain, line, search, borders_);
