@@ -174,25 +174,30 @@ Level EdgeProfiler::level_from(int first, int step) const {
         return known(k) && known(k + step) &&
                std::abs(at(k).height_m - at(k + step).height_m) <= kLevel_m;
     };
-    int begin = first;
-    // Three slices that agree are ground, or the last of it before the unknown.
+    // Of what is level the longest piece counts, as far as it is needed: beside a riser a few
+    // slices may agree on what depth noise makes of it.
+    const int enough = std::max(1, static_cast<int>(std::round(kMeasured_m / resolution_m_)));
     const int furthest = static_cast<int>(std::ceil(2.0 * config_.smear_m / resolution_m_));
-    for (int tried = 0; begin >= 0 && begin < slices; begin += step, ++tried) {
-        if (!known(begin)) continue;
-        if (all.strip(begin, step) > 0) break;
-        if (level_with_next(begin) && (level_with_next(begin + step) || !known(begin + 2 * step)))
-            break;
-        if (tried > furthest && known(begin)) break;
+    int begin = first;
+    int length = 0;
+    for (int k = first, tried = 0; k >= 0 && k < slices && length < enough;) {
+        int run = all.strip(k, step);
+        if (run == 0 && known(k))
+            for (run = 1; level_with_next(k + (run - 1) * step);) ++run;
+        if (run > length) {
+            begin = k;
+            length = run;
+        }
+        const int passed = std::max(1, run);
+        k += passed * step;
+        tried += passed;
+        // Ground behind a shadow is as far away as the shadow is long.
+        if (tried > furthest && length > 0) break;
     }
     Level level;
     level.sigma_m = kNothing;
-    if (!known(begin)) return level;
-    int end = begin;
-    if (const int strip = all.strip(begin, step); strip > 0) {
-        end += (strip - 1) * step;
-    } else {
-        while (level_with_next(end)) end += step;
-    }
+    if (length == 0) return level;
+    const int end = begin + (length - 1) * step;
     level.ends_unknown = !known(end + step);
     level.begin_m = std::abs(begin - first) * resolution_m_;
     level.end_m = (std::abs(end - first) + 1) * resolution_m_;

@@ -19,6 +19,8 @@ constexpr double kTread_m = 0.035;
 /// Steps of one flight differ by 5 mm by the code (NZ D1/AS1, Table 6); twice that is allowed for.
 constexpr double kUnevenRiser_m = 0.01;
 constexpr double kUnevenGoing_m = 0.015;
+constexpr double kMaxSigma_m = 0.03;  ///< of the height of a single step
+constexpr double kLeastStand_m = 0.08;
 /// No level of a map is known better: errors that its cells share.
 constexpr double kTreadSigma_m = 0.001;
 constexpr double kParallel_rad = 10.0 * kRadPerDeg;
@@ -172,12 +174,16 @@ bool FlightFinder::add_chain(std::span<const Edge> from_below,
     return flights.size() > before;
 }
 
-/// A single step is one if one can walk to it, and towards it.
+/// A single step is one if one can walk to it, and towards it, and stand on it.
 bool FlightFinder::is_step_ahead(const Edge& edge,
                                  FlightKind kind,
                                  const Vector2d& stance_m) const {
     const bool up = kind == FlightKind::up;
     if (!edge.lower_seen || (up ? !edge.lower_walkable : !edge.upper_walkable)) return false;
+    // What stands at the foot of a wall is no step: one stands on it.
+    if ((up ? edge.upper_depth_m : edge.lower_depth_m) < kLeastStand_m ||
+        edge.height_sigma_m > kMaxSigma_m)
+        return false;
     const Vector2d way = up ? Vector2d(-edge.down()) : edge.down();
     const Vector2d to_m = edge.middle_m() - stance_m;
     return to_m.dot(way) >= std::cos(config_.max_facing_deg * kRadPerDeg) * to_m.norm();

@@ -31,7 +31,7 @@ struct StairsConfig {
     double min_width_m = 0.45;     ///< of a flight
     double max_turn_deg = 40.0;    ///< from one edge to the next; more than 10 is a spiral
     double max_facing_deg = 60.0;  ///< of a single step: one walks towards it, not along it
-    double walk_step_m = 0.06;     ///< what one walks over without taking a step
+    double walk_step_m = 0.03;     ///< what one walks over without taking a step
     double kerb_m = 0.20;          ///< highest kerb
     double drop_m = 0.05;          ///< what goes down by more is a drop (the gate's limit)
 
