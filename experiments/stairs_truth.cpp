@@ -21,7 +21,7 @@
 //   drops              all that are there but that one
 //   door, door_width, door_width_sigma, door_sill   of the opening within 0.3 m, within 15 deg
 //   sill_height        of the sill within 0.3 m
-//   find_us            time of one call
+//   find_us            time of a call, the shortest of four: cases run side by side
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -57,6 +57,7 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kNear_m = 0.1;
 constexpr double kBeside_m = 1.0;
 constexpr double kTurn_rad = 10.0 / kDegPerRad;
+constexpr int kCalls = 4;
 constexpr double kDoorNear_m = 0.3;
 constexpr double kDoorTurn_rad = 15.0 / kDegPerRad;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -171,10 +172,12 @@ std::string row(const Look& look, stairs::FeatureFinder& finder) {
     const TrueFeature& truth = look.truth;
     const stairs::Terrain terrain = look.terrain();
     stairs::TerrainFeatures features;
-    finder.find(terrain, features);  // the first call of a size allocates
-    const std::int64_t start_ns = steady_now_ns();
-    finder.find(terrain, features);
-    const std::int64_t took_ns = steady_now_ns() - start_ns;
+    std::int64_t took_ns = std::numeric_limits<std::int64_t>::max();
+    for (int call = 0; call < kCalls; ++call) {  // the first one of a size allocates
+        const std::int64_t start_ns = steady_now_ns();
+        finder.find(terrain, features);
+        took_ns = std::min(took_ns, steady_now_ns() - start_ns);
+    }
     return fmt::format(
         "{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.2f},{:.1f},{:.1f},{:.1f}{}{}{},{}\n",
         look.scene,
