@@ -119,7 +119,7 @@ Image<std::uint8_t> floor_pixels(const Image<float>& disparity_px,
     Image<std::uint8_t> floor(disparity_px.width(), disparity_px.height(), 0);
     for (int v = 0; v < floor.height(); ++v) {
         for (int u = 0; u < floor.width(); ++u) {
-            const double d = disparity_px.at(u, v);
+            const auto d = static_cast<double>(disparity_px.at(u, v));
             if (!(d > 0.0)) continue;
             const Eigen::Vector3d p_m = rig.point(u, v, d);
             if (p_m.z() < max_depth_m && std::abs((T_world_camera * p_m).z()) < kLevel_m)
@@ -168,8 +168,9 @@ void measure_noise(const sim::Scene& scene,
                 depth.outlier_probability.at(u, v) > most) {
                 continue;
             }
-            errors_px.push_back(depth.disparity_px.at(u, v) - exact_px.at(u, v));
-            said_px.push_back(depth.sigma_px.at(u, v));
+            errors_px.push_back(
+                static_cast<double>(depth.disparity_px.at(u, v) - exact_px.at(u, v)));
+            said_px.push_back(static_cast<double>(depth.sigma_px.at(u, v)));
         }
     }
     look.bias_px = median(errors_px);
