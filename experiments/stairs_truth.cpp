@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Are stairs, drops, kerbs and doors found in the map, and how true is what is said of them?
 // Usage: stairs_truth OUT.csv SCENES [FIRST_SEED [SEEDS [MODES [EVERY [MAPS [KEY=VALUE...]]]]]]
-//        stairs_truth OUT.csv MAPS
+//        stairs_truth OUT.csv MAPS [KEY=VALUE...]
 //   stairs_truth out/up.csv experiments/stairs_up.yaml#up_common 80001 200 analytic_0.25
 //   stairs_truth out/false.csv floor,room 80001 5 images_0.25,images_0.5 5
 //
@@ -258,16 +258,16 @@ Result<std::vector<Look>> looks_of(const StairsCase& now,
 Done judge(const StairsCase& now, const std::string& maps, const Settings& settings) {
     const auto looks = looks_of(now, maps, settings);
     if (!looks) return {{}, looks.error()};
-    stairs::FeatureFinder finder(stairs::StairsConfig{});
+    stairs::FeatureFinder finder(settings.pipeline.stairs);
     Done done;
     for (const Look& look : *looks) done.rows += row(look, finder);
     return done;
 }
 
-Done judge_saved(const std::string& folder) {
+Done judge_saved(const std::string& folder, const Settings& settings) {
     const auto look = experiments::read_look(folder);
     if (!look) return {{}, look.error()};
-    stairs::FeatureFinder finder(stairs::StairsConfig{});
+    stairs::FeatureFinder finder(settings.pipeline.stairs);
     return {row(*look, finder), {}};
 }
 
@@ -322,22 +322,25 @@ int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2) {
         return report(usage_error(
             "stairs_truth OUT.csv SCENES [FIRST_SEED [SEEDS [MODES [EVERY [MAPS [KEY=VALUE...]]]]]]"
-            ", or stairs_truth OUT.csv MAPS"));
+            ", or stairs_truth OUT.csv MAPS [KEY=VALUE...]"));
     }
-    if (words.size() == 2 && std::filesystem::is_directory(words[1])) {
-        const std::vector<std::string> folders = saved_looks(words[1]);
-        return write_all(static_cast<int>(folders.size()), words[0], [&](int i) {
-            return judge_saved(folders[static_cast<std::size_t>(i)]);
-        });
-    }
+    const bool is_saved = std::filesystem::is_directory(words[1]);
+    const std::size_t first_setting = std::min<std::size_t>(is_saved ? 2 : 7, words.size());
     CommonOptions common;
     common.settings = {"sim.known_motion=true",
                        "sim.analytic.drift.position_m_sqrt_m=0",
                        "sim.analytic.drift.turn_deg_sqrt_m=0"};
-    if (words.size() > 7)
-        common.settings.insert(common.settings.end(), words.begin() + 7, words.end());
+    common.settings.insert(common.settings.end(),
+                           words.begin() + static_cast<std::ptrdiff_t>(first_setting),
+                           words.end());
     const auto settings = load_settings(common);
     if (!settings) return report(settings.error());
+    if (is_saved) {
+        const std::vector<std::string> folders = saved_looks(words[1]);
+        return write_all(static_cast<int>(folders.size()), words[0], [&](int i) {
+            return judge_saved(folders[static_cast<std::size_t>(i)], *settings);
+        });
+    }
     const std::string maps = words.size() > 6 ? words[6] : "-";
     const std::vector<StairsCase> cases = cases_of(words);
     return write_all(static_cast<int>(cases.size()), words[0], [&](int i) {
