@@ -48,6 +48,7 @@ FeatureFinder::FeatureFinder(const StairsConfig& config)
       profiler_(config),
       step_fitter_(config),
       flight_finder_(config),
+      door_finder_(config.doors),
       reachability_({.max_step_m = config.walk_step_m, .stance_radius_m = kStance_m}) {}
 
 void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
@@ -74,6 +75,7 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
                (b.pose.p_m.head<2>() - terrain.stance_m).norm();
     });
     name_lines(terrain, out);
+    door_finder_.find(terrain, out.doors, out.sills);
 }
 
 void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges) {

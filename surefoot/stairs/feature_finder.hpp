@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "surefoot/stairs/doors.hpp"
 #include "surefoot/stairs/edge_lines.hpp"
 #include "surefoot/stairs/edge_points.hpp"
 #include "surefoot/stairs/edge_profile.hpp"
@@ -42,6 +43,7 @@ class FeatureFinder {
     EdgeProfiler profiler_;
     StepFitter step_fitter_;
     FlightFinder flight_finder_;
+    DoorFinder door_finder_;
     traversability::Reachability reachability_;
     grid::Layer walk_step_m_;  ///< NaN = not to be walked to
     std::vector<EdgePoint> points_;

@@ -45,6 +45,7 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
         "ground on which no neighbouring cells differ by more is walked on without steps");
     visitor.number("kerb_m", kerb_m, 0.02, 1.0, "highest kerb");
     visitor.number("drop_m", drop_m, 0.01, 1.0, "ground that lies lower by more is a drop");
+    visitor.group("doors", doors);
 }
 
 std::optional<std::string> StairsConfig::problem() const {
@@ -54,7 +55,7 @@ std::optional<std::string> StairsConfig::problem() const {
     if (!(min_going_m < max_going_m))
         return fmt::format(
             "stairs.min_going_m {} must be below stairs.max_going_m {}", min_going_m, max_going_m);
-    return std::nullopt;
+    return doors.problem();
 }
 
 }  // namespace surefoot::stairs

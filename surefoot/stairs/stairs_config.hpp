@@ -5,6 +5,7 @@
 #include <string>
 
 #include "surefoot/core/config.hpp"
+#include "surefoot/stairs/doors.hpp"
 
 namespace surefoot::stairs {
 
@@ -34,6 +35,8 @@ struct StairsConfig {
     double walk_step_m = 0.03;     ///< what one walks over without taking a step
     double kerb_m = 0.20;          ///< highest kerb
     double drop_m = 0.05;          ///< what goes down by more is a drop (the gate's limit)
+
+    DoorConfig doors;
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this cannot be used, or nothing.
