@@ -534,13 +534,15 @@ void DoorConfig::describe(ConfigVisitor& visitor) {
 
 std::optional<std::string> DoorConfig::problem() const {
     if (max_width_m < min_width_m) {
-        return fmt::format("stairs.doors.max_width_m = {} must not be below stairs.doors.min_width_m = {}",
-                           max_width_m,
-                           min_width_m);
+        return fmt::format(
+            "stairs.doors.max_width_m = {} must not be below stairs.doors.min_width_m = {}",
+            max_width_m,
+            min_width_m);
     }
     if (wall_height_m >= rise_m) return std::nullopt;
-    return fmt::format(
-        "stairs.doors.wall_height_m = {} must not be below stairs.doors.rise_m = {}", wall_height_m, rise_m);
+    return fmt::format("stairs.doors.wall_height_m = {} must not be below stairs.doors.rise_m = {}",
+                       wall_height_m,
+                       rise_m);
 }
 
 }  // namespace surefoot::stairs

@@ -572,10 +572,12 @@ TEST(DoorConfig, SaysWhatCannotBe) {
     DoorConfig config;
     config.max_width_m = 0.5;
     EXPECT_EQ(config.problem(),
-              "stairs.doors.max_width_m = 0.5 must not be below doors.min_width_m = 0.6");
+              "stairs.doors.max_width_m = 0.5 must not be below "
+              "stairs.doors.min_width_m = 0.6");
     config = {};
     config.wall_height_m = 0.1;
-    EXPECT_EQ(config.problem(), "stairs.doors.wall_height_m = 0.1 must not be below doors.rise_m = 0.2");
+    EXPECT_EQ(config.problem(),
+              "stairs.doors.wall_height_m = 0.1 must not be below stairs.doors.rise_m = 0.2");
 }
 
 }  // namespace

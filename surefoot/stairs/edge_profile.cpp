@@ -124,8 +124,9 @@ void EdgeProfiler::gather(const Terrain& terrain, const EdgeLine& line) {
         keep(t, t_step, length);
         keep(s, s_step, slices);
         for (int ix = static_cast<int>(std::ceil(low)); ix <= high; ++ix) {
-            const int k = static_cast<int>(s + s_step * ix);
-            if (k >= static_cast<int>(slices_.size())) continue;  // by rounding
+            const double at_slice = s + s_step * ix;
+            if (!(at_slice >= 0.0 && at_slice < slices)) continue;  // by rounding
+            const int k = static_cast<int>(at_slice);
             const auto slice = static_cast<std::size_t>(k);
             ++cells_[slice];
             const float height_m = terrain.height_m.row(iy)[ix];
