@@ -40,6 +40,11 @@ std::unique_ptr<MapSnapshot> random_snapshot(int nx, int ny, std::uint64_t seed)
         s->drop_evidence[i] = static_cast<std::uint8_t>(rng.next_u64());
         s->source[i] = static_cast<grid::EvidenceSource>(rng.below(3));
     }
+    s->edge_count = 3;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto any = [&rng] { return static_cast<std::int32_t>(rng.next_u64()); };
+        s->edges[i] = {any(), any(), any(), any(), any(), any(), any(), any()};
+    }
     s->checksum = grid::snapshot_checksum(*s);
     return s;
 }
@@ -53,7 +58,7 @@ TEST(SnapshotFile, RoundTripsEveryFieldAndIsSmall) {
     const testing::TemporaryFolder folder;
     const auto original = random_snapshot(13, 7, 1);
     ASSERT_TRUE(write_snapshot(folder / "map.snapshot", *original).ok());
-    EXPECT_LT(read_file(folder / "map.snapshot")->size(), 13U * 7U * 14U + 200U);
+    EXPECT_LT(read_file(folder / "map.snapshot")->size(), 13U * 7U * 14U + 3U * 32U + 200U);
     const auto copy = read_snapshot(folder / "map.snapshot");
     ASSERT_TRUE(copy.ok()) << message(copy);
     EXPECT_TRUE(grid::is_intact(**copy));
@@ -65,16 +70,21 @@ TEST(SnapshotFile, RoundTripsEveryFieldAndIsSmall) {
     EXPECT_EQ((*copy)->body_sin_yaw, original->body_sin_yaw);
     EXPECT_EQ((*copy)->health, original->health);
     EXPECT_EQ((*copy)->camera, CameraState::frozen);
+    EXPECT_EQ((*copy)->edge_count, 3);
+    EXPECT_EQ((*copy)->edges, original->edges);
 }
 
 TEST(SnapshotFile, WhatLiesBeyondTheUsedCellsIsNotStored) {
     const auto original = random_snapshot(4, 4, 2);
     original->height_tenth_mm[5000] = 77;
+    original->edges[100].upper_tenth_mm = 88;
     original->checksum = grid::snapshot_checksum(*original);
     const auto copy = parse_snapshot(*format_snapshot(*original), "map.snapshot");
     ASSERT_TRUE(copy.ok()) << message(copy);
     EXPECT_EQ((*copy)->height_tenth_mm[5000], 0);
     EXPECT_EQ((*copy)->height_tenth_mm[15], original->height_tenth_mm[15]);
+    EXPECT_EQ((*copy)->edges[100], grid::SnapshotEdge{});
+    EXPECT_EQ((*copy)->edges[2], original->edges[2]);
 }
 
 TEST(SnapshotFile, EveryBitErrorAndTruncationIsFound) {
@@ -91,6 +101,27 @@ TEST(SnapshotFile, EveryBitErrorAndTruncationIsFound) {
     EXPECT_TRUE(contains(message(parse_snapshot("", "map.snapshot")), "not a map snapshot"));
     EXPECT_TRUE(contains(message(parse_snapshot(bytes.substr(0, bytes.size() - 9), "map.snapshot")),
                          "map.snapshot: truncated map snapshot"));
+}
+
+TEST(SnapshotFile, AnImpossibleNumberOfEdgesIsASentence) {
+    const auto snapshot = random_snapshot(2, 2, 8);
+    const std::string bytes = *format_snapshot(*snapshot);
+    // Magic, layout, version, hash, two times, resolution, nx and ny lie before it.
+    constexpr std::size_t kAt = 4 + 4 + 4 * 8 + 3 * 4;
+    ASSERT_EQ(bytes[kAt], 3);
+    const auto with_count = [&](std::int32_t count) {
+        std::string changed = bytes;
+        for (std::size_t i = 0; i < 4; ++i) {
+            changed[kAt + i] = static_cast<char>(static_cast<std::uint32_t>(count) >>
+                                                 (8U * static_cast<unsigned>(i)));
+        }
+        return message(parse_snapshot(changed, "map.snapshot"));
+    };
+    for (const std::int32_t count : {-1, MapSnapshot::kMaxEdges + 1, 2'000'000'000}) {
+        EXPECT_TRUE(contains(with_count(count), "0 to 128 edges are possible")) << count;
+    }
+    EXPECT_TRUE(contains(with_count(2), "too long a map"));
+    EXPECT_TRUE(contains(with_count(4), "truncated map"));
 }
 
 TEST(SnapshotFile, ADamagedSnapshotIsNotWritten) {

@@ -85,6 +85,8 @@ TEST(MapSnapshot, checksum_sees_every_field_and_any_single_bit) {
     flip_everywhere(s.component.data(), sizeof(s.component), 60, "component");
     flip_everywhere(s.drop_evidence.data(), sizeof(s.drop_evidence), 60, "drop evidence");
     flip_everywhere(s.source.data(), sizeof(s.source), 60, "source");
+    flip_everywhere(&s.edge_count, sizeof(s.edge_count), 10, "edge count");
+    flip_everywhere(s.edges.data(), sizeof(s.edges), 60, "edges");
     EXPECT_TRUE(is_intact(s));
 }
 
@@ -108,6 +110,13 @@ TEST(MapSnapshot, a_default_or_senseless_one_is_not_intact_even_with_its_checksu
     s->body_cos_yaw = std::nan("");
     EXPECT_FALSE(sealed()) << "NaN pose";
     s->body_cos_yaw = 1.0;
+    s->edge_count = MapSnapshot::kMaxEdges + 1;
+    EXPECT_FALSE(sealed()) << "more edges than fit";
+    s->edge_count = -1;
+    EXPECT_FALSE(sealed()) << "fewer edges than none";
+    s->edge_count = MapSnapshot::kMaxEdges;
+    EXPECT_TRUE(sealed());
+    s->edge_count = 0;
     s->magic ^= 1U;
     EXPECT_FALSE(sealed()) << "magic";
 }
@@ -349,6 +358,79 @@ TEST(SnapshotBuilder, ray_evidence_is_kept_on_unknown_cells) {
     EXPECT_EQ(map.out->drop_evidence[1], 128);
     EXPECT_EQ(map.out->drop_evidence[2], 255) << "a broken number is no all-clear";
     EXPECT_EQ(map.out->drop_evidence[0], 0);
+}
+
+/// An edge along y that begins at (x, -1) and is 2 m long.
+SnapshotInput::Edge edge_at(double x_m) {
+    return {{x_m, -1.0}, {x_m, 1.0}, 0.1, 0.0, 0.002, 0.003};
+}
+
+TEST(SnapshotBuilder, edges_are_kept_from_the_origin_of_the_snapshot_and_sigmas_rounded_up) {
+    TestMap map(400, 300);  // is cropped: the snapshot's origin is not that of the map
+    SnapshotInput input = map.input();
+    input.T_odom_body.translation_m = {5.0, 3.75, 0.99};
+    const SnapshotInput::Edge edges[] = {
+        {{5.1, 3.0}, {5.2, 4.5}, 0.18004, -0.02006, 0.00201, 0.00301}};
+    input.edges = edges;
+    ASSERT_TRUE(build_snapshot(input, *map.out).ok());
+    const MapSnapshot& s = *map.out;
+    ASSERT_EQ(s.edge_count, 1);
+    ASSERT_EQ(s.origin_x_tenth_mm, 72 * 250);
+    ASSERT_EQ(s.origin_y_tenth_mm, 22 * 250);
+    const SnapshotEdge expected{
+        51000 - 18000, 30000 - 5500, 52000 - 18000, 45000 - 5500, 1800, -201, 21, 31};
+    EXPECT_EQ(s.edges[0], expected);
+    EXPECT_EQ(s.edges[1], SnapshotEdge{});
+    EXPECT_TRUE(is_intact(s));
+}
+
+TEST(SnapshotBuilder, the_nearest_edges_come_first_and_no_more_than_fit) {
+    TestMap map(8, 8);
+    constexpr std::size_t kMany = MapSnapshot::kMaxEdges + 40;
+    std::vector<SnapshotInput::Edge> edges;
+    // In disorder: 79 and the number of edges have no common divisor.
+    for (std::size_t i = 0; i < kMany; ++i)
+        edges.push_back(edge_at(0.01 * static_cast<double>(79 * i % kMany + 1)));
+    SnapshotInput input = map.input();
+    input.edges = edges;
+    ASSERT_TRUE(build_snapshot(input, *map.out).ok());
+    ASSERT_EQ(map.out->edge_count, MapSnapshot::kMaxEdges);
+    for (std::size_t i = 0; i < MapSnapshot::kMaxEdges; ++i)
+        ASSERT_EQ(map.out->edges[i].from_x_tenth_mm, 100 * static_cast<int>(i + 1)) << i;
+    EXPECT_TRUE(is_intact(*map.out));
+    // Near is what comes near anywhere along the edge, not at its ends or its middle.
+    const SnapshotInput::Edge two[] = {edge_at(0.3), {{0.2, -0.1}, {0.2, 9.0}, 0.1, 0.0, 0.0, 0.0}};
+    input.edges = two;
+    ASSERT_TRUE(build_snapshot(input, *map.out).ok());
+    ASSERT_EQ(map.out->edge_count, 2);
+    EXPECT_EQ(map.out->edges[0].to_y_tenth_mm, 90000);
+    EXPECT_EQ(map.out->edges[2], SnapshotEdge{}) << "of the snapshot before";
+    EXPECT_TRUE(is_intact(*map.out));
+}
+
+TEST(SnapshotBuilder, edges_with_broken_numbers_are_left_out) {
+    TestMap map(8, 8);
+    const double nan = std::nan("");
+    std::vector<SnapshotInput::Edge> edges;
+    const auto broken = [&edges](auto change) {
+        edges.push_back(edge_at(0.1));
+        change(edges.back());
+    };
+    using Edge = SnapshotInput::Edge;
+    broken([&](Edge& e) { e.from_m.x() = nan; });
+    broken([&](Edge& e) { e.to_m.y() = 1e9; });
+    broken([&](Edge& e) { e.upper_m = nan; });
+    broken([&](Edge& e) { e.lower_m = -2000.0; });
+    broken([&](Edge& e) { e.height_sigma_m = nan; });
+    broken([&](Edge& e) { e.height_sigma_m = -0.001; });
+    broken([&](Edge& e) { e.across_sigma_m = std::numeric_limits<double>::infinity(); });
+    edges.push_back(edge_at(0.2));
+    SnapshotInput input = map.input();
+    input.edges = edges;
+    ASSERT_TRUE(build_snapshot(input, *map.out).ok());
+    ASSERT_EQ(map.out->edge_count, 1);
+    EXPECT_EQ(map.out->edges[0].from_x_tenth_mm, 2000);
+    EXPECT_TRUE(is_intact(*map.out));
 }
 
 }  // namespace
