@@ -30,6 +30,7 @@ constexpr std::array<Rgb8, 17> kMagma = {{
     {229, 80, 100}, {244, 105, 92}, {251, 135, 97}, {254, 165, 113}, {254, 194, 135},
     {253, 224, 161}, {252, 253, 191}}};
 // clang-format on
+constexpr double kPaleness = 0.5;  ///< share of white in the pale map
 constexpr std::array<Rgb8, 2> kGrey = {{{0, 0, 0}, {255, 255, 255}}};
 // Our own, around Okabe-Ito vermillion and blue: two halves with a jump between them, so that no
 // cell near the limit is drawn in a colour that belongs to neither side.
@@ -48,7 +49,8 @@ constexpr std::array<Rgb8, 7> kBalance = {{{122, 12, 34},
 /// The anchors of a map; `s` chooses the half of a map in two halves and is stretched to it.
 std::span<const Rgb8> anchors(ColorMap map, double& s) {
     switch (map) {
-        case ColorMap::viridis: return kViridis;
+        case ColorMap::viridis:
+        case ColorMap::pale: return kViridis;
         case ColorMap::cividis: return kCividis;
         case ColorMap::magma: return kMagma;
         case ColorMap::grey: return kGrey;
@@ -86,7 +88,9 @@ Rgb8 color_at(ColorMap map, double s) {
     const std::span<const Rgb8> colors = anchors(map, s);
     const double position = s * static_cast<double>(colors.size() - 1);
     const auto below = std::min(static_cast<std::size_t>(position), colors.size() - 2);
-    return mixed(colors[below], colors[below + 1], position - static_cast<double>(below));
+    const Rgb8 color =
+        mixed(colors[below], colors[below + 1], position - static_cast<double>(below));
+    return map == ColorMap::pale ? mixed(color, palette::kPaper, kPaleness) : color;
 }
 
 bool is_diverging(ColorMap map) noexcept {

@@ -18,6 +18,7 @@ struct Rgb8 {
 /// orange to blue there: each colour belongs to one side of the limit.
 enum class ColorMap : std::uint8_t {
     viridis,  ///< sequential (Smith and van der Walt 2015)
+    pale,     ///< sequential: viridis with much white, ground under coloured lines
     cividis,  ///< sequential (Nunez, Anderton and Renslow 2018)
     magma,    ///< sequential (Smith and van der Walt 2015)
     grey,     ///< sequential, black to white
@@ -56,6 +57,7 @@ inline constexpr Rgb8 kUnsafe{213, 94, 0};
 inline constexpr Rgb8 kGreen{0, 158, 115};
 inline constexpr Rgb8 kPink{204, 121, 167};
 inline constexpr Rgb8 kYellow{240, 228, 66};
+inline constexpr Rgb8 kOrange{230, 159, 0};
 }  // namespace palette
 
 }  // namespace surefoot::eval

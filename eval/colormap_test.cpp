@@ -23,6 +23,14 @@ TEST(ColorMap, SequentialMapsGrowInLightness) {
     }
 }
 
+TEST(ColorMap, PaleGroundGrowsInLightnessAndIsLighterThanTheLinesOverIt) {
+    const auto lightness_at = [](int k) { return lightness(color_at(ColorMap::pale, k / 32.0)); };
+    EXPECT_GT(lightness_at(0), lightness(palette::kUnsafe));
+    EXPECT_GT(lightness_at(0), lightness(palette::kSafe));
+    // In 32 steps: its finer ones are as small as the rounding of the channels.
+    for (int k = 1; k <= 32; ++k) EXPECT_GT(lightness_at(k), lightness_at(k - 1)) << k;
+}
+
 TEST(ColorMap, DivergingMapsAreLightestInTheMiddle) {
     for (const ColorMap map : {ColorMap::safety, ColorMap::balance}) {
         EXPECT_TRUE(is_diverging(map));

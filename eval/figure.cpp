@@ -147,6 +147,17 @@ void draw_symbol(Figure& figure, const KeyEntry& entry, PointPx center) {
             break;
         case Symbol::body: draw_body_symbol(picture, center, {0.0, -1.0}, 24.0); break;
         case Symbol::line: draw_line(picture, left, right, 3, entry.color); break;
+        case Symbol::ticked_line:
+            draw_line(picture, left, right, 3, entry.color);
+            for (const double u : {-9.0, 0.0, 9.0}) {
+                draw_line(picture,
+                          {center.u + u, center.v},
+                          {center.u + u, center.v + 9.0},
+                          2,
+                          entry.color);
+            }
+            break;
+        case Symbol::none: break;  // goes on with the entry above
         case Symbol::outline: draw_rect(picture, box, 2, entry.color); break;
         case Symbol::mark: draw_mark_symbol(picture, center); break;
         case Symbol::square:

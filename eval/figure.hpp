@@ -71,7 +71,7 @@ struct ColorBar {
 /// Draws the bar at the top of the column; returns the row [px] below it.
 int draw_color_bar(Figure& figure, const ColorBar& bar, int key_rows);
 
-enum class Symbol : std::uint8_t { hatch, body, line, outline, mark, square };
+enum class Symbol : std::uint8_t { hatch, body, line, ticked_line, outline, mark, square, none };
 struct KeyEntry {
     Symbol symbol = Symbol::square;
     Rgb8 color = palette::kInk;

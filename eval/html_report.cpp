@@ -211,6 +211,15 @@ std::string details_html(const ReportContent& content) {
     return cards.empty() ? "" : "<div class=\"grid\">\n" + cards + "</div>\n";
 }
 
+std::string section_html(const ReportSection& part) {
+    std::string cards;
+    for (const ReportTable& table : part.tables) cards += table_card(table);
+    if (!cards.empty()) cards = "<div class=\"grid\">\n" + cards + "</div>\n";
+    const std::string note =
+        part.note.empty() ? "" : fmt::format("<p class=\"hint\">{}</p>\n", escaped(part.note));
+    return section(part.title, pictures_html(part.pictures) + cards + note);
+}
+
 }  // namespace
 
 std::string base64(std::span<const std::uint8_t> bytes) {
@@ -243,6 +252,7 @@ std::string render_html(const ReportContent& content) {
     for (const std::string& line : content.summary) html += element("p", line);
     html += "</header>\n";
     html += pictures_html(content.pictures);
+    for (const ReportSection& part : content.sections) html += section_html(part);
     html += section("Key figures", figures_html(content.figures));
     html += section("Reasons", reasons_html(content.reasons));
     html += section(content.plots_title, plots_html(content.plots));

@@ -52,11 +52,20 @@ struct ReportBars {
     std::vector<Bar> bars;
 };
 
+/// A part of the page about one thing.
+struct ReportSection {
+    std::string title;
+    std::vector<ReportPicture> pictures;
+    std::vector<ReportTable> tables;
+    std::string note = {};  ///< under them
+};
+
 /// Everything that a report shows, in the order of the page. Empty parts are left out.
 struct ReportContent {
     std::string title;
     std::vector<std::string> summary;  ///< one sentence per line
     std::vector<ReportPicture> pictures;
+    std::vector<ReportSection> sections;  ///< after the pictures
     std::vector<KeyFigure> figures;
     std::vector<std::string> reasons;  ///< why something is missing or refused, in words
     std::vector<StageTiming> stages;

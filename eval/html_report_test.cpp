@@ -198,6 +198,24 @@ TEST(SvgPlot, BinPlotIsToScaleAndBreaksWhereNothingIs) {
     EXPECT_NE(svg.find("cx=\"497.0\" cy=\"124.0\""), std::string::npos) << svg;
 }
 
+TEST(HtmlReport, ASectionHasItsPicturesTablesAndNote) {
+    ReportContent content = full_content();
+    content.sections = {{"Edges & stairs",
+                         {{"from above", {1, 2, 3}, true}},
+                         {{"Flights", {"what"}, {{"up, 4 steps"}}}},
+                         "1 flight."},
+                        {"Nothing to show", {}, {{"Empty", {"what"}, {}}}, ""}};
+    const std::string html = render_html(content);
+    const std::size_t begin = html.find("<h2>Edges &amp; stairs</h2>");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string part = html.substr(begin, html.find("</section>", begin) - begin);
+    EXPECT_LT(part.find("from above"), part.find("<h3>Flights</h3>"));
+    EXPECT_NE(part.find("<td>up, 4 steps</td>"), std::string::npos) << part;
+    EXPECT_NE(part.find("1 flight."), std::string::npos);
+    EXPECT_LT(begin, html.find("<h2>Key figures</h2>"));
+    EXPECT_EQ(html.find("Nothing to show"), std::string::npos);
+}
+
 TEST(HtmlReport, FramesBecomeTimesAndHealth) {
     ReportContent content;
     add_frames(content, frames(20));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "eval/ticks.hpp"
 
@@ -49,6 +50,108 @@ void draw_body(Picture& picture,
                      view.to_px(T_odom_body.translation_m.head<2>()),
                      forward,
                      length_px.value_or(std::max(kSmallestBody_px, kBodyLength_m * view.px_per_m)));
+}
+
+constexpr double kTickSpacing_px = 16.0;
+constexpr double kFallTick_px = 10.0;
+constexpr int kHalo_px = 4;  ///< both edges of a line together
+
+/// Where the right-hand ticks of a line begin and end.
+std::vector<std::pair<PointPx, PointPx>> ticks_of(const MapView& view, const Stroke& stroke) {
+    std::vector<std::pair<PointPx, PointPx>> ticks;
+    for (std::size_t i = 0; stroke.ticks && i + 1 < stroke.points_m.size(); ++i) {
+        const Eigen::Vector2d from_m = stroke.points_m[i];
+        const double length_m = (stroke.points_m[i + 1] - from_m).norm();
+        const double spacing_m = kTickSpacing_px / view.px_per_m;
+        if (!(length_m > 0.0 && length_m < 1e4 * spacing_m)) continue;
+        const Eigen::Vector2d along = (stroke.points_m[i + 1] - from_m) / length_m;
+        const Eigen::Vector2d tick_m =
+            kFallTick_px / view.px_per_m * Eigen::Vector2d(along.y(), -along.x());
+        for (double t_m = 0.5 * spacing_m; t_m < length_m; t_m += spacing_m) {
+            const Eigen::Vector2d foot_m = from_m + t_m * along;
+            ticks.emplace_back(view.to_px(foot_m), view.to_px(foot_m + tick_m));
+        }
+    }
+    return ticks;
+}
+
+/// The head of an arrow that ends at the last point, its tip first; none without a direction.
+std::vector<PointPx> arrow_head(const MapView& view, const Stroke& stroke) {
+    const std::vector<PointPx> points = to_px(view, stroke.points_m);
+    if (!stroke.arrow || points.size() < 2) return {};
+    const PointPx tip = points.back();
+    const PointPx before = points[points.size() - 2];
+    const double length_px = std::hypot(tip.u - before.u, tip.v - before.v);
+    if (!(length_px > 0.0)) return {};
+    const double u = (tip.u - before.u) / length_px;
+    const double v = (tip.v - before.v) / length_px;
+    const double back_px = 10.0 + 2.0 * stroke.width_px;
+    const double side_px = 4.0 + 1.5 * stroke.width_px;
+    const double ahead_px = 0.5 * back_px;
+    return {{tip.u + ahead_px * u, tip.v + ahead_px * v},
+            {tip.u - (back_px - ahead_px) * u - side_px * v,
+             tip.v - (back_px - ahead_px) * v + side_px * u},
+            {tip.u - (back_px - ahead_px) * u + side_px * v,
+             tip.v - (back_px - ahead_px) * v - side_px * u}};
+}
+
+/// All white edges first, so that no line cuts another.
+void draw_strokes(Picture& picture, const MapView& view, const std::vector<Stroke>& strokes) {
+    const auto draw_all = [&](bool halo) {
+        for (const Stroke& stroke : strokes) {
+            const Rgb8 color = halo ? palette::kPaper : stroke.color;
+            const int wider_px = halo ? kHalo_px : 0;
+            draw_polyline(picture, to_px(view, stroke.points_m), stroke.width_px + wider_px, color);
+            for (const auto& [from, to] : ticks_of(view, stroke))
+                draw_line(picture, from, to, 2 + wider_px, color);
+            const std::vector<PointPx> head = arrow_head(view, stroke);
+            if (head.empty()) continue;
+            if (halo) {
+                draw_polyline(picture, head, kHalo_px, color, true);
+            } else {
+                fill_polygon(picture, head, color);
+            }
+        }
+    };
+    draw_all(true);
+    draw_all(false);
+}
+
+void draw_badges(Picture& picture, const MapView& view, const std::vector<Badge>& badges) {
+    constexpr double kRadius_px = 12.0;
+    std::vector<PointPx> taken;
+    for (const Badge& badge : badges) {
+        if (!badge.point_m.allFinite()) continue;
+        const PointPx at = view.to_px(badge.point_m);
+        const bool covers = std::any_of(taken.begin(), taken.end(), [at](const PointPx& other) {
+            return std::hypot(at.u - other.u, at.v - other.v) < 2.0 * kRadius_px + 3.0;
+        });
+        if (covers) continue;
+        taken.push_back(at);
+        fill_circle(picture, at, kRadius_px + 2.0, palette::kPaper);
+        fill_circle(picture, at, kRadius_px, badge.color);
+        TextStyle style = label_style(TextAnchor::centre);
+        style.cap_height_px = 11.0;
+        style.color = palette::kPaper;
+        style.bold = true;
+        draw_text(picture, at, badge.text, style);
+    }
+}
+
+/// One row of the key for each line of the label; a label that is there already gets none.
+void add_label(const std::string& label,
+               Symbol symbol,
+               Rgb8 color,
+               std::vector<KeyEntry>& entries) {
+    const std::string first = label.substr(0, label.find('\n'));
+    const auto same = [&](const KeyEntry& entry) { return entry.label == first; };
+    if (first.empty() || std::any_of(entries.begin(), entries.end(), same)) return;
+    entries.push_back({symbol, color, first, {}});
+    for (std::size_t end = first.size(); end < label.size();) {
+        const std::size_t begin = end + 1;
+        end = std::min(label.find('\n', begin), label.size());
+        entries.push_back({Symbol::none, color, label.substr(begin, end - begin), {}});
+    }
 }
 
 }  // namespace
@@ -126,6 +229,8 @@ void draw_overlays(Picture& picture, const MapView& view, const Overlays& overla
         draw_polyline(part, points, 7, palette::kPaper, true);
         draw_polyline(part, points, 3, outline.color, true);
     }
+    draw_strokes(part, inside, overlays.strokes);
+    draw_badges(part, inside, overlays.badges);
     if (overlays.T_odom_body && overlays.T_odom_body->all_finite())
         draw_body(part, inside, *overlays.T_odom_body, overlays.body_px);
     for (const Mark& mark : overlays.marks) {
@@ -141,9 +246,11 @@ std::vector<KeyEntry> key_of(const Overlays& overlays) {
         entries.push_back({Symbol::line, palette::kInk, "path", {}});
     }
     for (const Outline& outline : overlays.outlines) {
-        const auto same = [&](const KeyEntry& entry) { return entry.label == outline.label; };
-        if (outline.label.empty() || std::any_of(entries.begin(), entries.end(), same)) continue;
-        entries.push_back({Symbol::outline, outline.color, outline.label, {}});
+        add_label(outline.label, Symbol::outline, outline.color, entries);
+    }
+    for (const Stroke& stroke : overlays.strokes) {
+        add_label(
+            stroke.label, stroke.ticks ? Symbol::ticked_line : Symbol::line, stroke.color, entries);
     }
     for (const Mark& mark : overlays.marks)
         entries.push_back({Symbol::mark, palette::kInk, mark.label, {}});

@@ -37,6 +37,23 @@ struct Outline {
     Rgb8 color = palette::kInk;
     std::string label;  ///< in the key; outlines with the same label share one entry
 };
+/// A line with a white edge.
+struct Stroke {
+    std::vector<Eigen::Vector2d> points_m;
+    Rgb8 color = palette::kInk;
+    int width_px = 4;
+    /// As of outlines; what follows a line break stands in a row of its own.
+    std::string label = {};
+    bool ticks = false;  ///< on the right-hand side, as maps show where the ground falls
+    bool arrow = false;  ///< at the last point
+};
+/// A word of a few letters on a disc, as the number of a step. One that would cover an earlier one
+/// is left out.
+struct Badge {
+    Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+    std::string text;
+    Rgb8 color = palette::kInk;
+};
 struct Mark {
     Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
     std::string label;  ///< in the key: words over the map hide what they are about
@@ -45,6 +62,8 @@ struct Overlays {
     std::optional<Pose> T_odom_body;
     std::vector<Outline> outlines;  ///< footprints
     std::vector<Eigen::Vector2d> trajectory_m;
+    std::vector<Stroke> strokes;
+    std::vector<Badge> badges;
     std::vector<Mark> marks;
     bool scale_bar = true;
     /// Length of the arrow for the body; nothing: 0.35 m, but not too small to be seen.
