@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only here and in calibration_json.cpp is nlohmann-json included (six seconds a translation unit).
+// Only here, in calibration_json.cpp and in stairs_json.cpp is nlohmann-json included (six seconds
+// a translation unit).
 #include "apps/surefoot/json_output.hpp"
 
 #include <fmt/format.h>

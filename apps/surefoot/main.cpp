@@ -92,6 +92,7 @@ struct AllOptions {
     RunOptions run;
     SimOptions sim;
     RateOptions rate;
+    StairsOptions stairs;
     FuseOptions fuse;
     GroundOptions ground;
     GateOptions gate;
@@ -232,6 +233,39 @@ void add_rate(CLI::App& app, RateOptions& o, int& exit_code) {
         ->type_name("M")
         ->check(positive_number());
     verb->add_option("--height", o.height_m, "PNG: height of the brightest value")
+        ->type_name("M")
+        ->check(positive_number());
+}
+
+void add_stairs(CLI::App& app, StairsOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(app,
+                                   "stairs",
+                                   "flights, drops, kerbs, sills, doors and edges of a height map",
+                                   "surefoot stairs out/floor --out out/floor_edges\n"
+                                   "  surefoot stairs out/stairs.ply --from 0,0 --json"),
+                          o,
+                          stairs,
+                          exit_code);
+    verb->add_option(
+            "map",
+            o.map,
+            "folder of a run (better with --layers), ESRI ASCII grid, PNG with --scale and "
+            "--height, or a cloud with z up (.ply, .pcd, .xyz)")
+        ->required()
+        ->type_name("DEM|CLOUD|FOLDER");
+    verb->add_option("--out", o.out_dir, "folder for stairs.json and stairs.png")->type_name("DIR");
+    verb->add_option("--from",
+                     o.from,
+                     "where one stands [m]: what goes down from there is a drop; by default "
+                     "base_link of a run, else the origin, else the border with the smallest x")
+        ->type_name("X,Y");
+    verb->add_option("--scale", o.scale_m_per_px, "PNG: metres per pixel")
+        ->type_name("M")
+        ->check(positive_number());
+    verb->add_option("--height", o.height_m, "PNG: height of the brightest value")
+        ->type_name("M")
+        ->check(positive_number());
+    verb->add_option("--resolution", o.resolution_m, "cloud: side of a cell")
         ->type_name("M")
         ->check(positive_number());
 }
@@ -866,6 +900,7 @@ int main_with_arguments(int argc, char** argv) {
     add_run(app, all.run, exit_code);
     add_sim(app, all.sim, exit_code);
     add_rate(app, all.rate, exit_code);
+    add_stairs(app, all.stairs, exit_code);
     add_fuse(app, all.fuse, exit_code);
     add_ground(app, all.ground, exit_code);
     add_depth(app, all.depth, exit_code);

@@ -8,11 +8,15 @@
 #include "io/text.hpp"
 
 namespace surefoot::app {
+namespace {
 
-Result<std::array<double, 3>> parse_three_numbers(const std::string& option,
-                                                  const std::string& text,
-                                                  const std::string& meaning) {
-    std::array<double, 3> values{};
+/// Exactly N finite numbers with commas between; `count` is N as a word.
+template <std::size_t N>
+Result<std::array<double, N>> parse_numbers(const std::string& option,
+                                            const std::string& text,
+                                            const char* count,
+                                            const std::string& meaning) {
+    std::array<double, N> values{};
     std::size_t begin = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const std::size_t end = i + 1 < values.size() ? text.find(',', begin) : text.size();
@@ -20,13 +24,27 @@ Result<std::array<double, 3>> parse_three_numbers(const std::string& option,
                                ? std::nullopt
                                : io::parse_double(text.substr(begin, end - begin));
         if (!value || !std::isfinite(*value)) {
-            return usage_error(
-                fmt::format("{} '{}': three finite numbers {} are needed", option, text, meaning));
+            return usage_error(fmt::format(
+                "{} '{}': {} finite numbers {} are needed", option, text, count, meaning));
         }
         values[i] = *value;
         begin = end + 1;
     }
     return values;
+}
+
+}  // namespace
+
+Result<std::array<double, 3>> parse_three_numbers(const std::string& option,
+                                                  const std::string& text,
+                                                  const std::string& meaning) {
+    return parse_numbers<3>(option, text, "three", meaning);
+}
+
+Result<std::array<double, 2>> parse_two_numbers(const std::string& option,
+                                                const std::string& text,
+                                                const std::string& meaning) {
+    return parse_numbers<2>(option, text, "two", meaning);
 }
 
 }  // namespace surefoot::app

@@ -13,4 +13,9 @@ namespace surefoot::app {
                                                                 const std::string& text,
                                                                 const std::string& meaning);
 
+/// Two of them, "a,b".
+[[nodiscard]] Result<std::array<double, 2>> parse_two_numbers(const std::string& option,
+                                                              const std::string& text,
+                                                              const std::string& meaning);
+
 }  // namespace surefoot::app

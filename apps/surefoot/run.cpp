@@ -67,8 +67,12 @@ int run(const RunOptions& options) {
         return report(status.error());
 
     // What an earlier run left must not be taken for this one's, least of all by the gate.
-    for (const char* name :
-         {"map.snapshot", "elevation.asc", "variance.asc", "traversability.asc", "report.json"}) {
+    for (const char* name : {"map.snapshot",
+                             "elevation.asc",
+                             "variance.asc",
+                             "traversability.asc",
+                             "stairs.json",
+                             "report.json"}) {
         if (auto status = io::remove_file(io::join_path(options.out_dir, name)); !status) {
             return report(status.error());
         }

@@ -15,6 +15,8 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/map_layers.hpp"
 #include "apps/surefoot/run_report.hpp"
+#include "apps/surefoot/stairs_json.hpp"
+#include "apps/surefoot/stairs_text.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
@@ -180,6 +182,7 @@ Status write_results(const RunOptions& options,
         writes += io::write_file(out + "/layers.png", std::string(png.begin(), png.end()));
     }
     writes += io::write_ply(out + "/map.ply", map_cloud(pipeline));
+    writes += io::write_file(out + "/stairs.json", stairs_json(pipeline.features(), {}) + "\n");
 
     const auto snapshot = std::make_unique<grid::MapSnapshot>();
     Status sealed = pipeline.snapshot(hash_of(settings), *snapshot);
@@ -300,6 +303,7 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
             trim->row_error_px,
             trim->row_error_left_px);
     }
+    if (!pipeline.features().edges.empty()) text += features_count_text(pipeline.features()) + "\n";
     if (const std::string note = modelled_note(record.source); !note.empty()) text += note + "\n";
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         text += fmt::format("the map is empty: {}\n", reason);

@@ -7,9 +7,11 @@
 #include <cmath>
 
 #include "apps/surefoot/ground_box.hpp"
+#include "apps/surefoot/stairs_text.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "eval/html_report.hpp"
 #include "eval/picture.hpp"
+#include "eval/stairs_picture.hpp"
 #include "io/config_yaml.hpp"
 #include "io/file.hpp"
 
@@ -110,6 +112,18 @@ void add_truth(const RunRecord& record,
         {"Depths within 3 sigma", fmt::format("{:.1f}", 100.0 * t.depth.within_3_sigma), "%", ""});
 }
 
+/// Edges and stairs over the heights, and what they measure.
+eval::ReportSection stairs_section(const pipeline::Pipeline& pipeline,
+                                   const std::vector<std::uint8_t>& png) {
+    eval::ReportSection section;
+    section.title = "Edges and stairs";
+    section.pictures.push_back(
+        {"Ticks point to the lower ground; steps are numbered as they are walked", png, true});
+    section.tables.push_back(features_table(pipeline.features()));
+    section.note = features_count_text(pipeline.features()) + ".";
+    return section;
+}
+
 eval::ReportTable configuration_table(const Settings& settings) {
     eval::ReportTable table{"Configuration that the run used", {"key", "value", "what"}, {}};
     for (const auto& entry : io::list_config_of(settings))
@@ -168,12 +182,19 @@ Status write_pictures_and_report(const RunOptions& options,
         pipeline.rating().traversability.empty() ? unknown : pipeline.rating().traversability;
     const auto rating_png = eval::encode_png(eval::render_layer(
         geometry, rating, eval::traversability_style(settings.maps.safe_threshold), drawn));
+    const auto stairs_png =
+        eval::encode_png(eval::render_features(geometry,
+                                               layers.height_m,
+                                               pipeline.features(),
+                                               drawn,
+                                               {"Edges and stairs", "over the heights"}));
 
     eval::ReportContent content;
     content.title = fmt::format("Surefoot: {}", record.source.path);
     content.summary = summary_lines(record, pipeline);
     content.pictures.push_back({"The ground, seen from above", elevation_png});
     content.pictures.push_back({"Safe to step or not; hatched was never seen", rating_png});
+    content.sections.push_back(stairs_section(pipeline, stairs_png));
     add_camera_pictures(pipeline, content);
     add_sigma_pictures(pipeline, drawn, content);
     add_truth(record, pipeline, drawn, settings.maps.safe_threshold, content);
@@ -194,6 +215,7 @@ Status write_pictures_and_report(const RunOptions& options,
     Writes writes;
     writes += io::write_file(options.out_dir + "/elevation.png", as_text(elevation_png));
     writes += io::write_file(options.out_dir + "/traversability.png", as_text(rating_png));
+    writes += io::write_file(options.out_dir + "/stairs.png", as_text(stairs_png));
     writes += io::write_file(options.out_dir + "/report.html", eval::render_html(content));
     return writes.first();
 }

@@ -160,6 +160,17 @@ struct DemOptions {
 };
 int dem(const DemOptions& options);
 
+struct StairsOptions {
+    CommonOptions common;
+    std::string map;      ///< .asc, .png, a cloud, or the folder of a run
+    std::string out_dir;  ///< empty = nothing is written
+    std::string from;     ///< x,y; empty = by the map
+    double scale_m_per_px = 0.0;
+    double height_m = 0.0;
+    double resolution_m = 0.025;  ///< of a cloud's cells
+};
+int stairs(const StairsOptions& options);
+
 struct EvalSuiteOptions {
     CommonOptions common;  ///< seed: the first one
     std::string out_dir;

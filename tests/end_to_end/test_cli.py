@@ -12,8 +12,8 @@ import unittest
 from surefoot_cli import BINARY, ROOT, CliTest, grey_png, read_asc, surefoot
 
 # In the order in which one example needs another's results.
-VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["fuse"], ["ground"], ["dem"], ["gate"], ["eval"],
-         ["eval", "trajectory"], ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["calibrate"],
+VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["stairs"], ["fuse"], ["ground"], ["dem"], ["gate"],
+         ["eval"], ["eval", "trajectory"], ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["calibrate"],
          ["calibrate", "render"], ["calibrate", "mono"], ["calibrate", "stereo"], ["config"], ["doctor"], ["bench"],
          ["record"], ["replay"], ["info"], ["rig"], ["map"], ["map", "info"], ["map", "merge"], ["map", "export"]]
 GATE_EXIT_CODES = (0, 3, 4)
@@ -79,6 +79,7 @@ class Verbs(CliTest):
             (["depth-accuracy", "--distances", 1, "--repeats", 1, "--out", self.dir / "accuracy"],
              "rig distances folder"),
             (["rate", self.dir / "flat.asc", "--out", self.dir / "rated"], "width height resolution_m folder"),
+            (["stairs", run], "flights drops kerbs sills doors edges assumed"),
             (["fuse", steps, "--preset", "ethz", "--out", self.dir / "fused"], "steps folder"),
             (["ground", run / "map.ply", "--origin", "0,0,0.95"], "tilt_deg height_m inlier_ratio normal"),
             (["eval", "trajectory", run / "trajectory.tum", recording / "groundtruth.tum"],

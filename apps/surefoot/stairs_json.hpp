@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surefoot/stairs/features.hpp"
+
+namespace surefoot::app {
+
+/// What the ground is, as `stairs` prints it and stairs.json has it. Poses are x, y, z [m] and yaw
+/// [rad] in the frame of the map; std = standard error, spread = scatter of the single ones; drops
+/// and kerbs have positive heights. What is no number is null.
+[[nodiscard]] std::string stairs_json(const stairs::TerrainFeatures& features,
+                                      const std::vector<std::string>& assumed);
+
+}  // namespace surefoot::app

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/stairs_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace surefoot::app {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Without blanks and line breaks.
+std::string packed(const std::string& json) {
+    std::string text;
+    for (const char c : json)
+        if (c != ' ' && c != '\n') text += c;
+    return text;
+}
+
+stairs::LineFeature line(double height_m) {
+    stairs::LineFeature line;
+    line.pose = {{1.5, -0.5, 0.25}, 0.125};
+    line.height_m = height_m;
+    line.length_m = 2.0;
+    line.sigma_m = 0.5;
+    return line;
+}
+
+const std::string kPose = R"("pose":[1.5,-0.5,0.25,0.125])";
+
+TEST(StairsJson, NothingIsEmptyLists) {
+    EXPECT_EQ(
+        packed(stairs_json({}, {})),
+        R"({"flights":[],"drops":[],"kerbs":[],"sills":[],"doors":[],"edges":[],"assumed":[]})");
+}
+
+TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
+    stairs::Flight flight;
+    flight.kind = stairs::FlightKind::down;
+    flight.pose = {{1.5, -0.5, 0.25}, 0.125};
+    flight.steps = 3;
+    flight.riser_m = 0.25;
+    flight.riser_sigma_m = 0.5;
+    flight.riser_spread_m = 0.75;
+    flight.going_m = 1.25;
+    flight.going_sigma_m = 1.5;
+    flight.going_spread_m = 1.75;
+    flight.width_m = 2.25;
+    flight.landing_m = 2.5;
+    flight.turn_rad = 2.75;
+    flight.cut = true;
+    stairs::TerrainFeatures features;
+    features.flights = {flight};
+    EXPECT_NE(packed(stairs_json(features, {}))
+                  .find(R"({"flights":[{"kind":"down","steps":3,"riser_m":0.25,"riser_std_m":0.5,)"
+                        R"("riser_spread_m":0.75,"going_m":1.25,"going_std_m":1.5,)"
+                        R"("going_spread_m":1.75,"width_m":2.25,"landing_m":2.5,"turn_rad":2.75,)"
+                        R"("cut":true,)" +
+                        kPose + "}],"),
+              std::string::npos)
+        << stairs_json(features, {});
+}
+
+TEST(StairsJson, WhatIsNoNumberIsNull) {
+    stairs::TerrainFeatures features;
+    stairs::Flight one;
+    one.steps = 1;
+    one.going_m = one.going_sigma_m = one.going_spread_m = kNan;
+    features.flights = {one};
+    stairs::Door door;
+    door.clearance_m = kNan;
+    features.doors = {door};
+    const std::string json = packed(stairs_json(features, {}));
+    EXPECT_NE(json.find(R"("kind":"up","steps":1)"), std::string::npos) << json;
+    EXPECT_NE(json.find(R"("going_m":null,"going_std_m":null,"going_spread_m":null)"),
+              std::string::npos)
+        << json;
+    EXPECT_NE(json.find(R"("clearance_m":null)"), std::string::npos) << json;
+}
+
+TEST(StairsJson, DropsAndKerbsHavePositiveHeights) {
+    stairs::TerrainFeatures features;
+    stairs::LineFeature drop = line(-0.75);
+    drop.bottom_seen = false;
+    features.drops = {drop};
+    features.kerbs = {line(-0.25), line(0.25)};
+    features.sills = {line(0.5)};
+    const auto common = [](const char* height, const char* seen) {
+        return kPose + R"(,"height_m":)" + height +
+               R"(,"length_m":2.0,"sigma_m":0.5,"bottom_seen":)" + seen + "}";
+    };
+    const std::string json = packed(stairs_json(features, {}));
+    EXPECT_NE(
+        json.find(R"("drops":[{)" + common("0.75", "false") + R"(],"kerbs":[{"kind":"down",)" +
+                  common("0.25", "true") + R"(,{"kind":"up",)" + common("0.25", "true") +
+                  R"(],"sills":[{)" + common("0.5", "true") + "]"),
+        std::string::npos)
+        << json;
+}
+
+TEST(StairsJson, DoorsEdgesAndWhatWasAssumed) {
+    stairs::TerrainFeatures features;
+    stairs::Door door;
+    door.pose = {{1.5, -0.5, 0.25}, 0.125};
+    door.width_m = 0.75;
+    door.width_sigma_m = 0.5;
+    door.sill_m = 0.25;
+    door.clearance_m = 2.0;
+    features.doors = {door};
+    stairs::Edge edge;
+    edge.from_m = {1.0, 2.0};
+    edge.to_m = {3.0, 4.0};
+    edge.upper_m = 0.5;
+    edge.lower_m = -0.25;
+    edge.height_sigma_m = 0.125;
+    features.edges = {edge};
+    EXPECT_NE(
+        packed(stairs_json(features, {"z is \"up\""}))
+            .find(R"("doors":[{"width_m":0.75,"width_std_m":0.5,"sill_m":0.25,"clearance_m":2.0,)" +
+                  kPose +
+                  R"(}],"edges":[{"from":[1.0,2.0],"to":[3.0,4.0],"upper_m":0.5,"lower_m":-0.25,)"
+                  R"("lower_seen":false,"sigma_m":0.125}],"assumed":["zis\"up\""]})"),
+        std::string::npos)
+        << stairs_json(features, {});
+}
+
+}  // namespace
+}  // namespace surefoot::app

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "eval/html_report.hpp"
+#include "surefoot/stairs/features.hpp"
+
+namespace surefoot::app {
+
+/// "2 flights, 1 drop, no kerb, no sill, no door; 9 edges".
+[[nodiscard]] std::string features_count_text(const stairs::TerrainFeatures& features);
+
+/// One line for each flight, drop, kerb, sill and door, for the terminal.
+[[nodiscard]] std::string features_text(const stairs::TerrainFeatures& features);
+
+/// The same as a table for a report; without rows when there is nothing.
+[[nodiscard]] eval::ReportTable features_table(const stairs::TerrainFeatures& features);
+
+}  // namespace surefoot::app

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/verbs.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/stairs/terrain.hpp"
+
+namespace surefoot::app {
+
+/// The heights of a file or folder with what else is known of the ground, where one stands on it,
+/// and what had to be assumed.
+struct TerrainMap {
+    grid::GridGeometry geometry;
+    grid::Layer height_m;
+    grid::Layer height_var_m2;  ///< empty: not known, as the following
+    grid::Layer free_above_m;
+    grid::Layer clearance_m;
+    Image<std::uint32_t> looks;
+    Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
+    std::optional<Pose> T_odom_body;  ///< where a machine stood
+    std::vector<std::string> assumed;
+
+    /// Views of the layers; the map must outlive them.
+    [[nodiscard]] stairs::Terrain terrain() const;
+};
+
+/// An ESRI grid, a height image, a cloud with z up, or the folder of a run. Errors say what, where
+/// and what to do; a map without a known cell is one.
+[[nodiscard]] Result<TerrainMap> load_terrain(const StairsOptions& options);
+
+}  // namespace surefoot::app
