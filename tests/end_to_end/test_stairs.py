@@ -114,8 +114,8 @@ class Stairs(CliTest):
         # Rows of an image go from the largest y down; grey 255 is 0.68 m.
         image = [[round(255 * height_of_stairs(ix) / 0.68) for ix in range(160)] for _ in range(60)]
         (self.dir / "up.png").write_bytes(png_of(image))
-        points = [f"{(ix + 0.5) * CELL_M:.4f} {(iy + 0.5) * CELL_M:.4f} {height_of_stairs(ix) - below:.4f}"
-                  for iy in range(60) for ix in range(160) for below in (0.0, 0.02)]
+        points = [f"{(ix + 0.5) * CELL_M:.4f} {(iy + 0.5) * CELL_M:.4f} {share * height_of_stairs(ix):.4f}"
+                  for iy in range(60) for ix in range(160) for share in (1.0, 0.5)]
         (self.dir / "up.xyz").write_text("\n".join(points) + "\n")
         grid = self.json_of("stairs", self.dir / "up.asc")
         image = self.json_of("stairs", self.dir / "up.png", "--scale", CELL_M, "--height", 0.68)
