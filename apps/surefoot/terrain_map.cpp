@@ -120,6 +120,11 @@ Status read_optional_layers(const std::string& folder, TerrainMap& map) {
     auto clearance = read("clearance.asc", "nothing hangs over the ground");
     if (!clearance) return clearance.error();
     map.clearance_m = std::move(clearance).value();
+    auto density = read("density_ratio.asc", "no cell shows the points of a vertical face");
+    if (!density) return density.error();
+    map.density_ratio = std::move(density).value();
+    map.assumed.emplace_back(
+        "where the camera looked is not kept: ground that only ends is no drop");
     const auto count = read("count.asc", "every cell was seen more than once");
     if (!count) return count.error();
     if (!count->empty()) map.looks = looks_of(*count);
@@ -259,6 +264,7 @@ stairs::Terrain TerrainMap::terrain() const {
     if (!height_var_m2.empty()) terrain.height_var_m2 = height_var_m2.view();
     if (!free_above_m.empty()) terrain.free_above_m = free_above_m.view();
     if (!clearance_m.empty()) terrain.clearance_m = clearance_m.view();
+    if (!density_ratio.empty()) terrain.density_ratio = density_ratio.view();
     if (!looks.empty()) terrain.looks = looks.view();
     terrain.stance_m = stance_m;
     return terrain;

@@ -22,6 +22,7 @@ struct TerrainMap {
     grid::Layer height_var_m2;  ///< empty: not known, as the following
     grid::Layer free_above_m;
     grid::Layer clearance_m;
+    grid::Layer density_ratio;
     Image<std::uint32_t> looks;
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
     std::optional<Pose> T_odom_body;  ///< where a machine stood

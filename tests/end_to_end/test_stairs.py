@@ -187,7 +187,7 @@ class Stairs(CliTest):
         folder.mkdir()
         write_grid(folder / "elevation.asc", lambda ix, iy: height_of_stairs(ix), y0=-0.75)
         assumed = " ".join(self.json_of("stairs", folder)["assumed"])
-        for name in ("variance.asc", "free_above.asc", "clearance.asc", "count.asc"):
+        for name in ("variance.asc", "free_above.asc", "clearance.asc", "density_ratio.asc", "count.asc"):
             self.assertIn(name, assumed)
         # Far beyond the edges: with a sigma like that nothing stands out.
         write_grid(folder / "variance.asc", lambda ix, iy: 1.0, y0=-0.75)
