@@ -111,19 +111,22 @@ void EdgeLineFinder::chain(const grid::GridGeometry& grid, std::span<const EdgeP
     });
 }
 
-void EdgeLineFinder::keep_longest_run(std::span<const EdgePoint> points,
-                                      const Vector2d& at_m,
+void EdgeLineFinder::keep_longest_run(const Vector2d& at_m,
                                       const Vector2d& along,
                                       std::size_t least_points) {
-    const Vector2d down = right_of(along);
+    const auto at_x = static_cast<float>(at_m.x());
+    const auto at_y = static_cast<float>(at_m.y());
+    const auto along_x = static_cast<float>(along.x());
+    const auto along_y = static_cast<float>(along.y());
+    const auto tolerance_m = static_cast<float>(config_.fit_tolerance_m);
     run_.clear();
-    for (const std::int32_t i : left_) {
-        const EdgePoint& point = points[static_cast<std::size_t>(i)];
-        const Vector2d from_line_m = place_of(point) - at_m;
-        if (std::abs(from_line_m.dot(down)) > config_.fit_tolerance_m) continue;
+    for (const Left& left : left_) {
+        const float x_m = left.x_m - at_x;
+        const float y_m = left.y_m - at_y;
+        if (std::abs(x_m * along_y - y_m * along_x) > tolerance_m) continue;
         // A border that runs along the fall belongs to another edge.
-        if (down_of(point.side).dot(down) < 0.1) continue;
-        run_.push_back({from_line_m.dot(along), i});
+        if (left.down_x * along_y - left.down_y * along_x < 0.1F) continue;
+        run_.push_back({x_m * along_x + y_m * along_y, left.point});
     }
     if (run_.size() < least_points) return run_.clear();  // too few to be longer than the best
     std::sort(run_.begin(), run_.end(), [](const Placed& a, const Placed& b) {
@@ -131,12 +134,12 @@ void EdgeLineFinder::keep_longest_run(std::span<const EdgePoint> points,
     });
     std::size_t best_begin = 0;
     std::size_t best_end = 0;
-    double best_m = -1.0;
-    const double gap_m = 3.5 * resolution_m_;
+    float best_m = -1.0F;
+    const auto gap_m = static_cast<float>(3.5 * resolution_m_);
     for (std::size_t begin = 0; begin < run_.size();) {
         std::size_t end = begin + 1;
         while (end < run_.size() && run_[end].t_m - run_[end - 1].t_m <= gap_m) ++end;
-        const double length_m = run_[end - 1].t_m - run_[begin].t_m;
+        const float length_m = run_[end - 1].t_m - run_[begin].t_m;
         if (length_m > best_m) {
             best_m = length_m;
             best_begin = begin;
@@ -154,7 +157,16 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
     const double least_m = 0.5 * config_.min_length_m;  // pieces may still be joined
     const auto least_points =
         static_cast<std::size_t>(std::max(3.0, 0.6 * least_m / resolution_m_));
-    left_.assign(chain.begin(), chain.end());
+    left_.clear();
+    for (const std::int32_t i : chain) {
+        const EdgePoint& point = points[static_cast<std::size_t>(i)];
+        const Vector2d down = down_of(point.side);
+        left_.push_back({point.at_m.x(),
+                         point.at_m.y(),
+                         static_cast<float>(down.x()),
+                         static_cast<float>(down.y()),
+                         i});
+    }
     while (left_.size() >= least_points) {
         Rng rng(left_.size());
         double best_m = 0.0;
@@ -162,31 +174,29 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
         for (int draw = 0; draw < kDraws; ++draw) {
             const auto a = static_cast<std::size_t>(rng.below(left_.size()));
             const auto b = static_cast<std::size_t>(rng.below(left_.size()));
-            const EdgePoint& first = points[static_cast<std::size_t>(left_[a])];
-            const EdgePoint& second = points[static_cast<std::size_t>(left_[b])];
+            const EdgePoint& first = points[static_cast<std::size_t>(left_[a].point)];
+            const EdgePoint& second = points[static_cast<std::size_t>(left_[b].point)];
             Vector2d along = place_of(second) - place_of(first);
             const double apart_m = along.norm();
             if (apart_m < 0.4 * least_m || apart_m > kNear_m) continue;
             along /= apart_m;
             if (down_of(first.side).dot(right_of(along)) < 0.0) along = -along;
             // A line that is longer than the best has about as many points at least.
-            keep_longest_run(points,
-                             place_of(first),
-                             along,
-                             std::max(least_points, best.members.size() * 2 / 3));
+            keep_longest_run(
+                place_of(first), along, std::max(least_points, best.members.size() * 2 / 3));
             if (run_.size() < least_points) continue;
-            const double length_m = run_.back().t_m - run_.front().t_m;
+            const auto length_m = static_cast<double>(run_.back().t_m - run_.front().t_m);
             if (length_m <= best_m) continue;
             best_m = length_m;
             best.members.clear();
             for (const Placed& placed : run_) best.members.push_back(placed.point);
-            best.line.from_m = place_of(first) + run_.front().t_m * along;
-            best.line.to_m = place_of(first) + run_.back().t_m * along;
+            best.line.from_m = place_of(first) + static_cast<double>(run_.front().t_m) * along;
+            best.line.to_m = place_of(first) + static_cast<double>(run_.back().t_m) * along;
         }
         if (best_m < least_m) return;
         for (int round = 0; round < 2; ++round) {
             if (!fit(points, best)) break;
-            keep_longest_run(points, best.line.from_m, best.line.along(), least_points);
+            keep_longest_run(best.line.from_m, best.line.along(), least_points);
             if (run_.size() < least_points) break;
             best.members.clear();
             for (const Placed& placed : run_) best.members.push_back(placed.point);
@@ -196,8 +206,8 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
         const Vector2d from_m = best.line.from_m;
         const Vector2d along = best.line.along();
         const double length_m = best.line.length_m();
-        std::erase_if(left_, [&](std::int32_t i) {
-            const Vector2d p_m = place_of(points[static_cast<std::size_t>(i)]) - from_m;
+        std::erase_if(left_, [&](const Left& left) {
+            const Vector2d p_m = Vector2d(left.x_m, left.y_m) - from_m;
             return std::abs(p_m.dot(right_of(along))) <= 1.5 * config_.fit_tolerance_m &&
                    p_m.dot(along) >= -resolution_m_ && p_m.dot(along) <= length_m + resolution_m_;
         });

@@ -48,8 +48,7 @@ class EdgeLineFinder {
     [[nodiscard]] std::int32_t root_of(std::int32_t point);
     void take_lines(std::span<const EdgePoint> points, std::span<const std::int32_t> chain);
     [[nodiscard]] bool fit(std::span<const EdgePoint> points, Piece& piece) const;
-    void keep_longest_run(std::span<const EdgePoint> points,
-                          const Eigen::Vector2d& at_m,
+    void keep_longest_run(const Eigen::Vector2d& at_m,
                           const Eigen::Vector2d& along,
                           std::size_t least_points);
     void join(std::span<const EdgePoint> points);
@@ -60,9 +59,17 @@ class EdgeLineFinder {
     Image<std::int32_t> first_;  ///< first point of a cell, -1 = none
     std::vector<std::int32_t> parent_;
     std::vector<std::int32_t> order_;  ///< points, chain by chain
-    std::vector<std::int32_t> left_;
+    /// A point that is in no line yet.
+    struct Left {
+        float x_m = 0.0F;
+        float y_m = 0.0F;
+        float down_x = 0.0F;
+        float down_y = 0.0F;
+        std::int32_t point = 0;
+    };
+    std::vector<Left> left_;
     struct Placed {
-        double t_m;
+        float t_m;
         std::int32_t point;
     };
     std::vector<Placed> run_;

@@ -8,7 +8,6 @@
 namespace surefoot::stairs {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 /// A single cell need not stand out: the edges that the points make up have to.
@@ -74,30 +73,32 @@ void EdgePointFinder::take_line(const Terrain& terrain, Side side, int index) {
     const bool along_x = side == Side::plus_x || side == Side::minus_x;
     const bool reversed = side == Side::minus_x || side == Side::minus_y;
     const int cells = along_x ? terrain.geometry.nx : terrain.geometry.ny;
-    const auto take = [&](ImageView<const float> layer, float otherwise, std::vector<float>& line) {
-        line.assign(static_cast<std::size_t>(cells), otherwise);
-        if (layer.empty()) return;
+    const auto line_of = [&](ImageView<const float> layer) {
+        if (layer.empty()) return Strided{};
         const std::ptrdiff_t step = along_x ? 1 : layer.stride;
-        const float* from = along_x ? layer.row(index) : layer.data + index;
-        for (int k = 0; k < cells; ++k)
-            line[static_cast<std::size_t>(reversed ? cells - 1 - k : k)] = from[k * step];
+        const float* first = along_x ? layer.row(index) : layer.data + index;
+        return reversed ? Strided{first + (cells - 1) * step, -step} : Strided{first, step};
     };
-    take(terrain.height_m, kUnknown, height_m_);
-    take(terrain.height_var_m2, 0.0F, var_m2_);
-    take(terrain.free_above_m, kUnknown, free_above_m_);
+    const Strided height_m = line_of(terrain.height_m);
+    height_m_.resize(static_cast<std::size_t>(cells));
+    const float* from = height_m.first;
+    for (float& cell_m : height_m_) {
+        cell_m = *from;
+        from += height_m.step;
+    }
     found_.clear();
-    scan({cells, height_m_.data(), var_m2_.data(), free_above_m_.data()});
+    scan({cells, height_m_.data(), line_of(terrain.height_var_m2), line_of(terrain.free_above_m)});
 }
 
 void EdgePointFinder::scan(const Line& line) {
     // Most ground does not fall: the lowest of the cells ahead tells, by one pass for each of them.
-    low_m_.assign(static_cast<std::size_t>(line.cells), kNothing);
-    for (int ahead = 1; ahead <= window_cells_; ++ahead) {
-        for (int i = 0; i + ahead < line.cells; ++i) {
-            const float next_m = line.height_m[i + ahead];
-            float& low_m = low_m_[static_cast<std::size_t>(i)];
-            low_m = next_m < low_m ? next_m : low_m;
-        }
+    const auto cells = static_cast<std::size_t>(line.cells);
+    low_m_.assign(cells, kNothing);
+    for (std::size_t ahead = 1; ahead <= static_cast<std::size_t>(window_cells_); ++ahead) {
+        const float* next_m = line.height_m + ahead;
+        float* low_m = low_m_.data();
+        for (std::size_t i = 0; i + ahead < cells; ++i)
+            low_m[i] = next_m[i] < low_m[i] ? next_m[i] : low_m[i];
     }
     const auto least_m = static_cast<float>(config_.min_height_m);
     Found found;
@@ -137,8 +138,10 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
                     low = behind;
                 break;
             }
-            if (k <= window_cells_ && line.free_above_m[behind] < bound_m)
-                bound_m = line.free_above_m[behind];
+            if (k <= window_cells_) {
+                const float free_m = line.free_above_m.at(behind, kNothing);
+                bound_m = free_m < bound_m ? free_m : bound_m;
+            }
         }
     }
     found.lower_seen = low >= 0 && line.height_m[low] <= bound_m;
@@ -152,7 +155,8 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
         return true;
     }
     const auto height_m = static_cast<double>(top_m - found.lower_m);
-    const float var_m2 = line.var_m2[top] + (found.lower_seen ? line.var_m2[low] : 0.0F);
+    const float var_m2 =
+        line.var_m2.at(top, 0.0F) + (found.lower_seen ? line.var_m2.at(low, 0.0F) : 0.0F);
     const double least_m =
         std::max(config_.min_height_m, kPointSigmas * std::sqrt(static_cast<double>(var_m2)));
     if (!(height_m >= least_m)) return false;

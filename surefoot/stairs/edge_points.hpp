@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -41,12 +42,20 @@ class EdgePointFinder {
     void find(const Terrain& terrain, std::vector<EdgePoint>& out);
 
   private:
+    /// Every n-th element of a layer; nothing where there is no layer.
+    struct Strided {
+        const float* first = nullptr;
+        std::ptrdiff_t step = 0;
+        [[nodiscard]] float at(int cell, float otherwise) const {
+            return first == nullptr ? otherwise : first[cell * step];
+        }
+    };
     /// A row or a column, walked one way.
     struct Line {
         int cells = 0;
-        const float* height_m = nullptr;
-        const float* var_m2 = nullptr;
-        const float* free_above_m = nullptr;
+        const float* height_m = nullptr;  ///< a copy without gaps
+        Strided var_m2;                   ///< few cells are asked for these
+        Strided free_above_m;
     };
     struct Found {
         int cell = 0;
@@ -64,9 +73,7 @@ class EdgePointFinder {
     int reach_cells_ = 1;
     double resolution_m_ = 0.0;
     std::vector<float> height_m_;  ///< of the line that is scanned
-    std::vector<float> var_m2_;
-    std::vector<float> free_above_m_;
-    std::vector<float> low_m_;  ///< lowest of the known cells that follow, within the window
+    std::vector<float> low_m_;     ///< lowest of the known cells that follow, within the window
     std::vector<Found> found_;
 };
 

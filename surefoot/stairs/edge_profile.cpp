@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-constexpr double kUpper_m = 1.0;  ///< how far the ground is looked at before an edge and behind it
+constexpr double kUpper_m = 0.7;  ///< how far the ground is looked at before an edge and behind it
 constexpr double kLower_m = 1.2;
 constexpr double kLeastShare = 0.25;  ///< of a slice that must be known
 /// Neighbouring slices of level ground differ by less; a ramp of 1:8 by 3 mm in 25 mm.
@@ -363,33 +363,6 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
     edge.across_sigma_m = across_sigma_m(terrain.geometry, {edge.from_m, edge.to_m}, rms_m);
     edge.angle_sigma_rad = edge.across_sigma_m * std::sqrt(12.0) / std::max(line.length_m(), 0.05);
     return edge;
-}
-
-Level EdgeProfiler::level_between(const Terrain& terrain,
-                                  const EdgeLine& line,
-                                  double begin_m,
-                                  double end_m) {
-    slice(terrain, line, kUpper_m, kLower_m);
-    const int first = upper_slices_ + static_cast<int>(std::ceil(begin_m / resolution_m_ - 1e-6));
-    const int last = upper_slices_ + static_cast<int>(std::floor(end_m / resolution_m_ + 1e-6)) - 1;
-    Level level;
-    level.begin_m = begin_m;
-    level.end_m = end_m;
-    level.sigma_m = kNothing;
-    double weight = 0.0, sum_m = 0.0, var_m2 = 0.0;
-    for (int k = std::max(0, first); k <= last && k < static_cast<int>(slices_.size()); ++k) {
-        const Slice& slice = at(k);
-        weight += slice.known_share;
-        sum_m += slice.known_share * slice.height_m;
-        var_m2 +=
-            slice.known_share * std::max(std::pow(slice.scatter_m, 2), std::pow(slice.sigma_m, 2));
-    }
-    if (!(weight > 0.0)) return level;
-    level.height_m = sum_m / weight;
-    const double area_m2 = weight * resolution_m_ * length_m_;
-    level.sigma_m =
-        std::sqrt(var_m2 / weight / std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m)));
-    return level;
 }
 
 }  // namespace surefoot::stairs

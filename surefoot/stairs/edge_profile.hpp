@@ -35,13 +35,6 @@ class EdgeProfiler {
     /// The edge with its levels; nothing where the ground does not fall there after all: a slope.
     [[nodiscard]] std::optional<Edge> measure(const Terrain& terrain, const EdgeLine& line);
 
-    /// Ground between two distances from a line on its lower side (negative: on the upper), within
-    /// the length of the line; sigma_m is infinite where nothing is known.
-    [[nodiscard]] Level level_between(const Terrain& terrain,
-                                      const EdgeLine& line,
-                                      double begin_m,
-                                      double end_m);
-
     struct Slice {
         double height_m = 0.0;
         double scatter_m = 0.0;  ///< robust standard deviation of a cell
