@@ -175,8 +175,10 @@ void add_face_points(const Terrain& terrain,
         found.clear();
         add_faces_near(terrain, line, centred, found);
         if (found.size() < kLeastPoints) return;
-        std::vector<double> across_m;
-        for (const BorderPoint& point : found) across_m.push_back(point.s_m);
+        std::vector<double> across_m(found.size());
+        std::transform(found.begin(), found.end(), across_m.begin(), [](const BorderPoint& point) {
+            return point.s_m;
+        });
         centred.at_m = median_of(across_m);
     }
     out.insert(out.end(), found.begin(), found.end());

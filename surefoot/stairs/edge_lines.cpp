@@ -242,8 +242,8 @@ bool EdgeLineFinder::fit(std::span<const EdgePoint> points, Piece& piece) const 
         least_t_m = std::min(least_t_m, d_m.dot(along));
         most_t_m = std::max(most_t_m, d_m.dot(along));
         square_m2 += std::pow(d_m.dot(right_of(along)), 2);
-        upper_m.push_back(point.upper_m);
-        lower_m.push_back(point.lower_m);
+        upper_m.push_back(static_cast<double>(point.upper_m));
+        lower_m.push_back(static_cast<double>(point.lower_m));
     }
     piece.line.from_m = mean_m + least_t_m * along;
     piece.line.to_m = mean_m + most_t_m * along;
@@ -257,8 +257,8 @@ bool EdgeLineFinder::fit(std::span<const EdgePoint> points, Piece& piece) const 
 bool EdgeLineFinder::belong_together(const Piece& a, const Piece& b) const {
     constexpr double kLeastCosine = 0.985;  // 10 deg: the shorter piece hardly knows its direction
     if (a.line.along().dot(b.line.along()) < kLeastCosine) return false;
-    if (std::abs(a.upper_m - b.upper_m) > double{kLevel_m} ||
-        std::abs(a.lower_m - b.lower_m) > double{kLevel_m})
+    constexpr auto kSame_m = static_cast<double>(kLevel_m);
+    if (std::abs(a.upper_m - b.upper_m) > kSame_m || std::abs(a.lower_m - b.lower_m) > kSame_m)
         return false;
     const Piece& longer = a.line.length_m() >= b.line.length_m() ? a : b;
     const Piece& shorter = a.line.length_m() >= b.line.length_m() ? b : a;

@@ -12,6 +12,7 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 /// A single cell need not stand out: the edges that the points make up have to.
 constexpr double kPointSigmas = 1.5;
+constexpr double kLongestShadow_m = 2.5;  ///< of a drop of 1 m, see shadow_per_height
 
 bool known(float value) {
     return value == value;
@@ -27,7 +28,7 @@ void EdgePointFinder::find(const Terrain& terrain, std::vector<EdgePoint>& out) 
         return std::max(2, static_cast<int>(std::ceil(length_m / resolution_m_ - 1e-6)));
     };
     window_cells_ = cells_in(config_.smear_m);
-    reach_cells_ = cells_in(config_.shadow_per_height * config_.max_riser_m * 4.0);
+    reach_cells_ = cells_in(kLongestShadow_m);
 
     for (const Side side : {Side::plus_x, Side::minus_x, Side::plus_y, Side::minus_y}) {
         const bool along_x = side == Side::plus_x || side == Side::minus_x;
@@ -55,7 +56,9 @@ void EdgePointFinder::find(const Terrain& terrain, std::vector<EdgePoint>& out) 
                     const Eigen::Vector2d p_m =
                         border_m +
                         (along_x ? Eigen::Vector2d(behind_m, 0.0) : Eigen::Vector2d(0.0, behind_m));
-                    if (!terrain.view || !terrain.view->shows({p_m.x(), p_m.y(), found.upper_m}))
+                    if (!terrain.view ||
+                        !terrain.view->shows(
+                            {p_m.x(), p_m.y(), static_cast<double>(found.upper_m)}))
                         continue;
                 }
                 out.push_back(point);
@@ -130,7 +133,7 @@ bool EdgePointFinder::falls_at(const Line& line, int cell, Found& found) const {
         for (; k <= reach_cells_ && cell + k < line.cells; ++k) {
             const int behind = cell + k;
             if (known(line.height_m[behind])) {
-                const double height_m = top_m - line.height_m[behind];
+                const auto height_m = static_cast<double>(top_m - line.height_m[behind]);
                 const double longest_m =
                     config_.shadow_per_height * height_m + config_.smear_m + resolution_m_;
                 if (k * resolution_m_ <= longest_m &&

@@ -322,7 +322,7 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
     double bound_m = kNothing;
     double bound_at_m = kNothing;
     const int shadow_end = std::isfinite(lower.sigma_m)
-                               ? static_cast<int>(lower.begin_m / resolution_m_ + 0.5)
+                               ? static_cast<int>(std::lround(lower.begin_m / resolution_m_))
                                : static_cast<int>(config_.shadow_per_height / resolution_m_);
     for (int k = 0; k < shadow_end && upper_slices_ + k < static_cast<int>(slices_.size()); ++k) {
         const Slice& slice = at(upper_slices_ + k);
