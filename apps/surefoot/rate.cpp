@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "apps/surefoot/height_image.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/map_layers.hpp"
@@ -21,12 +22,7 @@ namespace {
 
 Result<io::Dem> read_dem(const RateOptions& options) {
     if (io::extension_of(options.dem) != ".png") return io::read_esri_grid(options.dem);
-    if (options.scale_m_per_px <= 0.0 || options.height_m <= 0.0) {
-        return usage_error(fmt::format(
-            "{}: a height image needs --scale (m per pixel) and --height (m at full white)",
-            options.dem));
-    }
-    return io::read_dem_image(options.dem, options.scale_m_per_px, options.height_m);
+    return read_height_image(options.dem, options.scale_m_per_px, options.height_m);
 }
 
 eval::LayerStyle style_of(const std::string& name, double safe_threshold) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/surefoot/height_image.hpp"
 #include "apps/surefoot/numbers.hpp"
 #include "eval/dem.hpp"
 #include "io/dem_file.hpp"
@@ -36,12 +37,7 @@ Result<TerrainMap> from_grid(const std::string& file) {
 }
 
 Result<TerrainMap> from_image(const StairsOptions& options) {
-    if (options.scale_m_per_px <= 0.0 || options.height_m <= 0.0) {
-        return usage_error(fmt::format(
-            "{}: a height image needs --scale (m per pixel) and --height (m at full white)",
-            options.map));
-    }
-    auto dem = io::read_dem_image(options.map, options.scale_m_per_px, options.height_m);
+    auto dem = read_height_image(options.map, options.scale_m_per_px, options.height_m);
     if (!dem) return dem.error();
     TerrainMap map = map_of(std::move(dem).value());
     map.assumed = {"heights are exact: an image has no variances"};

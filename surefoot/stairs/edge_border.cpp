@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/stairs/median.hpp"
+#include "surefoot/stairs/slice_mean.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
@@ -11,12 +14,6 @@ using Eigen::Vector2d;
 
 constexpr double kHuber_m = 0.012;  ///< half a cell
 constexpr int kRounds = 6;
-
-double median_of(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 }  // namespace
 
@@ -179,13 +176,12 @@ void add_face_points(const Terrain& terrain,
         std::transform(found.begin(), found.end(), across_m.begin(), [](const BorderPoint& point) {
             return point.s_m;
         });
-        centred.at_m = median_of(across_m);
+        centred.at_m = middle_of(across_m);
     }
     out.insert(out.end(), found.begin(), found.end());
 }
 
 double across_sigma_m(const grid::GridGeometry& grid, const EdgeLine& line, double rms_m) {
-    constexpr double kCorrelation_m = 0.1;  // of a semi-global matcher's errors, 1 m away
     const double length_m = std::max(line.length_m(), grid.resolution_m);
     const double scatter_m = std::max(rms_m, 0.25 * grid.resolution_m) /
                              std::sqrt(std::max(1.0, length_m / kCorrelation_m));
@@ -204,7 +200,7 @@ double fit_parallel(std::span<const BorderPoint> points,
         for (const BorderPoint& point : points)
             if (point.edge == static_cast<int>(k)) across_m.push_back(point.s_m);
         edges[k].points = static_cast<int>(across_m.size());
-        if (!across_m.empty()) edges[k].at_m = median_of(across_m);
+        if (!across_m.empty()) edges[k].at_m = middle_of(across_m);
     }
     struct Sums {
         double w = 0.0, t = 0.0, s = 0.0, tt = 0.0, ts = 0.0, rr = 0.0;

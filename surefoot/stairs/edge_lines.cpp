@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/stairs/median.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -34,12 +35,6 @@ Vector2d right_of(const Vector2d& along) {
 
 Vector2d place_of(const EdgePoint& point) {
     return point.at_m.cast<double>();
-}
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 }  // namespace
@@ -249,8 +244,8 @@ bool EdgeLineFinder::fit(std::span<const EdgePoint> points, Piece& piece) const 
     piece.line.to_m = mean_m + most_t_m * along;
     piece.line.points = static_cast<int>(piece.members.size());
     piece.line.rms_m = std::sqrt(square_m2 / count);
-    piece.upper_m = median(upper_m);
-    piece.lower_m = median(lower_m);
+    piece.upper_m = middle_of(upper_m);
+    piece.lower_m = middle_of(lower_m);
     return most_t_m > least_t_m;
 }
 

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/stairs/median.hpp"
+#include "surefoot/stairs/slice_mean.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
@@ -17,9 +20,7 @@ constexpr double kLeastShare = 0.25;  ///< of a slice that must be known
 /// Neighbouring slices of level ground differ by less; a ramp of 1:8 by 3 mm in 25 mm.
 constexpr double kLevel_m = 0.012;
 constexpr double kMeasured_m = 0.15;  ///< of level ground that is used for its height
-/// Errors of a semi-global matcher hang together over 30-50 px: 0.1 m of floor 1 m away.
-constexpr double kCorrelation_m = 0.1;
-constexpr double kStrip_m = 0.2;  ///< no tread of which more is in sight lies between shadows
+constexpr double kStrip_m = 0.2;      ///< no tread of which more is in sight lies between shadows
 constexpr double kStripRange_m = 0.06;
 constexpr double kScatterOfMad = 1.4826;
 constexpr double kBeside_m = 0.3;   ///< an edge may go on beyond the ends of its line
@@ -30,12 +31,6 @@ constexpr double kRagged_m = 0.075;  ///< where ground ends it does so in some r
 /// Steeper than noise makes level ground.
 constexpr double kLeastSlope = 0.06;
 constexpr double kSloping_m = 0.3;  ///< of ground that is asked for its slope
-
-double middle_of(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return static_cast<double>(*middle);
-}
 
 }  // namespace
 
@@ -150,9 +145,9 @@ void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Sli
         values_.push_back(sample.height_m);
         var_m2 += static_cast<double>(sample.var_m2);
     }
-    const double middle_m = middle_of(values_);
+    const auto middle_m = static_cast<double>(middle_of(values_));
     for (float& value : values_) value = std::abs(value - static_cast<float>(middle_m));
-    slice.scatter_m = kScatterOfMad * middle_of(values_);
+    slice.scatter_m = kScatterOfMad * static_cast<double>(middle_of(values_));
     slice.sigma_m = std::sqrt(var_m2 / static_cast<double>(samples.size()));
     // The mean of what agrees is truer than the middle one.
     const double most_m = 2.5 * std::max(slice.scatter_m, 1e-4);
@@ -166,7 +161,7 @@ void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Sli
     slice.height_m = agreeing > 0 ? sum_m / agreeing : middle_m;
 }
 
-/// The first level ground from slice `first` on.
+/// Level ground near slice `first`, from there on in steps of `step`.
 Level EdgeProfiler::level_from(int first, int step) const {
     const Slices all{slices_, 0.0, resolution_m_};
     const int slices = all.count();
@@ -203,27 +198,14 @@ Level EdgeProfiler::level_from(int first, int step) const {
     level.begin_m = std::abs(begin - first) * resolution_m_;
     level.end_m = (std::abs(end - first) + 1) * resolution_m_;
 
-    const int most = std::max(1, static_cast<int>(std::round(kMeasured_m / resolution_m_)));
-    double weight = 0.0, sum_m = 0.0, var_m2 = 0.0;
-    int used = 0;
-    for (int k = begin; used < most; k += step, ++used) {
-        const double share = at(k).known_share;
-        weight += share;
-        sum_m += share * at(k).height_m;
-        var_m2 += share * std::max(std::pow(at(k).scatter_m, 2), std::pow(at(k).sigma_m, 2));
-        if (k == end) {
-            ++used;
-            break;
-        }
-    }
-    level.height_m = sum_m / weight;
-    const int most_sloping = std::max(1, static_cast<int>(std::round(kSloping_m / resolution_m_)));
-    level.slope = slope_of(begin, step, std::min(most_sloping, std::abs(end - begin) + 1));
+    const int used = std::min(enough, length);
+    const SliceMean mean = mean_of(all, begin, step, used, length_m_);
+    level.height_m = mean.height_m;
+    level.sigma_m = mean.sigma_m;
+    level.scatter_m = mean.scatter_m;
     level.middle_m = level.begin_m + 0.5 * used * resolution_m_;
-    const double area_m2 = used * resolution_m_ * length_m_ * (weight / used);
-    const double independent = std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m));
-    level.sigma_m = std::sqrt(var_m2 / weight / independent);
-    level.scatter_m = std::sqrt(var_m2 / weight);
+    const int most_sloping = std::max(1, static_cast<int>(std::round(kSloping_m / resolution_m_)));
+    level.slope = slope_of(begin, step, std::min(most_sloping, length));
     return level;
 }
 

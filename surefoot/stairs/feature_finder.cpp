@@ -92,12 +92,14 @@ void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edg
     constexpr int kDeep_cells = 6;  ///< beyond two, which may be half of either ground
     const double cell_m = terrain.geometry.resolution_m;
     for (Edge& edge : edges) {
+        const Vector2d along = edge.along();
+        const Vector2d down = edge.down();
+        const double length_m = edge.length_m();
         const auto walkable = [&](double way) {
             int known = 0, reached = 0;
-            for (double t_m = 0.5 * cell_m; t_m < edge.length_m(); t_m += cell_m) {
+            for (double t_m = 0.5 * cell_m; t_m < length_m; t_m += cell_m) {
                 for (int k = 3; k < 3 + kDeep_cells; ++k) {
-                    const Vector2d p_m =
-                        edge.from_m + t_m * edge.along() + way * k * cell_m * edge.down();
+                    const Vector2d p_m = edge.from_m + t_m * along + way * k * cell_m * down;
                     const auto cell = terrain.geometry.cell_at(p_m.x(), p_m.y());
                     if (!cell || !terrain.known(cell->ix, cell->iy)) continue;
                     ++known;

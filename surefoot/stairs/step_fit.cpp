@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/stairs/slice_mean.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
@@ -21,7 +23,6 @@ constexpr double kSide_m = 0.4;  ///< a step may be so much wider than the seed,
 constexpr double kTread_m = 0.03;
 /// Steps of a flight differ by 5 mm by the code (NZ D1/AS1), by more where they are badly made.
 constexpr double kUneven_m = 0.02;
-constexpr double kCorrelation_m = 0.1;
 
 }  // namespace
 
@@ -64,23 +65,12 @@ int StepFitter::level_run(const EdgeProfiler::Slices& all, int first) {
 }
 
 void StepFitter::add_tread(const EdgeProfiler::Slices& all, int first, int length, int margin) {
-    double sum_m = 0.0;
-    double weight = 0.0;
-    double var_m2 = 0.0;
-    for (int k = first + margin; k < first + length - margin; ++k) {
-        const EdgeProfiler::Slice& slice = all.at(k);
-        const double scatter_m = std::max(slice.scatter_m, slice.sigma_m);
-        sum_m += slice.known_share * slice.height_m;
-        weight += slice.known_share;
-        var_m2 += slice.known_share * scatter_m * scatter_m;
-    }
-    const double area_m2 = weight * all.cell_m * length_m_;
-    const double independent = std::max(1.0, area_m2 / (kCorrelation_m * kCorrelation_m));
+    const SliceMean mean = mean_of(all, first + margin, +1, length - 2 * margin, length_m_);
     treads_.push_back({all.begin_m + first * all.cell_m,
                        all.begin_m + (first + length) * all.cell_m,
-                       sum_m / weight,
-                       std::sqrt(var_m2 / weight / independent),
-                       std::sqrt(var_m2 / weight)});
+                       mean.height_m,
+                       mean.sigma_m,
+                       mean.scatter_m});
 }
 
 void StepFitter::join_treads() {

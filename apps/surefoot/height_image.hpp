@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "io/dem_file.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::app {
+
+/// The PNG of a verb that takes --scale and --height; a usage error where one of them is missing.
+[[nodiscard]] Result<io::Dem> read_height_image(const std::string& file,
+                                                double scale_m_per_px,
+                                                double height_m);
+
+}  // namespace surefoot::app
