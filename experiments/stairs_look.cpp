@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "io/dem_file.hpp"
+#include "io/pfm.hpp"
 #include "io/text.hpp"
 
 namespace surefoot::experiments {
@@ -179,6 +180,12 @@ Status save_look(const Look& look, const std::string& folder) {
         const auto path = fmt::format("{}/{}.asc", folder, name);
         if (Status written = io::write_esri_grid(path, geometry, layer); !written) return written;
     }
+    const std::pair<const char*, const Image<float>*> images[] = {
+        {"disparity", &look.disparity_px}, {"disparity_sigma", &look.disparity_sigma_px}};
+    for (const auto& [name, image] : images) {
+        const auto path = fmt::format("{}/{}.pfm", folder, name);
+        if (Status written = io::write_pfm(path, *image); !written) return written;
+    }
     return write_truth(look, folder + "/truth.txt");
 }
 
@@ -202,6 +209,13 @@ Result<Look> read_look(const std::string& folder) {
         if (!begin || !look.geometry.contains({begin->ix + last.ix, begin->iy + last.iy}))
             return input_error(folder + ": lies beyond the map of truth.txt");
         *layer = whole(dem->values, look.geometry, *begin);
+    }
+    const std::pair<const char*, Image<float>*> images[] = {
+        {"disparity", &look.disparity_px}, {"disparity_sigma", &look.disparity_sigma_px}};
+    for (const auto& [name, image] : images) {
+        auto read = io::read_pfm(fmt::format("{}/{}.pfm", folder, name));
+        if (!read) return read.error();
+        *image = std::move(*read);
     }
     look.looks.resize(looks.width(), looks.height());
     std::transform(looks.data(), looks.data() + looks.size(), look.looks.data(), [](float count) {

@@ -49,7 +49,9 @@ struct Look {
     grid::Layer density_ratio;
     Image<std::uint32_t> looks;
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
-    stairs::View view;  ///< of the last frame
+    stairs::View view;  ///< of the last frame, as what follows
+    Image<float> disparity_px;
+    Image<float> disparity_sigma_px;
 
     /// Views of the layers.
     [[nodiscard]] stairs::Terrain terrain() const;
@@ -60,8 +62,8 @@ struct Look {
 [[nodiscard]] std::string short_name(const std::string& scene);
 
 /// Writes a folder: height.asc, variance.asc, free_above.asc, clearance.asc, density.asc,
-/// looks.asc, cut to what is known, and last truth.txt with what is true and the size of the whole
-/// map.
+/// looks.asc, cut to what is known, disparity.pfm and disparity_sigma.pfm, and last truth.txt with
+/// what is true and the size of the whole map.
 [[nodiscard]] Status save_look(const Look& look, const std::string& folder);
 /// The whole map again.
 [[nodiscard]] Result<Look> read_look(const std::string& folder);

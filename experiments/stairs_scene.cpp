@@ -257,6 +257,8 @@ class Run {
         look.looks = layers.count;
         look.stance_m = pipeline.T_odom_body().translation_m.head<2>();
         look.view = pipeline.view();
+        look.disparity_px = pipeline.depth().disparity_px;
+        look.disparity_sigma_px = pipeline.depth().sigma_px;
         measure_noise(scene, pipeline, T_world_body, executor_, look);
         looks_.push_back(std::move(look));
     }

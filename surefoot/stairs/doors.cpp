@@ -186,11 +186,12 @@ void DoorFinder::gather(const Terrain& terrain, const Opening& opening) {
         Range x_m{-g.nx * cell_m_, g.nx * cell_m_};
         x_m.cut(across.x(), across.y() * y_m, across_m);
         x_m.cut(along.x(), along.y() * y_m, kHalfProfile_m);
-        const int last_x =
-            static_cast<int>(std::min(g.nx - 1.0, std::floor(neck.x() + x_m.to / cell_m_ - 0.5)));
-        for (int ix =
-                 static_cast<int>(std::max(0.0, std::ceil(neck.x() + x_m.from / cell_m_ - 0.5)));
-             ix <= last_x;
+        // Where the opening lies almost along the rows the range may end beyond all integers.
+        const auto cell_at = [&](double offset_m) {
+            return std::clamp(neck.x() + offset_m / cell_m_ - 0.5, -1.0, 1.0 * g.nx);
+        };
+        const int last_x = std::min(g.nx - 1, static_cast<int>(std::floor(cell_at(x_m.to))));
+        for (int ix = std::max(0, static_cast<int>(std::ceil(cell_at(x_m.from)))); ix <= last_x;
              ++ix) {
             if (!terrain.known(ix, iy)) continue;
             Near cell;

@@ -118,7 +118,8 @@ void EdgeProfiler::gather(const Terrain& terrain, const EdgeLine& line) {
         };
         keep(t, t_step, length);
         keep(s, s_step, slices);
-        for (int ix = static_cast<int>(std::ceil(low)); ix <= high; ++ix) {
+        // A line almost along the rows meets some of them beyond all integers.
+        for (int ix = static_cast<int>(std::ceil(std::min(low, 1.0 * grid.nx))); ix <= high; ++ix) {
             const double at_slice = s + s_step * ix;
             if (!(at_slice >= 0.0 && at_slice < slices)) continue;  // by rounding
             const int k = static_cast<int>(at_slice);
