@@ -150,6 +150,7 @@ stairs::Terrain Look::terrain() const {
     terrain.looks = looks.view();
     terrain.stance_m = stance_m;
     terrain.view = view;
+    terrain.disparity_px = disparity_px.view();
     return terrain;
 }
 

@@ -338,7 +338,8 @@ void Pipeline::find_features() {
                           .density_ratio = layers.density_ratio.view(),
                           .looks = layers.count.view(),
                           .stance_m = last_motion_.T_odom_body.translation_m.head<2>(),
-                          .view = view()},
+                          .view = view(),
+                          .disparity_px = depth_.disparity_px.view()},
                          features_);
 }
 

@@ -340,7 +340,8 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
             (camera_m.z() - upper.height_m) / (camera_m.head<2>() - middle_m).norm();
         edge.lower_m = upper.height_m - kEnd_m * fall;
     } else {
-        return std::nullopt;
+        edge.lower_m = edge.upper_m;
+        return edge;
     }
     const double rms_m = place(terrain, line, upper, edge);
     edge.across_sigma_m = across_sigma_m(terrain.geometry, {edge.from_m, edge.to_m}, rms_m);

@@ -32,7 +32,9 @@ class EdgeProfiler {
   public:
     explicit EdgeProfiler(const StairsConfig& config) : config_(config) {}
 
-    /// The edge with its levels; nothing where the ground does not fall there after all: a slope.
+    /// The edge with its levels; nothing where the ground above it is not known. Where the ground
+    /// does not fall after all, or nothing shows it, the edge is no higher than 0 and lies where the
+    /// line does.
     [[nodiscard]] std::optional<Edge> measure(const Terrain& terrain, const EdgeLine& line);
 
     struct Slice {

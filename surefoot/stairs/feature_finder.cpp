@@ -25,18 +25,50 @@ LineFeature line_feature(const Edge& edge, bool goes_down) {
     return feature;
 }
 
+bool same_ground(const Edge& a, const Edge& b) {
+    constexpr double kSame_m = 0.04;
+    return std::abs(a.upper_m - b.upper_m) <= kSame_m && std::abs(a.lower_m - b.lower_m) <= kSame_m;
+}
+
 /// A piece of the same edge, or what a ragged edge looks like beside it.
 bool is_part_of(const Edge& piece, const Edge& edge) {
     constexpr double kNear_m = 0.1;
-    constexpr double kSame_m = 0.04;
     constexpr double kLeastCosine = 0.77;  // 40 deg
     if (piece.along().dot(edge.along()) < kLeastCosine) return false;
-    const bool same_ground = std::abs(piece.upper_m - edge.upper_m) <= kSame_m &&
-                             std::abs(piece.lower_m - edge.lower_m) <= kSame_m;
-    if (std::abs(edge.below_m(piece.middle_m())) > (same_ground ? 2.0 : 1.0) * kNear_m)
-        return false;
+    const double near_m = (same_ground(piece, edge) ? 2.0 : 1.0) * kNear_m;
+    if (std::abs(edge.below_m(piece.middle_m())) > near_m) return false;
     const double t_m = (piece.middle_m() - edge.from_m).dot(edge.along());
     return t_m >= -kNear_m && t_m <= edge.length_m() + kNear_m;
+}
+
+/// Two pieces of one straight line.
+bool goes_on(const Edge& edge, const Edge& piece, double max_gap_m) {
+    constexpr double kLeastCosine = 0.996;  // 5 deg
+    constexpr double kNear_m = 0.06;
+    if (edge.along().dot(piece.along()) < kLeastCosine) return false;
+    if (std::abs(edge.below_m(piece.from_m)) > kNear_m ||
+        std::abs(edge.below_m(piece.to_m)) > kNear_m)
+        return false;
+    const double from_m = (piece.from_m - edge.from_m).dot(edge.along());
+    const double to_m = (piece.to_m - edge.from_m).dot(edge.along());
+    return from_m <= edge.length_m() + max_gap_m && to_m >= -max_gap_m;
+}
+
+/// The line through both, as long as both; all else is what the first says.
+Edge joined(Edge edge, const Edge& piece) {
+    const double a_m = edge.length_m();
+    const double b_m = piece.length_m();
+    const Vector2d middle_m = (a_m * edge.middle_m() + b_m * piece.middle_m()) / (a_m + b_m);
+    const Vector2d along = (a_m * edge.along() + b_m * piece.along()).normalized();
+    double from_m = 0.0, to_m = 0.0;
+    for (const Vector2d& end_m : {edge.from_m, edge.to_m, piece.from_m, piece.to_m}) {
+        const double t_m = (end_m - middle_m).dot(along);
+        from_m = std::min(from_m, t_m);
+        to_m = std::max(to_m, t_m);
+    }
+    edge.from_m = middle_m + from_m * along;
+    edge.to_m = middle_m + to_m * along;
+    return edge;
 }
 
 }  // namespace
@@ -47,6 +79,7 @@ FeatureFinder::FeatureFinder(const StairsConfig& config)
       line_finder_(config),
       profiler_(config),
       step_fitter_(config),
+      sight_steps_(config),
       flight_finder_(config),
       door_finder_(config.doors),
       reachability_({.max_step_m = config.walk_step_m, .stance_radius_m = kStance_m}) {}
@@ -61,6 +94,8 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     if (terrain.geometry.nx < 2 || terrain.geometry.ny < 2) return;
     find_edges(terrain, out.edges);
     fit_steps(terrain, out.edges);
+    see_steps_down(terrain, out.edges);
+    join_pieces(out.edges);
     reachability_.reach(terrain.geometry, terrain.height_m, terrain.stance_m, walk_step_m_);
     find_walkable(terrain, out.edges);
     for (std::vector<Edge>& chain : chains_) find_walkable(terrain, chain);
@@ -81,9 +116,14 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
 void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges) {
     point_finder_.find(terrain, points_);
     line_finder_.find(terrain.geometry, points_, lines_);
+    guesses_.clear();
     for (const EdgeLine& line : lines_) {
         const std::optional<Edge> edge = profiler_.measure(terrain, line);
-        if (edge) edges.push_back(*edge);
+        if (!edge) continue;
+        if (edge->height_m() > 0.0)
+            edges.push_back(*edge);
+        else if (edge->length_m() >= config_.min_width_m)
+            guesses_.push_back(*edge);
     }
 }
 
@@ -146,6 +186,67 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
     for (std::size_t i = 0; i < edges.size(); ++i)
         if (!taken[i]) edges[left++] = edges[i];
     edges.resize(left);
+}
+
+void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& edges) {
+    constexpr std::size_t kEnough = 3;
+    constexpr int kTries = 4;  // each takes a tenth of a millisecond or two
+    for (std::vector<Edge>& chain : chains_) {
+        if (chain.size() >= kEnough) continue;
+        from_above_.assign(chain.rbegin(), chain.rend());
+        sight_steps_.find(terrain, from_above_, seen_);
+        if (!seen_.empty()) chain.assign(seen_.rbegin(), seen_.rend());
+    }
+    for (std::size_t i = 0; i < edges.size();) {
+        seen_.clear();
+        if (edges[i].length_m() >= config_.min_width_m)
+            sight_steps_.find(terrain, std::span(edges).subspan(i, 1), seen_);
+        if (seen_.size() == 1) edges[i] = seen_.front();
+        if (!add_seen(edges)) ++i;
+    }
+    // What stands out of no pair of cells or slices may still be plain in the image.
+    int tries = 0;
+    for (const Edge& guess : guesses_) {
+        const auto has = [&](const Edge& edge) { return is_part_of(guess, edge); };
+        if (std::any_of(edges.begin(), edges.end(), has) || shares_a_step({&guess, 1})) continue;
+        if (tries++ == kTries) break;
+        sight_steps_.find(terrain, {&guess, 1}, seen_);
+        if (seen_.size() == 1 &&
+            seen_[0].height_m() >=
+                std::max(config_.min_height_m, config_.sigma_factor * seen_[0].height_sigma_m))
+            edges.push_back(seen_.front());
+        else
+            add_seen(edges);
+    }
+}
+
+/// The flight that is seen, instead of those edges that are parts of it.
+bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
+    if (seen_.size() < 2 || shares_a_step(seen_)) return false;
+    std::erase_if(edges, [&](const Edge& edge) {
+        return std::any_of(
+            seen_.begin(), seen_.end(), [&](const Edge& step) { return is_part_of(edge, step); });
+    });
+    chains_.emplace_back(seen_.rbegin(), seen_.rend());
+    return true;
+}
+
+void FeatureFinder::join_pieces(std::vector<Edge>& edges) const {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        for (std::size_t k = i + 1; k < edges.size();) {
+            if (!same_ground(edges[k], edges[i])) {
+                ++k;
+            } else if (is_part_of(edges[k], edges[i])) {
+                edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(k));
+            } else if (goes_on(edges[i], edges[k], config_.max_gap_m)) {
+                edges[i] = joined(edges[i], edges[k]);
+                edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(k));
+                k = i + 1;
+            } else {
+                ++k;
+            }
+        }
+    }
 }
 
 void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) const {

@@ -10,6 +10,7 @@
 #include "surefoot/stairs/edge_profile.hpp"
 #include "surefoot/stairs/features.hpp"
 #include "surefoot/stairs/flights.hpp"
+#include "surefoot/stairs/sight_steps.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stairs/step_fit.hpp"
 #include "surefoot/stairs/terrain.hpp"
@@ -32,6 +33,11 @@ class FeatureFinder {
     void find_edges(const Terrain& terrain, std::vector<Edge>& edges);
     /// Takes the steps of flights out of the edges and places them together.
     void fit_steps(const Terrain& terrain, std::vector<Edge>& edges);
+    /// Adds the steps down that the camera sees where the map holds fewer.
+    void see_steps_down(const Terrain& terrain, std::vector<Edge>& edges);
+    bool add_seen(std::vector<Edge>& edges);
+    /// Measured alike, pieces of a ragged edge turn out to be one.
+    void join_pieces(std::vector<Edge>& edges) const;
     /// Which sides of the edges can be walked to.
     void find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const;
     [[nodiscard]] bool shares_a_step(std::span<const Edge> chain) const;
@@ -42,12 +48,16 @@ class FeatureFinder {
     EdgeLineFinder line_finder_;
     EdgeProfiler profiler_;
     StepFitter step_fitter_;
+    SightSteps sight_steps_;
     FlightFinder flight_finder_;
     DoorFinder door_finder_;
     traversability::Reachability reachability_;
     grid::Layer walk_step_m_;  ///< NaN = not to be walked to
     std::vector<EdgePoint> points_;
     std::vector<EdgeLine> lines_;
+    std::vector<Edge> guesses_;  ///< lines of which the map does not show what lies below them
+    std::vector<Edge> from_above_;
+    std::vector<Edge> seen_;
     std::vector<std::vector<Edge>> chains_;  ///< of steps placed together
     std::vector<bool> in_flight_;
 };

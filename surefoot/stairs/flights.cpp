@@ -285,7 +285,8 @@ void FlightFinder::measure_risers(Flight& flight) {
         risers_m.push_back(level_m[i] - level_m[i - 1]);
     // The first step may be almost level with the floor.
     const bool odd_first =
-        risers_m.size() > 2 && std::abs(risers_m.front() - median_of(risers_m)) > kUnevenRiser_m;
+        risers_m.size() > 2 && std::abs(risers_m.front() - median_of(risers_m)) >
+                                   kUnevenRiser_m + 2.0 * std::hypot(sigma_m[0], sigma_m[1]);
     const auto levels = std::span<const double>(level_m).subspan(odd_first ? 1 : 0);
     const auto sigmas = std::span<const double>(sigma_m).subspan(odd_first ? 1 : 0);
     const std::size_t count = steady(levels, sigmas, kUnevenRiser_m);

@@ -51,6 +51,8 @@ struct Terrain {
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
     /// Where ground that goes on would be seen; without it nothing is said of ground that ends.
     std::optional<View> view;
+    /// What that camera sees now, also what the map leaves out; NaN = no match, empty = nothing.
+    ImageView<const float> disparity_px;
 
     [[nodiscard]] bool known(int ix, int iy) const {
         return height_m.row(iy)[ix] == height_m.row(iy)[ix];
