@@ -65,6 +65,9 @@ class Rows {
     [[nodiscard]] double value(ImageView<const float> layer, int cell) const {
         return static_cast<double>(axis_ == 0 ? layer.row(row_)[cell] : layer.row(cell)[row_]);
     }
+    [[nodiscard]] Vector2d middle_m(int cell) const {
+        return axis_ == 0 ? grid_.center_m({cell, row_}) : grid_.center_m({row_, cell});
+    }
     /// A place in this row, in cells from the middle of the first, in the frame of the line.
     [[nodiscard]] BorderPoint point(double cells, int edge) const {
         Vector2d p_m;
@@ -142,6 +145,14 @@ void add_faces_near(const Terrain& terrain,
     constexpr double kLevel = 1.2;  ///< of level ground, with some room
     constexpr double kLeast = 1.5;  ///< points beyond that, for each point of level ground
     Rows rows(terrain, line, search);
+    // A point counts alike wherever it lies: level ground farther away and nearer to the height of
+    // the camera shows fewer, and a ratio to them would pull the face there.
+    const auto level_px = [&](const Eigen::Vector2d& p_m, double z_m) {
+        return terrain.view ? terrain.view->pixels_per_m2({p_m.x(), p_m.y(), z_m}) : 1.0;
+    };
+    const Vector2d middle_m = 0.5 * (line.from_m + line.to_m) + search.at_m * line.down();
+    const double here_px = level_px(middle_m, search.upper_m);
+    if (!(here_px > 0.0)) return;
     for (int row = rows.first(); row <= rows.last(); ++row) {
         if (!rows.enter(row, kFace_m, kFace_m)) continue;
         double sum = 0.0;
@@ -149,8 +160,11 @@ void add_faces_near(const Terrain& terrain,
         for (int cell = rows.begin();; cell += rows.way()) {
             const double excess = rows.value(terrain.density_ratio, cell) - kLevel;
             if (excess > 0.0) {
-                sum += excess;
-                moment += excess * cell;
+                const double points =
+                    excess * level_px(rows.middle_m(cell), rows.value(terrain.height_m, cell)) /
+                    here_px;
+                sum += points;
+                moment += points * cell;
             }
             if (cell == rows.end()) break;
         }

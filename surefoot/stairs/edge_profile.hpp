@@ -33,8 +33,8 @@ class EdgeProfiler {
     explicit EdgeProfiler(const StairsConfig& config) : config_(config) {}
 
     /// The edge with its levels; nothing where the ground above it is not known. Where the ground
-    /// does not fall after all, or nothing shows it, the edge is no higher than 0 and lies where the
-    /// line does.
+    /// does not fall after all, or nothing shows it, the edge is no higher than 0 and lies where
+    /// the line does.
     [[nodiscard]] std::optional<Edge> measure(const Terrain& terrain, const EdgeLine& line);
 
     struct Slice {

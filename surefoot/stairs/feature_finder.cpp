@@ -94,6 +94,7 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     if (terrain.geometry.nx < 2 || terrain.geometry.ny < 2) return;
     find_edges(terrain, out.edges);
     fit_steps(terrain, out.edges);
+    for (std::vector<Edge>& chain : chains_) sight_faces_.place(terrain, chain);
     see_steps_down(terrain, out.edges);
     join_pieces(out.edges);
     reachability_.reach(terrain.geometry, terrain.height_m, terrain.stance_m, walk_step_m_);

@@ -10,6 +10,7 @@
 #include "surefoot/stairs/edge_profile.hpp"
 #include "surefoot/stairs/features.hpp"
 #include "surefoot/stairs/flights.hpp"
+#include "surefoot/stairs/sight_faces.hpp"
 #include "surefoot/stairs/sight_steps.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stairs/step_fit.hpp"
@@ -48,6 +49,7 @@ class FeatureFinder {
     EdgeLineFinder line_finder_;
     EdgeProfiler profiler_;
     StepFitter step_fitter_;
+    SightFaces sight_faces_;
     SightSteps sight_steps_;
     FlightFinder flight_finder_;
     DoorFinder door_finder_;

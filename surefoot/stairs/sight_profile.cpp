@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "surefoot/stairs/median.hpp"
+#include "surefoot/stairs/sight_plane.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -15,34 +16,11 @@ using Eigen::Vector3d;
 
 constexpr double kBefore_rad = 0.035;  ///< ground above the edge that is looked at
 constexpr double kBehind_rad = 0.3;    ///< three steps of 0.15 / 0.31 m from 0.7 m
-constexpr double kBin_px = 0.5;
-constexpr double kMargin_m = 0.1;  ///< the ends of an edge are less sure
-constexpr int kStride_px = 4;      ///< neighbouring columns say the same
-constexpr double kCorrelation_px = 25.0;
+constexpr double kMargin_m = 0.1;      ///< the ends of an edge are less sure
 constexpr std::size_t kLeastSamples = 6;
 constexpr double kLeastSigma_m = 0.004;
 constexpr double kScatterOfMad = 1.4826;
 constexpr double kSigmaOfMedian = 1.25;
-
-/// A component of the lines of sight, linear in the pixel.
-struct OfPixel {
-    double at_0 = 0.0;
-    double per_u = 0.0;
-    double per_v = 0.0;
-
-    [[nodiscard]] double at(double u_px, double v_px) const {
-        return at_0 + per_u * u_px + per_v * v_px;
-    }
-};
-
-OfPixel component(const View& view, const Vector3d& axis) {
-    const Vector3d k = view.T_map_camera.rotation.conjugate() * axis;
-    OfPixel out;
-    out.per_u = k.x() / view.fx_px;
-    out.per_v = k.y() / view.fy_px;
-    out.at_0 = k.z() - out.per_u * view.cx_px - out.per_v * view.cy_px;
-    return out;
-}
 
 }  // namespace
 
@@ -53,13 +31,11 @@ void SightProfile::gather(const Terrain& terrain,
     const View& view = *terrain.view;
     const Vector2d down = edge.down();
     const Vector2d along = edge.along();
-    const OfPixel run = component(view, {down.x(), down.y(), 0.0});
-    const OfPixel fall = component(view, -Vector3d::UnitZ());
-    const OfPixel aside = component(view, {along.x(), along.y(), 0.0});
+    const SightPlane plane(view, down, along);
     const double begin_m = (edge.from_m - view.T_map_camera.translation_m.head<2>()).dot(along);
     const double length_m = edge.length_m();
     const double steep = height_m / distance_m;  // line of sight that meets the edge
-    bin_rad_ = kBin_px / view.fy_px;
+    bin_rad_ = kSightBin_px / view.fy_px;
     // Tangents of the angle by which a line of sight is flatter than that one.
     const auto steepness_at = [&](double tangent) {
         return (steep - tangent) / (1.0 + steep * tangent);
@@ -74,25 +50,20 @@ void SightProfile::gather(const Terrain& terrain,
     const ImageView<const float> disparity_px = terrain.disparity_px;
     const double last_row = disparity_px.height - 1.0;
     const double depth_px_m = view.fx_px * view.baseline_m;
-    for (int u = 0; u < disparity_px.width; u += kStride_px) {
-        // Rows of this column in which lines of sight are as steep.
-        const auto row_of = [&](double steepness) {
-            return -(fall.at(u, 0.0) - steepness * run.at(u, 0.0)) /
-                   (fall.per_v - steepness * run.per_v);
-        };
-        const double one = row_of(steepness_at(-kBefore_rad));
-        const double other = row_of(steepness_at(kBehind_rad));
+    for (int u = 0; u < disparity_px.width; u += kSightStride_px) {
+        const double one = plane.row_of(steepness_at(-kBefore_rad), u);
+        const double other = plane.row_of(steepness_at(kBehind_rad), u);
         if (!(std::isfinite(one) && std::isfinite(other))) continue;
         const int last = static_cast<int>(std::clamp(std::max(one, other), -1.0, last_row));
         for (int v = static_cast<int>(std::clamp(std::min(one, other), 0.0, last_row)); v <= last;
              ++v) {
             const double z_m = depth_px_m / static_cast<double>(disparity_px.row(v)[u]);
             if (!(z_m > 0.0)) continue;
-            const double along_m = z_m * aside.at(u, v) - begin_m;
-            const double run_here = run.at(u, v);
+            const double along_m = z_m * plane.aside.at(u, v) - begin_m;
+            const double run_here = plane.run.at(u, v);
             if (!(along_m > kMargin_m && along_m < length_m - kMargin_m && run_here > 0.0))
                 continue;
-            const double fall_here = fall.at(u, v);
+            const double fall_here = plane.fall.at(u, v);
             const double steepness = fall_here / run_here;
             const double tangent = (steep - steepness) / (1.0 + steep * steepness);
             const double bin = (tangent + kBefore_rad) / bin_rad_;
@@ -123,7 +94,7 @@ void SightProfile::measure_bins() {
         for (float& value_m : values_m_) value_m = std::abs(value_m - middle_m);
         const double scatter_m = kScatterOfMad * static_cast<double>(middle_of(values_m_));
         const double independent =
-            std::max(1.0, static_cast<double>(count) * kStride_px / kCorrelation_px);
+            std::max(1.0, static_cast<double>(count) * kSightStride_px / kSightColumns_px);
         bin.depth_m = static_cast<double>(middle_m);
         bin.sigma_m = std::max(kLeastSigma_m, kSigmaOfMedian * scatter_m / std::sqrt(independent));
     }

@@ -10,6 +10,8 @@
 
 namespace surefoot::stairs {
 
+inline constexpr double kSightBin_px = 0.5;
+
 /// Ground that lines of sight of about one steepness meet, along a whole edge.
 struct SightBin {
     double steepness = 0.0;  ///< of the lines of sight: fall over run across the edge

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/stairs/sight_plane.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
@@ -18,7 +20,6 @@ constexpr int kLeastSupport = 3;    ///< 1.5 pixels
 constexpr double kFirst_m = 0.08;   ///< the first nose lies so near to the known edge
 constexpr double kUneven_m = 0.03;  ///< risers and goings of a flight are alike
 constexpr double kNose_bins = 1.0;  ///< one sigma of where a depth changes
-constexpr double kCorrelation_bins = 6.0;  ///< errors of a matcher hang together over rows too
 /// Depths on both sides blur a strip: this over its bins is one sigma of its depth.
 constexpr double kBlur_m = 0.1;
 
@@ -82,7 +83,8 @@ void SightSteps::measure(std::span<const SightBin> bins, Level& level) const {
     }
     if (level.support == 0) return;
     level.depth_m = wd / w;
-    level.sigma_m = std::hypot(std::sqrt(kCorrelation_bins / w), kBlur_m / level.support);
+    level.sigma_m =
+        std::hypot(std::sqrt(kSightRows_px / kSightBin_px / w), kBlur_m / level.support);
 }
 
 /// Where the depth passes the middle between two levels, in bins.

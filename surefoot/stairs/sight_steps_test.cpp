@@ -8,94 +8,25 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/stairs/terrain_for_test.hpp"
+#include "surefoot/stairs/sight_scene_for_test.hpp"
 
 namespace surefoot::stairs {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using testing::flight;
 using testing::kRadPerDeg;
+using testing::Tread;
 
-/// Ground behind an edge at the origin that leads down along +x: from `behind_m` on it lies
-/// `depth_m` lower than before the edge.
-struct Tread {
-    double behind_m = 0.0;
-    double depth_m = 0.0;
-};
-
-std::vector<Tread> flight(int steps, double riser_m, double going_m) {
-    std::vector<Tread> treads;
-    for (int k = 0; k < steps; ++k) treads.push_back({k * going_m, (k + 1) * riser_m});
-    return treads;
-}
-
-/// A camera 1 m above the ground before the edge, 30 deg down, and what it sees of treads.
-class Scene {
+class Scene : public testing::SightScene {
   public:
-    Scene(const std::vector<Tread>& treads,
-          double distance_m,
-          double yaw_rad,
-          double roll_rad = 0.0) {
-        view_.width_px = 672;
-        view_.height_px = 376;
-        view_.fx_px = view_.fy_px = 343.0;
-        view_.cx_px = 336.0;
-        view_.cy_px = 188.0;
-        view_.baseline_m = 0.12;
-        view_.T_map_camera.translation_m = {-distance_m, 0.0, kCamera_m};
-        Eigen::Matrix3d axes;  // x right, y down, z forward
-        axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-        view_.T_map_camera.rotation = Eigen::Quaterniond(
-            Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()) *
-            Eigen::AngleAxisd(30.0 * kRadPerDeg, Vector3d::UnitY()) *
-            Eigen::AngleAxisd(roll_rad, Vector3d::UnitX()) * Eigen::Quaterniond(axes));
-        edge_.from_m = {0.0, -0.6};
-        edge_.to_m = {0.0, 0.6};
-        edge_.upper_m = 0.0;
-        edge_.lower_m = -0.1;
-        disparity_px_.resize(672, 376);
-        for (int v = 0; v < 376; ++v)
-            for (int u = 0; u < 672; ++u) disparity_px_.at(u, v) = seen(treads, u, v);
-    }
-    void add_noise(double sigma_px, std::uint64_t seed) {
-        Rng rng(seed);
-        for (std::size_t i = 0; i < disparity_px_.size(); ++i)
-            disparity_px_.data()[i] += static_cast<float>(sigma_px * rng.normal());
-    }
-    [[nodiscard]] Terrain terrain() const {
-        Terrain terrain;
-        terrain.view = view_;
-        terrain.disparity_px = disparity_px_.view();
-        return terrain;
-    }
+    using SightScene::SightScene;
     [[nodiscard]] std::vector<Edge> find() const { return find(edge_); }
     [[nodiscard]] std::vector<Edge> find(const Edge& known) const {
         std::vector<Edge> found;
         SightSteps{StairsConfig{}}.find(terrain(), {&known, 1}, found);
         return found;
-    }
-
-    static constexpr double kCamera_m = 1.0;
-    Edge edge_;
-    View view_;
-    Image<float> disparity_px_;
-
-  private:
-    [[nodiscard]] float seen(const std::vector<Tread>& treads, int u, int v) const {
-        const Vector3d ray =
-            view_.T_map_camera.rotation *
-            Vector3d((u - view_.cx_px) / view_.fx_px, (v - view_.cy_px) / view_.fy_px, 1.0);
-        if (!(ray.z() < 0.0)) return std::numeric_limits<float>::quiet_NaN();
-        double depth_m = 0.0;
-        double z_m = 0.0;
-        for (std::size_t k = 0; k <= treads.size(); ++k) {
-            z_m = (kCamera_m + depth_m) / -ray.z();
-            const double behind_m = view_.T_map_camera.translation_m.x() + z_m * ray.x();
-            if (k == treads.size() || behind_m < treads[k].behind_m) break;
-            depth_m = treads[k].depth_m;
-        }
-        return static_cast<float>(view_.fx_px * view_.baseline_m / z_m);
     }
 };
 

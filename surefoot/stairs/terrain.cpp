@@ -14,6 +14,18 @@ bool View::shows(const Eigen::Vector3d& p_map_m) const {
            v_px >= kBorder_px && v_px <= height_px - 1.0 - kBorder_px;
 }
 
+double View::depth_m(double error_px, const Eigen::Vector2d& p_map_m, double z_map_m) const {
+    const Eigen::Vector3d p_m(p_map_m.x(), p_map_m.y(), z_map_m);
+    return error_px * (p_m - T_map_camera.translation_m).squaredNorm() / (fx_px * baseline_m);
+}
+
+double View::pixels_per_m2(const Eigen::Vector3d& p_map_m) const {
+    const Eigen::Vector3d ray_m = p_map_m - T_map_camera.translation_m;
+    const double depth_m = (T_map_camera.rotation.conjugate() * ray_m).z();
+    if (!(depth_m > 0.0 && ray_m.z() < 0.0)) return 0.0;
+    return fx_px * fy_px * -ray_m.z() / (depth_m * depth_m * depth_m);
+}
+
 double View::unmapped_m(const Eigen::Vector3d& p_map_m, const Eigen::Vector2d& way) const {
     const Eigen::Vector3d ray_m = p_map_m - T_map_camera.translation_m;
     const double along_m = ray_m.head<2>().dot(way);

@@ -26,6 +26,13 @@ struct View {
 
     /// Both eyes see the place, if nothing is in between, and not at the border of their images.
     [[nodiscard]] bool shows(const Eigen::Vector3d& p_map_m) const;
+    /// What an error of the disparity makes of the range to a place.
+    [[nodiscard]] double depth_m(double error_px,
+                                 const Eigen::Vector2d& p_map_m,
+                                 double z_map_m) const;
+    /// How many pixels show level ground at a place, for each square metre of it; 0 behind or above
+    /// the camera. As elevation::ExpectedPoints.
+    [[nodiscard]] double pixels_per_m2(const Eigen::Vector3d& p_map_m) const;
     /// How far level ground goes on, along `way`, beyond the last place of it that is mapped [m]:
     /// `unmapped_px` on the ground. `way`: unit vector that leads away from the camera.
     [[nodiscard]] double unmapped_m(const Eigen::Vector3d& p_map_m,

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stairs/sight_faces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surefoot/stairs/median.hpp"
+#include "surefoot/stairs/sight_plane.hpp"
+
+namespace surefoot::stairs {
+namespace {
+
+constexpr double kMargin_m = 0.05;  ///< at the ends of an edge
+/// Of a face, from its foot. A semi-global matcher comes from the tread above and finds the top of
+/// a face 0.2-0.4 px too far; the foot it finds 0.1 px too near, the rest within 0.05 px.
+constexpr double kLowest = 0.1;
+constexpr double kHighest = 0.6;
+constexpr double kNearest_m = 0.1;  ///< of a face, from the camera
+constexpr double kGate_m = 0.2;     ///< further away it is something else
+constexpr std::size_t kLeastSamples = 40;
+constexpr double kLeastShare = 0.3;
+constexpr double kFace_px = 0.05;  ///< one sigma of what all of a face share
+constexpr double kScatterOfMad = 1.4826;
+constexpr double kSigmaOfMedian = 1.25;
+constexpr int kRounds = 3;
+
+}  // namespace
+
+/// Fills runs_m_: how far away, across the edge, the pixels find the face that show it if it stands
+/// `at_m` from the camera. How many pixels that are, matched or not.
+std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double at_m) {
+    const View& view = *terrain.view;
+    const Eigen::Vector3d& camera_m = view.T_map_camera.translation_m;
+    const Eigen::Vector2d along = edge.along();
+    const SightPlane plane(view, -edge.down(), along);
+    const double begin_m = (edge.from_m - camera_m.head<2>()).dot(along) + kMargin_m;
+    const double end_m = begin_m + edge.length_m() - 2.0 * kMargin_m;
+    const double foot_m = camera_m.z() - edge.lower_m;
+    const double lowest = (foot_m - kLowest * edge.height_m()) / at_m;
+    const double highest = (foot_m - kHighest * edge.height_m()) / at_m;
+    const ImageView<const float> disparity_px = terrain.disparity_px;
+    const double rows = disparity_px.height;
+    const double depth_px_m = view.fx_px * view.baseline_m;
+    runs_m_.clear();
+    std::size_t pixels = 0;
+    for (int u = 0; u < disparity_px.width; u += kSightStride_px) {
+        const double one = std::clamp(plane.row_of(lowest, u), -1.0, rows);
+        const double other = std::clamp(plane.row_of(highest, u), -1.0, rows);
+        if (!(std::abs(one - other) < rows)) continue;  // not a number, or seen edge on
+        const int last = std::min(static_cast<int>(std::max(one, other)), disparity_px.height - 1);
+        for (int v = static_cast<int>(std::min(one, other) + 1.0); v <= last; ++v) {
+            const double run = plane.run.at(u, v);
+            const double along_m = at_m / run * plane.aside.at(u, v);
+            if (!(run > 0.0 && along_m > begin_m && along_m < end_m)) continue;
+            ++pixels;
+            const double run_m = depth_px_m / static_cast<double>(disparity_px.row(v)[u]) * run;
+            if (std::abs(run_m - at_m) < kGate_m) runs_m_.push_back(static_cast<float>(run_m));
+        }
+    }
+    return pixels;
+}
+
+std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Edge& edge) {
+    const View& view = *terrain.view;
+    const double distance_m = edge.below_m(view.T_map_camera.translation_m.head<2>());
+    if (!(distance_m > kNearest_m)) return std::nullopt;
+    double at_m = distance_m;
+    for (int round = 0; round < kRounds; ++round) {
+        const std::size_t pixels = gather(terrain, edge, at_m);
+        const std::size_t seen = runs_m_.size();
+        if (seen < kLeastSamples ||
+            static_cast<double>(seen) < kLeastShare * static_cast<double>(pixels))
+            return std::nullopt;
+        at_m = static_cast<double>(middle_of(runs_m_));
+        if (!(std::abs(at_m - distance_m) < kGate_m)) return std::nullopt;
+    }
+    for (float& run_m : runs_m_) run_m = std::abs(run_m - static_cast<float>(at_m));
+    const double scatter_m = kScatterOfMad * static_cast<double>(middle_of(runs_m_));
+    const double independent = std::max(
+        1.0,
+        static_cast<double>(runs_m_.size()) * kSightStride_px / (kSightColumns_px * kSightRows_px));
+    Face face;
+    face.behind_m = at_m - distance_m;
+    face.sigma_m = std::hypot(kSigmaOfMedian * scatter_m / std::sqrt(independent),
+                              view.depth_m(kFace_px, edge.middle_m(), edge.upper_m));
+    return face;
+}
+
+void SightFaces::place(const Terrain& terrain, std::span<Edge> steps) {
+    if (!terrain.view || terrain.disparity_px.empty()) return;
+    for (Edge& edge : steps) {
+        const std::optional<Face> face = see(terrain, edge);
+        if (!face) continue;
+        const Eigen::Vector2d shift_m = -face->behind_m * edge.down();
+        edge.from_m += shift_m;
+        edge.to_m += shift_m;
+        edge.across_sigma_m = face->sigma_m;
+    }
+}
+
+}  // namespace surefoot::stairs
