@@ -172,8 +172,9 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
     std::vector<Edge> chain;
     for (std::size_t i = 0; i < edges.size(); ++i) {  // longest first
         const Edge& seed = edges[i];
-        if (taken[i] || seed.height_m() > config_.max_riser_m ||
-            seed.length_m() < config_.min_width_m)
+        // Higher ones may be boards without risers, which are no deeper than treads.
+        if (taken[i] || seed.length_m() < config_.min_width_m ||
+            (seed.height_m() > config_.max_riser_m && seed.upper_depth_m > config_.max_going_m))
             continue;
         step_fitter_.fit(terrain, seed, chain);
         if (chain.empty() || shares_a_step(chain)) continue;

@@ -16,6 +16,7 @@ struct Edge {
     double upper_m = 0.0;  ///< height of the ground above it, at the line
     double lower_m = 0.0;  ///< below it; where that was not seen, the ground lies no higher
     bool lower_seen = false;
+    bool open = false;            ///< a step whose riser one sees through: a board
     double height_sigma_m = 0.0;  ///< one sigma of upper_m - lower_m
     double across_sigma_m = 0.0;  ///< one sigma of where the line lies, across it
     double angle_sigma_rad = 0.0;

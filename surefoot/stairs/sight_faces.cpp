@@ -22,6 +22,7 @@ constexpr double kLeastShare = 0.3;
 constexpr double kFace_px = 0.05;  ///< one sigma of what all of a face share
 constexpr double kScatterOfMad = 1.4826;
 constexpr double kSigmaOfMedian = 1.25;
+constexpr double kOpen = 0.5;
 constexpr int kRounds = 3;
 
 }  // namespace
@@ -41,7 +42,10 @@ std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double 
     const ImageView<const float> disparity_px = terrain.disparity_px;
     const double rows = disparity_px.height;
     const double depth_px_m = view.fx_px * view.baseline_m;
+    const double halfway = 0.5 * (lowest + highest);
     runs_m_.clear();
+    lower_m_.clear();
+    upper_m_.clear();
     std::size_t pixels = 0;
     for (int u = 0; u < disparity_px.width; u += kSightStride_px) {
         const double one = std::clamp(plane.row_of(lowest, u), -1.0, rows);
@@ -54,11 +58,27 @@ std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double 
             if (!(run > 0.0 && along_m > begin_m && along_m < end_m)) continue;
             ++pixels;
             const double run_m = depth_px_m / static_cast<double>(disparity_px.row(v)[u]) * run;
-            if (std::abs(run_m - at_m) < kGate_m) runs_m_.push_back(static_cast<float>(run_m));
+            if (!(std::abs(run_m - at_m) < kGate_m)) continue;
+            runs_m_.push_back(static_cast<float>(run_m));
+            const bool upper = plane.fall.at(u, v) < halfway * run;
+            (upper ? upper_m_ : lower_m_).push_back(static_cast<float>(run_m));
         }
     }
     return pixels;
 }
+
+namespace {
+
+/// By how much level ground behind an open riser is farther away in the upper half of what shows
+/// the face than in the lower one.
+double level_m(const Terrain& terrain, const Edge& edge, double at_m) {
+    const double foot_m = terrain.view->T_map_camera.translation_m.z() - edge.lower_m;
+    const double quarter_m = 0.25 * (kHighest - kLowest) * edge.height_m();
+    const double middle_m = foot_m - 0.5 * (kLowest + kHighest) * edge.height_m();
+    return 2.0 * quarter_m / middle_m * at_m;
+}
+
+}  // namespace
 
 std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Edge& edge) {
     const View& view = *terrain.view;
@@ -74,12 +94,15 @@ std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Ed
         at_m = static_cast<double>(middle_of(runs_m_));
         if (!(std::abs(at_m - distance_m) < kGate_m)) return std::nullopt;
     }
+    if (lower_m_.empty() || upper_m_.empty()) return std::nullopt;
+    Face face;
+    const double leaning_m = static_cast<double>(middle_of(upper_m_) - middle_of(lower_m_));
+    face.open = leaning_m > kOpen * level_m(terrain, edge, at_m);
     for (float& run_m : runs_m_) run_m = std::abs(run_m - static_cast<float>(at_m));
     const double scatter_m = kScatterOfMad * static_cast<double>(middle_of(runs_m_));
     const double independent = std::max(
         1.0,
         static_cast<double>(runs_m_.size()) * kSightStride_px / (kSightColumns_px * kSightRows_px));
-    Face face;
     face.behind_m = at_m - distance_m;
     face.sigma_m = std::hypot(kSigmaOfMedian * scatter_m / std::sqrt(independent),
                               view.depth_m(kFace_px, edge.middle_m(), edge.upper_m));
@@ -91,10 +114,15 @@ void SightFaces::place(const Terrain& terrain, std::span<Edge> steps) {
     for (Edge& edge : steps) {
         const std::optional<Face> face = see(terrain, edge);
         if (!face) continue;
-        const Eigen::Vector2d shift_m = -face->behind_m * edge.down();
+        edge.open = face->open;
+        // Of a board the map leaves out what lies beside the jump to the ground below it.
+        const Eigen::Vector3d middle_m(edge.middle_m().x(), edge.middle_m().y(), edge.upper_m);
+        const double behind_m =
+            face->open ? -terrain.view->unmapped_m(middle_m, -edge.down()) : face->behind_m;
+        const Eigen::Vector2d shift_m = -behind_m * edge.down();
         edge.from_m += shift_m;
         edge.to_m += shift_m;
-        edge.across_sigma_m = face->sigma_m;
+        if (!face->open) edge.across_sigma_m = face->sigma_m;
     }
 }
 

@@ -25,11 +25,14 @@ class SightFaces {
     struct Face {
         double behind_m = 0.0;  ///< where the edge was, away from the camera
         double sigma_m = 0.0;
+        bool open = false;
     };
     std::size_t gather(const Terrain& terrain, const Edge& edge, double at_m);
     [[nodiscard]] std::optional<Face> see(const Terrain& terrain, const Edge& edge);
 
     std::vector<float> runs_m_;
+    std::vector<float> lower_m_;  ///< of them, in the lower half of the face
+    std::vector<float> upper_m_;
 };
 
 }  // namespace surefoot::stairs

@@ -18,6 +18,7 @@ constexpr double kLeastTread_m = 0.05;
 constexpr double kLevel_m = 0.015;  ///< neighbouring slices of a tread differ by less
 /// Edge points further from where the treads pass into each other belong to something else.
 constexpr double kNear_m = 0.07;
+constexpr double kFar_m = 0.1;   ///< the face of a riser lies nearer to where its tread ends
 constexpr double kSide_m = 0.4;  ///< a step may be so much wider than the seed, on either side
 /// Ground that the seed was measured on.
 constexpr double kTread_m = 0.03;
@@ -111,11 +112,20 @@ void StepFitter::find_steps(const Edge& seed) {
     const auto at = [&](int k) -> const Tread& { return treads_[static_cast<std::size_t>(k)]; };
     int upper = -1;
     int lower = treads;
+    // Behind a board without a riser the ground below it shows: of the treads about the line those
+    // next to it count, whatever the seed was measured on.
+    const bool open = seed.height_m() > config_.max_riser_m;
     for (int k = 0; k < treads; ++k) {
-        const bool is_upper = std::abs(at(k).height_m - seed.upper_m) <= kTread_m;
-        const bool is_lower = std::abs(at(k).height_m - seed.lower_m) <= kTread_m;
-        if (is_upper && at(k).begin_m < 0.0) upper = k;
-        if (is_lower && at(k).end_m > 0.0 && lower == treads) lower = k;
+        const double rise_m = upper < 0 ? 0.0 : at(upper).height_m - at(k).height_m;
+        const bool is_upper =
+            open ? at(k).begin_m + at(k).end_m < 0.0
+                 : at(k).begin_m < 0.0 && std::abs(at(k).height_m - seed.upper_m) <= kTread_m;
+        const bool is_lower = open ? rise_m >= config_.min_riser_m && rise_m <= config_.max_riser_m
+                                   : std::abs(at(k).height_m - seed.lower_m) <= kTread_m;
+        if (is_upper)
+            upper = k;
+        else if (is_lower && at(k).end_m > 0.0 && lower == treads)
+            lower = k;
     }
     if (upper < 0 || lower == treads || lower <= upper) return;
     steps_.push_back(
@@ -176,6 +186,10 @@ void StepFitter::find_borders(const Terrain& terrain, const EdgeLine& line) {
             BorderSearch face = search;
             face.at_m = step.at_m;
             add_face_points(terrain, line, face, borders_);
+            // Of a board without a riser there is none, but there is the front of the next one.
+            if (borders_.size() > before &&
+                std::abs(borders_[(before + borders_.size()) / 2].s_m - step.upper.end_m) > kFar_m)
+                borders_.resize(before);
         }
         if (borders_.size() < before + kLeastPoints)
             add_border_points(terrain, line, search, borders_);
