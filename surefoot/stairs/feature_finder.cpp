@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace surefoot::stairs {
 namespace {
@@ -166,6 +167,22 @@ bool FeatureFinder::shares_a_step(std::span<const Edge> chain) const {
     return false;
 }
 
+/// Steps of a spiral are no parallels: where one of the chain's is a longer edge that is turned.
+bool FeatureFinder::turns(std::span<const Edge> chain, std::span<const Edge> edges) const {
+    constexpr double kLeast_rad = 0.21;  // 12 deg
+    constexpr double kNear_m = 0.9;
+    const double most_rad = config_.max_turn_deg * std::numbers::pi / 180.0;
+    return std::any_of(chain.begin(), chain.end(), [&](const Edge& step) {
+        return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+            const double turn_rad =
+                std::acos(std::clamp(edge.along().dot(step.along()), -1.0, 1.0));
+            return turn_rad > kLeast_rad && turn_rad < most_rad && same_ground(edge, step) &&
+                   edge.length_m() > step.length_m() &&
+                   (edge.middle_m() - step.middle_m()).norm() < kNear_m;
+        });
+    });
+}
+
 void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) {
     chains_.clear();
     std::vector<bool> taken(edges.size(), false);
@@ -177,7 +194,7 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
             (seed.height_m() > config_.max_riser_m && seed.upper_depth_m > config_.max_going_m))
             continue;
         step_fitter_.fit(terrain, seed, chain);
-        if (chain.empty() || shares_a_step(chain)) continue;
+        if (chain.empty() || shares_a_step(chain) || turns(chain, edges)) continue;
         for (std::size_t k = 0; k < edges.size(); ++k)
             taken[k] = taken[k] || std::any_of(chain.begin(), chain.end(), [&](const Edge& step) {
                            return is_part_of(edges[k], step);

@@ -41,6 +41,7 @@ class FeatureFinder {
     void join_pieces(std::vector<Edge>& edges) const;
     /// Which sides of the edges can be walked to.
     void find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const;
+    [[nodiscard]] bool turns(std::span<const Edge> chain, std::span<const Edge> edges) const;
     [[nodiscard]] bool shares_a_step(std::span<const Edge> chain) const;
     void name_lines(const Terrain& terrain, TerrainFeatures& out) const;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "surefoot/stairs/terrain_for_test.hpp"
 
@@ -189,6 +190,64 @@ TEST(FeatureFinder, slopes_are_no_edges) {
         const TerrainFeatures found = find(map.terrain());
         EXPECT_TRUE(found.edges.empty()) << slope;
     }
+}
+
+/// A spiral: treads are sectors of `turn_deg` between two radii about (0, 0).
+struct Spiral {
+    int steps = 9;
+    double riser_m = 0.17;
+    double turn_deg = 25.0;
+    double inner_m = 0.35;
+    double outer_m = 1.35;
+    [[nodiscard]] double at(double x_m, double y_m) const {
+        const double radius_m = std::hypot(x_m, y_m);
+        if (radius_m < inner_m || radius_m > outer_m) return 0.0;
+        const double angle_deg = std::atan2(y_m, x_m) / kRadPerDeg;  // the first edge lies along +x
+        const double step = std::floor(angle_deg / turn_deg);
+        return step < 0.0 || step >= steps ? 0.0 : (step + 1.0) * riser_m;
+    }
+};
+
+// Goings are those of the middle of the edges: the walking line.
+TEST(FeatureFinder, the_steps_of_a_spiral_turn) {
+    const Spiral spiral{.steps = 6};
+    for (const double yaw_deg : {0.0, 40.0}) {
+        const TestMap map([&](double x_m, double y_m) { return spiral.at(x_m, y_m); },
+                          yaw_deg * kRadPerDeg,
+                          Eigen::Vector2d::Zero());
+        const TerrainFeatures found = find(map.terrain({0.85, -1.0}));
+        ASSERT_FALSE(found.flights.empty());
+        const Flight& f = found.flights.front();
+        EXPECT_EQ(f.steps, 6) << yaw_deg;
+        EXPECT_NEAR(f.riser_m, spiral.riser_m, 1e-3);
+        EXPECT_NEAR(std::abs(f.turn_rad), 5.0 * spiral.turn_deg * kRadPerDeg, 5.0 * kRadPerDeg);
+        EXPECT_NEAR(f.going_m, 0.85 * spiral.turn_deg * kRadPerDeg, 0.03);
+    }
+}
+
+TEST(FeatureFinder, flights_about_a_landing_are_two_that_meet_there) {
+    // Three steps along +x to a landing of 1.2 m at 0.51 m, from there three along +y.
+    const auto ground = [](double x_m, double y_m) {
+        if (std::abs(y_m) <= 0.6 && x_m >= 0.0)
+            return x_m < 0.9 ? 0.17 * (1.0 + std::floor(x_m / 0.3)) : x_m < 2.1 ? 0.51 : 0.0;
+        if (x_m >= 0.9 && x_m < 2.1 && y_m > 0.6 && y_m < 1.5 + 0.6)
+            return 0.51 + 0.17 * (1.0 + std::min(2.0, std::floor((y_m - 0.6) / 0.3)));
+        return 0.0;
+    };
+    const TestMap map(ground, 0.2, Eigen::Vector2d::Zero());
+    const TerrainFeatures found = find(map.terrain());
+    std::vector<Flight> up;
+    for (const Flight& flight : found.flights)
+        if (flight.kind == FlightKind::up && flight.steps > 1) up.push_back(flight);
+    ASSERT_EQ(up.size(), 2U);
+    EXPECT_EQ(up[0].steps, 3);
+    EXPECT_EQ(up[1].steps, 3);
+    EXPECT_NEAR(up[0].landing_m, 1.5, 0.05);
+    EXPECT_NEAR(up[1].pose.p_m.z(), 0.51, 0.005);
+    EXPECT_NEAR(
+        std::abs(std::remainder(up[1].pose.yaw_rad - up[0].pose.yaw_rad, 2.0 * std::numbers::pi)),
+        90.0 * kRadPerDeg,
+        2.0 * kRadPerDeg);
 }
 
 TEST(FeatureFinder, two_flights_side_by_side_are_two) {
