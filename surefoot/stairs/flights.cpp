@@ -23,6 +23,9 @@ constexpr double kMaxSigma_m = 0.03;  ///< of the height of a single step
 constexpr double kLeastStand_m = 0.08;
 /// No level of a map is known better: errors that its cells share.
 constexpr double kTreadSigma_m = 0.001;
+/// Less than so much of a tread is a strip near the height of the camera, some 30 mm too low.
+constexpr double kStrip = 0.5;
+constexpr double kStripSigma_m = 0.03;
 constexpr double kParallel_rad = 10.0 * kRadPerDeg;
 
 double cross(const Vector2d& a, const Vector2d& b) {
@@ -273,7 +276,9 @@ void FlightFinder::measure_risers(Flight& flight) {
         // Of the last tread that is seen of a flight up only a strip may be seen, near eye level.
         const double depth_m = edges[i].upper_depth_m;
         if (up && !measured_twice && i > 0 && depth_m < 0.6 * flight.going_m) break;
-        add(height_m, edges[i].height_sigma_m);
+        const bool strip = up && depth_m < kStrip * flight.going_m;
+        add(height_m,
+            strip ? std::hypot(edges[i].height_sigma_m, kStripSigma_m) : edges[i].height_sigma_m);
     }
     if (level_m.size() < 2) {  // not even the ground below the first edge was seen
         flight.riser_m = edges.front().height_m();
