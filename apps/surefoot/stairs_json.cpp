@@ -35,6 +35,7 @@ Json flight_json(const stairs::Flight& flight) {
             {"landing_m", number(flight.landing_m)},
             {"turn_rad", number(flight.turn_rad)},
             {"cut", flight.cut},
+            {"open", flight.open},
             {"pose", pose_json(flight.pose)}};
 }
 

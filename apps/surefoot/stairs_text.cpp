@@ -41,6 +41,7 @@ std::string flight_remarks(const stairs::Flight& flight) {
     constexpr double kStraight_rad = 0.1;
     if (std::abs(flight.turn_rad) > kStraight_rad)
         text += fmt::format("; turns by {:.0f} deg", flight.turn_rad * 180.0 / std::numbers::pi);
+    if (flight.open) text += "; boards without risers";
     if (flight.cut) text += "; may go on beyond what is known";
     return text;
 }

@@ -44,6 +44,8 @@ void add_border_points(const Terrain& terrain,
 
 /// Points of a riser lie within this much of it, but not those of the next.
 inline constexpr double kFace_m = 0.08;
+/// One sigma of what all points of a face share: of a matcher's errors no more cancels out.
+inline constexpr double kFaceShared_px = 0.05;
 /// An edge with fewer points of its face is placed by the ground above it.
 inline constexpr std::size_t kLeastPoints = 10;
 

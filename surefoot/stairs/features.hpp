@@ -80,6 +80,7 @@ struct Flight {
     std::vector<Edge> edges;
     double turn_rad = 0.0;  ///< how far the way turns from the first edge to the last: spirals
     bool cut = false;       ///< it may go on beyond what is known
+    bool open = false;      ///< boards without risers, as far as half of its steps or more show it
 };
 
 /// An opening between two walls through which the ground leads.

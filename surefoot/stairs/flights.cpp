@@ -224,6 +224,9 @@ void FlightFinder::add_flight(std::span<const Edge> from_below,
     for (const Edge& edge : from_below) length_m.push_back(edge.length_m());
     flight.width_m = median_of(length_m);
     flight.landing_m = up ? last.upper_depth_m : last.lower_depth_m;
+    const auto open = std::count_if(
+        from_below.begin(), from_below.end(), [](const Edge& edge) { return edge.open; });
+    flight.open = 2 * open >= flight.steps;
     flight.cut = up ? last.upper_depth_m < config_.max_going_m
                     : !last.lower_seen || last.lower_depth_m < config_.max_going_m;
     flights.push_back(std::move(flight));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/stairs/edge_border.hpp"
 #include "surefoot/stairs/median.hpp"
 #include "surefoot/stairs/sight_plane.hpp"
 
@@ -19,7 +20,6 @@ constexpr double kNearest_m = 0.1;  ///< of a face, from the camera
 constexpr double kGate_m = 0.2;     ///< further away it is something else
 constexpr std::size_t kLeastSamples = 40;
 constexpr double kLeastShare = 0.3;
-constexpr double kFace_px = 0.05;  ///< one sigma of what all of a face share
 constexpr double kScatterOfMad = 1.4826;
 constexpr double kSigmaOfMedian = 1.25;
 constexpr double kOpen = 0.5;
@@ -80,6 +80,11 @@ double level_m(const Terrain& terrain, const Edge& edge, double at_m) {
 
 }  // namespace
 
+bool SightFaces::shows_level_ground(double level_m) {
+    if (lower_m_.empty() || upper_m_.empty()) return false;
+    return static_cast<double>(middle_of(upper_m_) - middle_of(lower_m_)) > kOpen * level_m;
+}
+
 std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Edge& edge) {
     const View& view = *terrain.view;
     const double distance_m = edge.below_m(view.T_map_camera.translation_m.head<2>());
@@ -91,21 +96,23 @@ std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Ed
         if (seen < kLeastSamples ||
             static_cast<double>(seen) < kLeastShare * static_cast<double>(pixels))
             return std::nullopt;
+        if (shows_level_ground(level_m(terrain, edge, at_m))) {
+            Face face;
+            face.open = true;
+            return face;
+        }
         at_m = static_cast<double>(middle_of(runs_m_));
         if (!(std::abs(at_m - distance_m) < kGate_m)) return std::nullopt;
     }
-    if (lower_m_.empty() || upper_m_.empty()) return std::nullopt;
-    Face face;
-    const double leaning_m = static_cast<double>(middle_of(upper_m_) - middle_of(lower_m_));
-    face.open = leaning_m > kOpen * level_m(terrain, edge, at_m);
     for (float& run_m : runs_m_) run_m = std::abs(run_m - static_cast<float>(at_m));
     const double scatter_m = kScatterOfMad * static_cast<double>(middle_of(runs_m_));
     const double independent = std::max(
         1.0,
         static_cast<double>(runs_m_.size()) * kSightStride_px / (kSightColumns_px * kSightRows_px));
+    Face face;
     face.behind_m = at_m - distance_m;
     face.sigma_m = std::hypot(kSigmaOfMedian * scatter_m / std::sqrt(independent),
-                              view.depth_m(kFace_px, edge.middle_m(), edge.upper_m));
+                              view.range_error_m(kFaceShared_px, edge.middle_m(), edge.upper_m));
     return face;
 }
 

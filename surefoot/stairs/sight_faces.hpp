@@ -23,11 +23,13 @@ class SightFaces {
 
   private:
     struct Face {
-        double behind_m = 0.0;  ///< where the edge was, away from the camera
+        double behind_m = 0.0;  ///< where the edge was, away from the camera; 0 = open
         double sigma_m = 0.0;
         bool open = false;
     };
     std::size_t gather(const Terrain& terrain, const Edge& edge, double at_m);
+    /// `level_m`: by how much that leans, see there.
+    [[nodiscard]] bool shows_level_ground(double level_m);
     [[nodiscard]] std::optional<Face> see(const Terrain& terrain, const Edge& edge);
 
     std::vector<float> runs_m_;

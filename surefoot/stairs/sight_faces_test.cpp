@@ -46,6 +46,24 @@ TEST(SightFaces, risers_come_to_where_their_faces_are_seen) {
     }
 }
 
+// What shows below a board is the floor behind it: no face, wherever it lies.
+TEST(SightFaces, a_riser_that_one_sees_through_is_open_and_does_not_move_to_the_floor_behind_it) {
+    for (const bool open : {false, true}) {
+        SightScene scene(flight(1, -0.2, 0.25), 0.7, 0.05, 0.0, open);
+        scene.add_noise(0.2, 23);
+        std::vector<Edge> edges = edges_up({0.0}, 0.2, 0.25);
+        Terrain terrain = scene.terrain();
+        terrain.view->unmapped_px = 3.0;
+        SightFaces{}.place(terrain, edges);
+        EXPECT_EQ(edges[0].open, open);
+        // The map ends before the board does, by the pixels that it leaves out.
+        const Eigen::Vector3d board_m(0.0, 0.0, 0.2);
+        const double before_m = open ? terrain.view->unmapped_m(board_m, {1.0, 0.0}) : 0.0;
+        EXPECT_NEAR(edges[0].middle_m().x(), -before_m, 0.004);
+        EXPECT_EQ(before_m > 0.01, open);
+    }
+}
+
 TEST(SightFaces, what_is_not_seen_stays_where_the_map_has_it) {
     SightScene scene(flight(2, -0.18, 0.29), 0.9, 0.0);
     const std::vector<Edge> given = edges_up({0.03, 0.03}, 0.18, 0.29);

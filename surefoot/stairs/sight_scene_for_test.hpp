@@ -33,7 +33,9 @@ class SightScene {
     SightScene(const std::vector<Tread>& treads,
                double distance_m,
                double yaw_rad,
-               double roll_rad = 0.0) {
+               double roll_rad = 0.0,
+               bool open = false)
+        : open_(open) {
         view_.width_px = 672;
         view_.height_px = 376;
         view_.fx_px = view_.fy_px = 343.0;
@@ -67,11 +69,14 @@ class SightScene {
         return terrain;
     }
     static constexpr double kCamera_m = 1.0;
+    static constexpr double kBoard_m = 0.04;
     Edge edge_;
     View view_;
     Image<float> disparity_px_;
 
   private:
+    bool open_;  ///< steps up are boards: below them one sees the floor
+
     [[nodiscard]] float seen(const std::vector<Tread>& treads, int u, int v) const {
         const Vector3d ray =
             view_.T_map_camera.rotation *
@@ -85,8 +90,9 @@ class SightScene {
             if (k == treads.size() || camera_x_m + z_m * ray.x() < treads[k].behind_m) break;
             depth_m = treads[k].depth_m;
             const double face_m = (treads[k].behind_m - camera_x_m) / ray.x();
-            if (-face_m * ray.z() - kCamera_m > depth_m) {
-                z_m = face_m;  // it goes up, and its face is in the way
+            const double below_m = -face_m * ray.z() - kCamera_m - depth_m;
+            if (below_m > 0.0) {  // it goes up, and its face is in the way
+                z_m = open_ && below_m > kBoard_m ? kCamera_m / -ray.z() : face_m;
                 break;
             }
         }

@@ -25,9 +25,6 @@ constexpr double kTread_m = 0.03;
 /// Steps of a flight differ by 5 mm by the code (NZ D1/AS1), by more where they are badly made.
 constexpr double kUneven_m = 0.02;
 
-/// One sigma of what all points of a face share: of a matcher's errors no more cancels out.
-constexpr double kFace_px = 0.05;
-
 }  // namespace
 
 void StepFitter::find_treads(const Terrain& terrain, const EdgeLine& line) {
@@ -253,11 +250,11 @@ void StepFitter::fit(const Terrain& terrain, const Edge& seed, std::vector<Edge>
         edge.lower_m = lower.height_m;
         edge.lower_seen = true;
         edge.height_sigma_m = std::hypot(upper.sigma_m, lower.sigma_m);
-        edge.across_sigma_m =
-            std::hypot(across_sigma_m(terrain.geometry, {edge.from_m, edge.to_m}, step->rms_m),
-                       sees_faces_ && terrain.view
-                           ? terrain.view->depth_m(kFace_px, edge.middle_m(), edge.upper_m)
-                           : 0.0);
+        edge.across_sigma_m = std::hypot(
+            across_sigma_m(terrain.geometry, {edge.from_m, edge.to_m}, step->rms_m),
+            sees_faces_ && terrain.view
+                ? terrain.view->range_error_m(kFaceShared_px, edge.middle_m(), edge.upper_m)
+                : 0.0);
         edge.angle_sigma_rad = edge.across_sigma_m * std::sqrt(12.0) / edge.length_m() /
                                std::sqrt(static_cast<double>(steps_.size()));
         edge.upper_depth_m = step->at_m - upper.begin_m;

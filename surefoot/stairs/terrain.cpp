@@ -14,7 +14,7 @@ bool View::shows(const Eigen::Vector3d& p_map_m) const {
            v_px >= kBorder_px && v_px <= height_px - 1.0 - kBorder_px;
 }
 
-double View::depth_m(double error_px, const Eigen::Vector2d& p_map_m, double z_map_m) const {
+double View::range_error_m(double error_px, const Eigen::Vector2d& p_map_m, double z_map_m) const {
     const Eigen::Vector3d p_m(p_map_m.x(), p_map_m.y(), z_map_m);
     return error_px * (p_m - T_map_camera.translation_m).squaredNorm() / (fx_px * baseline_m);
 }

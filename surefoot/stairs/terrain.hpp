@@ -27,9 +27,9 @@ struct View {
     /// Both eyes see the place, if nothing is in between, and not at the border of their images.
     [[nodiscard]] bool shows(const Eigen::Vector3d& p_map_m) const;
     /// What an error of the disparity makes of the range to a place.
-    [[nodiscard]] double depth_m(double error_px,
-                                 const Eigen::Vector2d& p_map_m,
-                                 double z_map_m) const;
+    [[nodiscard]] double range_error_m(double error_px,
+                                       const Eigen::Vector2d& p_map_m,
+                                       double z_map_m) const;
     /// How many pixels show level ground at a place, for each square metre of it; 0 behind or above
     /// the camera. As elevation::ExpectedPoints.
     [[nodiscard]] double pixels_per_m2(const Eigen::Vector3d& p_map_m) const;
