@@ -95,7 +95,7 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     if (terrain.geometry.nx < 2 || terrain.geometry.ny < 2) return;
     find_edges(terrain, out.edges);
     fit_steps(terrain, out.edges);
-    for (std::vector<Edge>& chain : chains_) sight_faces_.place(terrain, chain);
+    see_faces(terrain, out.edges);
     see_steps_down(terrain, out.edges);
     join_pieces(out.edges);
     reachability_.reach(terrain.geometry, terrain.height_m, terrain.stance_m, walk_step_m_);
@@ -205,6 +205,16 @@ void FeatureFinder::fit_steps(const Terrain& terrain, std::vector<Edge>& edges) 
     for (std::size_t i = 0; i < edges.size(); ++i)
         if (!taken[i]) edges[left++] = edges[i];
     edges.resize(left);
+}
+
+void FeatureFinder::see_faces(const Terrain& terrain, std::vector<Edge>& edges) {
+    for (std::vector<Edge>& chain : chains_) sight_faces_.place(terrain, chain);
+    for (Edge& edge : edges) {
+        if (edge.height_m() > config_.max_riser_m) continue;
+        Edge seen = edge;
+        sight_faces_.place(terrain, {&seen, 1});
+        if (seen.across_sigma_m < edge.across_sigma_m) edge = seen;
+    }
 }
 
 void FeatureFinder::see_steps_down(const Terrain& terrain, std::vector<Edge>& edges) {

@@ -34,6 +34,8 @@ class FeatureFinder {
     void find_edges(const Terrain& terrain, std::vector<Edge>& edges);
     /// Takes the steps of flights out of the edges and places them together.
     void fit_steps(const Terrain& terrain, std::vector<Edge>& edges);
+    /// Places what goes up by what is seen of its faces.
+    void see_faces(const Terrain& terrain, std::vector<Edge>& edges);
     /// Adds the steps down that the camera sees where the map holds fewer.
     void see_steps_down(const Terrain& terrain, std::vector<Edge>& edges);
     bool add_seen(std::vector<Edge>& edges);
