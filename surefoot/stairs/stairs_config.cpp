@@ -46,6 +46,8 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
     visitor.number("kerb_m", kerb_m, 0.02, 1.0, "highest kerb");
     visitor.number("drop_m", drop_m, 0.01, 1.0, "ground that lies lower by more is a drop");
     visitor.group("doors", doors);
+    visitor.group("patches", patches);
+    visitor.group("classes", classes);
 }
 
 std::optional<std::string> StairsConfig::problem() const {
@@ -55,7 +57,9 @@ std::optional<std::string> StairsConfig::problem() const {
     if (!(min_going_m < max_going_m))
         return fmt::format(
             "stairs.min_going_m {} must be below stairs.max_going_m {}", min_going_m, max_going_m);
-    return doors.problem();
+    if (auto found = doors.problem()) return found;
+    if (auto found = patches.problem()) return found;
+    return classes.problem();
 }
 
 }  // namespace surefoot::stairs

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "surefoot/core/config.hpp"
+#include "surefoot/stairs/class_config.hpp"
 #include "surefoot/stairs/doors.hpp"
+#include "surefoot/stairs/planar_patches.hpp"
 
 namespace surefoot::stairs {
 
@@ -37,6 +39,8 @@ struct StairsConfig {
     double drop_m = 0.05;          ///< what goes down by more is a drop (the gate's limit)
 
     DoorConfig doors;
+    PatchConfig patches;
+    ClassConfig classes;
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this cannot be used, or nothing.
