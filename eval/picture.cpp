@@ -189,6 +189,24 @@ Picture render_layer(const grid::GridGeometry& geometry,
     return std::move(map.figure.picture);
 }
 
+Picture render_cells(const grid::GridGeometry& geometry,
+                     const Image<std::optional<Rgb8>>& colors,
+                     const std::vector<KeyEntry>& meaning,
+                     const FigureText& text,
+                     const Overlays& overlays) {
+    SUREFOOT_ASSERT(colors.width() == geometry.nx && colors.height() == geometry.ny);
+    std::vector<KeyEntry> key = meaning;
+    for (KeyEntry& entry : key_of(overlays)) key.push_back(std::move(entry));
+    MapFigure map = make_map_figure(geometry, 1, text, column_size(key, BarKind::none));
+    paint_cells(map, geometry, [&](grid::Cell cell, int u, int v) {
+        return colors.at(cell.ix, cell.iy).value_or(hatched_grey(u, v));
+    });
+    draw_overlays(map.figure.picture, map.view, overlays);
+    draw_axes(map.figure.picture, map.view);
+    draw_key(map.figure, map.figure.column.top, key);
+    return std::move(map.figure.picture);
+}
+
 Picture render_error_map(const grid::GridGeometry& geometry,
                          const grid::Layer& error_m,
                          const FigureText& text,

@@ -51,6 +51,13 @@ struct LayerStyle {
                                    const LayerStyle& style,
                                    const Overlays& overlays);
 
+/// Cells in colours of their own, hatched grey where they have none, and what the colours mean.
+[[nodiscard]] Picture render_cells(const grid::GridGeometry& geometry,
+                                   const Image<std::optional<Rgb8>>& colors,
+                                   const std::vector<KeyEntry>& meaning,
+                                   const FigureText& text,
+                                   const Overlays& overlays);
+
 /// Height error live - truth in mm: red = the map is too low (truth above it), blue = too high.
 [[nodiscard]] Picture render_error_map(const grid::GridGeometry& geometry,
                                        const grid::Layer& error_m,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/shown_part.hpp"
 #include "surefoot/core/assert.hpp"
 
 namespace surefoot::eval {
@@ -181,39 +182,6 @@ void add_other_edges(const stairs::TerrainFeatures& features, Overlays& overlays
     }
 }
 
-/// Cells [ix0, ix1) x [iy0, iy1) of a map.
-struct Cells {
-    int ix0 = 0, iy0 = 0, ix1 = 0, iy1 = 0;
-    [[nodiscard]] bool empty() const { return ix1 <= ix0; }
-    void include(grid::Cell cell) {
-        const bool first = empty();
-        ix0 = first ? cell.ix : std::min(ix0, cell.ix);
-        iy0 = first ? cell.iy : std::min(iy0, cell.iy);
-        ix1 = std::max(ix1, cell.ix + 1);
-        iy1 = std::max(iy1, cell.iy + 1);
-    }
-};
-
-/// What is to be seen with a narrow rim, which may lie beyond the map.
-Cells shown_cells(const grid::GridGeometry& geometry,
-                  const grid::Layer& height_m,
-                  const Overlays& overlays) {
-    Cells shown;
-    const auto include_point = [&](const Vector2d& p_m) {
-        if (const auto cell = geometry.cell_at(p_m.x(), p_m.y())) shown.include(*cell);
-    };
-    for (int iy = 0; iy < geometry.ny; ++iy) {
-        for (int ix = 0; ix < geometry.nx; ++ix)
-            if (std::isfinite(height_m.at(ix, iy))) shown.include({ix, iy});
-    }
-    for (const Mark& mark : overlays.marks) include_point(mark.point_m);
-    for (const Vector2d& p_m : overlays.trajectory_m) include_point(p_m);
-    if (overlays.T_odom_body) include_point(overlays.T_odom_body->translation_m.head<2>());
-    if (shown.empty()) return {0, 0, geometry.nx, geometry.ny};
-    const int around = std::max(2, std::max(shown.ix1 - shown.ix0, shown.iy1 - shown.iy0) / 40);
-    return {shown.ix0 - around, shown.iy0 - around, shown.ix1 + around, shown.iy1 + around};
-}
-
 }  // namespace
 
 std::string length_text(double length_m, double sigma_m) {
@@ -252,23 +220,13 @@ Picture render_features(const grid::GridGeometry& geometry,
                         const Overlays& overlays,
                         const FigureText& text) {
     SUREFOOT_ASSERT(height_m.width() == geometry.nx && height_m.height() == geometry.ny);
-    const Cells shown = shown_cells(geometry, height_m, overlays);
-    grid::GridGeometry part = geometry;
-    part.nx = shown.ix1 - shown.ix0;
-    part.ny = shown.iy1 - shown.iy0;
-    part.origin_m += geometry.resolution_m * Vector2d(shown.ix0, shown.iy0);
-    grid::Layer part_m(part.nx, part.ny, std::nanf(""));
-    for (int iy = 0; iy < part.ny; ++iy) {
-        for (int ix = 0; ix < part.nx; ++ix) {
-            if (height_m.contains(shown.ix0 + ix, shown.iy0 + iy))
-                part_m.at(ix, iy) = height_m.at(shown.ix0 + ix, shown.iy0 + iy);
-        }
-    }
+    const ShownPart shown = shown_part(geometry, height_m, overlays);
+    const grid::Layer part_m = shown.of(height_m, std::nanf(""));
     LayerStyle style = elevation_style();
     style.map = ColorMap::pale;
     style.hill_shading = false;  // the lines say where it is steep
     style.text = text;
-    return render_layer(part, part_m, style, with_features(features, overlays));
+    return render_layer(shown.geometry, part_m, style, with_features(features, overlays));
 }
 
 }  // namespace surefoot::eval

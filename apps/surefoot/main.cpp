@@ -253,7 +253,8 @@ void add_stairs(CLI::App& app, StairsOptions& o, int& exit_code) {
             "--height, or a cloud with z up (.ply, .pcd, .xyz)")
         ->required()
         ->type_name("DEM|CLOUD|FOLDER");
-    verb->add_option("--out", o.out_dir, "folder for stairs.json and stairs.png")->type_name("DIR");
+    verb->add_option("--out", o.out_dir, "folder for stairs.json, treads.asc and the pictures")
+        ->type_name("DIR");
     verb->add_option("--from",
                      o.from,
                      "where one stands [m]: what goes down from there is a drop; by default "

@@ -72,6 +72,7 @@ int run(const RunOptions& options) {
                              "variance.asc",
                              "traversability.asc",
                              "stairs.json",
+                             "treads.asc",
                              "report.json"}) {
         if (auto status = io::remove_file(io::join_path(options.out_dir, name)); !status) {
             return report(status.error());

@@ -182,7 +182,11 @@ Status write_results(const RunOptions& options,
         writes += io::write_file(out + "/layers.png", std::string(png.begin(), png.end()));
     }
     writes += io::write_ply(out + "/map.ply", map_cloud(pipeline));
-    writes += io::write_file(out + "/stairs.json", stairs_json(pipeline.features(), {}) + "\n");
+    const stairs::GroundClasses classes = pipeline.ground_classes();
+    writes +=
+        io::write_file(out + "/stairs.json",
+                       stairs_json(pipeline.features(), classes, geometry.resolution_m, {}) + "\n");
+    writes += io::write_esri_grid(out + "/treads.asc", geometry, classes.tread_height_m);
 
     const auto snapshot = std::make_unique<grid::MapSnapshot>();
     Status sealed = pipeline.snapshot(hash_of(settings), *snapshot);

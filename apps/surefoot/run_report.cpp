@@ -9,6 +9,7 @@
 #include "apps/surefoot/ground_box.hpp"
 #include "apps/surefoot/stairs_text.hpp"
 #include "apps/surefoot/writes.hpp"
+#include "eval/classes_picture.hpp"
 #include "eval/html_report.hpp"
 #include "eval/picture.hpp"
 #include "eval/stairs_picture.hpp"
@@ -114,11 +115,14 @@ void add_truth(const RunRecord& record,
 
 /// Edges and stairs over the heights, and what they measure.
 eval::ReportSection stairs_section(const pipeline::Pipeline& pipeline,
-                                   const std::vector<std::uint8_t>& png) {
+                                   const std::vector<std::uint8_t>& png,
+                                   const std::vector<std::uint8_t>& classes_png) {
     eval::ReportSection section;
     section.title = "Edges and stairs";
     section.pictures.push_back(
         {"Ticks point to the lower ground; steps are numbered as they are walked", png, true});
+    section.pictures.push_back(
+        {"What the ground is, cell by cell; hatched is unknown or unsure", classes_png, true});
     section.tables.push_back(features_table(pipeline.features()));
     section.note = features_count_text(pipeline.features()) + ".";
     return section;
@@ -189,12 +193,19 @@ Status write_pictures_and_report(const RunOptions& options,
                                                drawn,
                                                {"Edges and stairs", "over the heights"}));
 
+    const auto classes_png =
+        eval::encode_png(eval::render_classes(geometry,
+                                              layers.height_m,
+                                              pipeline.ground_classes(),
+                                              drawn,
+                                              {"What the ground is", "cell by cell"}));
+
     eval::ReportContent content;
     content.title = fmt::format("Surefoot: {}", record.source.path);
     content.summary = summary_lines(record, pipeline);
     content.pictures.push_back({"The ground, seen from above", elevation_png});
     content.pictures.push_back({"Safe to step or not; hatched was never seen", rating_png});
-    content.sections.push_back(stairs_section(pipeline, stairs_png));
+    content.sections.push_back(stairs_section(pipeline, stairs_png, classes_png));
     add_camera_pictures(pipeline, content);
     add_sigma_pictures(pipeline, drawn, content);
     add_truth(record, pipeline, drawn, settings.maps.safe_threshold, content);
@@ -216,6 +227,7 @@ Status write_pictures_and_report(const RunOptions& options,
     writes += io::write_file(options.out_dir + "/elevation.png", as_text(elevation_png));
     writes += io::write_file(options.out_dir + "/traversability.png", as_text(rating_png));
     writes += io::write_file(options.out_dir + "/stairs.png", as_text(stairs_png));
+    writes += io::write_file(options.out_dir + "/classes.png", as_text(classes_png));
     writes += io::write_file(options.out_dir + "/report.html", eval::render_html(content));
     return writes.first();
 }

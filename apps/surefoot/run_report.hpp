@@ -10,7 +10,7 @@ namespace surefoot::app {
 [[nodiscard]] eval::Overlays overlays_of(const std::optional<io::MachineFile>& machine,
                                          const RunRecord& record);
 
-/// elevation.png, traversability.png, stairs.png and the self-contained report.html.
+/// elevation.png, traversability.png, stairs.png, classes.png and the self-contained report.html.
 [[nodiscard]] Status write_pictures_and_report(const RunOptions& options,
                                                const Settings& settings,
                                                const std::optional<io::MachineFile>& machine,

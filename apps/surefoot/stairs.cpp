@@ -8,34 +8,65 @@
 #include "apps/surefoot/terrain_map.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
+#include "eval/classes_picture.hpp"
 #include "eval/stairs_picture.hpp"
 #include "io/config_yaml.hpp"
+#include "io/dem_file.hpp"
 #include "io/file.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
+#include "surefoot/stairs/ground_classes.hpp"
 
 namespace surefoot::app {
 namespace {
 
-std::string picture_of(const StairsOptions& options,
-                       const TerrainMap& map,
-                       const stairs::TerrainFeatures& features) {
+/// What there is on a map, and the class of each cell.
+struct Found {
+    stairs::TerrainFeatures features;
+    stairs::GroundClasses classes;
+};
+
+eval::Overlays stance_of(const TerrainMap& map) {
     eval::Overlays drawn;
     drawn.T_odom_body = map.T_odom_body;
     if (!map.T_odom_body) drawn.marks = {{map.stance_m, "seen from here"}};
-    const auto png = eval::encode_png(eval::render_features(
-        map.geometry, map.height_m, features, drawn, {"Edges and stairs", options.map}));
+    return drawn;
+}
+
+std::string as_png(const eval::Picture& picture) {
+    const auto png = eval::encode_png(picture);
     return {png.begin(), png.end()};
+}
+
+Status write_pictures(const StairsOptions& options, const TerrainMap& map, const Found& found) {
+    const eval::Overlays drawn = stance_of(map);
+    Writes writes;
+    writes += io::write_file(
+        options.out_dir + "/stairs.png",
+        as_png(eval::render_features(
+            map.geometry, map.height_m, found.features, drawn, {"Edges and stairs", options.map})));
+    writes += io::write_file(options.out_dir + "/classes.png",
+                             as_png(eval::render_classes(map.geometry,
+                                                         map.height_m,
+                                                         found.classes,
+                                                         drawn,
+                                                         {"What the ground is", options.map})));
+    return writes.first();
+}
+
+std::string json_of(const TerrainMap& map, const Found& found) {
+    return stairs_json(found.features, found.classes, map.geometry.resolution_m, map.assumed);
 }
 
 Status write_results(const StairsOptions& options,
                      const Settings& settings,
                      const TerrainMap& map,
-                     const stairs::TerrainFeatures& features) {
+                     const Found& found) {
     Writes writes;
     writes += io::write_config_of(options.out_dir + "/config.yaml", settings);
-    writes +=
-        io::write_file(options.out_dir + "/stairs.json", stairs_json(features, map.assumed) + "\n");
-    writes += io::write_file(options.out_dir + "/stairs.png", picture_of(options, map, features));
+    writes += io::write_file(options.out_dir + "/stairs.json", json_of(map, found) + "\n");
+    writes += io::write_esri_grid(
+        options.out_dir + "/treads.asc", map.geometry, found.classes.tread_height_m);
+    writes += write_pictures(options, map, found);
     return writes.first();
 }
 
@@ -45,7 +76,7 @@ void print_text(const StairsOptions& options,
     fmt::print("{}{}\n", features_text(features), features_count_text(features));
     for (const std::string& sentence : map.assumed) fmt::print("assumed: {}\n", sentence);
     if (!options.out_dir.empty())
-        fmt::print("stairs.json and stairs.png in {}/\n", options.out_dir);
+        fmt::print("stairs.json, stairs.png, classes.png and treads.asc in {}/\n", options.out_dir);
 }
 
 }  // namespace
@@ -60,16 +91,17 @@ int stairs(const StairsOptions& options) {
     if (!options.out_dir.empty()) {
         if (auto status = io::make_folder(options.out_dir); !status) return report(status.error());
     }
-    stairs::TerrainFeatures features;
-    stairs::FeatureFinder(config).find(map->terrain(), features);
+    Found found;
+    stairs::FeatureFinder(config).find(map->terrain(), found.features);
+    found.classes = stairs::classify_ground(config, map->terrain(), found.features);
     if (!options.out_dir.empty()) {
-        if (auto status = write_results(options, *settings, *map, features); !status)
+        if (auto status = write_results(options, *settings, *map, found); !status)
             return report(status.error());
     }
     if (options.common.json) {
-        print_answer(stairs_json(features, map->assumed));
+        print_answer(json_of(*map, found));
     } else {
-        print_text(options, *map, features);
+        print_text(options, *map, found.features);
     }
     return kExitOk;
 }

@@ -77,9 +77,20 @@ Json list_json(const std::vector<T>& values, Json (*json_of)(const T&)) {
     return list;
 }
 
+Json classes_json(const stairs::GroundClasses& classes, double resolution_m) {
+    const auto counts = stairs::count_classes(classes);
+    Json json = Json::object();
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        json[stairs::kGroundClassNames[i]] = {
+            {"cells", counts[i]}, {"area_m2", number(counts[i] * resolution_m * resolution_m)}};
+    return json;
+}
+
 }  // namespace
 
 std::string stairs_json(const stairs::TerrainFeatures& features,
+                        const stairs::GroundClasses& classes,
+                        double resolution_m,
                         const std::vector<std::string>& assumed) {
     return Json{{"flights", list_json(features.flights, flight_json)},
                 {"drops", list_json(features.drops, line_json)},
@@ -87,6 +98,7 @@ std::string stairs_json(const stairs::TerrainFeatures& features,
                 {"sills", list_json(features.sills, line_json)},
                 {"doors", list_json(features.doors, door_json)},
                 {"edges", list_json(features.edges, edge_json)},
+                {"classes", classes_json(classes, resolution_m)},
                 {"assumed", assumed}}
         .dump(2);
 }

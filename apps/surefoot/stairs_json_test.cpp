@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace surefoot::app {
 namespace {
@@ -18,6 +20,11 @@ std::string packed(const std::string& json) {
     return text;
 }
 
+std::string json_of(const stairs::TerrainFeatures& features,
+                    const std::vector<std::string>& assumed) {
+    return stairs_json(features, {}, 0.025, assumed);
+}
+
 stairs::LineFeature line(double height_m) {
     stairs::LineFeature line;
     line.pose = {{1.5, -0.5, 0.25}, 0.125};
@@ -29,10 +36,31 @@ stairs::LineFeature line(double height_m) {
 
 const std::string kPose = R"("pose":[1.5,-0.5,0.25,0.125])";
 
+const std::string kNoCells = [] {
+    std::string text = R"("classes":{)";
+    for (const char* name : stairs::kGroundClassNames)
+        text += std::string(text.back() == '{' ? "" : ",") + '"' + name +
+                R"(":{"cells":0,"area_m2":0.0})";
+    return text + "},";
+}();
+
+TEST(StairsJson, CellsAreCountedByTheirClass) {
+    stairs::GroundClasses classes;
+    classes.of_cell = Image<stairs::GroundClass>(4, 2, stairs::GroundClass::floor);
+    classes.of_cell.at(1, 1) = stairs::GroundClass::unknown;
+    classes.of_cell.at(2, 1) = classes.of_cell.at(3, 1) = stairs::GroundClass::tunnel;
+    const std::string json = packed(stairs_json({}, classes, 0.5, {}));
+    for (const char* part : {R"("classes":{"unknown":{"cells":1,"area_m2":0.25},)",
+                             R"("floor":{"cells":5,"area_m2":1.25})",
+                             R"("tread":{"cells":0,"area_m2":0.0})",
+                             R"("tunnel":{"cells":2,"area_m2":0.5}})"})
+        EXPECT_NE(json.find(part), std::string::npos) << part << '\n' << json;
+}
+
 TEST(StairsJson, NothingIsEmptyLists) {
-    EXPECT_EQ(
-        packed(stairs_json({}, {})),
-        R"({"flights":[],"drops":[],"kerbs":[],"sills":[],"doors":[],"edges":[],"assumed":[]})");
+    EXPECT_EQ(packed(json_of({}, {})),
+              R"({"flights":[],"drops":[],"kerbs":[],"sills":[],"doors":[],"edges":[],)" +
+                  kNoCells + R"("assumed":[]})");
 }
 
 TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
@@ -52,14 +80,14 @@ TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
     flight.cut = true;
     stairs::TerrainFeatures features;
     features.flights = {flight};
-    EXPECT_NE(packed(stairs_json(features, {}))
+    EXPECT_NE(packed(json_of(features, {}))
                   .find(R"({"flights":[{"kind":"down","steps":3,"riser_m":0.25,"riser_std_m":0.5,)"
                         R"("riser_spread_m":0.75,"going_m":1.25,"going_std_m":1.5,)"
                         R"("going_spread_m":1.75,"width_m":2.25,"landing_m":2.5,"turn_rad":2.75,)"
                         R"("cut":true,)" +
                         kPose + "}],"),
               std::string::npos)
-        << stairs_json(features, {});
+        << json_of(features, {});
 }
 
 TEST(StairsJson, WhatIsNoNumberIsNull) {
@@ -71,7 +99,7 @@ TEST(StairsJson, WhatIsNoNumberIsNull) {
     stairs::Door door;
     door.clearance_m = kNan;
     features.doors = {door};
-    const std::string json = packed(stairs_json(features, {}));
+    const std::string json = packed(json_of(features, {}));
     EXPECT_NE(json.find(R"("kind":"up","steps":1)"), std::string::npos) << json;
     EXPECT_NE(json.find(R"("going_m":null,"going_std_m":null,"going_spread_m":null)"),
               std::string::npos)
@@ -90,7 +118,7 @@ TEST(StairsJson, DropsAndKerbsHavePositiveHeights) {
         return kPose + R"(,"height_m":)" + height +
                R"(,"length_m":2.0,"sigma_m":0.5,"bottom_seen":)" + seen + "}";
     };
-    const std::string json = packed(stairs_json(features, {}));
+    const std::string json = packed(json_of(features, {}));
     EXPECT_NE(
         json.find(R"("drops":[{)" + common("0.75", "false") + R"(],"kerbs":[{"kind":"down",)" +
                   common("0.25", "true") + R"(,{"kind":"up",)" + common("0.25", "true") +
@@ -116,13 +144,14 @@ TEST(StairsJson, DoorsEdgesAndWhatWasAssumed) {
     edge.height_sigma_m = 0.125;
     features.edges = {edge};
     EXPECT_NE(
-        packed(stairs_json(features, {"z is \"up\""}))
+        packed(json_of(features, {"z is \"up\""}))
             .find(R"("doors":[{"width_m":0.75,"width_std_m":0.5,"sill_m":0.25,"clearance_m":2.0,)" +
                   kPose +
                   R"(}],"edges":[{"from":[1.0,2.0],"to":[3.0,4.0],"upper_m":0.5,"lower_m":-0.25,)"
-                  R"("lower_seen":false,"sigma_m":0.125}],"assumed":["zis\"up\""]})"),
+                  R"("lower_seen":false,"sigma_m":0.125}],)" +
+                  kNoCells + R"("assumed":["zis\"up\""]})"),
         std::string::npos)
-        << stairs_json(features, {});
+        << json_of(features, {});
 }
 
 }  // namespace

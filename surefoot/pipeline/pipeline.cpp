@@ -328,19 +328,26 @@ stairs::View Pipeline::view() const {
             .unmapped_px = static_cast<double>(config_.elevation.pixels.reach_px)};
 }
 
-void Pipeline::find_features() {
+stairs::Terrain Pipeline::terrain() const {
     const elevation::ElevationLayers& layers = map_.layers();
-    feature_finder_.find({.geometry = map_.geometry(),
-                          .height_m = layers.height_m.view(),
-                          .height_var_m2 = layers.height_var_m2.view(),
-                          .free_above_m = layers.free_above_m.view(),
-                          .clearance_m = layers.clearance_m.view(),
-                          .density_ratio = layers.density_ratio.view(),
-                          .looks = layers.count.view(),
-                          .stance_m = last_motion_.T_odom_body.translation_m.head<2>(),
-                          .view = view(),
-                          .disparity_px = depth_.disparity_px.view()},
-                         features_);
+    return {.geometry = map_.geometry(),
+            .height_m = layers.height_m.view(),
+            .height_var_m2 = layers.height_var_m2.view(),
+            .free_above_m = layers.free_above_m.view(),
+            .clearance_m = layers.clearance_m.view(),
+            .density_ratio = layers.density_ratio.view(),
+            .looks = layers.count.view(),
+            .stance_m = last_motion_.T_odom_body.translation_m.head<2>(),
+            .view = view(),
+            .disparity_px = depth_.disparity_px.view()};
+}
+
+void Pipeline::find_features() {
+    feature_finder_.find(terrain(), features_);
+}
+
+stairs::GroundClasses Pipeline::ground_classes() const {
+    return stairs::classify_ground(config_.stairs, terrain(), features_);
 }
 
 grid::Layer Pipeline::reach_step_m() const {

@@ -22,6 +22,7 @@
 #include "surefoot/pipeline/mount_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
+#include "surefoot/stairs/ground_classes.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/pair_trim.hpp"
 #include "surefoot/traversability/traversability.hpp"
@@ -85,6 +86,8 @@ class Pipeline {
     [[nodiscard]] const Pose& T_odom_body() const noexcept { return last_motion_.T_odom_body; }
     /// Which ground can be walked to from there, see Reachability. Allocates.
     [[nodiscard]] grid::Layer reach_step_m() const;
+    /// What the ground is at each cell of the map, given its features. Allocates.
+    [[nodiscard]] stairs::GroundClasses ground_classes() const;
     /// Where a foot may stand, as of now. Allocates, takes milliseconds: not for every frame.
     [[nodiscard]] Image<traversability::Foothold> footholds() const;
 
@@ -119,6 +122,7 @@ class Pipeline {
     void follow(const MotionEstimate& motion);
     [[nodiscard]] FusionCounts fuse(const MotionEstimate& motion);
     void rate();
+    [[nodiscard]] stairs::Terrain terrain() const;
     void find_features();
 
     PipelineConfig config_;

@@ -246,8 +246,8 @@ class Simulation(CliTest):
 
     def test_results_are_all_there(self):
         for name in ("trajectory.tum", "trajectory_camera.tum", "elevation.asc", "variance.asc", "traversability.asc",
-                     "elevation.png", "traversability.png", "stairs.png", "map.ply", "map.snapshot", "stairs.json",
-                     "report.json", "report.html", "config.yaml"):
+                     "elevation.png", "traversability.png", "stairs.png", "classes.png", "map.ply", "map.snapshot", "stairs.json",
+                     "treads.asc", "report.json", "report.html", "config.yaml"):
             self.assertGreater((self.demo / name).stat().st_size, 100, name)
 
     def test_same_bytes_with_one_thread_and_with_two(self):

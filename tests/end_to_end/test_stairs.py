@@ -15,6 +15,7 @@ NAMES = {
     "doors": "width_m width_std_m sill_m clearance_m pose",
     "edges": "from to upper_m lower_m lower_seen sigma_m",
 }
+CLASSES = "unknown floor tread riser ramp kerb sill drop wall table tunnel".split()
 CELL_M = 0.025
 RISER_M, GOING_CELLS = 0.17, 12  # 0.30 m
 STEPS = 4
@@ -39,7 +40,8 @@ def write_grid(path, height_of, nx=160, ny=60, x0=0.0, y0=0.0, cell=CELL_M):
 
 class Stairs(CliTest):
     def check_names(self, answer):
-        self.assertEqual(list(answer), [*NAMES, "assumed"])
+        self.assertEqual(list(answer), [*NAMES, "classes", "assumed"])
+        self.assertEqual(list(answer["classes"]), CLASSES)
         for kind, names in NAMES.items():
             for thing in answer[kind]:
                 self.assertEqual(set(thing), set(names.split()), kind)
@@ -76,8 +78,21 @@ class Stairs(CliTest):
         self.assertTrue(any("origin (0, 0)" in line for line in answer["assumed"]), answer["assumed"])
         self.assertTrue(any("exact" in line for line in answer["assumed"]), answer["assumed"])
         self.assertEqual(json.loads((self.dir / "out" / "stairs.json").read_text()), answer)
-        self.assertTrue((self.dir / "out" / "stairs.png").read_bytes().startswith(b"\x89PNG"))
+        for picture in ("stairs.png", "classes.png"):
+            self.assertTrue((self.dir / "out" / picture).read_bytes().startswith(b"\x89PNG"))
         self.assertTrue((self.dir / "out" / "config.yaml").exists())
+        cells = {name: of["cells"] for name, of in answer["classes"].items()}
+        print(f"cells: {cells}")
+        self.assertEqual(sum(cells.values()), 160 * 60)
+        self.assertEqual(cells["tread"] + cells["riser"], (3 * GOING_CELLS + 1) * 60)
+        self.assertEqual(cells["floor"], 160 * 60 - cells["tread"] - cells["riser"])
+        self.assertAlmostEqual(answer["classes"]["floor"]["area_m2"], cells["floor"] * CELL_M**2, delta=1e-9)
+        # The level of each tread, in its cells alone; measured heights are in no file that is written.
+        lines = (self.dir / "out" / "treads.asc").read_text().splitlines()
+        levels = [float(z) for line in lines if re.match(r"^-?[\d.]+ ", line) for z in line.split()]
+        self.assertEqual(len(levels), 160 * 60)
+        found = sorted({round(z, 3) for z in levels if z > -9000})
+        self.assertEqual(found, [RISER_M, 2 * RISER_M, round(3 * RISER_M, 3)])
 
     def test_the_same_steps_from_above_go_down_and_begin_with_a_drop(self):
         file = write_grid(self.dir / "up.asc", lambda ix, iy: height_of_stairs(ix), y0=-0.75)
@@ -142,6 +157,7 @@ class Stairs(CliTest):
         flat = write_grid(self.dir / "flat.asc", lambda ix, iy: 0.25)
         answer = self.json_of("stairs", flat, "--out", self.dir / "flat")
         self.assertEqual({kind: answer[kind] for kind in NAMES}, {kind: [] for kind in NAMES})
+        self.assertEqual(answer["classes"]["floor"]["cells"], 160 * 60)
         text = self.run_ok("stairs", flat).stdout
         self.assertIn("no flight, no drop, no kerb, no sill, no door; no edge", text)
 
@@ -208,6 +224,14 @@ class Stairs(CliTest):
         print(f"run: {[(f['kind'], f['steps'], f['riser_m'], f['going_m']) for f in of_run['flights']]}")
         self.assertTrue(of_run["flights"], of_run)
         self.assertEqual(len(again["edges"]), len(of_run["edges"]))
+        print(f"run: {of_run['classes']}")
+        self.assertGreater(of_run["classes"]["tread"]["cells"], 100)
+        self.assertGreater(of_run["classes"]["floor"]["cells"], 1000)
+        for name in ("tread", "floor"):
+            cells = of_run["classes"][name]["cells"]
+            self.assertAlmostEqual(again["classes"][name]["cells"], cells, delta=0.01 * cells, msg=name)
+        for file in ("treads.asc", "classes.png"):
+            self.assertTrue((out / file).exists(), file)
         for one, other in zip(again["flights"], of_run["flights"], strict=True):
             self.assertEqual((one["kind"], one["steps"]), (other["kind"], other["steps"]))
             self.assertAlmostEqual(one["riser_m"], other["riser_m"], delta=1e-4)
@@ -224,7 +248,9 @@ class Stairs(CliTest):
         (out / "stairs.json").write_text("of an earlier run")
         self.run_ok("run", "sim:floor", "--set", "sim.sensor=analytic", "--max-frames", 3, "--out", out)
         answer = json.loads((out / "stairs.json").read_text())
-        self.assertEqual(answer, {**{kind: [] for kind in NAMES}, "assumed": []})
+        self.check_names(answer)
+        self.assertEqual({kind: answer[kind] for kind in NAMES}, {kind: [] for kind in NAMES})
+        self.assertEqual(answer["assumed"], [])
 
     def test_height_images_of_others(self):
         """Those of elevation_mapping_cupy: three steps of 0.2 m by eight pixels, a slope, holes."""
