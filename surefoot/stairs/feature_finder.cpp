@@ -12,20 +12,6 @@ using Eigen::Vector2d;
 
 constexpr double kStance_m = 0.3;
 
-/// An edge as met by who goes down or up over it.
-LineFeature line_feature(const Edge& edge, bool goes_down) {
-    const Vector2d way = goes_down ? edge.down() : Vector2d(-edge.down());
-    LineFeature feature;
-    feature.pose.p_m << edge.middle_m(), goes_down ? edge.upper_m : edge.lower_m;
-    feature.pose.yaw_rad = std::atan2(way.y(), way.x());
-    feature.height_m = goes_down ? -edge.height_m() : edge.height_m();
-    feature.length_m = edge.length_m();
-    feature.sigma_m = edge.height_sigma_m;
-    feature.across_sigma_m = edge.across_sigma_m;
-    feature.bottom_seen = edge.lower_seen;
-    return feature;
-}
-
 bool same_ground(const Edge& a, const Edge& b) {
     constexpr double kSame_m = 0.04;
     return std::abs(a.upper_m - b.upper_m) <= kSame_m && std::abs(a.lower_m - b.lower_m) <= kSame_m;

@@ -7,6 +7,14 @@
 
 namespace surefoot::stairs {
 
+/// What is known of a feature over several looks (FeatureFollower). One look alone gives no id.
+struct Followed {
+    std::uint32_t id = 0;           ///< the same as long as it is followed; 0 = was not followed
+    int looks = 1;                  ///< that found it
+    std::int64_t last_seen_ns = 0;  ///< stamp of the last of them
+    bool seen_now = true;           ///< by the last look of all
+};
+
 /// A straight piece of a line at which the ground changes its height. Frame of the map [m].
 struct Edge {
     /// Ends of the border of the upper ground. Who goes from one to the other has the lower ground
@@ -26,6 +34,7 @@ struct Edge {
 
     bool upper_walkable = false;  ///< one comes to it from the stance without taking a step
     bool lower_walkable = false;
+    Followed followed;
 
     [[nodiscard]] double height_m() const { return upper_m - lower_m; }
     [[nodiscard]] double length_m() const { return (to_m - from_m).norm(); }
@@ -57,7 +66,11 @@ struct LineFeature {
     double sigma_m = 0.0;         ///< one sigma of the height
     double across_sigma_m = 0.0;  ///< one sigma of its place, along the yaw
     bool bottom_seen = true;      ///< false: the ground behind it lies at least so deep
+    Followed followed;            ///< drops and kerbs: that of their edge
 };
+
+/// An edge as met by who goes down or up over it.
+[[nodiscard]] LineFeature line_feature(const Edge& edge, bool goes_down);
 
 enum class FlightKind : std::uint8_t { up, down };
 
@@ -81,6 +94,7 @@ struct Flight {
     double turn_rad = 0.0;  ///< how far the way turns from the first edge to the last: spirals
     bool cut = false;       ///< it may go on beyond what is known
     bool open = false;      ///< boards without risers, as far as half of its steps or more show it
+    Followed followed;
 };
 
 /// An opening between two walls through which the ground leads.
@@ -91,6 +105,7 @@ struct Door {
     double sill_m = 0.0;  ///< highest across the opening above the ground before it; 0 = none
     double sill_sigma_m = 0.0;
     double clearance_m = 0.0;  ///< least free height; NaN = nothing was seen above it
+    Followed followed;
 };
 
 /// What the ground is.
@@ -101,6 +116,7 @@ struct TerrainFeatures {
     std::vector<LineFeature> sills;
     std::vector<Flight> flights;
     std::vector<Door> doors;
+    std::int64_t time_ns = 0;  ///< stamp of the last look; 0 = were not followed
 };
 
 }  // namespace surefoot::stairs

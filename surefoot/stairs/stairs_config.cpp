@@ -48,6 +48,7 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
     visitor.group("doors", doors);
     visitor.group("patches", patches);
     visitor.group("classes", classes);
+    visitor.group("follow", follow);
 }
 
 std::optional<std::string> StairsConfig::problem() const {

@@ -7,6 +7,7 @@
 #include "surefoot/core/config.hpp"
 #include "surefoot/stairs/class_config.hpp"
 #include "surefoot/stairs/doors.hpp"
+#include "surefoot/stairs/follow_config.hpp"
 #include "surefoot/stairs/planar_patches.hpp"
 
 namespace surefoot::stairs {
@@ -41,6 +42,7 @@ struct StairsConfig {
     DoorConfig doors;
     PatchConfig patches;
     ClassConfig classes;
+    FollowConfig follow;
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this cannot be used, or nothing.

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stairs/features.hpp"
+
+#include <cmath>
+
+namespace surefoot::stairs {
+
+LineFeature line_feature(const Edge& edge, bool goes_down) {
+    const Eigen::Vector2d way = goes_down ? edge.down() : Eigen::Vector2d(-edge.down());
+    LineFeature feature;
+    feature.pose.p_m << edge.middle_m(), goes_down ? edge.upper_m : edge.lower_m;
+    feature.pose.yaw_rad = std::atan2(way.y(), way.x());
+    feature.height_m = goes_down ? -edge.height_m() : edge.height_m();
+    feature.length_m = edge.length_m();
+    feature.sigma_m = edge.height_sigma_m;
+    feature.across_sigma_m = edge.across_sigma_m;
+    feature.bottom_seen = edge.lower_seen;
+    feature.followed = edge.followed;
+    return feature;
+}
+
+}  // namespace surefoot::stairs

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/stairs/flight_follower.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "surefoot/stairs/edge_place.hpp"
+
+namespace surefoot::stairs {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kWidthSigma_m = 0.05;  ///< ends of edges in noise and shadow; the same for all
+/// So many more votes than the shown number of steps has: two that take turns do not change it.
+constexpr float kLead = 1.0F;
+
+int common_edges(const Flight& a, const Flight& b) {
+    int common = 0;
+    for (const Edge& edge : a.edges)
+        common += edge.followed.id != 0 &&
+                  std::any_of(b.edges.begin(), b.edges.end(), [&](const Edge& other) {
+                      return other.followed.id == edge.followed.id;
+                  });
+    return common;
+}
+
+void take_mean(double look, double sigma, double most, LookWeight& weight, double& mean) {
+    if (!std::isfinite(look) || !std::isfinite(sigma)) return;
+    const double before = std::isfinite(mean) ? mean : look;
+    mean = before + weight.take(sigma * sigma, look - before, most) * (look - before);
+}
+
+int steps_of(const Flight& flight) {
+    return std::clamp(flight.steps, 0, FlightTrack::kMaxSteps);
+}
+
+/// True: the number that the look found is the one to show.
+bool vote(int steps, double most_looks, FlightTrack& track) {
+    const auto keep = static_cast<float>(1.0 - 1.0 / most_looks);
+    for (float& votes : track.votes) votes *= keep;
+    const auto at = [&](int n) -> float& { return track.votes[static_cast<std::size_t>(n)]; };
+    at(steps) += 1.0F;
+    const int shown = steps_of(track.flight);
+    return steps == shown || at(steps) > at(shown) + kLead;
+}
+
+double distance_m(const Flight& flight, const Vector2d& stance_m) {
+    const double away_m = (flight.pose.p_m.head<2>() - stance_m).norm();
+    return std::isfinite(away_m) ? away_m : std::numeric_limits<double>::max();
+}
+
+/// Pose and turn of a flight whose edges have moved.
+void place(Flight& flight) {
+    const Edge& first = flight.edges.front();
+    const Edge& last = flight.edges.back();
+    const bool up = flight.kind == FlightKind::up;
+    Vector2d down = Vector2d::Zero();
+    for (const Edge& edge : flight.edges) down += std::pow(edge.length_m(), 3) * edge.down();
+    const Vector2d a = first.down();
+    const Vector2d b = last.down();
+    flight.turn_rad = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+    flight.pose.p_m << first.middle_m(), up ? first.lower_m : first.upper_m;
+    flight.pose.yaw_rad = up ? std::atan2(-down.y(), -down.x()) : std::atan2(down.y(), down.x());
+}
+
+/// Its edges are those that are followed; how many there still are.
+int refresh(const EdgeFollower& edges, Flight& flight) {
+    int left = 0;
+    for (Edge& edge : flight.edges) {
+        const EdgeTrack* const track = edges.find(edge.followed.id);
+        if (track == nullptr) {
+            edge.followed.seen_now = false;
+            continue;
+        }
+        edge = track->edge;
+        ++left;
+    }
+    if (!flight.edges.empty()) place(flight);
+    return left;
+}
+
+}  // namespace
+
+void FlightFollower::forget() {
+    while (!tracks_.empty()) remove(tracks_.size() - 1);
+}
+
+void FlightFollower::remove(std::size_t track) {
+    std::swap(tracks_[track], tracks_.back());
+    spare_.push_back(std::move(tracks_.back()));
+    tracks_.pop_back();
+}
+
+FlightTrack& FlightFollower::add() {
+    FlightTrack track;
+    if (!spare_.empty()) {
+        track.flight.edges = std::move(spare_.back().flight.edges);
+        spare_.pop_back();
+    }
+    tracks_.push_back(std::move(track));
+    return tracks_.back();
+}
+
+void FlightFollower::follow(std::span<const Flight> seen,
+                            const EdgeFollower& edges,
+                            const Terrain& terrain,
+                            std::int64_t time_ns,
+                            bool first,
+                            IdCounter& ids) {
+    pair_up(seen);
+    for (FlightTrack& track : tracks_) track.flight.followed.seen_now = false;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        if (track_of_seen_[i] >= 0) {
+            take(seen[i], time_ns, tracks_[static_cast<std::size_t>(track_of_seen_[i])]);
+            continue;
+        }
+        FlightTrack& track = add();
+        // `take` fills it: what is there now is nothing, found by no look.
+        track.flight.followed = {.id = ids.next(), .looks = 0};
+        track.flight.going_m = track.flight.riser_m = track.flight.width_m = std::nan("");
+        take(seen[i], time_ns, track);
+        track.shown = first;
+    }
+    for (std::size_t t = 0; t < tracks_.size();) {
+        const int edges_left = refresh(edges, tracks_[t].flight);
+        if (is_over(edges_left, terrain, tracks_[t])) {
+            remove(t);
+        } else {
+            ++t;
+        }
+    }
+}
+
+void FlightFollower::pair_up(std::span<const Flight> seen) {
+    pairs_.clear();
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+        const Flight& flight = tracks_[t].flight;
+        for (std::size_t s = 0; s < seen.size(); ++s) {
+            if (flight.kind != seen[s].kind) continue;
+            const int common = common_edges(flight, seen[s]);
+            const auto fewer =
+                static_cast<int>(std::min(flight.edges.size(), seen[s].edges.size()));
+            if (common > 0 && 2 * common >= fewer) pairs_.push_back({common, t, s});
+        }
+    }
+    std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+        if (a.common != b.common) return a.common > b.common;
+        return a.track != b.track ? a.track < b.track : a.seen < b.seen;
+    });
+    track_of_seen_.assign(seen.size(), -1);
+    track_seen_.assign(tracks_.size(), false);
+    for (const Pair& pair : pairs_) {
+        if (track_of_seen_[pair.seen] >= 0 || track_seen_[pair.track]) continue;
+        track_of_seen_[pair.seen] = static_cast<int>(pair.track);
+        track_seen_[pair.track] = true;
+    }
+}
+
+void FlightFollower::take(const Flight& seen, std::int64_t time_ns, FlightTrack& track) const {
+    Flight& flight = track.flight;
+    const Followed before = flight.followed;
+    double riser_m = flight.riser_m;
+    double going_m = flight.going_m;
+    double width_m = flight.width_m;
+    take_mean(seen.riser_m, seen.riser_sigma_m, config_.mean_looks, track.riser, riser_m);
+    take_mean(seen.going_m, seen.going_sigma_m, config_.mean_looks, track.going, going_m);
+    take_mean(seen.width_m, kWidthSigma_m, config_.mean_looks, track.width, width_m);
+    if (vote(steps_of(seen), config_.steps_looks, track) || before.looks == 0) flight = seen;
+    flight.riser_m = riser_m;
+    flight.riser_sigma_m = track.riser.sigma();
+    flight.width_m = width_m;
+    flight.going_m = going_m;
+    flight.going_sigma_m = track.going.sigma();
+    if (flight.steps == 1) flight.going_m = flight.going_sigma_m = std::nan("");
+    flight.followed = {
+        .id = before.id, .looks = before.looks + 1, .last_seen_ns = time_ns, .seen_now = true};
+    track.shown = track.shown || flight.followed.looks >= 2;
+    track.missed = track.place_seen = 0;
+}
+
+/// It has lost its edges, or is not found any more where it is looked at, or its edges are those of
+/// others now: a machine that has climbed it has it below.
+bool FlightFollower::is_over(int edges_left, const Terrain& terrain, FlightTrack& track) const {
+    if (track.flight.followed.seen_now) return false;
+    ++track.missed;
+    if (edges_left == 0) return true;
+    if (is_looked_at(terrain, track.flight.pose.p_m)) ++track.place_seen;
+    if (track.place_seen >= (track.shown ? config_.missed_looks : config_.first_looks)) return true;
+    if (track.missed < config_.level_looks) return false;
+    return std::any_of(tracks_.begin(), tracks_.end(), [&](const FlightTrack& other) {
+        return other.flight.followed.seen_now &&
+               2 * common_edges(track.flight, other.flight) > track.flight.steps;
+    });
+}
+
+void FlightFollower::write(const Vector2d& stance_m, std::vector<Flight>& out) {
+    order_.clear();
+    for (std::size_t t = 0; t < tracks_.size(); ++t)
+        if (tracks_[t].shown) order_.push_back(t);
+    std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+        const double a_m = distance_m(tracks_[a].flight, stance_m);
+        const double b_m = distance_m(tracks_[b].flight, stance_m);
+        return a_m != b_m ? a_m < b_m
+                          : tracks_[a].flight.followed.id < tracks_[b].flight.followed.id;
+    });
+    while (out.size() > order_.size()) {
+        spare_flights_.push_back(std::move(out.back()));
+        out.pop_back();
+    }
+    while (out.size() < order_.size()) {
+        if (spare_flights_.empty()) {
+            out.emplace_back();
+        } else {
+            out.push_back(std::move(spare_flights_.back()));
+            spare_flights_.pop_back();
+        }
+    }
+    for (std::size_t i = 0; i < order_.size(); ++i) out[i] = tracks_[order_[i]].flight;
+}
+
+}  // namespace surefoot::stairs

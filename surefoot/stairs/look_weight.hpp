@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace surefoot::stairs {
+
+/// How much a look at a quantity counts against the looks before it, and how sure the mean of them
+/// is. Looks at one map are not independent: each shows again what the ones before have put into
+/// it, and wrong matches repeat themselves. So a mean is steadier than its looks, but no surer:
+/// - it never counts for more than `most_looks` looks as good as the best one;
+/// - its sigma is that of the best look, or the scatter of the looks where that is larger. A lower
+///   one would need errors that change from look to look; those of one map hardly do.
+class LookWeight {
+  public:
+    /// The share of the way from the mean to the look that the mean moves. `var`: of the look;
+    /// `difference`: of the look from the mean.
+    [[nodiscard]] double take(double var, double difference, double most_looks);
+    /// What lies between two looks.
+    void drift(double var);
+    [[nodiscard]] double sigma() const;
+    /// The other one is of the same thing: the better one of both counts.
+    void join(const LookWeight& other);
+
+  private:
+    bool empty_ = true;
+    double mean_var_ = 0.0;  ///< as if looks were independent, but not below the best / most_looks
+    double best_var_ = 0.0;
+    double scatter_var_ = 0.0;
+};
+
+}  // namespace surefoot::stairs
