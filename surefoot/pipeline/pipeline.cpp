@@ -110,6 +110,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
       map_(config.elevation),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
       feature_finder_(config.stairs),
+      feature_follower_(config.stairs.follow),
       imu_mount_(rig.imu),
       mount_monitor_(config.mount),
       level_keeper_(config.level) {}
@@ -121,6 +122,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
     alignment_ = T_odom_first_body ? told(*T_odom_first_body) : measure_alignment(first_frames);
     odometry_.start_at(alignment_.T_odom_body);
     level_keeper_.start_at(alignment_.T_odom_body);
+    feature_follower_.forget();  // odom is another one
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
     return alignment_;
@@ -301,6 +303,8 @@ CameraState Pipeline::camera_state() const noexcept {
 
 void Pipeline::follow(const MotionEstimate& motion) {
     map_.follow(motion.T_odom_body, motion.relative_covariance);
+    feature_drift_.add(motion.relative_covariance, motion.T_odom_body.R());
+    if (motion.health == Health::lost) feature_follower_.forget();
     last_motion_ = motion;
 }
 
@@ -343,7 +347,11 @@ stairs::Terrain Pipeline::terrain() const {
 }
 
 void Pipeline::find_features() {
-    feature_finder_.find(terrain(), features_);
+    const stairs::Terrain now = terrain();
+    feature_finder_.find(now, found_features_);
+    feature_follower_.follow(
+        found_features_, now, {last_motion_.time_ns, feature_drift_}, features_);
+    feature_drift_ = {};
 }
 
 stairs::GroundClasses Pipeline::ground_classes() const {

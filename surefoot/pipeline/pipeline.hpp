@@ -22,6 +22,7 @@
 #include "surefoot/pipeline/mount_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
+#include "surefoot/stairs/feature_follower.hpp"
 #include "surefoot/stairs/ground_classes.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/pair_trim.hpp"
@@ -74,7 +75,7 @@ class Pipeline {
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return rating_;
     }
-    /// Edges, drops, stairs of the map, as of the last full frame.
+    /// Edges, drops, stairs, followed over time, as of the last full frame.
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept { return features_; }
     /// The camera at the last frame.
     [[nodiscard]] stairs::View view() const;
@@ -137,7 +138,10 @@ class Pipeline {
     traversability::Traversability rater_;
     traversability::TraversabilityLayers rating_;
     stairs::FeatureFinder feature_finder_;
+    stairs::FeatureFollower feature_follower_;
+    stairs::TerrainFeatures found_features_;  ///< by the last look alone
     stairs::TerrainFeatures features_;
+    stairs::Drift feature_drift_;                           ///< of the body, since that look
     Eigen::Vector2d rated_at_m_ = Eigen::Vector2d::Zero();  ///< corner of the window rated last
     Alignment alignment_;
 

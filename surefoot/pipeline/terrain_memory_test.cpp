@@ -16,6 +16,7 @@
 
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/elevation/height_bounds.hpp"
+#include "surefoot/stairs/feature_follower.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
@@ -195,6 +196,56 @@ TEST(TerrainMemory, NothingIsAllocatedOnceWarm) {
     EXPECT_GT(terrain.fused(), fused);
     EXPECT_GT(terrain.inflated(), inflated);
     EXPECT_GT(terrain.cells_asked(), asked);
+}
+
+/// Steps up, and the edge of a drop beside them.
+stairs::TerrainFeatures stairs_found(int steps, double shift_m) {
+    stairs::TerrainFeatures found;
+    stairs::Flight flight;
+    flight.steps = steps;
+    for (int k = 0; k < steps; ++k) {
+        stairs::Edge edge;
+        edge.from_m = {1.0 + 0.3 * k + shift_m, 0.5};
+        edge.to_m = {1.0 + 0.3 * k + shift_m, -0.5};
+        edge.lower_m = 0.2 * k;
+        edge.upper_m = 0.2 * (k + 1);
+        edge.lower_seen = true;
+        flight.edges.push_back(edge);
+    }
+    found.edges = flight.edges;
+    if (steps > 0) found.flights = {flight};
+    stairs::Edge drop;
+    drop.from_m = {0.5 + shift_m, -2.0};
+    drop.to_m = {0.5 + shift_m, -1.0};
+    drop.lower_m = -0.5;
+    found.edges.push_back(drop);
+    found.drops = {stairs::line_feature(drop, true)};
+    found.doors.resize(static_cast<std::size_t>(steps % 3));
+    return found;
+}
+
+TEST(TerrainMemory, FollowingFeaturesAllocatesNothingOnceWarm) {
+    grid::Layer height_m(200, 200, 0.0F);
+    stairs::Terrain terrain;
+    terrain.geometry = {0.025, 200, 200, {-2.5, -2.5}};
+    terrain.height_m = height_m.view();
+    std::vector<stairs::TerrainFeatures> found;
+    for (int k = 0; k < 8; ++k) found.push_back(stairs_found(k % 5, 0.01 * k));
+    found.emplace_back();
+    stairs::FeatureFollower follower{stairs::FollowConfig{}};
+    stairs::TerrainFeatures told;
+    std::size_t flights = 0;
+    const auto look = [&](int k) {
+        // Long enough without any that they go and come back.
+        const auto i = static_cast<std::size_t>(k % 60 < 40 ? k % 8 : 8);
+        follower.follow(found[i], terrain, {k * kFrame_ns, {}}, told);
+        flights += told.flights.size();
+    };
+    for (int k = 0; k < 120; ++k) look(k);
+    EXPECT_GT(flights, 0U);
+    const std::int64_t before = allocations;
+    for (int k = 120; k < 600; ++k) look(k);
+    EXPECT_EQ(allocations - before, 0);
 }
 
 TEST(TerrainMemory, ADefaultMapWithItsRatingHoldsAtMostTwentyMegabytes) {
