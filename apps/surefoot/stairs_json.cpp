@@ -2,7 +2,10 @@
 #include "apps/surefoot/stairs_json.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+
+#include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -22,58 +25,73 @@ Json pose_json(const stairs::FeaturePose& pose) {
     return {number(pose.p_m.x()), number(pose.p_m.y()), number(pose.p_m.z()), number(pose.yaw_rad)};
 }
 
-Json flight_json(const stairs::Flight& flight) {
-    return {{"kind", flight.kind == stairs::FlightKind::up ? "up" : "down"},
-            {"steps", flight.steps},
-            {"riser_m", number(flight.riser_m)},
-            {"riser_std_m", number(flight.riser_sigma_m)},
-            {"riser_spread_m", number(flight.riser_spread_m)},
-            {"going_m", number(flight.going_m)},
-            {"going_std_m", number(flight.going_sigma_m)},
-            {"going_spread_m", number(flight.going_spread_m)},
-            {"width_m", number(flight.width_m)},
-            {"landing_m", number(flight.landing_m)},
-            {"turn_rad", number(flight.turn_rad)},
-            {"cut", flight.cut},
-            {"open", flight.open},
-            {"pose", pose_json(flight.pose)}};
-}
-
-Json line_json(const stairs::LineFeature& line) {
-    return {{"pose", pose_json(line.pose)},
-            {"height_m", number(std::abs(line.height_m))},
-            {"length_m", number(line.length_m)},
-            {"sigma_m", number(line.sigma_m)},
-            {"bottom_seen", line.bottom_seen}};
-}
-
-Json kerb_json(const stairs::LineFeature& kerb) {
-    Json json = {{"kind", kerb.height_m < 0.0 ? "down" : "up"}};
-    json.update(line_json(kerb));
+/// Adds what is known over several looks, where it was followed; `now_ns`: the last look of all.
+Json followed_json(Json json, const stairs::Followed& followed, std::int64_t now_ns) {
+    if (followed.id == 0) return json;
+    json["id"] = followed.id;
+    json["looks"] = followed.looks;
+    json["last_seen_s"] = seconds_from_ns(now_ns - followed.last_seen_ns);
     return json;
 }
 
-Json door_json(const stairs::Door& door) {
-    return {{"width_m", number(door.width_m)},
-            {"width_std_m", number(door.width_sigma_m)},
-            {"sill_m", number(door.sill_m)},
-            {"clearance_m", number(door.clearance_m)},
-            {"pose", pose_json(door.pose)}};
+Json flight_json(const stairs::Flight& flight, std::int64_t now_ns) {
+    const Json json = {{"kind", flight.kind == stairs::FlightKind::up ? "up" : "down"},
+                       {"steps", flight.steps},
+                       {"riser_m", number(flight.riser_m)},
+                       {"riser_std_m", number(flight.riser_sigma_m)},
+                       {"riser_spread_m", number(flight.riser_spread_m)},
+                       {"going_m", number(flight.going_m)},
+                       {"going_std_m", number(flight.going_sigma_m)},
+                       {"going_spread_m", number(flight.going_spread_m)},
+                       {"width_m", number(flight.width_m)},
+                       {"landing_m", number(flight.landing_m)},
+                       {"turn_rad", number(flight.turn_rad)},
+                       {"cut", flight.cut},
+                       {"open", flight.open},
+                       {"pose", pose_json(flight.pose)}};
+    return followed_json(json, flight.followed, now_ns);
 }
 
-Json edge_json(const stairs::Edge& edge) {
-    return {{"from", point_json(edge.from_m)},
-            {"to", point_json(edge.to_m)},
-            {"upper_m", number(edge.upper_m)},
-            {"lower_m", number(edge.lower_m)},
-            {"lower_seen", edge.lower_seen},
-            {"sigma_m", number(edge.height_sigma_m)}};
+Json line_json(const stairs::LineFeature& line, std::int64_t now_ns) {
+    const Json json = {{"pose", pose_json(line.pose)},
+                       {"height_m", number(std::abs(line.height_m))},
+                       {"length_m", number(line.length_m)},
+                       {"sigma_m", number(line.sigma_m)},
+                       {"bottom_seen", line.bottom_seen}};
+    return followed_json(json, line.followed, now_ns);
+}
+
+Json kerb_json(const stairs::LineFeature& kerb, std::int64_t now_ns) {
+    Json json = {{"kind", kerb.height_m < 0.0 ? "down" : "up"}};
+    json.update(line_json(kerb, now_ns));
+    return json;
+}
+
+Json door_json(const stairs::Door& door, std::int64_t now_ns) {
+    const Json json = {{"width_m", number(door.width_m)},
+                       {"width_std_m", number(door.width_sigma_m)},
+                       {"sill_m", number(door.sill_m)},
+                       {"clearance_m", number(door.clearance_m)},
+                       {"pose", pose_json(door.pose)}};
+    return followed_json(json, door.followed, now_ns);
+}
+
+Json edge_json(const stairs::Edge& edge, std::int64_t now_ns) {
+    const Json json = {{"from", point_json(edge.from_m)},
+                       {"to", point_json(edge.to_m)},
+                       {"upper_m", number(edge.upper_m)},
+                       {"lower_m", number(edge.lower_m)},
+                       {"lower_seen", edge.lower_seen},
+                       {"sigma_m", number(edge.height_sigma_m)}};
+    return followed_json(json, edge.followed, now_ns);
 }
 
 template <typename T>
-Json list_json(const std::vector<T>& values, Json (*json_of)(const T&)) {
+Json list_json(const std::vector<T>& values,
+               std::int64_t now_ns,
+               Json (*json_of)(const T&, std::int64_t)) {
     Json list = Json::array();
-    for (const T& value : values) list.push_back(json_of(value));
+    for (const T& value : values) list.push_back(json_of(value, now_ns));
     return list;
 }
 
@@ -92,13 +110,12 @@ std::string stairs_json(const stairs::TerrainFeatures& features,
                         const stairs::GroundClasses& classes,
                         double resolution_m,
                         const std::vector<std::string>& assumed) {
-    return Json{{"flights", list_json(features.flights, flight_json)},
-                {"drops", list_json(features.drops, line_json)},
-                {"kerbs", list_json(features.kerbs, kerb_json)},
-                {"sills", list_json(features.sills, line_json)},
-                {"doors", list_json(features.doors, door_json)},
-                {"edges", list_json(features.edges, edge_json)},
-                {"classes", classes_json(classes, resolution_m)},
+    return Json{{"flights", list_json(features.flights, features.time_ns, flight_json)},
+                {"drops", list_json(features.drops, features.time_ns, line_json)},
+                {"kerbs", list_json(features.kerbs, features.time_ns, kerb_json)},
+                {"sills", list_json(features.sills, features.time_ns, line_json)},
+                {"doors", list_json(features.doors, features.time_ns, door_json)},
+                {"edges", list_json(features.edges, features.time_ns, edge_json)},
                 {"assumed", assumed}}
         .dump(2);
 }

@@ -127,6 +127,25 @@ TEST(StairsJson, DropsAndKerbsHavePositiveHeights) {
         << json;
 }
 
+TEST(StairsJson, WhatWasFollowedHasAnIdAndHowOftenAndHowLongAgoItWasSeen) {
+    const stairs::Followed followed{
+        .id = 7, .looks = 12, .last_seen_ns = 1'500'000'000, .seen_now = false};
+    stairs::TerrainFeatures features;
+    features.time_ns = 4'000'000'000;
+    features.flights.emplace_back().followed = followed;
+    features.drops.emplace_back().followed = followed;
+    features.kerbs.emplace_back().followed = followed;
+    features.sills.emplace_back().followed = followed;
+    features.doors.emplace_back().followed = followed;
+    features.edges.emplace_back().followed = followed;
+    const std::string json = packed(stairs_json(features, {}));
+    const std::string said = R"("id":7,"looks":12,"last_seen_s":2.5})";
+    int times = 0;
+    for (std::size_t at = json.find(said); at != std::string::npos; at = json.find(said, at + 1))
+        ++times;
+    EXPECT_EQ(times, 6) << json;
+}
+
 TEST(StairsJson, DoorsEdgesAndWhatWasAssumed) {
     stairs::TerrainFeatures features;
     stairs::Door door;
