@@ -162,6 +162,25 @@ TEST(FeatureFollower, two_near_parallel_edges_do_not_swap_their_ids) {
     }
 }
 
+TEST(FeatureFollower, heights_tell_steps_apart_where_the_machine_has_drifted_by_a_step) {
+    Looks looks;
+    const auto steps_from = [](double at_m) {
+        return edges_found({edge_ahead(at_m, 0.0, -0.09), edge_ahead(at_m - 0.15, 0.09, 0.0)});
+    };
+    const auto id_of_upper = [&] {
+        for (const Edge& edge : looks.out().edges)
+            if (edge.upper_m > 0.045) return edge.followed.id;
+        return 0U;
+    };
+    looks.look(steps_from(1.0));
+    const std::uint32_t id = id_of_upper();
+    Drift drift;
+    drift.horizontal_var_m2 = 0.01;
+    looks.look(steps_from(1.15), drift);
+    EXPECT_EQ(looks.out().edges.size(), 2U);
+    EXPECT_EQ(id_of_upper(), id);
+}
+
 TEST(FeatureFollower, the_two_sides_of_a_gutter_stay_two_edges) {
     Looks looks;
     Edge far = edge_ahead(1.06);
@@ -221,6 +240,19 @@ TEST(FeatureFollower, a_drop_stays_one_when_looks_find_its_edge_and_call_it_none
         ASSERT_EQ(looks.out().drops.size(), 1U) << k;
         EXPECT_TRUE(looks.out().drops[0].followed.seen_now);
     }
+}
+
+TEST(FeatureFollower, the_part_of_a_drop_that_later_looks_miss_is_kept_unless_it_is_level) {
+    Edge part = edge_ahead(1.0, 0.0, -0.2, 0.4);
+    Looks unknown;
+    Looks level([](double, double) { return 0.0; });
+    for (Looks* looks : {&unknown, &level}) {
+        looks->look(drop_found(edge_ahead(1.0, 0.0, -0.2, 0.8)));
+        for (int k = 0; k < 50; ++k) looks->look(drop_found(part));
+        ASSERT_EQ(looks->out().drops.size(), 1U);
+    }
+    EXPECT_NEAR(unknown.out().drops[0].length_m, 1.6, 1e-9);
+    EXPECT_NEAR(level.out().drops[0].length_m, 0.8, 0.01);
 }
 
 TEST(FeatureFollower, what_is_not_seen_grows_as_unsure_as_the_machine_drifts) {
@@ -448,6 +480,21 @@ TEST(FeatureFollower, a_flight_that_looks_at_its_place_do_not_find_goes) {
     for (int k = 0; k < 50; ++k) told += static_cast<int>(looks.look({}).flights.size());
     EXPECT_GE(told, FollowConfig{}.level_looks - 1);
     EXPECT_LE(told, FollowConfig{}.missed_looks);
+}
+
+TEST(FeatureFollower, edges_that_looks_no_longer_call_a_flight_are_none_after_some_looks) {
+    const Flight flight = flight_up(3);
+    Looks unknown;
+    Looks known([](double, double) { return 0.0; });
+    for (Looks* looks : {&unknown, &known}) {
+        for (int k = 0; k < 3; ++k) looks->look(flight_found(flight));
+        for (int k = 1; k < FollowConfig{}.missed_looks; ++k)
+            EXPECT_EQ(looks->look(edges_found(flight.edges)).flights.size(), 1U) << k;
+        looks->look(edges_found(flight.edges));
+    }
+    EXPECT_EQ(unknown.out().flights.size(), 1U);
+    EXPECT_TRUE(known.out().flights.empty());
+    EXPECT_EQ(known.out().edges.size(), 3U);
 }
 
 TEST(FeatureFollower, kerbs_and_doors_come_with_their_second_look_and_stay_out_of_sight) {
