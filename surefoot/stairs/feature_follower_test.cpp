@@ -177,7 +177,8 @@ TEST(FeatureFollower, heights_tell_steps_apart_where_the_machine_has_drifted_by_
     Drift drift;
     drift.horizontal_var_m2 = 0.01;
     looks.look(steps_from(1.15), drift);
-    EXPECT_EQ(looks.out().edges.size(), 2U);
+    ASSERT_EQ(looks.out().edges.size(), 2U);
+    for (const Edge& edge : looks.out().edges) EXPECT_EQ(edge.followed.looks, 2);
     EXPECT_EQ(id_of_upper(), id);
 }
 
