@@ -41,6 +41,7 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "experiments/stairs_look.hpp"
+#include "experiments/stairs_match.hpp"
 #include "experiments/stairs_scene.hpp"
 #include "io/text.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
@@ -48,51 +49,20 @@
 namespace surefoot::app {
 namespace {
 
+using experiments::across_m;
+using experiments::is_line_of;
 using experiments::Look;
+using experiments::nearest;
 using experiments::StairsCase;
 using experiments::TrueFeature;
 using experiments::TrueKind;
+using experiments::turned_rad;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kNear_m = 0.1;
-constexpr double kBeside_m = 1.0;
-constexpr double kTurn_rad = 10.0 / kDegPerRad;
 constexpr int kCalls = 4;
 constexpr double kDoorNear_m = 0.3;
 constexpr double kDoorTurn_rad = 15.0 / kDegPerRad;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-double turned_rad(const stairs::FeaturePose& found, const TrueFeature& truth) {
-    return std::remainder(found.yaw_rad - truth.yaw_rad, 2.0 * std::numbers::pi);
-}
-
-/// How much farther than the truth's middle the line through a feature lies.
-double across_m(const stairs::FeaturePose& found, const TrueFeature& truth) {
-    const Eigen::Vector2d way(std::cos(found.yaw_rad), std::sin(found.yaw_rad));
-    return way.dot(found.p_m.head<2>() - truth.middle_m);
-}
-
-bool is_line_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
-    return (found.p_m.head<2>() - truth.middle_m).norm() < kBeside_m &&
-           std::abs(across_m(found, truth)) < kNear_m &&
-           std::abs(turned_rad(found, truth)) < kTurn_rad;
-}
-
-/// Of those that are the truth's the nearest.
-template <typename Feature, typename Matches>
-const Feature* nearest(const std::vector<Feature>& features,
-                       const TrueFeature& truth,
-                       const Matches& matches) {
-    const Feature* best = nullptr;
-    for (const Feature& feature : features) {
-        if (!matches(feature)) continue;
-        if (best == nullptr ||
-            std::abs(across_m(feature.pose, truth)) < std::abs(across_m(best->pose, truth))) {
-            best = &feature;
-        }
-    }
-    return best;
-}
 
 constexpr double mm(double length_m) {
     return 1e3 * length_m;
