@@ -116,6 +116,7 @@ std::string stairs_json(const stairs::TerrainFeatures& features,
                 {"sills", list_json(features.sills, features.time_ns, line_json)},
                 {"doors", list_json(features.doors, features.time_ns, door_json)},
                 {"edges", list_json(features.edges, features.time_ns, edge_json)},
+                {"classes", classes_json(classes, resolution_m)},
                 {"assumed", assumed}}
         .dump(2);
 }

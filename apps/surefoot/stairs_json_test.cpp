@@ -138,7 +138,7 @@ TEST(StairsJson, WhatWasFollowedHasAnIdAndHowOftenAndHowLongAgoItWasSeen) {
     features.sills.emplace_back().followed = followed;
     features.doors.emplace_back().followed = followed;
     features.edges.emplace_back().followed = followed;
-    const std::string json = packed(stairs_json(features, {}));
+    const std::string json = packed(json_of(features, {}));
     const std::string said = R"("id":7,"looks":12,"last_seen_s":2.5})";
     int times = 0;
     for (std::size_t at = json.find(said); at != std::string::npos; at = json.find(said, at + 1))
