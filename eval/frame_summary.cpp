@@ -11,7 +11,7 @@
 namespace surefoot::eval {
 namespace {
 
-constexpr int kReasonCount = static_cast<int>(HealthReason::recovered) + 1;
+constexpr int kReasonCount = static_cast<int>(HealthReason::imu_gap) + 1;
 
 /// Digits in groups of three, apart by a narrow space.
 std::string grouped(std::int64_t number) {
@@ -55,13 +55,20 @@ void add_health(ReportContent& content, std::span<const FrameReport> frames) {
         content.health.push_back({time_s, frame.motion.health, frame.motion.reason});
         ++counts[static_cast<std::size_t>(frame.motion.reason)];
     }
-    ReportTable table{"Why the motion estimate was not ok", {"reason", "frames"}, {}};
+    ReportTable table{"What was said of the motion estimate", {"reason", "frames"}, {}};
     for (int reason = 1; reason < kReasonCount; ++reason) {
         const int count = counts[static_cast<std::size_t>(reason)];
         if (count == 0) continue;
         table.rows.push_back({words(static_cast<HealthReason>(reason)), fmt::format("{}", count)});
     }
     content.tables.push_back(std::move(table));
+    const int blind = counts[static_cast<std::size_t>(HealthReason::imu_gap)];
+    if (blind > 0)
+        content.reasons.push_back(fmt::format(
+            "In {} of {} frames samples of the IMU were missing or useless: the motion there comes "
+            "from the images alone, and would be lost at once with them.",
+            blind,
+            frames.size()));
 }
 
 ReportBars::Bar bar_of(const char* label, std::int64_t count, std::int64_t all) {

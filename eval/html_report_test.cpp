@@ -229,6 +229,23 @@ TEST(HtmlReport, FramesBecomeTimesAndHealth) {
     EXPECT_DOUBLE_EQ(content.health[3].time_s, 0.3);
 }
 
+TEST(HtmlReport, EveryReasonOfTheMotionIsCountedAndAGapOfTheImuIsExplained) {
+    std::vector<FrameReport> reports = frames(20);
+    ReportContent content;
+    add_frames(content, reports);
+    EXPECT_TRUE(content.reasons.empty());
+    for (const std::size_t k : {5U, 6U, 7U}) reports[k].motion.reason = HealthReason::imu_gap;
+    content = {};
+    add_frames(content, reports);
+    ASSERT_EQ(content.tables.size(), 1u);
+    const std::vector<std::vector<std::string>> rows = {
+        {"first frame", "1"}, {"blur", "1"}, {"imu gap", "3"}};
+    EXPECT_EQ(content.tables[0].rows, rows);
+    ASSERT_EQ(content.reasons.size(), 1u);
+    EXPECT_NE(content.reasons[0].find("In 3 of 20 frames samples of the IMU"), std::string::npos)
+        << content.reasons[0];
+}
+
 TEST(SvgPlot, ASpikeSurvivesThinning) {
     std::vector<double> ms(10'000, 5.0);
     ms[7'777] = 50.0;

@@ -23,7 +23,8 @@ struct ImuSample {
 enum class Health : std::uint8_t { ok, degraded, lost };
 [[nodiscard]] const char* to_string(Health health) noexcept;
 
-/// Why the health is not ok; the first that applies is the reason reported.
+/// Why the health is not ok; the first that applies is the reason reported. `imu_gap` alone comes
+/// with a health that is ok.
 enum class HealthReason : std::uint8_t {
     none,
     first_frame,           ///< nothing to compare with yet
@@ -39,6 +40,7 @@ enum class HealthReason : std::uint8_t {
     beyond_machine,        ///< faster than the machine can move: not believed
     moving_scene,          ///< many points agree on another motion: somebody stands in the view
     recovered,             ///< found again after LOST: the pose may have moved by what went unseen
+    imu_gap,               ///< samples of the IMU are missing or useless; vision goes on alone
 };
 [[nodiscard]] const char* to_string(HealthReason reason) noexcept;
 

@@ -30,6 +30,7 @@ const char* to_string(HealthReason reason) noexcept {
         case HealthReason::beyond_machine: return "beyond_machine";
         case HealthReason::moving_scene: return "moving_scene";
         case HealthReason::recovered: return "recovered";
+        case HealthReason::imu_gap: return "imu_gap";
     }
     return "unknown";
 }

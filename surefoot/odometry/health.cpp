@@ -49,7 +49,7 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
     if (e.was_lost) return {Health::degraded, HealthReason::recovered};
     if (e.imu_disagrees) return {Health::degraded, HealthReason::imu_disagreement};
     if (e.machine_disagrees) return {Health::degraded, HealthReason::machine_disagreement};
-    return {Health::ok, HealthReason::none};
+    return {Health::ok, e.imu_gap ? HealthReason::imu_gap : HealthReason::none};
 }
 
 Matrix6 lost_covariance(const OdometryConfig& config, double before_s, double after_s) {

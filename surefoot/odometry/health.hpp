@@ -26,6 +26,7 @@ struct HealthEvidence {
     double rotation_sigma_rad = 0.0;   ///< weakest direction
     double scene_depth_m = 0.0;        ///< median of the inliers; 0 = unknown
     bool imu_disagrees = false;        ///< for some time
+    bool imu_gap = false;              ///< samples are missing, for more than a frame
     bool machine_disagrees = false;    ///< likewise
     bool beyond_machine = false;       ///< faster than the machine can be
 };
@@ -40,6 +41,7 @@ struct HealthVerdict {
 /// The first frame after that is degraded: what it finds again may lie elsewhere than the poses
 /// meanwhile said.
 /// The reason is the cause where one is known: a time gap, then blur, then what the points say.
+/// A gap of the IMU costs no accuracy as long as enough is seen: OK, with that reason.
 [[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);
 
 /// Covariance of the unseen motion between `before_s` and `after_s` seconds after the camera was

@@ -94,6 +94,16 @@ TEST(Health, TheFirstPoseAfterALossIsSaid) {
     expect(e, Health::degraded, HealthReason::recovered);
 }
 
+TEST(Health, AGapOfTheImuIsSaidAndIsNoHarm) {
+    HealthEvidence e = good();
+    e.imu_gap = true;
+    expect(e, Health::ok, HealthReason::imu_gap);
+    e.imu_disagrees = true;
+    expect(e, Health::degraded, HealthReason::imu_disagreement);
+    e.inliers = 9;
+    expect(e, Health::lost, HealthReason::few_tracks);
+}
+
 TEST(Health, GapsAreThoseLongerThanUsualAndStampsThatDoNotGrow) {
     HealthEvidence e = good();
     e.usual_gap_s = 0.1;

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "surefoot/core/time.hpp"
 #include "surefoot/odometry/odometry.hpp"
@@ -297,6 +300,83 @@ TEST(InertialOdometry, AJumpOfTheBiasIsNamedWithinTwoFrames) {
         }
         std::printf("%s: named in %d frames\n", turns ? "1 rad/s" : "10 m/s2", named);
         EXPECT_GE(named, 10) << turns;
+    }
+}
+
+/// Damages the samples of `frames` frames from `kDamaged` on; of these and those after them
+/// `named_frames` are named, the first one apart.
+constexpr int kDamaged = 30;
+void follow_damaged(int frames, int named_frames, const std::function<void(StereoFrame&)>& damage) {
+    Machine machine;
+    Follower run(machine, true);
+    Serial serial;
+    for (int i = 0; i < 60; ++i) {
+        StereoFrame frame = machine.frame(i);
+        if (i >= kDamaged && i < kDamaged + frames) damage(frame);
+        const auto m = run.odometry.update(frame, serial);
+        if (i == 0) continue;
+        EXPECT_EQ(m.health, Health::ok) << i;
+        EXPECT_LT(run.error_m(m, machine.truth(i)), 0.006) << i;
+        const bool named = i > kDamaged && i <= kDamaged + named_frames;
+        EXPECT_STREQ(to_string(m.reason), named ? "imu_gap" : "none") << i;
+    }
+}
+
+/// The first sample that comes again shows the end of the gap: that frame lacks samples, too.
+TEST(InertialOdometry, MissingSamplesAreNamedFromTheSecondFrameOn) {
+    constexpr int kForEver = 100;
+    for (const int frames : {4, 20, kForEver}) {  // 0.2 s, 1 s
+        SCOPED_TRACE(frames);
+        follow_damaged(frames, frames, [](StereoFrame& frame) { frame.imu.clear(); });
+    }
+}
+
+TEST(InertialOdometry, UselessSamplesAreNamedLikeMissingOnes) {
+    follow_damaged(6, 6, [](StereoFrame& frame) {
+        for (ImuSample& s : frame.imu)
+            s.specific_force_m_s2.setConstant(std::numeric_limits<double>::quiet_NaN());
+    });
+    follow_damaged(6, 5, [](StereoFrame& frame) {
+        for (ImuSample& s : frame.imu) s.angular_velocity_rad_s.setConstant(4.36);  // 250 deg/s
+    });
+}
+
+TEST(InertialOdometry, HalfTheRateIsNoGap) {
+    follow_damaged(100, 0, [](StereoFrame& frame) {
+        for (std::size_t i = 0; i < frame.imu.size(); ++i)
+            frame.imu.erase(frame.imu.begin() + static_cast<std::ptrdiff_t>(i));
+    });
+}
+
+/// Every stamp twice.
+TEST(InertialOdometry, StampsThatRepeatAreNamed) {
+    follow_damaged(9, 8, [](StereoFrame& frame) {
+        const std::vector<ImuSample> once = std::exchange(frame.imu, {});
+        for (const ImuSample& sample : once) frame.imu.insert(frame.imu.end(), 2, sample);
+    });
+}
+
+/// Without samples nothing carries the pose: its covariance is at once that of a lost camera.
+TEST(InertialOdometry, DarknessWithoutSamplesIsUnknownAtOnce) {
+    constexpr int kDark = 50;
+    const OdometryConfig config;
+    for (const int silent : {kDark - 5, kDark - 1, kDark, kDark + 3, 1000}) {
+        SCOPED_TRACE(silent);
+        Machine machine;
+        Follower run(machine, true);
+        Serial serial;
+        for (int i = 0; i < kDark + 8; ++i) {
+            StereoFrame frame = machine.frame(i);
+            if (i >= kDark) blacken(frame);
+            if (i >= silent) frame.imu.clear();
+            const auto m = run.odometry.update(frame, serial);
+            if (i < kDark) continue;
+            EXPECT_EQ(m.health, Health::lost) << i;
+            EXPECT_STREQ(to_string(m.reason), "blur") << "the images are why: " << i;
+            const double sigma_m = std::sqrt(m.relative_covariance(0, 0));
+            const double unseen_m = config.lost_speed_m_s * seconds_from_ns(kFrame_ns);
+            EXPECT_EQ(sigma_m > 0.99 * unseen_m, i >= silent) << i << " " << sigma_m;
+        }
     }
 }
 

@@ -41,9 +41,12 @@ double squared_distance(const Vector6& off, const Matrix6& covariance) {
 }  // namespace
 
 InertialTracker::InertialTracker(const InertialConfig& config, const Pose& T_imu_camera)
-    : config_(config), model_{T_imu_camera, config.noise, config.gravity_m_s2} {}
+    : config_(config),
+      model_{T_imu_camera, config.noise, config.gravity_m_s2},
+      watch_(config.limits.max_gap_s) {}
 
 void InertialTracker::keep(std::span<const ImuSample> samples) {
+    watch_.listen(samples);
     samples_.insert(samples_.end(), samples.begin(), samples.end());
     // A camera that hangs for good must not fill the memory.
     if (std::ssize(samples_) > kMostSamples)
@@ -56,6 +59,8 @@ void InertialTracker::advance(std::span<const ImuSample> samples, std::int64_t t
     if (has_time_) {
         const ImuBias bias = belief_ ? belief_->state.bias : ImuBias{};
         step_ = preintegrate(config_.limits, config_.noise, samples_, time_ns_, time_ns, bias);
+        // No sample can lie between stamps of frames that do not grow.
+        if (time_ns > time_ns_) watch_.finish(time_ns, step_.problem);
     }
     time_ns_ = time_ns;
     has_time_ = true;

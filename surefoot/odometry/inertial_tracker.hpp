@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "surefoot/odometry/imu_watch.hpp"
 #include "surefoot/odometry/inertial_config.hpp"
 #include "surefoot/odometry/inertial_solver.hpp"
 #include "surefoot/odometry/inertial_start.hpp"
@@ -54,6 +55,8 @@ class InertialTracker {
     void place(const Pose& T_odom_camera);
     /// Vision and the IMU have contradicted each other for some time, or once beyond any accident.
     [[nodiscard]] bool disagrees() const noexcept { return disagrees_; }
+    /// Samples are missing, in this frame and the one before at least: vision has to do alone.
+    [[nodiscard]] bool gap() const noexcept { return watch_.gap(); }
     /// The state after the last frame; nothing before the start.
     [[nodiscard]] const std::optional<InertialBelief>& belief() const noexcept { return belief_; }
 
@@ -68,6 +71,7 @@ class InertialTracker {
 
     InertialConfig config_;
     InertialModel model_;
+    ImuWatch watch_;
     std::vector<ImuSample> samples_;  ///< from the last one at or before the present frame
     std::int64_t time_ns_ = 0;        ///< of the present frame
     bool has_time_ = false;

@@ -287,6 +287,7 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     evidence.right_shows_something = front->right_shows_something();
     evidence.sharpness_ratio = front->sharpness() / std::max(sharpness, 1e-9);
     evidence.imu_disagrees = inertial && inertial->disagrees();
+    evidence.imu_gap = inertial && inertial->gap();
     evidence.machine_disagrees = machine.disagrees();
     if (!pose.found) return evidence;
     evidence.beyond_machine = is_beyond_machine(now_ns, pose);

@@ -58,7 +58,9 @@ struct OdometryConfig {
 /// preintegrated readings together (`inertial_solver`), the first second apart, from which gravity,
 /// velocity and the gyroscope's bias are found. Odom is not turned by what the IMU says about
 /// gravity. While lost the IMU carries the pose for `imu.dead_reckoning_s`. When it contradicts
-/// vision for some time, vision goes on alone and the health is degraded.
+/// vision for some time, vision goes on alone and the health is degraded. When samples are missing
+/// vision goes on alone too, until the IMU has started anew; from the second such frame on the
+/// reason is `imu_gap`, the health stays ok.
 ///
 /// Where the frames bring what the machine says of its own motion (`machine_motion`), that predicts
 /// when there is no IMU, weighs in by its covariance, and carries the pose while lost. When it
