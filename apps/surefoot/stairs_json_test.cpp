@@ -78,13 +78,14 @@ TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
     flight.landing_m = 2.5;
     flight.turn_rad = 2.75;
     flight.cut = true;
+    flight.open = true;
     stairs::TerrainFeatures features;
     features.flights = {flight};
     EXPECT_NE(packed(json_of(features, {}))
                   .find(R"({"flights":[{"kind":"down","steps":3,"riser_m":0.25,"riser_std_m":0.5,)"
                         R"("riser_spread_m":0.75,"going_m":1.25,"going_std_m":1.5,)"
                         R"("going_spread_m":1.75,"width_m":2.25,"landing_m":2.5,"turn_rad":2.75,)"
-                        R"("cut":true,)" +
+                        R"("cut":true,"open":true,)" +
                         kPose + "}],"),
               std::string::npos)
         << json_of(features, {});

@@ -28,6 +28,22 @@ bool is_part_of(const Edge& piece, const Edge& edge) {
     return t_m >= -kNear_m && t_m <= edge.length_m() + kNear_m;
 }
 
+/// What is left of the edges of a flight whose far end is seen badly: among its steps, as high as
+/// they are, leading the same way. `chain`: from below.
+bool is_among(const Edge& edge, std::span<const Edge> chain) {
+    constexpr double kBeyond_m = 0.3;
+    constexpr double kLevel_m = 0.05;
+    constexpr double kLeastCosine = 0.77;  // 40 deg
+    const Edge& first = chain.front();
+    const Edge& last = chain.back();
+    const Vector2d middle_m = edge.middle_m();
+    const double along_m = (middle_m - first.from_m).dot(first.along());
+    return chain.size() > 1 && edge.along().dot(first.along()) >= kLeastCosine && along_m >= 0.0 &&
+           along_m <= first.length_m() && first.below_m(middle_m) < 0.0 &&
+           last.below_m(middle_m) > -kBeyond_m && edge.lower_m >= first.upper_m - kLevel_m &&
+           edge.upper_m <= last.upper_m + kLevel_m;
+}
+
 /// Two pieces of one straight line.
 bool goes_on(const Edge& edge, const Edge& piece, double max_gap_m) {
     constexpr double kLeastCosine = 0.996;  // 5 deg
@@ -84,6 +100,8 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     see_faces(terrain, out.edges);
     see_steps_down(terrain, out.edges);
     join_pieces(out.edges);
+    for (const std::vector<Edge>& chain : chains_)
+        std::erase_if(out.edges, [&](const Edge& edge) { return is_among(edge, chain); });
     reachability_.reach(terrain.geometry, terrain.height_m, terrain.stance_m, walk_step_m_);
     find_walkable(terrain, out.edges);
     for (std::vector<Edge>& chain : chains_) find_walkable(terrain, chain);

@@ -8,7 +8,7 @@ from surefoot_cli import CliTest, png_of, surefoot
 
 NAMES = {
     "flights": "kind steps riser_m riser_std_m riser_spread_m going_m going_std_m going_spread_m width_m landing_m "
-               "turn_rad cut pose",
+               "turn_rad cut open pose",
     "drops": "pose height_m length_m sigma_m bottom_seen",
     "kerbs": "kind pose height_m length_m sigma_m bottom_seen",
     "sills": "pose height_m length_m sigma_m bottom_seen",
@@ -39,12 +39,12 @@ def write_grid(path, height_of, nx=160, ny=60, x0=0.0, y0=0.0, cell=CELL_M):
 
 
 class Stairs(CliTest):
-    def check_names(self, answer):
+    def check_names(self, answer, followed=""):
         self.assertEqual(list(answer), [*NAMES, "classes", "assumed"])
         self.assertEqual(list(answer["classes"]), CLASSES)
         for kind, names in NAMES.items():
             for thing in answer[kind]:
-                self.assertEqual(set(thing), set(names.split()), kind)
+                self.assertEqual(set(thing), set(names.split() + followed.split()), kind)
                 self.assertEqual(len(thing.get("pose", [0] * 4)), 4)
 
     def fails(self, code, *call):
@@ -211,30 +211,34 @@ class Stairs(CliTest):
         self.assertNotIn("variance.asc", " ".join(answer["assumed"]))
         self.assertEqual(answer["flights"], [])
 
-    def test_the_folder_of_a_run_says_the_same_as_the_run(self):
+    def test_the_folder_of_a_run_says_about_the_same_as_the_run(self):
+        # Not quite: the run has followed what it found, and reads the last look beside the map.
         out = self.dir / "out"
         run = self.json_of("run", "sim:stairs_up_ada", "--set", "sim.sensor=analytic", "--max-frames", 40, "--layers",
                            "--out", out)
         self.assertTrue(run["complete"])
         of_run = json.loads((out / "stairs.json").read_text())
-        self.check_names(of_run)
+        self.check_names(of_run, "id looks last_seen_s")
+        self.assertGreater(of_run["flights"][0]["looks"], 1)
+        self.assertEqual(of_run["flights"][0]["last_seen_s"], 0.0)
         again = self.json_of("stairs", out)
         self.check_names(again)
         self.assertTrue(any("base_link of map.snapshot" in line for line in again["assumed"]), again["assumed"])
         print(f"run: {[(f['kind'], f['steps'], f['riser_m'], f['going_m']) for f in of_run['flights']]}")
         self.assertTrue(of_run["flights"], of_run)
-        self.assertEqual(len(again["edges"]), len(of_run["edges"]))
         print(f"run: {of_run['classes']}")
         self.assertGreater(of_run["classes"]["tread"]["cells"], 100)
         self.assertGreater(of_run["classes"]["floor"]["cells"], 1000)
-        for name in ("tread", "floor"):
+        for name, share in (("tread", 0.2), ("floor", 0.01)):  # the far end of a flight is not the same
             cells = of_run["classes"][name]["cells"]
-            self.assertAlmostEqual(again["classes"][name]["cells"], cells, delta=0.01 * cells, msg=name)
+            self.assertAlmostEqual(again["classes"][name]["cells"], cells, delta=share * cells, msg=name)
         for file in ("treads.asc", "classes.png"):
             self.assertTrue((out / file).exists(), file)
-        for one, other in zip(again["flights"], of_run["flights"], strict=True):
-            self.assertEqual((one["kind"], one["steps"]), (other["kind"], other["steps"]))
-            self.assertAlmostEqual(one["riser_m"], other["riser_m"], delta=1e-4)
+        one, other = again["flights"][0], of_run["flights"][0]
+        self.assertEqual((one["kind"], one["steps"]), (other["kind"], other["steps"]))
+        self.assertAlmostEqual(one["riser_m"], other["riser_m"], delta=3e-3)
+        self.assertAlmostEqual(one["going_m"], other["going_m"], delta=8e-3)
+        self.assertAlmostEqual(one["pose"][0], other["pose"][0], delta=0.01)
         report = (out / "report.html").read_text()
         section = report[report.index("<h2>Edges and stairs</h2>"):]
         section = section[:section.index("</section>")]
