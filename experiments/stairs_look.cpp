@@ -93,6 +93,7 @@ std::vector<std::pair<const char*, std::reference_wrapper<double>>> numbers(Look
             {"cx_px", look.view.cx_px},
             {"cy_px", look.view.cy_px},
             {"baseline_m", look.view.baseline_m},
+            {"unmapped_px", look.view.unmapped_px},
             {"origin_x_m", look.geometry.origin_m.x()},
             {"origin_y_m", look.geometry.origin_m.y()}};
 }

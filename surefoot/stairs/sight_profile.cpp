@@ -106,7 +106,7 @@ std::span<const SightBin> SightProfile::look(const Terrain& terrain, const Edge&
     const Vector3d& camera_m = terrain.view->T_map_camera.translation_m;
     const double height_m = camera_m.z() - edge.upper_m;
     const double distance_m = -edge.below_m(camera_m.head<2>());
-    if (!(height_m > 0.0 && distance_m > 0.0)) return {};
+    if (!(height_m > 0.0 && distance_m > 0.0 && terrain.view->fy_px > 0.0)) return {};
     gather(terrain, edge, height_m, distance_m);
     measure_bins();
     return bins_;
