@@ -267,11 +267,10 @@ bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
 void FeatureFinder::join_pieces(std::vector<Edge>& edges) const {
     for (std::size_t i = 0; i < edges.size(); ++i) {
         for (std::size_t k = i + 1; k < edges.size();) {
-            if (!same_ground(edges[k], edges[i])) {
-                ++k;
-            } else if (is_part_of(edges[k], edges[i])) {
+            const bool same = same_ground(edges[k], edges[i]);
+            if (same && is_part_of(edges[k], edges[i])) {
                 edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(k));
-            } else if (goes_on(edges[i], edges[k], config_.max_gap_m)) {
+            } else if (same && goes_on(edges[i], edges[k], config_.max_gap_m)) {
                 edges[i] = joined(edges[i], edges[k]);
                 edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(k));
                 k = i + 1;
