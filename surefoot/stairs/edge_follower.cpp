@@ -274,6 +274,7 @@ void EdgeFollower::take(const SeenEdge& seen,
     edge.lower_depth_m = look.lower_depth_m;
     edge.upper_walkable = look.upper_walkable;
     edge.lower_walkable = look.lower_walkable;
+    edge.open = look.open;
     name(seen, config_, track);
     take_ends(look, terrain, track);
     if (track.drop) hold_back(look, edge);

@@ -98,6 +98,19 @@ class Looks {
     std::int64_t time_ns_ = 0;
 };
 
+TEST(FeatureFollower, whether_a_riser_is_open_is_what_the_last_look_says) {
+    Looks looks;
+    Flight boards = flight_up(2);
+    looks.look(flight_found(boards));
+    boards.open = true;
+    for (Edge& edge : boards.edges) edge.open = true;
+    for (int k = 0; k < 12; ++k) looks.look(flight_found(boards));
+    ASSERT_EQ(looks.out().flights.size(), 1U);
+    EXPECT_TRUE(looks.out().flights[0].open);
+    ASSERT_EQ(looks.out().edges.size(), 2U);
+    for (const Edge& edge : looks.out().edges) EXPECT_TRUE(edge.open);
+}
+
 TEST(FeatureFollower, an_edge_in_noise_keeps_its_id_and_is_steadier_but_no_surer_than_a_look) {
     Looks looks;
     Rng rng(1);
