@@ -22,7 +22,6 @@ constexpr double kLevel_m = 0.012;
 constexpr double kMeasured_m = 0.15;  ///< of level ground that is used for its height
 constexpr double kStrip_m = 0.2;      ///< no tread of which more is in sight lies between shadows
 constexpr double kStripRange_m = 0.06;
-constexpr double kScatterOfMad = 1.4826;
 constexpr double kBeside_m = 0.3;   ///< an edge may go on beyond the ends of its line
 constexpr double kHalfTurn = 0.02;  ///< half of the turn of a line that is still its own
 constexpr double kEnd_m = 0.25;     ///< where ground ends: known before it and unknown behind it
@@ -146,9 +145,9 @@ void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Sli
         values_.push_back(sample.height_m);
         var_m2 += static_cast<double>(sample.var_m2);
     }
-    const auto middle_m = static_cast<double>(middle_of(values_));
-    for (float& value : values_) value = std::abs(value - static_cast<float>(middle_m));
-    slice.scatter_m = kScatterOfMad * static_cast<double>(middle_of(values_));
+    const float middle = middle_of(values_);
+    const auto middle_m = static_cast<double>(middle);
+    slice.scatter_m = scatter_about(middle, values_);
     slice.sigma_m = std::sqrt(var_m2 / static_cast<double>(samples.size()));
     // The mean of what agrees is truer than the middle one.
     const double most_m = 2.5 * std::max(slice.scatter_m, 1e-4);

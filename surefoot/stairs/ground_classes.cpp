@@ -100,13 +100,10 @@ TreadLevel level_of(const std::vector<float>& heights_m,
                     double var_m2,
                     double cell_m2) {
     constexpr double kTrim = 2.5;
-    constexpr double kSigmaPerMedian = 1.4826;  // of normal errors
     sorted_m = heights_m;
     const float median_m = middle_of(sorted_m);
-    for (float& height_m : sorted_m) height_m = std::abs(height_m - median_m);
-    const double scatter_m = std::max({kSigmaPerMedian * static_cast<double>(middle_of(sorted_m)),
-                                       std::sqrt(var_m2),
-                                       kLeastSigma_m});
+    const double scatter_m =
+        std::max({scatter_about(median_m, sorted_m), std::sqrt(var_m2), kLeastSigma_m});
     double sum_m = 0.0, count = 0.0;
     for (const float height_m : heights_m) {
         const auto off_m = static_cast<double>(height_m - median_m);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -13,6 +14,15 @@ template <typename T>
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
+}
+
+/// Standard deviation of normal values about their middle one, whatever a few of them are: 1.4826
+/// times the middle distance from it. The values become those distances; not empty.
+template <typename T>
+[[nodiscard]] double scatter_about(T middle, std::vector<T>& values) {
+    constexpr double kSigmaPerMedian = 1.4826;
+    for (T& value : values) value = std::abs(value - middle);
+    return kSigmaPerMedian * static_cast<double>(middle_of(values));
 }
 
 }  // namespace surefoot::stairs

@@ -20,7 +20,6 @@ constexpr double kNearest_m = 0.1;  ///< of a face, from the camera
 constexpr double kGate_m = 0.2;     ///< further away it is something else
 constexpr std::size_t kLeastSamples = 40;
 constexpr double kLeastShare = 0.3;
-constexpr double kScatterOfMad = 1.4826;
 constexpr double kSigmaOfMedian = 1.25;
 constexpr double kOpen = 0.5;
 constexpr int kRounds = 3;
@@ -104,8 +103,7 @@ std::optional<SightFaces::Face> SightFaces::see(const Terrain& terrain, const Ed
         at_m = static_cast<double>(middle_of(runs_m_));
         if (!(std::abs(at_m - distance_m) < kGate_m)) return std::nullopt;
     }
-    for (float& run_m : runs_m_) run_m = std::abs(run_m - static_cast<float>(at_m));
-    const double scatter_m = kScatterOfMad * static_cast<double>(middle_of(runs_m_));
+    const double scatter_m = scatter_about(static_cast<float>(at_m), runs_m_);
     const double independent = std::max(
         1.0,
         static_cast<double>(runs_m_.size()) * kSightStride_px / (kSightColumns_px * kSightRows_px));

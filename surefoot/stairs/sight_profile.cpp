@@ -19,7 +19,6 @@ constexpr double kBehind_rad = 0.3;    ///< three steps of 0.15 / 0.31 m from 0.
 constexpr double kMargin_m = 0.1;      ///< the ends of an edge are less sure
 constexpr std::size_t kLeastSamples = 6;
 constexpr double kLeastSigma_m = 0.004;
-constexpr double kScatterOfMad = 1.4826;
 constexpr double kSigmaOfMedian = 1.25;
 
 }  // namespace
@@ -91,8 +90,7 @@ void SightProfile::measure_bins() {
         values_m_.assign(depths_m_.begin() + static_cast<std::ptrdiff_t>(first_[k]),
                          depths_m_.begin() + static_cast<std::ptrdiff_t>(first_[k + 1]));
         const float middle_m = middle_of(values_m_);
-        for (float& value_m : values_m_) value_m = std::abs(value_m - middle_m);
-        const double scatter_m = kScatterOfMad * static_cast<double>(middle_of(values_m_));
+        const double scatter_m = scatter_about(middle_m, values_m_);
         const double independent =
             std::max(1.0, static_cast<double>(count) * kSightStride_px / kSightColumns_px);
         bin.depth_m = static_cast<double>(middle_m);
