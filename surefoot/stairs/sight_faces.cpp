@@ -39,7 +39,6 @@ std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double 
     const double lowest = (foot_m - kLowest * edge.height_m()) / at_m;
     const double highest = (foot_m - kHighest * edge.height_m()) / at_m;
     const ImageView<const float> disparity_px = terrain.disparity_px;
-    const double rows = disparity_px.height;
     const double depth_px_m = view.fx_px * view.baseline_m;
     const double halfway = 0.5 * (lowest + highest);
     runs_m_.clear();
@@ -47,11 +46,9 @@ std::size_t SightFaces::gather(const Terrain& terrain, const Edge& edge, double 
     upper_m_.clear();
     std::size_t pixels = 0;
     for (int u = 0; u < disparity_px.width; u += kSightStride_px) {
-        const double one = std::clamp(plane.row_of(lowest, u), -1.0, rows);
-        const double other = std::clamp(plane.row_of(highest, u), -1.0, rows);
-        if (!(std::abs(one - other) < rows)) continue;  // not a number, or seen edge on
-        const int last = std::min(static_cast<int>(std::max(one, other)), disparity_px.height - 1);
-        for (int v = static_cast<int>(std::min(one, other) + 1.0); v <= last; ++v) {
+        const SightPlane::Rows rows = plane.rows_between(lowest, highest, u, disparity_px.height);
+        if (rows.last - rows.first + 1 >= disparity_px.height) continue;  // seen edge on
+        for (int v = rows.first; v <= rows.last; ++v) {
             const double run = plane.run.at(u, v);
             const double along_m = at_m / run * plane.aside.at(u, v);
             if (!(run > 0.0 && along_m > begin_m && along_m < end_m)) continue;

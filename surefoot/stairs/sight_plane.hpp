@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 #include "surefoot/stairs/terrain.hpp"
 
@@ -44,6 +46,22 @@ struct SightPlane {
           fall(view, -Eigen::Vector3d::UnitZ()),
           aside(view, {along.x(), along.y(), 0.0}) {}
 
+    struct Rows {
+        int first = 0;
+        int last = -1;  ///< before the first: none
+    };
+    /// Those rows of a column, of an image so high, whose lines of sight lie between two of these.
+    [[nodiscard]] Rows rows_between(double steepness_a,
+                                    double steepness_b,
+                                    double u_px,
+                                    int height_px) const {
+        const double a = row_of(steepness_a, u_px);
+        const double b = row_of(steepness_b, u_px);
+        if (!(std::isfinite(a) && std::isfinite(b))) return {};
+        const double most = height_px;
+        return {static_cast<int>(std::clamp(std::min(a, b), -1.0, most) + 1.0),
+                std::min(static_cast<int>(std::clamp(std::max(a, b), -1.0, most)), height_px - 1)};
+    }
     /// Row of a column in which lines of sight have this fall over run; infinite or NaN = none.
     [[nodiscard]] double row_of(double steepness, double u_px) const {
         return -(fall.at(u_px, 0.0) - steepness * run.at(u_px, 0.0)) /

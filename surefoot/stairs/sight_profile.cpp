@@ -47,15 +47,11 @@ void SightProfile::gather(const Terrain& terrain,
 
     samples_.clear();
     const ImageView<const float> disparity_px = terrain.disparity_px;
-    const double last_row = disparity_px.height - 1.0;
     const double depth_px_m = view.fx_px * view.baseline_m;
     for (int u = 0; u < disparity_px.width; u += kSightStride_px) {
-        const double one = plane.row_of(steepness_at(-kBefore_rad), u);
-        const double other = plane.row_of(steepness_at(kBehind_rad), u);
-        if (!(std::isfinite(one) && std::isfinite(other))) continue;
-        const int last = static_cast<int>(std::clamp(std::max(one, other), -1.0, last_row));
-        for (int v = static_cast<int>(std::clamp(std::min(one, other), 0.0, last_row)); v <= last;
-             ++v) {
+        const SightPlane::Rows rows = plane.rows_between(
+            steepness_at(-kBefore_rad), steepness_at(kBehind_rad), u, disparity_px.height);
+        for (int v = rows.first; v <= rows.last; ++v) {
             const double z_m = depth_px_m / static_cast<double>(disparity_px.row(v)[u]);
             if (!(z_m > 0.0)) continue;
             const double along_m = z_m * plane.aside.at(u, v) - begin_m;
