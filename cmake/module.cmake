@@ -1,8 +1,8 @@
-# surefoot_module(NAME [DEPS module...] [LINK target...] [OPENCV component...])
+# surefoot_module(NAME [DEPS module...] [LINK target...] [OPENCV component...] [NOT_INSTALLED])
 # One static library per folder: every *.cpp beside the CMakeLists.txt, and one test program of its
 # *_test.cpp. A thing is thing.hpp, thing.cpp, thing_test.cpp: adding one needs no edit here.
 function(surefoot_module name)
-  cmake_parse_arguments(ARG "" "" "DEPS;LINK;OPENCV;TEST_DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED" "" "DEPS;LINK;OPENCV;TEST_DEPS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
@@ -31,7 +31,9 @@ function(surefoot_module name)
   foreach(dep IN LISTS ARG_DEPS)
     target_link_libraries(${target} ${scope} surefoot::${dep})
   endforeach()
-  set_property(GLOBAL APPEND PROPERTY SUREFOOT_MODULES ${target})
+  if(NOT ARG_NOT_INSTALLED)
+    set_property(GLOBAL APPEND PROPERTY SUREFOOT_MODULES ${target})
+  endif()
 
   if(SUREFOOT_DEVELOPER AND tests)
     surefoot_test(${name} SOURCES ${tests} DEPS ${name} ${ARG_TEST_DEPS} OPENCV ${ARG_OPENCV} LINK ${ARG_LINK})

@@ -265,6 +265,7 @@ Verdict decide(const Machine& machine,
                std::int64_t now_ns) noexcept {
     Verdict verdict;
     verdict.command = query.command;
+    verdict.connection = query.connection;
     verdict.sequence = query.sequence;
     verdict.map_version = map.version;
     verdict.config_hash = map.config_hash;

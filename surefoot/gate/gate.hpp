@@ -37,7 +37,10 @@ struct Query {
     StanceHeight stance_source = StanceHeight::map;
     std::int32_t stance_height_tenth_mm = 0;  ///< odom z, for StanceHeight::given
     VouchedArea vouched;
-    std::uint64_t sequence = 0;  ///< returned in the verdict
+    /// Who asks, and which question of theirs this is: returned in the verdict, which answers no
+    /// other question.
+    std::uint64_t connection = 0;
+    std::uint64_t sequence = 0;
 };
 
 /// Query from coordinates in m. A coordinate that is not finite or beyond 100 km leaves the pose

@@ -73,6 +73,7 @@ struct Verdict {
     Reason primary = Reason::internal;
     Evidence evidence;
     std::uint8_t command = 0;
+    std::uint64_t connection = 0;  ///< as in the query, like the sequence
     std::uint64_t sequence = 0;
     std::uint64_t map_version = 0;
     std::uint64_t config_hash = 0;
