@@ -116,6 +116,24 @@ const Movement* movement_for(const Machine& machine, std::uint8_t command) noexc
     return usable ? &movement : nullptr;
 }
 
+/// What perception delivered, whatever is asked of it.
+void judge_snapshot(const GateLimits& limits,
+                    const grid::MapSnapshot& map,
+                    std::int64_t now_ns,
+                    Findings& findings) noexcept {
+    findings.prove(Proof::snapshot_intact, [&] {
+        if (!grid::is_intact(map)) findings.deny(Reason::internal);
+    });
+    findings.prove(Proof::stamps_fresh, [&] { check_freshness(map, limits, now_ns, findings); });
+    findings.prove(Proof::gravity_known, [&] {
+        if (map.gravity_source != grid::GravitySource::plane &&
+            map.gravity_source != grid::GravitySource::imu)
+            findings.deny(Reason::plane_invalid);
+    });
+    findings.prove(Proof::pose_healthy, [&] { check_pose_health(map.health, findings); });
+    findings.prove(Proof::camera_healthy, [&] { check_camera(map.camera, findings); });
+}
+
 /// Everything but the terrain. Each line must hold before the ground is looked at.
 void judge_readiness(const Machine& machine,
                      const Query& query,
@@ -127,19 +145,8 @@ void judge_readiness(const Machine& machine,
     findings.prove(Proof::machine_valid, [&] {
         if (machine.problem() != nullptr) findings.deny(Reason::config);
     });
-    findings.prove(Proof::snapshot_intact, [&] {
-        if (!grid::is_intact(map)) findings.deny(Reason::internal);
-    });
     findings.prove(Proof::numbers_valid, [&] { check_numbers(query, machine.limits, findings); });
-    findings.prove(Proof::stamps_fresh,
-                   [&] { check_freshness(map, machine.limits, now_ns, findings); });
-    findings.prove(Proof::gravity_known, [&] {
-        if (map.gravity_source != grid::GravitySource::plane &&
-            map.gravity_source != grid::GravitySource::imu)
-            findings.deny(Reason::plane_invalid);
-    });
-    findings.prove(Proof::pose_healthy, [&] { check_pose_health(map.health, findings); });
-    findings.prove(Proof::camera_healthy, [&] { check_camera(map.camera, findings); });
+    judge_snapshot(machine.limits, map, now_ns, findings);
     findings.prove(Proof::command_known, [&] {
         if (movement_for(machine, query.command) == nullptr) findings.deny(Reason::unknown_command);
     });
@@ -256,6 +263,14 @@ Query query_at_body(std::uint8_t command, const grid::MapSnapshot& map) noexcept
     query.cos_yaw = map.body_cos_yaw;
     query.sin_yaw = map.body_sin_yaw;
     return query;
+}
+
+ReasonSet snapshot_faults(const GateLimits& limits,
+                          const grid::MapSnapshot& map,
+                          std::int64_t now_ns) noexcept {
+    Findings findings;
+    judge_snapshot(limits, map, now_ns, findings);
+    return findings.reasons();
 }
 
 Verdict decide(const Machine& machine,

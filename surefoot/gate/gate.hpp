@@ -58,6 +58,12 @@ struct GateHealth {
     ReasonSet faults;  ///< ERROR codes that monitors raise; a terrain code among them is INTERNAL
 };
 
+/// What speaks against a snapshot at `now_ns`, whatever is asked of it: damage, age, a stamp of the
+/// future, gravity, pose, camera. decide() asks the same; empty = it may be used.
+[[nodiscard]] ReasonSet snapshot_faults(const GateLimits& limits,
+                                        const grid::MapSnapshot& map,
+                                        std::int64_t now_ns) noexcept;
+
 /// Is the movement safe? Pure: no clock, no allocation, no input or output, no libm; the same bytes
 /// give the same verdict on every machine. Written so that everything missing, broken, NaN, too old
 /// or from the future inhibits. Thread-safe; cost below 0.2 ms.

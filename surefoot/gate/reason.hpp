@@ -59,6 +59,12 @@ inline constexpr int kReasonCount = static_cast<int>(Reason::none);
     return reason < Reason::outside_map;
 }
 
+/// A fault that stays until an operator re-arms the gate: what the map was built on is in doubt.
+[[nodiscard]] constexpr bool is_latched(Reason reason) noexcept {
+    return reason == Reason::internal || reason == Reason::config || reason == Reason::clock ||
+           reason == Reason::mount_moved || reason == Reason::pose_jump;
+}
+
 /// A set of reasons in one word.
 class ReasonSet {
   public:
