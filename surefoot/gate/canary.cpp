@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/canary.hpp"
+
+#include <array>
+
+#include "surefoot/gate/footprints.hpp"
+#include "surefoot/gate/gate.hpp"
+
+namespace surefoot::gate {
+namespace {
+
+// A yaw with exact cosine and sine that is parallel to nothing.
+constexpr double kCosYaw = 0.8;
+constexpr double kSinYaw = 0.6;
+constexpr std::int64_t kNowNs = 1'000'000'000'000;
+constexpr std::int32_t kSideTenthMm = 250;
+constexpr std::uint16_t kSigmaTenthMm = 10;
+
+/// What a canary may change of level ground and of a question that is OK there.
+struct Setting {
+    const Machine& machine;
+    grid::MapSnapshot& map;
+    Query& query;
+    GateHealth& health;
+    std::int64_t& now_ns;
+    const Sweep& sweep;
+};
+
+/// Level ground, known, fresh and healthy, with the machine in its middle. Whether it is large
+/// enough for the movement is the canary's own affair: outside of it nothing is OK.
+void make_level(grid::MapSnapshot& map) noexcept {
+    map.magic = grid::MapSnapshot::kMagic;
+    map.layout = grid::MapSnapshot::kLayout;
+    map.version = 1;
+    map.config_hash = 1;
+    map.frame_time_ns = kNowNs;
+    map.pose_time_ns = kNowNs;
+    map.resolution_tenth_mm = kSideTenthMm;
+    map.nx = grid::MapSnapshot::kMaxSide;
+    map.ny = grid::MapSnapshot::kMaxSide;
+    map.edge_count = 0;
+    map.origin_x_tenth_mm = -kSideTenthMm * map.nx / 2;
+    map.origin_y_tenth_mm = -kSideTenthMm * map.ny / 2;
+    map.body_x_tenth_mm = 37;  // off the lines of the grid
+    map.body_y_tenth_mm = -53;
+    map.body_z_tenth_mm = 0;
+    map.body_cos_yaw = kCosYaw;
+    map.body_sin_yaw = kSinYaw;
+    map.gravity_source = grid::GravitySource::imu;
+    map.health = grid::SnapshotHealth::ok;
+    map.camera = CameraState::ok;
+    map.height_tenth_mm.fill(0);
+    map.sigma_tenth_mm.fill(kSigmaTenthMm);
+    map.drift_tenth_mm.fill(0);
+    map.clearance_tenth_mm.fill(grid::MapSnapshot::kNoCeiling);
+    map.component.fill(1);
+    map.drop_evidence.fill(0);
+    map.source.fill(grid::EvidenceSource::measured);
+    map.edges.fill({});
+}
+
+/// The cell in the middle of the landing left foot, or the last one of the map where that lies
+/// outside: there the canary fails, and says so.
+template <typename Change>
+void change_one_cell(const Setting& s, Change&& change) noexcept {
+    const grid::FixedPoint middle = s.sweep.feet[0].landing_center;
+    const auto index = [&](std::int64_t place, std::int64_t origin) {
+        const std::int64_t i = grid::floor_div(place - origin, s.map.resolution_tenth_mm);
+        return i < 0 ? 0 : i >= s.map.nx ? std::int64_t{s.map.nx} - 1 : i;
+    };
+    const std::int64_t ix = index(middle.x, s.map.origin_x_tenth_mm);
+    const std::int64_t iy = index(middle.y, s.map.origin_y_tenth_mm);
+    change(static_cast<std::size_t>(iy * s.map.nx + ix));
+}
+
+std::int32_t limit_of(const Setting& s, bool up) noexcept {
+    const auto movement_class =
+        static_cast<std::size_t>(s.machine.movements[s.query.command].movement_class);
+    const StepLimits& step = s.machine.limits.step[movement_class];
+    return up ? step.up_tenth_mm : step.down_tenth_mm;
+}
+
+struct Fault {
+    Reason expected;
+    void (*happen)(const Setting&);
+};
+
+const auto kFaultList = std::to_array<Fault>({
+    // What perception says of itself, and of time.
+    {Reason::frame_stale,
+     [](const Setting& s) { s.map.frame_time_ns -= s.machine.limits.frame_age_ns + 1; }},
+    {Reason::pose_stale,
+     [](const Setting& s) { s.map.pose_time_ns -= s.machine.limits.pose_age_ns + 1; }},
+    {Reason::time_skew,
+     [](const Setting& s) { s.map.pose_time_ns += s.machine.limits.future_tolerance_ns + 1; }},
+    {Reason::plane_invalid,
+     [](const Setting& s) { s.map.gravity_source = grid::GravitySource::assumed; }},
+    {Reason::pose_lost, [](const Setting& s) { s.map.health = grid::SnapshotHealth::lost; }},
+    {Reason::blind, [](const Setting& s) { s.map.camera = CameraState::dark; }},
+    {Reason::exposure, [](const Setting& s) { s.map.camera = CameraState::overexposed; }},
+    {Reason::frame_frozen, [](const Setting& s) { s.map.camera = CameraState::frozen; }},
+    {Reason::frame_corrupt, [](const Setting& s) { s.map.camera = CameraState::corrupt; }},
+    {Reason::mount_moved, [](const Setting& s) { s.map.camera = CameraState::moved; }},
+    {Reason::internal, [](const Setting& s) { s.map.magic = 0; }},
+    // The gate itself, and the question.
+    {Reason::not_ready, [](const Setting& s) { s.health.state = GateState::degraded; }},
+    {Reason::warmup, [](const Setting& s) { s.health.state = GateState::warmup; }},
+    {Reason::pose_jump, [](const Setting& s) { s.health.faults.add(Reason::pose_jump); }},
+    {Reason::clock, [](const Setting& s) { s.now_ns = -1; }},
+    {Reason::unknown_command, [](const Setting& s) { s.query.command = 0; }},
+    {Reason::bad_number, [](const Setting& s) { s.query.cos_yaw *= 2.0; }},
+    // The ground.
+    {Reason::unknown_cells,
+     [](const Setting& s) {
+         change_one_cell(s, [&](std::size_t i) {
+             s.map.height_tenth_mm[i] = grid::MapSnapshot::kUnknownHeight;
+             s.map.source[i] = grid::EvidenceSource::unknown;
+         });
+     }},
+    {Reason::not_resolvable,
+     [](const Setting& s) {
+         change_one_cell(s, [&](std::size_t i) { s.map.sigma_tenth_mm[i] = 0xffff; });
+     }},
+    {Reason::memory_uncertain,
+     [](const Setting& s) {
+         change_one_cell(s, [&](std::size_t i) { s.map.drift_tenth_mm[i] = 0xffff; });
+     }},
+    {Reason::disconnected,
+     [](const Setting& s) {
+         change_one_cell(s, [&](std::size_t i) { s.map.component[i] = 2; });
+     }},
+    {Reason::drop_off,
+     [](const Setting& s) {
+         change_one_cell(s, [&](std::size_t i) { s.map.drop_evidence[i] = 255; });
+     }},
+    {Reason::body_clearance,
+     [](const Setting& s) {
+         change_one_cell(s, [&](std::size_t i) {
+             s.map.clearance_tenth_mm[i] =
+                 static_cast<std::uint16_t>(s.machine.body.lower_edge_tenth_mm);
+         });
+     }},
+    {Reason::corridor_blocked,
+     [](const Setting& s) {
+         const std::int32_t higher = s.machine.limits.swing_clearance_tenth_mm + 1;
+         change_one_cell(s, [&](std::size_t i) { s.map.height_tenth_mm[i] = higher; });
+     }},
+    {Reason::step_too_high,
+     [](const Setting& s) {
+         const std::int32_t higher = limit_of(s, true) + 300;
+         change_one_cell(s, [&](std::size_t i) { s.map.height_tenth_mm[i] = higher; });
+     }},
+    {Reason::step_too_low,
+     [](const Setting& s) {
+         const std::int32_t lower = limit_of(s, false) + 300;
+         change_one_cell(s, [&](std::size_t i) { s.map.height_tenth_mm[i] = -lower; });
+     }},
+    {Reason::drop_off,
+     [](const Setting& s) {
+         const std::int32_t lower = s.machine.limits.drop_tenth_mm + 1;
+         change_one_cell(s, [&](std::size_t i) { s.map.height_tenth_mm[i] = -lower; });
+     }},
+});
+
+std::int64_t length_sq(const Movement& m) noexcept {
+    return std::int64_t{m.forward_tenth_mm} * m.forward_tenth_mm +
+           std::int64_t{m.left_tenth_mm} * m.left_tenth_mm;
+}
+
+bool is_usable(const Machine& machine, std::size_t code) noexcept {
+    const Movement& movement = machine.movements[code];
+    return movement.configured &&
+           machine.limits.step[static_cast<std::size_t>(movement.movement_class)].enabled;
+}
+
+}  // namespace
+
+const int Canaries::kFaults = static_cast<int>(kFaultList.size());
+
+Canaries::Canaries(const Machine& machine) noexcept : machine_(machine) {
+    if (machine.problem() != nullptr) return;  // no movement: every canary fails
+    for (std::size_t code = 1; code < machine.movements.size(); ++code) {
+        if (!is_usable(machine, code)) continue;
+        ++first_fault_;
+        if (longest_ == 0 ||
+            length_sq(machine.movements[code]) > length_sq(machine.movements[longest_]))
+            longest_ = static_cast<std::uint8_t>(code);
+    }
+}
+
+Canaries::Outcome Canaries::judge(int index) noexcept {
+    Outcome outcome;
+    index %= count();
+    outcome.command = longest_;
+    if (index < first_fault_) {  // the index-th movement on level ground
+        int left = index;
+        std::size_t code = 1;
+        while (!is_usable(machine_, code) || left-- > 0) ++code;
+        outcome.command = static_cast<std::uint8_t>(code);
+    }
+    make_level(map_);
+    Query query = query_at_body(outcome.command, map_);
+    GateHealth health{GateState::ready, {}};
+    std::int64_t now_ns = kNowNs;
+    if (index >= first_fault_) {
+        const Fault& fault = kFaultList[static_cast<std::size_t>(index - first_fault_)];
+        const Sweep sweep = sweep_of(
+            machine_,
+            fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw),
+            machine_.movements[longest_]);
+        fault.happen({machine_, map_, query, health, now_ns, sweep});
+        outcome.expected = fault.expected;
+    }
+    map_.checksum = grid::snapshot_checksum(map_);
+    const Verdict verdict = decide(machine_, query, map_, health, now_ns);
+    outcome.name = to_string(outcome.expected);
+    outcome.found = verdict.primary;
+    outcome.passed = outcome.expected == Reason::none
+                         ? verdict.allows_step(now_ns)
+                         : !verdict.allows_step(now_ns) &&
+                               verdict.decision == (is_error(outcome.expected)
+                                                        ? Decision::error
+                                                        : Decision::not_traversable) &&
+                               verdict.reasons.contains(outcome.expected);
+    return outcome;
+}
+
+Canaries::Outcome Canaries::judge_all() noexcept {
+    Outcome outcome;
+    for (int i = 0; i < count(); ++i) {
+        outcome = judge(i);
+        if (!outcome.passed) break;
+    }
+    return outcome;
+}
+
+}  // namespace surefoot::gate

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/vouching.hpp"
+
+namespace surefoot::gate {
+
+bool Vouching::vouch(const Machine& machine,
+                     const grid::MapSnapshot& map,
+                     std::int64_t radius_tenth_mm) noexcept {
+    revoke();
+    if (machine.problem() != nullptr || !grid::is_intact(map)) return false;
+    if (!(radius_tenth_mm > 0 && radius_tenth_mm <= machine.limits.vouch_radius_tenth_mm))
+        return false;
+    area_.active = true;
+    area_.center_x_tenth_mm = map.body_x_tenth_mm;
+    area_.center_y_tenth_mm = map.body_y_tenth_mm;
+    area_.radius_tenth_mm = static_cast<std::int32_t>(radius_tenth_mm);
+    area_.height_tenth_mm =
+        static_cast<std::int32_t>(map.body_z_tenth_mm - machine.sole_depth_tenth_mm);
+    return true;
+}
+
+void Vouching::observe(const grid::MapSnapshot& map) noexcept {
+    if (!area_.active) return;
+    const std::int64_t dx = map.body_x_tenth_mm - area_.center_x_tenth_mm;
+    const std::int64_t dy = map.body_y_tenth_mm - area_.center_y_tenth_mm;
+    const std::int64_t radius = area_.radius_tenth_mm;
+    const bool near = dx >= -radius && dx <= radius && dy >= -radius && dy <= radius;
+    if (!near || dx * dx + dy * dy > radius * radius) revoke();
+}
+
+}  // namespace surefoot::gate

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "surefoot/core/machine.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+
+namespace surefoot::gate {
+
+/// An operator's word for the ground where the machine stands, as long as it holds. The camera
+/// cannot see that ground, and without a word the first step is refused. Off until somebody
+/// vouches; void for good once base_link has left the area, or when it is revoked.
+class Vouching {
+  public:
+    /// Level ground under the soles, within `radius_tenth_mm` of base_link. False, and nothing is
+    /// vouched for, when the radius is not within the machine file's limit or the snapshot is of no
+    /// use.
+    [[nodiscard]] bool vouch(const Machine& machine,
+                             const grid::MapSnapshot& map,
+                             std::int64_t radius_tenth_mm) noexcept;
+    /// Looks where the machine is now.
+    void observe(const grid::MapSnapshot& map) noexcept;
+    /// After a fault, a restart, or on somebody's wish.
+    void revoke() noexcept { area_ = VouchedArea{}; }
+    [[nodiscard]] const VouchedArea& area() const noexcept { return area_; }
+
+  private:
+    VouchedArea area_;
+};
+
+}  // namespace surefoot::gate

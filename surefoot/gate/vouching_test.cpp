@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/vouching.hpp"
+
+#include <gtest/gtest.h>
+
+#include "surefoot/gate/gate_testing.hpp"
+
+namespace surefoot::gate::testing {
+namespace {
+
+/// Where the camera sees nothing: within 0.7 m of the machine.
+std::unique_ptr<grid::MapSnapshot> blind_zone() {
+    Terrain terrain;
+    terrain.box(-0.7, 0.7, -0.7, 0.7, static_cast<double>(kNaN));
+    return terrain.snapshot();
+}
+
+Verdict ask_with(const Vouching& vouching, const grid::MapSnapshot& map) {
+    Query query = query_at_body(kForward, map);
+    query.vouched = vouching.area();
+    return decide(rex(), query, map, kReady, kNowNs);
+}
+
+TEST(Vouching, without_a_word_the_first_step_is_refused_and_with_it_allowed) {
+    const auto map = blind_zone();
+    Vouching vouching;
+    EXPECT_EQ(ask_with(vouching, *map).primary, Reason::unknown_cells);
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+    EXPECT_TRUE(ask_with(vouching, *map).allows_step(kNowNs)) << words(ask_with(vouching, *map));
+    vouching.revoke();
+    EXPECT_EQ(ask_with(vouching, *map).primary, Reason::unknown_cells);
+}
+
+TEST(Vouching, is_void_for_good_once_the_machine_has_left) {
+    const auto map = blind_zone();
+    for (const int axis : {0, 1}) {
+        Vouching vouching;
+        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+        const auto here = std::make_unique<grid::MapSnapshot>(*map);
+        std::int64_t& place = axis == 0 ? here->body_x_tenth_mm : here->body_y_tenth_mm;
+        place = -10'000;
+        vouching.observe(*here);
+        EXPECT_TRUE(vouching.area().active);
+        place = -10'001;
+        vouching.observe(*here);
+        EXPECT_FALSE(vouching.area().active);
+        place = 0;
+        vouching.observe(*here);
+        EXPECT_FALSE(vouching.area().active) << "coming back revives nothing";
+    }
+    Vouching diagonal;
+    ASSERT_TRUE(diagonal.vouch(rex(), *map, 10'000));
+    const auto here = std::make_unique<grid::MapSnapshot>(*map);
+    here->body_x_tenth_mm = here->body_y_tenth_mm = 7'100;
+    diagonal.observe(*here);
+    EXPECT_FALSE(diagonal.area().active);
+    // Far away nothing overflows into "near".
+    ASSERT_TRUE(diagonal.vouch(rex(), *map, 10'000));
+    here->body_x_tenth_mm = std::int64_t{1} << 32;
+    diagonal.observe(*here);
+    EXPECT_FALSE(diagonal.area().active);
+}
+
+TEST(Vouching, nobody_can_vouch_for_more_than_the_machine_file_allows) {
+    const auto map = blind_zone();
+    Vouching vouching;
+    EXPECT_FALSE(vouching.vouch(rex(), *map, 10'001));
+    EXPECT_FALSE(vouching.vouch(rex(), *map, 0));
+    EXPECT_FALSE(vouching.vouch(rex(), *map, -5));
+    EXPECT_FALSE(vouching.vouch(Machine{}, *map, 10));
+    Machine off = rex();
+    off.limits.vouch_radius_tenth_mm = 0;
+    EXPECT_FALSE(vouching.vouch(off, *map, 1));
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 5'000));
+    const auto damaged = std::make_unique<grid::MapSnapshot>(*map);
+    ++damaged->body_z_tenth_mm;
+    EXPECT_FALSE(vouching.vouch(rex(), *damaged, 5'000));
+    EXPECT_FALSE(vouching.area().active) << "a word that failed takes back the one before";
+}
+
+TEST(Vouching, the_ground_lies_under_the_soles) {
+    const auto map = blind_zone();
+    Vouching vouching;
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 5'000));
+    EXPECT_EQ(vouching.area().height_tenth_mm, 0);
+    EXPECT_EQ(vouching.area().radius_tenth_mm, 5'000);
+}
+
+}  // namespace
+}  // namespace surefoot::gate::testing
