@@ -126,9 +126,7 @@ const auto kFaultList = std::to_array<Fault>({
          change_one_cell(s, [&](std::size_t i) { s.map.drift_tenth_mm[i] = 0xffff; });
      }},
     {Reason::disconnected,
-     [](const Setting& s) {
-         change_one_cell(s, [&](std::size_t i) { s.map.component[i] = 2; });
-     }},
+     [](const Setting& s) { change_one_cell(s, [&](std::size_t i) { s.map.component[i] = 2; }); }},
     {Reason::drop_off,
      [](const Setting& s) {
          change_one_cell(s, [&](std::size_t i) { s.map.drop_evidence[i] = 255; });
@@ -204,10 +202,10 @@ Canaries::Outcome Canaries::judge(int index) noexcept {
     std::int64_t now_ns = kNowNs;
     if (index >= first_fault_) {
         const Fault& fault = kFaultList[static_cast<std::size_t>(index - first_fault_)];
-        const Sweep sweep = sweep_of(
-            machine_,
-            fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw),
-            machine_.movements[longest_]);
+        const Sweep sweep =
+            sweep_of(machine_,
+                     fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw),
+                     machine_.movements[longest_]);
         fault.happen({machine_, map_, query, health, now_ns, sweep});
         outcome.expected = fault.expected;
     }
@@ -215,13 +213,13 @@ Canaries::Outcome Canaries::judge(int index) noexcept {
     const Verdict verdict = decide(machine_, query, map_, health, now_ns);
     outcome.name = to_string(outcome.expected);
     outcome.found = verdict.primary;
-    outcome.passed = outcome.expected == Reason::none
-                         ? verdict.allows_step(now_ns)
-                         : !verdict.allows_step(now_ns) &&
-                               verdict.decision == (is_error(outcome.expected)
-                                                        ? Decision::error
-                                                        : Decision::not_traversable) &&
-                               verdict.reasons.contains(outcome.expected);
+    outcome.passed =
+        outcome.expected == Reason::none
+            ? verdict.allows_step(now_ns)
+            : !verdict.allows_step(now_ns) &&
+                  verdict.decision ==
+                      (is_error(outcome.expected) ? Decision::error : Decision::not_traversable) &&
+                  verdict.reasons.contains(outcome.expected);
     return outcome;
 }
 

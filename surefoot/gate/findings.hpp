@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "surefoot/gate/verdict.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
 
 namespace surefoot::gate {
 
@@ -55,5 +56,11 @@ class Findings {
     std::array<Finding, kReasonCount> worst_{};
     std::array<bool, kReasonCount> has_worst_{};
 };
+
+/// Where the primary reason was worst, and by how much, into the evidence.
+void show_worst_cell(const grid::MapSnapshot& map,
+                     const Findings& findings,
+                     Reason primary,
+                     Evidence& evidence) noexcept;
 
 }  // namespace surefoot::gate

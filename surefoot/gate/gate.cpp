@@ -152,25 +152,6 @@ void judge_readiness(const Machine& machine,
     });
 }
 
-/// Surfaces under the present feet, as far as they lie at the height of the stance, and those that
-/// the vouched area touches.
-ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {
-    ReachableSurfaces reachable;
-    const std::int64_t step = scene.machine.limits.swing_clearance_tenth_mm;
-    for (const FootSweep& foot : scene.sweep.feet) {
-        grid::for_each_overlapped_cell(
-            foot.stance, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
-                const GroundCell cell = scene.ground.cell(ix, iy);
-                const std::int64_t rise = cell.height_tenth_mm - scene.stance_tenth_mm;
-                if (cell.knowledge == Knowledge::measured && within(rise, step))
-                    reachable.add(cell.component);
-                return true;
-            });
-    }
-    reachable.add_beside_vouched(scene.ground, scene.machine.limits.swing_clearance_tenth_mm);
-    return reachable;
-}
-
 /// The ground, region by region (safety.md 7, rule 4). Called only when all is ready.
 void judge_terrain(const Machine& machine,
                    const Query& query,
@@ -201,21 +182,6 @@ void judge_terrain(const Machine& machine,
     findings.prove(Proof::right_supported, [&] {
         check_landing(scene, sweep.feet[1], machine.right_foot, reachable, findings);
     });
-}
-
-void show_worst_cell(const grid::MapSnapshot& map,
-                     const Findings& findings,
-                     Reason primary,
-                     Evidence& evidence) noexcept {
-    const Finding* worst = findings.worst(primary);
-    if (worst == nullptr) return;
-    const std::int64_t side = map.resolution_tenth_mm;
-    evidence.has_worst_cell = true;
-    evidence.worst_x_tenth_mm = map.origin_x_tenth_mm + worst->cell_x * side + side / 2;
-    evidence.worst_y_tenth_mm = map.origin_y_tenth_mm + worst->cell_y * side + side / 2;
-    evidence.foot = worst->foot;
-    evidence.value_tenth_mm = worst->value_tenth_mm;
-    evidence.limit_tenth_mm = worst->limit_tenth_mm;
 }
 
 /// ERROR > NOT_TRAVERSABLE > OK, and OK only when nothing was denied and everything was proven.

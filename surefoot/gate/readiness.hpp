@@ -33,9 +33,11 @@ struct ReadinessLimits {
 
 /// The state of the process around the gate:
 /// ```
-/// INIT ──self-test──► WARMUP ──all well for 2 s and 20 frames──► READY ◄──1 s, 10 frames── DEGRADED
-///   │ fails              │ 60 s                                   └──anything not well──────►┘ │ 10 s
-///   └───────────► FAULT ◄┴──────────── a latched reason, from every state ────────────────────┘
+/// INIT ──self-test──► WARMUP ──all well for 2 s and 20 frames──► READY ◄──1 s, 10 frames──
+/// DEGRADED
+///   │ fails              │ 60 s                                   └──anything not well──────►┘ │
+///   10 s └───────────► FAULT ◄┴──────────── a latched reason, from every state
+///   ────────────────────┘
 ///                   └── an operator re-arms ──► WARMUP
 /// ```
 /// Inhibits at once, releases slowly: one bad sample leaves READY. FAULT is left by `rearm` alone,

@@ -48,8 +48,7 @@ class Station {
     }
     /// What a question gets now.
     [[nodiscard]] Verdict ask() const {
-        return decide(
-            rex(), query_at_body(kForward, *map), *map, readiness.health(), now_ns + kMs);
+        return decide(rex(), query_at_body(kForward, *map), *map, readiness.health(), now_ns + kMs);
     }
     [[nodiscard]] bool allows() const { return ask().allows_step(now_ns + kMs); }
 
@@ -278,8 +277,7 @@ TEST(Readiness, a_walk_is_no_jump_and_the_bounds_hold_both_ways) {
                 station.map->body_sin_yaw = std::sin(yaw_rad);
             }
             station.frame();
-            EXPECT_EQ(station.readiness.state(),
-                      share < 1.0 ? GateState::ready : GateState::fault)
+            EXPECT_EQ(station.readiness.state(), share < 1.0 ? GateState::ready : GateState::fault)
                 << "direction " << direction;
         }
     }

@@ -133,6 +133,23 @@ std::optional<std::int64_t> stance_height(const Ground& ground,
     return grid::floor_div(2 * sum + known, 2 * known);  // to nearest
 }
 
+ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {
+    ReachableSurfaces reachable;
+    const std::int64_t step = scene.machine.limits.swing_clearance_tenth_mm;
+    for (const FootSweep& foot : scene.sweep.feet) {
+        grid::for_each_overlapped_cell(
+            foot.stance, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                const GroundCell cell = scene.ground.cell(ix, iy);
+                const std::int64_t rise = cell.height_tenth_mm - scene.stance_tenth_mm;
+                if (cell.knowledge == Knowledge::measured && rise >= -step && rise <= step)
+                    reachable.add(cell.component);
+                return true;
+            });
+    }
+    reachable.add_beside_vouched(scene.ground, scene.machine.limits.swing_clearance_tenth_mm);
+    return reachable;
+}
+
 void check_stance(const Scene& scene, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
     for (const FootSweep& foot : scene.sweep.feet) {

@@ -33,6 +33,10 @@ struct Scene {
                                                         const Query& query,
                                                         const Sweep& sweep) noexcept;
 
+/// Surfaces under the present feet, as far as they lie at the height of the stance, and those that
+/// the vouched area touches.
+[[nodiscard]] ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept;
+
 /// The four regions of safety.md 7 (4). In each every cell must be inside the map, known (or
 /// vouched), surer than `cell_sigma` and not drifted more than `drift`. Where a limit counts in
 /// millimetres, the height must keep it by `sigma_factor` sigma, else NOT_RESOLVABLE:

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/gate/goal.hpp"
+
+#include <optional>
+
+#include "surefoot/gate/findings.hpp"
+#include "surefoot/gate/footprints.hpp"
+#include "surefoot/gate/ground.hpp"
+#include "surefoot/gate/regions.hpp"
+
+namespace surefoot::gate {
+namespace {
+
+/// Wanted: all that the feet would stand on is joined to where they stand now.
+void check_joined(const Machine& machine,
+                  const Query& here,
+                  const Sweep& there,
+                  const grid::MapSnapshot& map,
+                  Findings& findings) noexcept {
+    const Ground ground(map, here);
+    const Movement stay;
+    const Sweep sweep = sweep_of(
+        machine, fixed_pose(here.x_tenth_mm, here.y_tenth_mm, here.cos_yaw, here.sin_yaw), stay);
+    const std::optional<std::int64_t> stance = stance_height(ground, here, sweep);
+    if (!stance) {
+        findings.deny(Reason::disconnected);
+        return;
+    }
+    const ReachableSurfaces reachable = surfaces_of_stance({machine, stay, ground, sweep, *stance});
+    for (const FootSweep& foot : there.feet) {
+        grid::for_each_overlapped_cell(
+            foot.stance, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
+                const GroundCell cell = ground.cell(ix, iy);
+                if (cell.knowledge == Knowledge::measured && !reachable.contains(cell.component))
+                    findings.deny(Reason::disconnected, finding_at(ix, iy, foot.foot, 0, 0));
+                return true;
+            });
+    }
+}
+
+}  // namespace
+
+Verdict judge_goal(const Machine& machine,
+                   const Query& here,
+                   const GoalPose& goal,
+                   const grid::MapSnapshot& map,
+                   const GateHealth& health,
+                   std::int64_t now_ns) noexcept {
+    constexpr std::uint8_t kStay = 1;
+    Machine standing = machine;  // that knows one movement: to stay where it is
+    standing.movements = {};
+    standing.movements[kStay].configured = true;
+    standing.limits.step[static_cast<std::size_t>(MovementClass::walk)].enabled = true;
+    Query there = here;
+    there.command = kStay;
+    there.x_tenth_mm = goal.x_tenth_mm;
+    there.y_tenth_mm = goal.y_tenth_mm;
+    there.cos_yaw = goal.cos_yaw;
+    there.sin_yaw = goal.sin_yaw;
+    there.stance_source = StanceHeight::map;
+    Verdict verdict = decide(standing, there, map, health, now_ns);
+    verdict.command = 0;
+    if (verdict.decision == Decision::ok) {
+        Findings findings;
+        check_joined(
+            machine,
+            here,
+            sweep_of(standing,
+                     fixed_pose(goal.x_tenth_mm, goal.y_tenth_mm, goal.cos_yaw, goal.sin_yaw),
+                     standing.movements[kStay]),
+            map,
+            findings);
+        if (!findings.reasons().empty()) {
+            verdict.decision = Decision::not_traversable;
+            verdict.reasons = findings.reasons();
+            verdict.primary = verdict.reasons.primary();
+            show_worst_cell(map, findings, verdict.primary, verdict.evidence);
+        }
+    }
+    verdict.valid_until_ns = verdict.decided_ns;
+    return verdict;
+}
+
+}  // namespace surefoot::gate
