@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/wire/gatekeeper.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "surefoot/gate/goal.hpp"
+#include "surefoot/gate/verdict_text.hpp"
+
+namespace surefoot::wire {
+namespace {
+
+constexpr std::int64_t kOpenEvery_ns = 100'000'000;
+constexpr std::int64_t kCanaryEvery_ns = 250'000'000;
+
+/// What the gate knows before the first snapshot: one cell that nobody has seen, of a camera that
+/// never sent an image. Sealed, so that the gate says what is missing and not that it is damaged.
+std::unique_ptr<grid::MapSnapshot> nothing_seen() {
+    auto map = std::make_unique<grid::MapSnapshot>();
+    map->resolution_tenth_mm = 250;
+    map->nx = map->ny = 1;
+    map->height_tenth_mm.fill(grid::MapSnapshot::kUnknownHeight);
+    map->checksum = grid::snapshot_checksum(*map);
+    return map;
+}
+
+std::int64_t tenth_mm(double length_m) {
+    return std::llround(length_m * 1e4);
+}
+
+}  // namespace
+
+Gatekeeper::Gatekeeper(const Machine& machine,
+                       const gate::ReadinessLimits& limits,
+                       std::string channel_path,
+                       Audit audit)
+    : machine_(machine),
+      channel_path_(std::move(channel_path)),
+      audit_(std::move(audit)),
+      readiness_(machine, limits),
+      canaries_(std::make_unique<gate::Canaries>(machine)),
+      map_(nothing_seen()),
+      incoming_(nothing_seen()) {}
+
+void Gatekeeper::poll(std::int64_t now_ns, std::int64_t boottime_ns) {
+    if (readiness_.state() == gate::GateState::init)
+        readiness_.self_tested(canaries_->judge_all().passed, now_ns);
+    fetch(now_ns);
+    readiness_.clocks(now_ns, boottime_ns);
+    ask_canary(now_ns);
+}
+
+void Gatekeeper::open_channel(std::int64_t now_ns) {
+    if (reader_ || now_ns < next_open_ns_) return;
+    next_open_ns_ = now_ns + kOpenEvery_ns;
+    auto reader = SnapshotReader::open(channel_path_);
+    if (reader) reader_.emplace(std::move(*reader));
+}
+
+void Gatekeeper::fetch(std::int64_t now_ns) {
+    open_channel(now_ns);
+    const auto read = reader_ ? reader_->read(*incoming_) : SnapshotReader::Read::nothing;
+    if (reader_ && reader_->writer() != writer_) {
+        writer_ = reader_->writer();
+        has_map_ = false;
+        map_ = nothing_seen();
+        vouching_.revoke();
+        readiness_.perception_restarted(now_ns);
+    }
+    if (read == SnapshotReader::Read::fresh && writer_ != given_up_) {
+        std::swap(map_, incoming_);
+        has_map_ = true;
+        readiness_.observe(*map_, now_ns);
+        vouching_.observe(*map_);
+    }
+    readiness_.tick(now_ns);
+    if (readiness_.state() == gate::GateState::fault) vouching_.revoke();
+}
+
+void Gatekeeper::ask_canary(std::int64_t now_ns) {
+    if (now_ns < next_canary_ns_) return;
+    next_canary_ns_ = now_ns + kCanaryEvery_ns;
+    readiness_.self_tested(canaries_->judge(canary_).passed, now_ns);
+    canary_ = (canary_ + 1) % canaries_->count();
+}
+
+bool Gatekeeper::is_in_sequence(const StepQuestion& question) {
+    const auto [last, is_new] = sequences_.try_emplace(question.connection, question.sequence);
+    if (is_new) return true;
+    if (question.sequence <= last->second) return false;
+    last->second = question.sequence;
+    return true;
+}
+
+Judgement Gatekeeper::judge(const StepQuestion& question,
+                            bool in_sequence,
+                            std::int64_t now_ns) const {
+    Judgement judgement;
+    judgement.health = readiness_.health();
+    if (!in_sequence) judgement.health.faults.add(gate::Reason::seq);
+    judgement.query = gate::query_at_body(question.command, *map_);
+    judgement.query.vouched = vouching_.area();
+    judgement.query.connection = question.connection;
+    judgement.query.sequence = question.sequence;
+    judgement.now_ns = now_ns;
+    judgement.verdict = gate::decide(machine_, judgement.query, *map_, judgement.health, now_ns);
+    return judgement;
+}
+
+Answer Gatekeeper::ask_step(const StepQuestion& question, std::int64_t now_ns) {
+    fetch(now_ns);
+    const bool in_sequence = is_in_sequence(question);
+    Judgement judgement = judge(question, in_sequence, now_ns);
+    // A newer snapshot came meanwhile: perhaps it knows better. Once, so that the answer ends.
+    if (judgement.verdict.allows_step(now_ns) && reader_ && reader_->has_fresh()) {
+        fetch(now_ns);
+        judgement = judge(question, in_sequence, now_ns);
+    }
+    ++asked_;
+    if (judgement.verdict.allows_step(now_ns)) ++allowed_;
+    if (audit_) audit_(judgement, *map_);
+    return {judgement.verdict, gate::text_of(judgement.verdict, judgement.query, machine_)};
+}
+
+Answer Gatekeeper::ask_goal(const GoalQuestion& question, std::int64_t now_ns) {
+    fetch(now_ns);
+    gate::GateHealth health = readiness_.health();
+    if (question.frame_id != "odom") health.faults.add(gate::Reason::frame_id);
+    gate::Query here = gate::query_at_body(0, *map_);
+    here.vouched = vouching_.area();
+    here.connection = question.connection;
+    // make_query refuses what is no number; then the goal is no pose either.
+    const gate::Query there = gate::make_query(
+        0, question.x_m, question.y_m, std::cos(question.yaw_rad), std::sin(question.yaw_rad));
+    const gate::GoalPose goal{there.x_tenth_mm, there.y_tenth_mm, there.cos_yaw, there.sin_yaw};
+    Answer answer{gate::judge_goal(machine_, here, goal, *map_, health, now_ns), {}};
+    answer.text = gate::text_of(answer.verdict, there, machine_);
+    return answer;
+}
+
+GateReport Gatekeeper::report(std::int64_t now_ns) {
+    GateReport report;
+    report.health = readiness_.health();
+    report.why = report.health.faults.primary();
+    if (report.why == gate::Reason::none) {
+        if (report.health.state == gate::GateState::warmup)
+            report.why = gate::Reason::warmup;
+        else if (report.health.state != gate::GateState::ready)
+            report.why = gate::Reason::not_ready;
+    }
+    report.vouching = vouching_.area().active;
+    report.asked = asked_;
+    report.allowed = allowed_;
+    if (has_map_) {
+        report.map_version = map_->version;
+        report.frame_age_ns = now_ns - map_->frame_time_ns;
+        report.pose_age_ns = now_ns - map_->pose_time_ns;
+    }
+    return report;
+}
+
+Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
+    if (!readiness_.rearm(now_ns))
+        return Error{ErrorCode::usage,
+                     "there is nothing to re-arm: the gate is in no fault, or in one that only a "
+                     "restart with a valid configuration ends"};
+    vouching_.revoke();
+    if (reader_) {  // the map that a fault left behind is not believed again
+        reader_->want_restart();
+        given_up_ = reader_->writer();
+    }
+    return {};
+}
+
+Status Gatekeeper::vouch(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
+    fetch(now_ns);
+    const auto refuse = [](const std::string& why) {
+        return Status(Error{ErrorCode::usage, "the ground cannot be vouched for: " + why});
+    };
+    if (!has_map_ || !gate::snapshot_faults(machine_.limits, *map_, now_ns).empty())
+        return refuse("no healthy pose is known");
+    if (readiness_.state() == gate::GateState::fault) return refuse("the gate is in a fault");
+    const double limit_m = machine_.limits.vouch_radius_tenth_mm * 1e-4;
+    if (!(radius_m > 0.0 && radius_m <= limit_m))
+        return refuse("the radius must be above 0 and at most " + std::to_string(limit_m) +
+                      " m (vouch_radius_m of the machine file)");
+    if (!vouching_.vouch(machine_, *map_, tenth_mm(radius_m)))
+        return refuse("the radius is too small");
+    return {};
+}
+
+}  // namespace surefoot::wire

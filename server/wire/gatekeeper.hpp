@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "server/wire/snapshot_channel.hpp"
+#include "server/wire/step_gate.hpp"
+#include "surefoot/core/machine.hpp"
+#include "surefoot/gate/canary.hpp"
+#include "surefoot/gate/readiness.hpp"
+#include "surefoot/gate/vouching.hpp"
+
+namespace surefoot::wire {
+
+/// A verdict and what it was made of, but for the machine and the map.
+struct Judgement {
+    gate::Query query;
+    gate::GateHealth health;
+    std::int64_t now_ns = 0;
+    gate::Verdict verdict;
+};
+
+/// The step gate of the gate process: newest snapshot of the channel, state machine, canaries, the
+/// operator's word, and decide(). One thread; no clock, all times come with the calls. Needs
+/// `poll` every few milliseconds, also while nobody asks.
+class Gatekeeper final : public StepGate {
+  public:
+    /// Called with every verdict about a step; must neither wait nor throw.
+    using Audit = std::function<void(const Judgement&, const grid::MapSnapshot&)>;
+
+    /// The channel need not be there yet.
+    Gatekeeper(const Machine& machine,
+               const gate::ReadinessLimits& limits,
+               std::string channel_path,
+               Audit audit = {});
+
+    /// Fetches what is new, lets time pass, asks a canary now and then. `boottime_ns` is steady
+    /// time with what the computer slept.
+    void poll(std::int64_t now_ns, std::int64_t boottime_ns);
+    /// The process ends: nothing is OK any more.
+    void stop() noexcept { readiness_.stop(); }
+
+    [[nodiscard]] Answer ask_step(const StepQuestion& question, std::int64_t now_ns) override;
+    [[nodiscard]] Answer ask_goal(const GoalQuestion& question, std::int64_t now_ns) override;
+    [[nodiscard]] GateReport report(std::int64_t now_ns) override;
+    [[nodiscard]] Status rearm(std::uint64_t connection, std::int64_t now_ns) override;
+    [[nodiscard]] Status vouch(std::uint64_t connection,
+                               double radius_m,
+                               std::int64_t now_ns) override;
+    void forget(std::uint64_t connection) override { sequences_.erase(connection); }
+
+  private:
+    void fetch(std::int64_t now_ns);
+    void open_channel(std::int64_t now_ns);
+    void ask_canary(std::int64_t now_ns);
+    [[nodiscard]] bool is_in_sequence(const StepQuestion& question);
+    [[nodiscard]] Judgement judge(const StepQuestion& question,
+                                  bool in_sequence,
+                                  std::int64_t now_ns) const;
+
+    Machine machine_;
+    std::string channel_path_;
+    Audit audit_;
+    gate::Readiness readiness_;
+    gate::Vouching vouching_;
+    std::unique_ptr<gate::Canaries> canaries_;
+    std::optional<SnapshotReader> reader_;
+    std::unique_ptr<grid::MapSnapshot> map_;       ///< the newest whole one
+    std::unique_ptr<grid::MapSnapshot> incoming_;  ///< being fetched
+    bool has_map_ = false;
+    std::uint64_t writer_ = 0;    ///< whose map it is
+    std::uint64_t given_up_ = 0;  ///< writer that was asked to begin anew: not believed any more
+    std::int64_t next_open_ns_ = 0;
+    std::int64_t next_canary_ns_ = 0;
+    int canary_ = 0;
+    std::map<std::uint64_t, std::uint64_t> sequences_;  ///< of each connection, the last one
+    std::uint64_t asked_ = 0;
+    std::uint64_t allowed_ = 0;
+};
+
+}  // namespace surefoot::wire

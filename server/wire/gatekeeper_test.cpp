@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/wire/gatekeeper.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "surefoot/gate/gate_testing.hpp"
+
+namespace surefoot::wire {
+namespace {
+
+using gate::Decision;
+using gate::GateState;
+using gate::Reason;
+using gate::testing::kForward;
+using gate::testing::kMs;
+
+/// Perception at 15 Hz on one side of a channel, the gatekeeper on the other, and the time of both.
+class GatekeeperTest : public ::testing::Test {
+  protected:
+    GatekeeperTest()
+        : path_((std::filesystem::temp_directory_path() /
+                 ("surefoot_gatekeeper_" + std::to_string(::getpid()) + "_" +
+                  ::testing::UnitTest::GetInstance()->current_test_info()->name()))
+                    .string()),
+          map_(gate::testing::Terrain{}.snapshot()) {
+        keep();
+    }
+    ~GatekeeperTest() override { std::filesystem::remove(path_); }
+
+    void keep() {
+        keeper_ = std::make_unique<Gatekeeper>(
+            gate::testing::rex(),
+            gate::ReadinessLimits{},
+            path_,
+            [this](const Judgement& judgement, const grid::MapSnapshot& map) {
+                audited_.push_back(judgement);
+                audited_versions_.push_back(map.version);
+            });
+    }
+    void start_perception() {
+        auto writer = SnapshotWriter::create(path_);
+        ASSERT_TRUE(writer.ok()) << writer.error().message;
+        writer_ = std::make_unique<SnapshotWriter>(std::move(*writer));
+        map_->version = 0;
+    }
+    void publish() {
+        ++map_->version;
+        map_->frame_time_ns = map_->pose_time_ns = now_ns_ - 50 * kMs;
+        gate::testing::seal(*map_);
+        writer_->publish(*map_);
+    }
+    /// Polls every 5 ms; perception publishes every 65 ms unless it is gone.
+    void run(double seconds, bool publishes = true) {
+        const std::int64_t end_ns = now_ns_ + static_cast<std::int64_t>(seconds * 1e9);
+        while (now_ns_ < end_ns) {
+            now_ns_ += 5 * kMs;
+            if (publishes && now_ns_ >= next_frame_ns_) {
+                publish();
+                next_frame_ns_ = now_ns_ + 65 * kMs;
+            }
+            keeper_->poll(now_ns_, now_ns_ + 17);
+        }
+    }
+    void become_ready() {
+        start_perception();
+        run(3.0);
+        ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
+    }
+    Answer ask(std::uint8_t command = kForward, std::uint64_t connection = 1) {
+        return keeper_->ask_step({connection, ++sequence_, command}, now_ns_);
+    }
+
+    std::string path_;
+    std::unique_ptr<grid::MapSnapshot> map_;
+    std::unique_ptr<SnapshotWriter> writer_;
+    std::unique_ptr<Gatekeeper> keeper_;
+    std::vector<Judgement> audited_;
+    std::vector<std::uint64_t> audited_versions_;
+    std::int64_t now_ns_ = 100'000 * kMs;
+    std::int64_t next_frame_ns_ = 0;
+    std::uint64_t sequence_ = 0;
+};
+
+TEST_F(GatekeeperTest, without_perception_it_says_what_is_missing) {
+    const Answer first = ask();  // before any poll
+    EXPECT_EQ(first.verdict.decision, Decision::error);
+    run(1.0, false);
+    const Answer answer = ask();
+    EXPECT_EQ(answer.verdict.decision, Decision::error);
+    EXPECT_FALSE(answer.verdict.reasons.contains(Reason::internal)) << "nothing is damaged";
+    EXPECT_TRUE(answer.verdict.reasons.contains(Reason::frame_stale));
+    const GateReport report = keeper_->report(now_ns_);
+    EXPECT_EQ(report.health.state, GateState::warmup);
+    EXPECT_EQ(report.frame_age_ns, -1);
+    EXPECT_NE(report.why, Reason::none);
+    EXPECT_FALSE(keeper_->vouch(1, 0.5, now_ns_).ok());
+    EXPECT_EQ(keeper_->ask_goal({1, "odom", 1.0, 0.0, 0.0}, now_ns_).verdict.decision,
+              Decision::error);
+}
+
+TEST_F(GatekeeperTest, when_ready_it_allows_a_step_on_the_newest_map_and_answers_to_whom_asked) {
+    become_ready();
+    publish();  // not polled yet
+    const Answer answer = ask(kForward, 77);
+    EXPECT_TRUE(answer.verdict.allows_step(now_ns_)) << gate::testing::words(answer.verdict);
+    EXPECT_EQ(answer.verdict.map_version, map_->version);
+    EXPECT_EQ(answer.verdict.connection, 77U);
+    EXPECT_EQ(answer.verdict.sequence, sequence_);
+    EXPECT_FALSE(answer.text.empty());
+    const GateReport report = keeper_->report(now_ns_);
+    EXPECT_EQ(report.why, Reason::none);
+    EXPECT_EQ(report.frame_age_ns, 50 * kMs);
+    EXPECT_EQ(report.asked, 1U);
+    EXPECT_EQ(report.allowed, 1U);
+}
+
+TEST_F(GatekeeperTest, a_sequence_must_grow_within_its_connection) {
+    become_ready();
+    const auto asked = [&](std::uint64_t connection, std::uint64_t sequence) {
+        return keeper_->ask_step({connection, sequence, kForward}, now_ns_).verdict;
+    };
+    EXPECT_TRUE(asked(1, 5).allows_step(now_ns_));
+    EXPECT_TRUE(asked(1, 5).reasons.contains(Reason::seq)) << "a copy of the question";
+    EXPECT_TRUE(asked(1, 4).reasons.contains(Reason::seq));
+    EXPECT_EQ(asked(1, 3).decision, Decision::error);
+    EXPECT_TRUE(asked(2, 1).allows_step(now_ns_)) << "another connection counts for itself";
+    EXPECT_TRUE(asked(1, 6).allows_step(now_ns_));
+    keeper_->forget(1);
+    EXPECT_TRUE(asked(1, 1).allows_step(now_ns_));
+}
+
+TEST_F(GatekeeperTest, a_perception_that_falls_silent_inhibits_within_a_quarter_of_a_second) {
+    become_ready();
+    ASSERT_TRUE(ask().verdict.allows_step(now_ns_));
+    const std::int64_t last_ns = now_ns_;
+    while (ask().verdict.allows_step(now_ns_)) run(0.005, false);
+    EXPECT_LE(now_ns_ - last_ns, 250 * kMs);
+    EXPECT_TRUE(ask().verdict.reasons.contains(Reason::frame_stale));
+    run(0.5);
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_)) << "released too soon";
+    run(1.0);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_));
+}
+
+TEST_F(GatekeeperTest, a_new_perception_warms_up_again) {
+    become_ready();
+    start_perception();
+    publish();
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+    run(1.5);
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::warmup);
+    run(1.0);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_));
+}
+
+TEST_F(GatekeeperTest, after_re_arming_the_old_map_is_not_believed) {
+    become_ready();
+    EXPECT_FALSE(keeper_->rearm(1, now_ns_).ok()) << "nothing to re-arm";
+    map_->camera = CameraState::moved;
+    publish();
+    map_->camera = CameraState::ok;
+    run(20.0);
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
+    EXPECT_EQ(keeper_->report(now_ns_).why, Reason::mount_moved);
+    ASSERT_TRUE(keeper_->rearm(1, now_ns_).ok());
+    EXPECT_TRUE(writer_->restart_wanted());
+    run(5.0);
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::warmup);
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+    writer_->begin_anew();
+    map_->version = 0;
+    run(2.5);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << gate::testing::words(ask().verdict);
+}
+
+TEST_F(GatekeeperTest, an_operators_word_lasts_until_the_machine_has_left_or_a_fault) {
+    gate::testing::Terrain blind;
+    blind.box(-0.7, 0.7, -0.7, 0.7, std::nan(""));
+    map_ = blind.snapshot();
+    become_ready();
+    EXPECT_EQ(ask().verdict.primary, Reason::unknown_cells);
+    EXPECT_FALSE(keeper_->vouch(1, 1.5, now_ns_).ok()) << "the machine file allows 1.0 m";
+    EXPECT_FALSE(keeper_->vouch(1, std::nan(""), now_ns_).ok());
+    EXPECT_FALSE(keeper_->vouch(1, -1.0, now_ns_).ok());
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+    ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
+    EXPECT_TRUE(keeper_->report(now_ns_).vouching);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << gate::testing::words(ask().verdict);
+    run(0.5);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << "it lasts while the machine stands";
+    map_->camera = CameraState::moved;
+    publish();
+    run(0.01, false);
+    EXPECT_FALSE(keeper_->report(now_ns_).vouching);
+}
+
+TEST_F(GatekeeperTest, goals_are_pictures_and_their_frame_must_be_known) {
+    become_ready();
+    const Answer good = keeper_->ask_goal({1, "odom", 1.0, -1.0, 0.3}, now_ns_);
+    EXPECT_EQ(good.verdict.decision, Decision::ok) << gate::testing::words(good.verdict);
+    EXPECT_FALSE(good.verdict.allows_step(now_ns_));
+    EXPECT_EQ(keeper_->ask_goal({1, "map", 1.0, -1.0, 0.3}, now_ns_).verdict.primary,
+              Reason::frame_id);
+    const double nan = std::nan("");
+    EXPECT_EQ(keeper_->ask_goal({1, "odom", nan, -1.0, 0.3}, now_ns_).verdict.primary,
+              Reason::bad_number);
+    EXPECT_EQ(keeper_->ask_goal({1, "odom", 1.0, -1.0, nan}, now_ns_).verdict.primary,
+              Reason::bad_number);
+}
+
+TEST_F(GatekeeperTest, every_verdict_is_audited_with_what_it_was_made_of) {
+    become_ready();
+    const Answer ok = ask();
+    const Answer error = ask(0);
+    ASSERT_EQ(audited_.size(), 2U);
+    EXPECT_TRUE(audited_[0].verdict.allows_step(now_ns_));
+    EXPECT_EQ(audited_[1].verdict.primary, Reason::unknown_command);
+    EXPECT_EQ(audited_versions_[0], map_->version);
+    for (const Judgement& j : audited_) {
+        const gate::Verdict again =
+            gate::decide(gate::testing::rex(), j.query, *map_, j.health, j.now_ns);
+        EXPECT_EQ(again.reasons, j.verdict.reasons);
+        EXPECT_EQ(again.evidence.cells, j.verdict.evidence.cells);
+    }
+}
+
+TEST_F(GatekeeperTest, after_stopping_nothing_is_ok) {
+    become_ready();
+    keeper_->stop();
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+    run(5.0);
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+    EXPECT_FALSE(keeper_->rearm(1, now_ns_).ok());
+}
+
+TEST_F(GatekeeperTest, a_machine_that_is_not_valid_never_allows_anything) {
+    keeper_ = std::make_unique<Gatekeeper>(Machine{}, gate::ReadinessLimits{}, path_);
+    start_perception();
+    run(5.0);
+    EXPECT_EQ(ask().verdict.decision, Decision::error);
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
+}
+
+TEST_F(GatekeeperTest, a_computer_that_slept_is_a_fault) {
+    become_ready();
+    keeper_->poll(now_ns_ + 5 * kMs, now_ns_ + 5 * kMs + 17 + 3'000 * kMs);
+    EXPECT_EQ(keeper_->report(now_ns_ + 5 * kMs).why, Reason::clock);
+}
+
+}  // namespace
+}  // namespace surefoot::wire
