@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "io/file.hpp"
@@ -141,11 +142,16 @@ void read_mount(Group& mount, MachineFile& out) {
     out.T_body_left = T_body_mount * T_body_optical();
 }
 
-void read_body(Group& group, BodyEnvelope& body) {
-    body.box = read_box(group);
+void read_body(Group& group, Body& body) {
     body.sway_tenth_mm = group.length("sway_m", 0.0, 0.5);
-    body.lower_edge_tenth_mm = group.length("lower_edge_m", 0.0001, 1.0);
-    body.height_tenth_mm = group.length("height_m", 0.0001, 3.0);
+    group.list("parts", Body::kMaxParts, [&](Group& item) {
+        BodyPart part;
+        std::ignore = item.text("name", 40);  // for people
+        part.box = read_box(item);
+        part.low_tenth_mm = item.length("low_m", 0.0001, 2.0);
+        part.high_tenth_mm = item.length("high_m", 0.0001, 3.0);
+        body.parts[static_cast<std::size_t>(body.count++)] = part;
+    });
 }
 
 void read_joint(Group& group, std::vector<JointRange>& joints) {

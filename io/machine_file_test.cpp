@@ -39,7 +39,11 @@ TEST(MachineFile, the_rex_is_read_completely) {
     EXPECT_EQ(m.left_foot.center_y_tenth_mm, 1800);
     EXPECT_EQ(m.right_foot.center_y_tenth_mm, -1800);
     EXPECT_EQ(m.left_foot.length_tenth_mm, 3660);
-    EXPECT_EQ(m.body.box.width_tenth_mm, 6450);
+    ASSERT_EQ(m.body.count, 6);
+    EXPECT_EQ(m.body.parts[4].box.width_tenth_mm, 9400);
+    EXPECT_EQ(m.body.parts[4].box.center_x_tenth_mm, -100);
+    EXPECT_EQ(m.body.parts[5].high_tenth_mm, 20700);
+    EXPECT_EQ(m.body.lower_edge_tenth_mm(), 1100);
     for (std::size_t code = 1; code < m.movements.size(); ++code) {
         EXPECT_TRUE(m.movements[code].configured) << code;
         EXPECT_EQ(m.movements[code].movement_class, MovementClass::walk) << code;
@@ -100,7 +104,7 @@ TEST(MachineFile, every_mistake_is_named_with_file_line_and_key) {
         const char* expected;
     };
     const Case cases[] = {
-        {"sway_m: 0.05", "swaym: 0.05", "swaym", "unknown key 'body.swaym'"},
+        {"sway_m: 0.02", "swaym: 0.02", "swaym", "unknown key 'body.swaym'"},
         {"tilt_deg: 6.0", "tilt_deg: 60", "tilt_deg", "limits.tilt_deg: 60 is outside 0 .. 11"},
         {"tilt_deg: 6.0", "tilt_deg: .nan", "tilt_deg", "is outside"},
         {"tilt_deg: 6.0", "tilt_deg: steep", "tilt_deg", "is not a number"},
@@ -115,7 +119,9 @@ TEST(MachineFile, every_mistake_is_named_with_file_line_and_key) {
         {"turn_deg: 15.0", "turn_deg: 45", "turn_deg: 45", "outside -30 .. 30"},
         {"max_deg: 93.0", "max_deg: -1", "max_deg: -1", "below min_deg"},
         {"enabled: false", "enabled: off", "enabled: off", "neither true nor false"},
-        {"height_m: 2.05", "height_m: 0.1", "", "heights of the body envelope"},
+        {"high_m: 2.07", "high_m: 0.1", "", "heights of a part of the body"},
+        {"  parts:", "  pars:", "pars", "unknown key 'body.pars'"},
+        {"low_m: 1.24", "low_m: 0.0", "low_m: 0.0,", "body.parts[5].low_m: 0 is outside"},
         {"name: rex", "name: rex\nname: rex", "", "appears twice"},
         {"feet:", "feet: 3\nfeat:", "feet: 3", "feet: expected a group of keys"},
         {"mount:", "mount: [", "", "not valid YAML"},

@@ -16,10 +16,14 @@ using Eigen::Vector3d;
 
 constexpr double kRad = std::numbers::pi / 180.0;
 
-Pose turned(double angle_rad, const Vector3d& axis, double down_m) {
+Pose turned(const AngleAxisd& rotation) {
     Pose T;
-    T.rotation = AngleAxisd(angle_rad, axis);
-    T.translation_m = T.rotation * Vector3d(0.0, 0.0, -down_m);
+    T.rotation = rotation;
+    return T;
+}
+Pose lower(double down_m) {
+    Pose T;
+    T.translation_m = {0.0, 0.0, -down_m};
     return T;
 }
 
@@ -36,18 +40,25 @@ struct Range {
 
 }  // namespace
 
-Pose pelvis_to_sole(Side side, const LegAngles& angles) {
+LegPoses leg_poses(Side side, const LegAngles& angles) {
     Pose T_body_hip;
     T_body_hip.translation_m = hip_body_m(side);
     T_body_hip.rotation = AngleAxisd(angles.hip_rotation_rad, Vector3d::UnitZ()) *
                           AngleAxisd(angles.hip_roll_rad, Vector3d::UnitX());
-    const Pose T_hip_knee = turned(angles.hip_pitch_rad, Vector3d::UnitY(), rex::kUpperLeg_m);
-    const Pose T_knee_ankle = turned(angles.knee_rad, Vector3d::UnitY(), rex::kLowerLeg_m);
+    LegPoses poses;
+    poses.T_body_upper = T_body_hip * turned(AngleAxisd(angles.hip_pitch_rad, Vector3d::UnitY()));
+    poses.T_body_lower = poses.T_body_upper * lower(rex::kUpperLeg_m) *
+                         turned(AngleAxisd(angles.knee_rad, Vector3d::UnitY()));
     Pose T_ankle_sole;
     T_ankle_sole.rotation = AngleAxisd(angles.ankle_pitch_rad, Vector3d::UnitY()) *
                             AngleAxisd(angles.ankle_roll_rad, Vector3d::UnitX());
     T_ankle_sole.translation_m = T_ankle_sole.rotation * Vector3d(0.0, 0.0, -rex::kAnkleHeight_m);
-    return T_body_hip * T_hip_knee * T_knee_ankle * T_ankle_sole;
+    poses.T_body_sole = poses.T_body_lower * lower(rex::kLowerLeg_m) * T_ankle_sole;
+    return poses;
+}
+
+Pose pelvis_to_sole(Side side, const LegAngles& angles) {
+    return leg_poses(side, angles).T_body_sole;
 }
 
 std::optional<LegAngles> leg_angles(Side side, const Pose& T_body_sole) {

@@ -53,7 +53,14 @@ struct LegAngles {
     [[nodiscard]] double dorsiflexion_rad() const noexcept { return -ankle_pitch_rad; }
 };
 
-/// Point of the sole below the ankle: z up, x toward the toes.
+/// The links of a leg in base_link. Upper and lower leg hang from their origin, hip and knee, along
+/// -z.
+struct LegPoses {
+    Pose T_body_upper;
+    Pose T_body_lower;
+    Pose T_body_sole;  ///< the point of the sole below the ankle: z up, x toward the toes
+};
+[[nodiscard]] LegPoses leg_poses(Side side, const LegAngles& angles);
 [[nodiscard]] Pose pelvis_to_sole(Side side, const LegAngles& angles);
 
 /// Angles that bring the sole to a pose in base_link; nothing where the leg is too short or has to

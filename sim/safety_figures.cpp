@@ -26,10 +26,13 @@ Figures figures_of(const Machine& machine, const Movement& movement) {
     const StepLimits& step = limits.step[static_cast<std::size_t>(movement.movement_class)];
     Figures f;
     f.feet = {rect_of(machine.left_foot), rect_of(machine.right_foot)};
-    f.body = rect_of(machine.body.box);
+    for (const BodyPart& part : machine.body.all()) {
+        f.body.push_back(
+            {rect_of(part.box), metres(part.low_tenth_mm), metres(part.high_tenth_mm)});
+        f.height_m = std::max(f.height_m, f.body.back().high_m);
+    }
     f.sway_m = metres(machine.body.sway_tenth_mm);
-    f.lower_edge_m = metres(machine.body.lower_edge_tenth_mm);
-    f.height_m = metres(machine.body.height_tenth_mm);
+    f.lower_edge_m = metres(machine.body.lower_edge_tenth_mm());
     f.hips_m = metres(machine.sole_depth_tenth_mm);
     f.up_m = metres(step.up_tenth_mm);
     f.down_m = metres(step.down_tenth_mm);
@@ -59,20 +62,25 @@ Figures stricter(const Figures& figures, double share, double taller_m) {
         *limit *= 1.0 - share;
     }
     for (double* room : {&f.sway_m, &f.foot_margin_m, &f.band_m}) *room *= 1.0 + share;
+    for (Figures::Part& part : f.body) {
+        part.low_m *= 1.0 - share;
+        part.high_m += taller_m;
+    }
     f.height_m += taller_m;
     return f;
 }
 
 Rect region_of(const Figures& figures, double slack_m) {
     const PlanarPose start;
-    Rect region =
-        SweptBox(grown(figures.body, figures.sway_m), start, figures.T_start_target).bounds();
     const double around_m = std::max(figures.band_m, figures.foot_margin_m);
-    for (const Rect& foot : figures.feet) {
-        const Rect way = SweptBox(grown(foot, around_m), start, figures.T_start_target).bounds();
+    Rect region = figures.feet[0];
+    const auto include = [&](const Rect& box, double by_m) {
+        const Rect way = SweptBox(grown(box, by_m), start, figures.T_start_target).bounds();
         region.min_m = region.min_m.cwiseMin(way.min_m);
         region.max_m = region.max_m.cwiseMax(way.max_m);
-    }
+    };
+    for (const Rect& foot : figures.feet) include(foot, around_m);
+    for (const Figures::Part& part : figures.body) include(part.box, figures.sway_m);
     return grown(region, slack_m);
 }
 

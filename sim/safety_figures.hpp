@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "sim/planar.hpp"
 #include "sim/primitives.hpp"
@@ -12,11 +13,17 @@ namespace surefoot::sim::rules {
 /// The machine's figures for one movement in metres and radians.
 struct Figures {
     std::array<Rect, 2> feet;  ///< in base_link
-    Rect body;                 ///< in base_link, without sway
+    /// A part of the body: its box in base_link, without sway; heights over the soles.
+    struct Part {
+        Rect box;
+        double low_m = 0.0;
+        double high_m = 0.0;
+    };
+    std::vector<Part> body;
     double sway_m = 0.0;
-    double lower_edge_m = 0.0;
-    double height_m = 0.0;
-    double hips_m = 0.0;  ///< base_link over the soles
+    double lower_edge_m = 0.0;  ///< of the whole body
+    double height_m = 0.0;      ///< likewise
+    double hips_m = 0.0;        ///< base_link over the soles
     double up_m = 0.0;
     double down_m = 0.0;
     double tilt_rad = 0.0;

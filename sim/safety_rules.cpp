@@ -112,7 +112,7 @@ class Inspector {
             check_landing(foot, T_field_target);
             check_way(foot);
         }
-        check_body();
+        for (const Figures::Part& part : figures_.body) check_body(part);
         return found_.findings();
     }
 
@@ -260,26 +260,25 @@ class Inspector {
         });
     }
 
-    void check_body() {
+    void check_body(const Figures::Part& part) {
         const SweptBox way(
-            grown(figures_.body, figures_.sway_m), T_field_body_, figures_.T_start_target);
+            grown(part.box, figures_.sway_m), T_field_body_, figures_.T_start_target);
         const auto matters = [&](const GroundField::Tile& tile, double low_m, double high_m) {
-            return tile.highest_top_m - low_m > figures_.lower_edge_m &&
-                   tile.lowest_underside_m - high_m < figures_.height_m;
+            return tile.highest_top_m - low_m > part.low_m &&
+                   tile.lowest_underside_m - high_m < part.high_m;
         };
         for_samples_in(way.bounds(), matters, [&](const Vector2d& p_field, const auto& sample) {
             const double top_m = above_plane(p_field, sample.top_m);
-            if (!(top_m > figures_.lower_edge_m + kRounding)) return;
-            const double begins_m =
-                std::max(above_plane(p_field, sample.underside_m), figures_.lower_edge_m);
-            if (!(begins_m < figures_.height_m - kRounding)) return;
+            if (!(top_m > part.low_m + kRounding)) return;
+            const double begins_m = std::max(above_plane(p_field, sample.underside_m), part.low_m);
+            if (!(begins_m < part.high_m - kRounding)) return;
             const Danger danger =
                 begins_m > figures_.hips_m ? Danger::overhang_too_low : Danger::body_hits;
             if (!found_.is_worse(danger, -begins_m) || !way.covers(p_field)) return;
             found_.add(danger,
                        -begins_m,
                        begins_m,
-                       figures_.height_m,
+                       part.high_m,
                        {p_field, stance_.plane.at(p_field) + begins_m});
         });
     }

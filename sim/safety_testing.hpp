@@ -23,7 +23,9 @@ inline Machine rex() {
     m.sole_depth_tenth_mm = 9'900;
     m.left_foot = {570, 1'800, 3'660, 1'900};
     m.right_foot = {570, -1'800, 3'660, 1'900};
-    m.body = {{0, 0, 6'600, 6'450}, 500, 1'440, 20'500};
+    m.body.parts[0] = {{0, 0, 6'600, 6'450}, 1'440, 20'500};
+    m.body.count = 1;
+    m.body.sway_tenth_mm = 500;
     const auto set = [&](std::size_t code, std::int32_t forward, std::int32_t left, double deg) {
         Movement& movement = m.movements[code];
         movement.configured = true;

@@ -99,8 +99,8 @@ Status write_explanation(const std::string& file,
         for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
             overlays.outlines.push_back(outline(*foot, T_odom_target, kLanding, "feet landing"));
         }
-        overlays.outlines.push_back(
-            outline(machine.body.box, T_odom_target, kBody, "body landing"));
+        for (const BodyPart& part : machine.body.all())
+            overlays.outlines.push_back(outline(part.box, T_odom_target, kBody, "body landing"));
     }
     if (verdict.evidence.has_worst_cell) {
         overlays.marks.push_back(

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace surefoot {
 
@@ -16,12 +17,34 @@ struct GroundBox {
     std::int32_t width_tenth_mm = 0;     ///< along y
 };
 
-/// The space that the machine and its user fill. Heights count from the soles.
-struct BodyEnvelope {
+/// The space that some links of the machine, or its user, fill during a movement, seen from
+/// base_link on its straight way to the target: the box holds wherever the joint trace takes them,
+/// the shift of the body's weight included. Heights count from the soles.
+struct BodyPart {
     GroundBox box;
-    std::int32_t sway_tenth_mm = 0;  ///< added on all four sides: the body rocks while stepping
-    std::int32_t lower_edge_tenth_mm = 0;  ///< below it only the feet need room
-    std::int32_t height_tenth_mm = 0;      ///< top of the user's head
+    std::int32_t low_tenth_mm = 0;   ///< lower things pass below it
+    std::int32_t high_tenth_mm = 0;  ///< higher things pass above it
+};
+
+/// Everything of the machine and its user but the feet.
+struct Body {
+    static constexpr int kMaxParts = 8;
+    std::array<BodyPart, kMaxParts> parts{};
+    std::int32_t count = 0;
+    std::int32_t sway_tenth_mm = 0;  ///< added on all four sides: what no trace knows
+
+    [[nodiscard]] constexpr std::span<const BodyPart> all() const noexcept {
+        const bool sound = count >= 0 && count <= kMaxParts;
+        return {parts.data(), sound ? static_cast<std::size_t>(count) : 0};
+    }
+    /// Below it only the feet need room.
+    [[nodiscard]] constexpr std::int32_t lower_edge_tenth_mm() const noexcept {
+        std::int32_t lowest = 0;
+        for (const BodyPart& part : all()) {
+            if (lowest == 0 || part.low_tenth_mm < lowest) lowest = part.low_tenth_mm;
+        }
+        return lowest;
+    }
 };
 
 /// How high a movement may step; flat walking and stairs have limits of their own.
@@ -75,7 +98,7 @@ struct Machine {
     std::int32_t sole_depth_tenth_mm = 0;  ///< soles below base_link
     GroundBox left_foot;                   ///< where the feet stand, before and after a movement
     GroundBox right_foot;
-    BodyEnvelope body;
+    Body body;
     std::array<Movement, kMovementCodes> movements{};
     GateLimits limits;
 
@@ -99,6 +122,18 @@ constexpr const char* problem_of(const GroundBox& box) noexcept {
         return "a box lies farther than 10 m from base_link";
     if (!within(box.length_tenth_mm, 100, 20'000) || !within(box.width_tenth_mm, 100, 20'000))
         return "a box must be 0.01-2 m long and wide";
+    return nullptr;
+}
+
+constexpr const char* problem_of(const Body& body) noexcept {
+    if (!within(body.sway_tenth_mm, 0, 5'000)) return "the sway is outside 0-0.5 m";
+    if (!within(body.count, 1, Body::kMaxParts)) return "the body must have 1 to 8 parts";
+    for (const BodyPart& part : body.all()) {
+        if (const char* why = problem_of(part.box)) return why;
+        if (!within(part.low_tenth_mm, 1, 20'000) ||
+            !within(part.high_tenth_mm, part.low_tenth_mm + 1, 30'000))
+            return "the heights of a part of the body are outside their range";
+    }
     return nullptr;
 }
 
@@ -155,7 +190,7 @@ constexpr const char* problem_of(const GateLimits& limits) noexcept {
 
 constexpr const char* Machine::problem() const noexcept {
     if (!detail::within(sole_depth_tenth_mm, 1, 30'000)) return "the soles lie outside 0-3 m depth";
-    for (const GroundBox* box : {&left_foot, &right_foot, &body.box}) {
+    for (const GroundBox* box : {&left_foot, &right_foot}) {
         if (const char* why = detail::problem_of(*box)) return why;
     }
     for (const GroundBox* foot : {&left_foot, &right_foot}) {
@@ -163,10 +198,7 @@ constexpr const char* Machine::problem() const noexcept {
             foot->width_tenth_mm > 16 * limits.patch_side_tenth_mm)
             return "a foot is longer or wider than 16 patches";
     }
-    if (!detail::within(body.sway_tenth_mm, 0, 5'000)) return "the sway is outside 0-0.5 m";
-    if (!detail::within(body.lower_edge_tenth_mm, 1, 10'000) ||
-        !detail::within(body.height_tenth_mm, body.lower_edge_tenth_mm, 30'000))
-        return "the heights of the body envelope are outside their range";
+    if (const char* why = detail::problem_of(body)) return why;
     if (movements[0].configured) return "code 0 is the joystick at rest and cannot be a movement";
     for (const Movement& movement : movements) {
         if (const char* why = detail::problem_of(movement)) return why;

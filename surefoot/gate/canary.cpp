@@ -135,7 +135,7 @@ const auto kFaultList = std::to_array<Fault>({
      [](const Setting& s) {
          change_one_cell(s, [&](std::size_t i) {
              s.map.clearance_tenth_mm[i] =
-                 static_cast<std::uint16_t>(s.machine.body.lower_edge_tenth_mm);
+                 static_cast<std::uint16_t>(s.machine.body.lower_edge_tenth_mm());
          });
      }},
     {Reason::corridor_blocked,

@@ -27,6 +27,7 @@ void show_worst_cell(const grid::MapSnapshot& map,
     evidence.worst_x_tenth_mm = map.origin_x_tenth_mm + worst->cell_x * side + side / 2;
     evidence.worst_y_tenth_mm = map.origin_y_tenth_mm + worst->cell_y * side + side / 2;
     evidence.foot = worst->foot;
+    evidence.overhead = worst->overhead;
     evidence.value_tenth_mm = worst->value_tenth_mm;
     evidence.limit_tenth_mm = worst->limit_tenth_mm;
 }

@@ -17,6 +17,7 @@ struct Finding {
     std::int64_t limit_tenth_mm = 0;
     std::int64_t severity = 0;  ///< the worst one of each reason is kept, the first among equals
     Foot foot = Foot::none;
+    bool overhead = false;  ///< it hangs: the value is the height at which it begins
 };
 
 /// Collects proofs and broken rules while a decision is made.

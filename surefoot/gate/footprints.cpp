@@ -86,9 +86,11 @@ Sweep sweep_of(const Machine& machine, const FixedPose& start, const Movement& m
     sweep.target = moved(start, movement);
     sweep.feet = {foot_sweep(Foot::left, machine.left_foot, machine.limits, start, sweep.target),
                   foot_sweep(Foot::right, machine.right_foot, machine.limits, start, sweep.target)};
-    const BodyEnvelope& body = machine.body;
-    sweep.body = hull_of(corners_of(body.box, start, body.sway_tenth_mm),
-                         corners_of(body.box, sweep.target, body.sway_tenth_mm));
+    std::size_t part = 0;
+    for (const auto& [box, low, high] : machine.body.all()) {
+        sweep.body[part++] = hull_of(corners_of(box, start, machine.body.sway_tenth_mm),
+                                     corners_of(box, sweep.target, machine.body.sway_tenth_mm));
+    }
     return sweep;
 }
 

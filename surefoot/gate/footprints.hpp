@@ -45,7 +45,8 @@ struct FootSweep {
 /// All the ground that a movement needs, in odom.
 struct Sweep {
     std::array<FootSweep, 2> feet;  ///< left, right
-    grid::FixedConvex body;         ///< hull of the body at start and target, widened by the sway
+    /// Of each part of the body the hull of its box at start and target, widened by the sway.
+    std::array<grid::FixedConvex, Body::kMaxParts> body;
     FixedPose target;
 };
 

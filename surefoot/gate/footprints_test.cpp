@@ -101,7 +101,7 @@ TEST(Footprints, corridor_and_body_hull_hold_every_pose_on_the_way) {
             };
             expect_inside(machine.left_foot, sweep.feet[0].corridor);
             expect_inside(machine.right_foot, sweep.feet[1].corridor);
-            expect_inside(machine.body.box, sweep.body);
+            expect_inside(machine.body.parts[0].box, sweep.body[0]);
         }
     }
 }

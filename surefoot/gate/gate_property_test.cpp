@@ -249,7 +249,7 @@ TEST(GateProperty, random_bytes_never_crash_and_never_pass) {
                                      static_cast<std::int32_t>(any(100'000)),
                                      8000,
                                      8000};
-                machine.body.box = {0, 0, 20'000, 20'000};
+                machine.body.parts[0].box = {0, 0, 20'000, 20'000};
             }
             const double yaw = rng.uniform(-4.0, 4.0);
             Query query = make_query(random_command(rng), 0.0, 0.0, std::cos(yaw), std::sin(yaw));

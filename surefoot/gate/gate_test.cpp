@@ -788,5 +788,80 @@ TEST(VerdictText, every_reason_has_a_sentence_and_a_code) {
     EXPECT_STREQ(to_string(static_cast<Decision>(200)), "ERROR");
 }
 
+// ---- parts of the body --------------------------------------------------------------------------
+
+/// Legs 0.5 m wide up to the hips, above them a frame of 1.0 m.
+Machine with_legs_and_frame() {
+    Machine machine = rex();
+    machine.body.parts[0] = {{0, 0, 4000, 5000}, 1440, 9900};
+    machine.body.parts[1] = {{0, 0, 6600, 10000}, 7000, 20500};
+    machine.body.count = 2;
+    machine.body.sway_tenth_mm = 0;
+    return machine;
+}
+Verdict ask_with(const Machine& machine, Terrain& terrain) {
+    const auto map = terrain.snapshot();
+    return decide(machine, query_at_body(kForward, *map), *map, kReady, kNowNs);
+}
+
+TEST(GateBody, each_part_has_its_own_box_and_heights) {
+    const Machine machine = with_legs_and_frame();
+    const auto beside = [&](double height_m) {  // 0.35 m to the side: frame, but no leg
+        Terrain floor;
+        floor.box(-0.1, 0.3, 0.33, 0.40, height_m);
+        return ask_with(machine, floor);
+    };
+    expect_ok(beside(0.69));
+    expect_refused(beside(0.72), Reason::body_clearance);
+    EXPECT_EQ(beside(0.72).evidence.limit_tenth_mm, 7000);
+    const auto far = [&](double height_m) {  // beyond the frame
+        Terrain floor;
+        floor.box(-0.1, 0.3, 0.55, 0.60, height_m);
+        return ask_with(machine, floor);
+    };
+    expect_ok(far(1.5));
+    // Both parts at once: the one whose limit is broken by more is named.
+    Terrain wall;
+    wall.box(0.5, 0.6, -0.5, 0.5, 1.5);
+    expect_refused(ask_with(machine, wall), Reason::corridor_blocked);
+    EXPECT_TRUE(ask_with(machine, wall).reasons.contains(Reason::body_clearance));
+}
+
+TEST(GateBody, what_hangs_meets_the_part_that_is_as_high_and_is_said_to_hang) {
+    const Machine machine = with_legs_and_frame();
+    const auto hanging = [&](double y0, double y1, double clearance_m) {
+        Terrain floor;
+        floor.paint(floor.clearance, -0.1, 0.3, y0, y1, clearance_m + 1e-5);
+        return ask_with(machine, floor);
+    };
+    expect_ok(hanging(0.33, 0.40, 2.06));
+    const Verdict frame = hanging(0.33, 0.40, 1.9);
+    expect_refused(frame, Reason::body_clearance);
+    EXPECT_TRUE(frame.evidence.overhead);
+    EXPECT_EQ(frame.evidence.value_tenth_mm, 19'000);
+    EXPECT_EQ(frame.evidence.limit_tenth_mm, 20'500);
+    Terrain floor;
+    floor.paint(floor.clearance, -0.1, 0.3, 0.33, 0.40, 1.9);
+    const auto map = floor.snapshot();
+    const Query query = query_at_body(kForward, *map);
+    EXPECT_NE(text_of(frame, query, machine).find("only 1.90 m of room"), std::string::npos)
+        << text_of(frame, query, machine);
+    expect_ok(hanging(0.55, 0.60, 0.5));
+}
+
+TEST(GateBody, what_hangs_low_meets_a_lifted_foot_where_no_part_of_the_body_comes) {
+    Machine machine = with_legs_and_frame();
+    machine.body.parts[0].box = machine.body.parts[1].box = {-2000, 0, 1000, 1000};
+    const auto hanging = [&](double clearance_m) {  // over the landing toes
+        Terrain floor;
+        floor.paint(floor.clearance, 0.58, 0.62, 0.1, 0.25, clearance_m);
+        return ask_with(machine, floor);
+    };
+    expect_ok(hanging(0.19));  // legs begin at 0.144, a foot is lifted by 0.04
+    const Verdict low = hanging(0.18);
+    expect_refused(low, Reason::corridor_blocked);
+    EXPECT_TRUE(low.evidence.overhead);
+}
+
 }  // namespace
 }  // namespace surefoot::gate::testing

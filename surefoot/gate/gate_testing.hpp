@@ -35,7 +35,9 @@ inline Machine rex() {
     m.sole_depth_tenth_mm = 9900;
     m.left_foot = {570, 1800, 3660, 1900};
     m.right_foot = {570, -1800, 3660, 1900};
-    m.body = {{0, 0, 6600, 6450}, 500, 1440, 20500};
+    m.body.parts[0] = {{0, 0, 6600, 6450}, 1440, 20500};
+    m.body.count = 1;
+    m.body.sway_tenth_mm = 500;
     const auto set = [&m](int code, int forward, int left, double turn_deg) {
         Movement& movement = m.movements[static_cast<std::size_t>(code)];
         movement.configured = true;

@@ -80,6 +80,21 @@ void check_below(const Place& place,
              static_cast<std::int64_t>(slack / limits.sigma_factor));
 }
 
+/// Wanted: nothing hangs lower over the stance than `height`.
+void check_overhead(const Place& place,
+                    std::int64_t rise,
+                    std::int64_t height,
+                    Reason reason,
+                    Findings& findings) noexcept {
+    if (place.cell.clearance_tenth_mm == grid::MapSnapshot::kNoCeiling) return;
+    const std::int64_t ceiling = rise + place.cell.clearance_tenth_mm;
+    if (!(ceiling < height)) return;
+    Finding finding = finding_at(place.ix, place.iy, place.foot, ceiling, height);
+    finding.severity = height - ceiling;
+    finding.overhead = true;
+    findings.deny(reason, finding);
+}
+
 /// Asks every cell of a region; `test(place, rise)` sees the known ones with their height over the
 /// stance, `always(place)` all inside the map. One cell beyond the map ends the region: the rest of
 /// it out there tells nothing new.
@@ -162,6 +177,8 @@ void check_stance(const Scene& scene, Findings& findings) noexcept {
 
 void check_corridors(const Scene& scene, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
+    const std::int64_t lifted =
+        std::int64_t{scene.machine.body.lower_edge_tenth_mm()} + limits.swing_clearance_tenth_mm;
     for (const FootSweep& foot : scene.sweep.feet) {
         const auto test = [&](const Place& place, std::int64_t rise) {
             check_below(place,
@@ -170,22 +187,22 @@ void check_corridors(const Scene& scene, Findings& findings) noexcept {
                         Reason::corridor_blocked,
                         limits,
                         findings);
+            check_overhead(place, rise, lifted, Reason::corridor_blocked, findings);
         };
         check_region(scene, foot.corridor, foot.foot, findings, test, kNothing);
     }
 }
 
 void check_body(const Scene& scene, Findings& findings) noexcept {
-    const BodyEnvelope& body = scene.machine.body;
-    const auto test = [&](const Place& place, std::int64_t rise) {
-        if (rise > body.lower_edge_tenth_mm)
-            deny(findings, Reason::body_clearance, place, rise, body.lower_edge_tenth_mm);
-        const std::int64_t ceiling = rise + place.cell.clearance_tenth_mm;
-        if (place.cell.clearance_tenth_mm != grid::MapSnapshot::kNoCeiling &&
-            ceiling < body.height_tenth_mm)
-            deny(findings, Reason::body_clearance, place, ceiling, body.height_tenth_mm);
-    };
-    check_region(scene, scene.sweep.body, Foot::none, findings, test, kNothing);
+    std::size_t index = 0;
+    for (const BodyPart& part : scene.machine.body.all()) {
+        const auto test = [&](const Place& place, std::int64_t rise) {
+            if (rise > part.low_tenth_mm)
+                deny(findings, Reason::body_clearance, place, rise, part.low_tenth_mm);
+            check_overhead(place, rise, part.high_tenth_mm, Reason::body_clearance, findings);
+        };
+        check_region(scene, scene.sweep.body[index++], Foot::none, findings, test, kNothing);
+    }
 }
 
 void check_bands(const Scene& scene, Findings& findings) noexcept {

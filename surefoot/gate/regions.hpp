@@ -42,10 +42,11 @@ struct Scene {
 /// millimetres, the height must keep it by `sigma_factor` sigma, else NOT_RESOLVABLE:
 /// - under the present feet none is a drop;
 void check_stance(const Scene& scene, Findings& findings) noexcept;
-/// - in the way of a foot nothing stands higher over the stance than `swing_clearance`;
+/// - in the way of a foot nothing stands higher over the stance than `swing_clearance`, nor hangs
+///   so low that a lifted foot meets it;
 void check_corridors(const Scene& scene, Findings& findings) noexcept;
-/// - in the way of the body nothing stands higher than its lower edge, nor hangs lower than its
-/// top;
+/// - in the way of each part of the body nothing stands higher than its lower edge, nor hangs lower
+///   than its top;
 void check_body(const Scene& scene, Findings& findings) noexcept;
 /// - under and `drop_band` around the landing feet nothing lies lower than `drop` or shows evidence
 ///   of a drop.

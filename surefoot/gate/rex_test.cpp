@@ -19,6 +19,13 @@ TEST(Rex, is_a_valid_machine_and_each_broken_number_is_a_problem) {
     };
     expect_problem([](Machine& m) { m.left_foot.length_tenth_mm = 0; }, "foot without length");
     expect_problem([](Machine& m) { m.left_foot.length_tenth_mm = 9000; }, "foot of 18 patches");
+    expect_problem([](Machine& m) { m.body.count = 0; }, "no body");
+    expect_problem([](Machine& m) { m.body.count = Body::kMaxParts + 1; }, "nine parts");
+    expect_problem([](Machine& m) { m.body.count = -1; }, "fewer than none");
+    expect_problem([](Machine& m) { m.body.count = 2; }, "a part without a size");
+    expect_problem([](Machine& m) { m.body.parts[0].low_tenth_mm = 0; }, "body on the ground");
+    expect_problem([](Machine& m) { m.body.parts[0].high_tenth_mm = 1440; }, "flat body");
+    expect_problem([](Machine& m) { m.body.sway_tenth_mm = -1; }, "negative sway");
     expect_problem([](Machine& m) { m.movements[0].configured = true; }, "code 0");
     expect_problem([&](Machine& m) { m.movements[9].cos_turn = nan; }, "NaN turn");
     expect_problem([](Machine& m) { m.movements[9].cos_turn = -1.0; }, "half a turn");

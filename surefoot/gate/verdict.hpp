@@ -44,6 +44,7 @@ struct Evidence {
     Foot foot = Foot::none;           ///< the landing foot that the primary reason is about
     std::int64_t value_tenth_mm = 0;  ///< what was found there, in the unit of the limit ...
     std::int64_t limit_tenth_mm = 0;  ///< ... that it broke; both 0 where no length decides
+    bool overhead = false;            ///< it hangs: the value is the height at which it begins
 
     std::uint32_t unproven = 0;  ///< bit i: Proof i does not hold. Without readiness the ground is
                                  ///< not looked at, and nothing about it is proven

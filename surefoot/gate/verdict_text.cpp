@@ -78,9 +78,12 @@ std::string terrain_text(const Verdict& verdict, const Query& query, const Machi
         case Reason::step_too_high: return "step up of " + value + where + limit(e);
         case Reason::step_too_low: return "step down of " + value + where + limit(e);
         case Reason::corridor_blocked:
+            if (e.overhead)
+                return "something that hangs " + value + " high in the way of the foot" + where +
+                       limit(e);
             return "something " + value + " high in the way of the foot" + where + limit(e);
         case Reason::body_clearance:
-            if (e.limit_tenth_mm == machine.body.height_tenth_mm)
+            if (e.overhead)
                 return "only " + value + " of room under something overhead" + where + limit(e);
             return "something " + value + " high in the way of the body" + where + limit(e);
         case Reason::unknown_cells: return "ground that was never seen" + where;
