@@ -47,7 +47,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::uint8_t sealed = 0;
     bytes.into(&sealed, sizeof sealed);
     bytes.into(static_cast<void*>(&map->frame_time_ns), 128);
-    if ((sealed & 1U) != 0U) map->checksum = grid::snapshot_checksum(*map);
+    if ((sealed & 1U) != 0U) grid::seal(*map);
     gate::GateHealth health;
     health.state = gate::GateState::ready;
     const gate::Verdict verdict = gate::decide(machine, query, *map, health, now_ns);

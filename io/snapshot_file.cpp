@@ -147,7 +147,8 @@ Result<std::string> format_snapshot(const MapSnapshot& snapshot) {
         *clean, [&](const auto& layer) { std::for_each_n(layer.begin(), cells_of(*clean), put); });
     for (int i = 0; i < clean->edge_count; ++i)
         for_each_field(clean->edges[static_cast<std::size_t>(i)], put);
-    put(grid::snapshot_checksum(*clean));
+    grid::seal(*clean);
+    put(clean->checksum);
     return out;
 }
 
@@ -191,7 +192,8 @@ Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
         for_each_field(snapshot->edges[static_cast<std::size_t>(i)],
                        [&](auto& field) { reader(field); });
     }
-    reader(snapshot->checksum);
+    std::uint64_t checksum = 0;
+    reader(checksum);
     if (!reader.complete || !reader.rest.empty()) {
         return damaged(file,
                        fmt::format("{} map snapshot: {} bytes for {} x {} cells",
@@ -200,7 +202,8 @@ Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
                                    snapshot->nx,
                                    snapshot->ny));
     }
-    if (!reader.known_values || !grid::is_intact(*snapshot)) {
+    grid::seal(*snapshot);
+    if (!reader.known_values || snapshot->checksum != checksum || !grid::is_sealed(*snapshot)) {
         return damaged(file, "damaged map snapshot: its checksum or header is wrong");
     }
     return snapshot;

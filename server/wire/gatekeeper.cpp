@@ -20,7 +20,7 @@ std::unique_ptr<grid::MapSnapshot> nothing_seen() {
     map->resolution_tenth_mm = 250;
     map->nx = map->ny = 1;
     map->height_tenth_mm.fill(grid::MapSnapshot::kUnknownHeight);
-    map->checksum = grid::snapshot_checksum(*map);
+    grid::seal(*map);
     return map;
 }
 

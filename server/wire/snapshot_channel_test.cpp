@@ -35,7 +35,7 @@ class SnapshotChannel : public ::testing::Test {
         map.nx = map.ny = grid::MapSnapshot::kMaxSide;
         map.height_tenth_mm.fill(static_cast<std::int32_t>(version));
         map.sigma_tenth_mm.fill(static_cast<std::uint16_t>(version));
-        map.checksum = grid::snapshot_checksum(map);
+        grid::seal(map);
     }
     static std::unique_ptr<grid::MapSnapshot> filled(std::uint64_t version) {
         auto map = std::make_unique<grid::MapSnapshot>();

@@ -209,7 +209,7 @@ Canaries::Outcome Canaries::judge(int index) noexcept {
         fault.happen({machine_, map_, query, health, now_ns, sweep});
         outcome.expected = fault.expected;
     }
-    map_.checksum = grid::snapshot_checksum(map_);
+    grid::seal(map_);
     const Verdict verdict = decide(machine_, query, map_, health, now_ns);
     outcome.name = to_string(outcome.expected);
     outcome.found = verdict.primary;

@@ -81,6 +81,23 @@ FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept {
     return target;
 }
 
+Extent extent_of(const Sweep& sweep) noexcept {
+    Extent extent{sweep.target.position.y, sweep.target.position.y};
+    const auto include = [&extent](const grid::FixedConvex& polygon) {
+        for (const grid::FixedPoint& p : polygon.points()) {
+            extent.low_y = std::min(extent.low_y, p.y);
+            extent.high_y = std::max(extent.high_y, p.y);
+        }
+    };
+    for (const FootSweep& foot : sweep.feet) {
+        include(foot.stance);
+        include(foot.corridor);
+        include(foot.band);
+    }
+    for (const grid::FixedConvex& part : sweep.body) include(part);
+    return extent;
+}
+
 Sweep sweep_of(const Machine& machine, const FixedPose& start, const Movement& movement) noexcept {
     Sweep sweep;
     sweep.target = moved(start, movement);

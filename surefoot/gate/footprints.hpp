@@ -50,6 +50,13 @@ struct Sweep {
     FixedPose target;
 };
 
+/// Rows of y that hold all of a sweep.
+struct Extent {
+    std::int64_t low_y = 0;
+    std::int64_t high_y = 0;
+};
+[[nodiscard]] Extent extent_of(const Sweep& sweep) noexcept;
+
 [[nodiscard]] Sweep sweep_of(const Machine& machine,
                              const FixedPose& start,
                              const Movement& movement) noexcept;

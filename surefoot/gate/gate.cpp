@@ -116,13 +116,13 @@ const Movement* movement_for(const Machine& machine, std::uint8_t command) noexc
     return usable ? &movement : nullptr;
 }
 
-/// What perception delivered, whatever is asked of it.
+/// What perception delivered, whatever is asked of it; the cells are not looked at.
 void judge_snapshot(const GateLimits& limits,
                     const grid::MapSnapshot& map,
                     std::int64_t now_ns,
                     Findings& findings) noexcept {
     findings.prove(Proof::snapshot_intact, [&] {
-        if (!grid::is_intact(map)) findings.deny(Reason::internal);
+        if (!grid::is_sealed(map)) findings.deny(Reason::internal);
     });
     findings.prove(Proof::stamps_fresh, [&] { check_freshness(map, limits, now_ns, findings); });
     findings.prove(Proof::gravity_known, [&] {
@@ -162,6 +162,10 @@ void judge_terrain(const Machine& machine,
         fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
     const Sweep sweep = sweep_of(machine, start, movement);
     const Ground ground(map, query);
+    findings.prove(Proof::cells_intact, [&] {
+        const Extent extent = extent_of(sweep);
+        if (!ground.is_intact(extent.low_y, extent.high_y)) findings.deny(Reason::internal);
+    });
     const std::optional<std::int64_t> stance = stance_height(ground, query, sweep);
     const Scene scene{machine, movement, ground, sweep, stance.value_or(0)};
     findings.evidence.stance_known = stance.has_value();
@@ -236,6 +240,7 @@ ReasonSet snapshot_faults(const GateLimits& limits,
                           std::int64_t now_ns) noexcept {
     Findings findings;
     judge_snapshot(limits, map, now_ns, findings);
+    if (!grid::is_intact(map)) findings.deny(Reason::internal);
     return findings.reasons();
 }
 

@@ -695,8 +695,43 @@ TEST(GateReadiness, the_camera_must_bring_new_and_whole_images) {
 TEST(GateReadiness, a_damaged_map_is_an_internal_error) {
     Terrain floor;
     const auto map = floor.snapshot();
-    map->height_tenth_mm[cell_at(*map, 2.0, 2.0)] ^= 1;  // far from the step, no matter
+    std::int32_t& height = map->height_tenth_mm[cell_at(*map, 0.3, 0.2)];
+    height ^= 1;
+    const Verdict verdict = ask(*map, kForward);
+    expect_error(verdict, Reason::internal);
+    EXPECT_TRUE(verdict.evidence.lacks(Proof::cells_intact));
+    height ^= 1;
+    expect_ok(ask(*map, kForward));
+    map->version ^= 1;
     expect_error(ask(*map, kForward), Reason::internal);
+    map->version ^= 1;
+    // Far from the step nothing is read; whoever takes in the map looks at all of it.
+    map->height_tenth_mm[cell_at(*map, 2.0, 2.9)] ^= 1;
+    expect_ok(ask(*map, kForward));
+    EXPECT_TRUE(snapshot_faults(rex().limits, *map, kNowNs).contains(Reason::internal));
+}
+
+/// Whatever decide() may read of any layer, a changed bit of it is noticed, or does not matter.
+TEST(GateReadiness, no_verdict_is_made_of_a_changed_cell) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    for (const std::uint8_t command : {kForward, kBackward, kLeft, kTurnRight}) {
+        Query query = query_at_body(command, *map);
+        query.vouched = {true, 0, 0, 6000, 0};
+        const Verdict before = decide(rex(), query, *map, kReady, kNowNs);
+        expect_ok(before);
+        for (std::size_t i = 0; i < 240UL * 240UL; i += 37) {
+            map->source[i] = grid::EvidenceSource::unknown;
+            map->component[i] ^= 1;
+            const Verdict after = decide(rex(), query, *map, kReady, kNowNs);
+            map->source[i] = grid::EvidenceSource::measured;
+            map->component[i] ^= 1;
+            if (after.decision == Decision::error) continue;
+            ASSERT_EQ(after.decision, Decision::ok) << "cell " << i << ": " << words(after);
+            ASSERT_EQ(after.evidence.known_cells, before.evidence.known_cells) << "cell " << i;
+            ASSERT_EQ(after.evidence.vouched_cells, before.evidence.vouched_cells) << "cell " << i;
+        }
+    }
 }
 
 TEST(GateReadiness, numbers_must_be_finite_and_small) {

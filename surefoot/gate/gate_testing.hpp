@@ -154,9 +154,7 @@ inline std::size_t cell_at(const grid::MapSnapshot& map, double x_m, double y_m)
     return static_cast<std::size_t>(iy * map.nx + ix);
 }
 
-inline void seal(grid::MapSnapshot& map) {
-    map.checksum = grid::snapshot_checksum(map);
-}
+using grid::seal;
 
 inline Verdict ask(const grid::MapSnapshot& map, std::uint8_t command) {
     return decide(rex(), query_at_body(command, map), map, kReady, kNowNs);

@@ -21,6 +21,8 @@ void check_joined(const Machine& machine,
     const Movement stay;
     const Sweep sweep = sweep_of(
         machine, fixed_pose(here.x_tenth_mm, here.y_tenth_mm, here.cos_yaw, here.sin_yaw), stay);
+    const Extent extent = extent_of(sweep);
+    if (!ground.is_intact(extent.low_y, extent.high_y)) findings.deny(Reason::internal);
     const std::optional<std::int64_t> stance = stance_height(ground, here, sweep);
     if (!stance) {
         findings.deny(Reason::disconnected);
@@ -71,9 +73,10 @@ Verdict judge_goal(const Machine& machine,
             map,
             findings);
         if (!findings.reasons().empty()) {
-            verdict.decision = Decision::not_traversable;
             verdict.reasons = findings.reasons();
             verdict.primary = verdict.reasons.primary();
+            verdict.decision =
+                is_error(verdict.primary) ? Decision::error : Decision::not_traversable;
             show_worst_cell(map, findings, verdict.primary, verdict.evidence);
         }
     }

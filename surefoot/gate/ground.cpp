@@ -57,6 +57,17 @@ GroundCell Ground::cell(std::int64_t ix, std::int64_t iy) const noexcept {
     return cell;
 }
 
+bool Ground::is_intact(std::int64_t low_y_tenth_mm, std::int64_t high_y_tenth_mm) const noexcept {
+    if (vouching_) {
+        const std::int64_t reach = std::int64_t{vouched_.radius_tenth_mm} + grid_.side;
+        low_y_tenth_mm = std::min(low_y_tenth_mm, vouched_.center_y_tenth_mm - reach);
+        high_y_tenth_mm = std::max(high_y_tenth_mm, vouched_.center_y_tenth_mm + reach);
+    }
+    return grid::are_rows_intact(map_,
+                                 grid::floor_div(low_y_tenth_mm - grid_.origin_y, grid_.side),
+                                 grid::floor_div(high_y_tenth_mm - grid_.origin_y, grid_.side));
+}
+
 grid::FixedPoint Ground::doubled_center(std::int64_t ix,
                                         std::int64_t iy,
                                         grid::FixedPoint origin) const noexcept {

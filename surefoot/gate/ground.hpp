@@ -42,6 +42,10 @@ class Ground {
                                                   std::int64_t iy,
                                                   grid::FixedPoint origin) const noexcept;
     [[nodiscard]] bool is_vouching() const noexcept { return vouching_; }
+    /// Nobody changed a cell between these y (odom), nor around the vouched area, since the map was
+    /// sealed. Precondition: grid::is_sealed().
+    [[nodiscard]] bool is_intact(std::int64_t low_y_tenth_mm,
+                                 std::int64_t high_y_tenth_mm) const noexcept;
     [[nodiscard]] const VouchedArea& vouched() const noexcept { return vouched_; }
 
   private:

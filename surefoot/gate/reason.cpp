@@ -70,6 +70,7 @@ const char* to_string(Proof proof) noexcept {
         case Proof::pose_healthy: return "pose_healthy";
         case Proof::camera_healthy: return "camera_healthy";
         case Proof::command_known: return "command_known";
+        case Proof::cells_intact: return "cells_intact";
         case Proof::stance_known: return "stance_known";
         case Proof::corridors_clear: return "corridors_clear";
         case Proof::body_clear: return "body_clear";

@@ -2,6 +2,8 @@
 #include "surefoot/gate/regions.hpp"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 namespace surefoot::gate {
 namespace {
@@ -95,9 +97,26 @@ void check_overhead(const Place& place,
     findings.deny(reason, finding);
 }
 
-/// Asks every cell of a region; `test(place, rise)` sees the known ones with their height over the
-/// stance, `always(place)` all inside the map. One cell beyond the map ends the region: the rest of
-/// it out there tells nothing new.
+/// Asks one cell of a region; `test(place, rise)` sees it with its height over the stance if it is
+/// known, `always(place)` if it is inside the map. False when it is not: one cell beyond the map
+/// ends a region, the rest of it out there tells nothing new.
+template <typename Test, typename Always>
+bool check_cell(const Scene& scene,
+                std::int64_t ix,
+                std::int64_t iy,
+                Foot foot,
+                Findings& findings,
+                Test&& test,
+                Always&& always) noexcept {
+    const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
+    const bool inside = place.cell.knowledge != Knowledge::outside;
+    if (inside) always(place);
+    if (check_knowledge(place, scene.machine.limits, findings))
+        test(place, place.cell.height_tenth_mm - scene.stance_tenth_mm);
+    return inside;
+}
+
+/// Asks every cell of a region.
 template <typename Test, typename Always>
 void check_region(const Scene& scene,
                   const grid::FixedConvex& region,
@@ -107,12 +126,18 @@ void check_region(const Scene& scene,
                   Always&& always) noexcept {
     grid::for_each_overlapped_cell(
         region, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
-            const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
-            if (place.cell.knowledge != Knowledge::outside) always(place);
-            if (check_knowledge(place, scene.machine.limits, findings))
-                test(place, place.cell.height_tenth_mm - scene.stance_tenth_mm);
-            return place.cell.knowledge != Knowledge::outside;
+            return check_cell(scene, ix, iy, foot, findings, test, always);
         });
+}
+
+/// Nothing stands as high as a part of the body begins, nor hangs lower than it ends.
+void check_part(const BodyPart& part,
+                const Place& place,
+                std::int64_t rise,
+                Findings& findings) noexcept {
+    if (rise > part.low_tenth_mm)
+        deny(findings, Reason::body_clearance, place, rise, part.low_tenth_mm);
+    check_overhead(place, rise, part.high_tenth_mm, Reason::body_clearance, findings);
 }
 
 constexpr auto kNothing = [](const Place&) noexcept {};
@@ -194,14 +219,39 @@ void check_corridors(const Scene& scene, Findings& findings) noexcept {
 }
 
 void check_body(const Scene& scene, Findings& findings) noexcept {
-    std::size_t index = 0;
-    for (const BodyPart& part : scene.machine.body.all()) {
-        const auto test = [&](const Place& place, std::int64_t rise) {
-            if (rise > part.low_tenth_mm)
-                deny(findings, Reason::body_clearance, place, rise, part.low_tenth_mm);
-            check_overhead(place, rise, part.high_tenth_mm, Reason::body_clearance, findings);
+    const std::span<const BodyPart> parts = scene.machine.body.all();
+    std::array<grid::RowRuns, Body::kMaxParts> areas;
+    grid::FixedRun rows{INT64_MAX, INT64_MIN};
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        areas[i] = {scene.sweep.body[i], scene.ground.grid()};
+        rows = {std::min(rows.first, areas[i].rows().first),
+                std::max(rows.last, areas[i].rows().last)};
+    }
+    // The parts lie over each other: every cell is asked once, and then for each part above it.
+    for (std::int64_t iy = rows.first; iy <= rows.last; ++iy) {
+        std::array<grid::FixedRun, Body::kMaxParts> runs;
+        grid::FixedRun all{INT64_MAX, INT64_MIN};
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            runs[i] = areas[i].run(iy);
+            if (runs[i].last < runs[i].first) continue;
+            all = {std::min(all.first, runs[i].first), std::max(all.last, runs[i].last)};
+        }
+        const auto over = [&](std::int64_t ix) {
+            std::uint32_t mask = 0;
+            for (std::size_t i = 0; i < parts.size(); ++i)
+                mask |= (runs[i].contains(ix) ? 1U : 0U) << i;
+            return mask;
         };
-        check_region(scene, scene.sweep.body[index++], Foot::none, findings, test, kNothing);
+        for (std::int64_t ix = all.first; ix <= all.last; ++ix) {
+            const std::uint32_t mask = over(ix);
+            if (mask == 0) continue;
+            const auto test = [&](const Place& place, std::int64_t rise) {
+                for (std::size_t i = 0; i < parts.size(); ++i) {
+                    if ((mask >> i & 1U) != 0) check_part(parts[i], place, rise, findings);
+                }
+            };
+            if (!check_cell(scene, ix, iy, Foot::none, findings, test, kNothing)) return;
+        }
     }
 }
 

@@ -17,13 +17,14 @@ enum class Foot : std::uint8_t { none, left, right };
 enum class Proof : std::uint8_t {
     process_ready,    ///< state ready, no fault raised
     machine_valid,    ///< the machine file passes its own check
-    snapshot_intact,  ///< layout, ranges and checksum
+    snapshot_intact,  ///< layout, ranges and checksums, but for the cells
     numbers_valid,    ///< pose, heights and areas of the query
     stamps_fresh,     ///< neither old nor from the future
     gravity_known,    ///< measured, not assumed
     pose_healthy,     ///< odometry neither lost nor degraded
     camera_healthy,   ///< its images are new and whole
     command_known,    ///< the machine file has this movement and its class is enabled
+    cells_intact,     ///< the rows of the map that are read are those that were sealed
     stance_known,     ///< ground under the present feet
     corridors_clear,  ///< nothing in the way of either foot
     body_clear,       ///< nothing in the way of the body

@@ -70,45 +70,87 @@ struct FixedConvex {
     return hull;
 }
 
-/// Whether the open polygon and the open square of cell (ix, iy) overlap (separating axes; touching
-/// along an edge is no overlap). `corner` is the polygon relative to the grid's origin.
-[[nodiscard]] inline bool overlaps_cell(const FixedConvex& relative,
-                                        std::int64_t side,
-                                        std::int64_t ix,
-                                        std::int64_t iy) noexcept {
-    const FixedPoint low{ix * side, iy * side};
-    const FixedPoint high{low.x + side, low.y + side};
+/// A run of cells of one row; empty when last < first.
+struct FixedRun {
+    std::int64_t first = 0;
+    std::int64_t last = -1;
+
+    [[nodiscard]] constexpr bool contains(std::int64_t i) const noexcept {
+        return i >= first && i <= last;
+    }
+};
+
+/// The cells of row `iy`, among those `within`, whose open square overlaps the open polygon
+/// (separating axes; touching along an edge is no overlap): for a convex shape one run. Exact; one
+/// division for each edge that is not parallel to the row. `relative` counts from the grid's origin
+/// and has an area; row and cells lie within its bounds.
+[[nodiscard]] inline FixedRun overlapped_run(const FixedConvex& relative,
+                                             std::int64_t side,
+                                             std::int64_t iy,
+                                             FixedRun within) noexcept {
+    const std::int64_t low_y = iy * side;
     for (int i = 0; i < relative.count; ++i) {
         const FixedPoint a = relative.vertices[static_cast<std::size_t>(i)];
         const FixedPoint b = relative.vertices[static_cast<std::size_t>((i + 1) % relative.count)];
-        // The corner farthest to the left of a -> b: is even that one not inside?
-        const FixedPoint corner{b.y > a.y ? low.x : high.x, b.x > a.x ? high.y : low.y};
-        if (cross(a, b, corner) <= 0) return false;
+        // Wanted: dx * (y - a.y) - dy * (x - a.x) > 0 at the corner farthest to the left of a -> b.
+        const std::int64_t dy = b.y - a.y;
+        const std::int64_t y = b.x > a.x ? low_y + side : low_y;
+        const std::int64_t product = (b.x - a.x) * (y - a.y);
+        if (dy > 0) {  // x = ix * side < a.x + product / dy
+            const std::int64_t x = a.x + floor_div(product - 1, dy);
+            within.last = std::min(within.last, floor_div(x, side));
+        } else if (dy < 0) {  // x = (ix + 1) * side > a.x + (-product) / (-dy)
+            const std::int64_t x = a.x + floor_div(-product, -dy) + 1;
+            within.first = std::max(within.first, floor_div(x + side - 1, side) - 1);
+        } else if (product <= 0) {
+            return {};
+        }
     }
-    return true;
+    return within;
 }
+
+/// A polygon as runs of cells: exact, integers only. Without area it has no rows.
+class RowRuns {
+  public:
+    RowRuns() = default;
+    RowRuns(const FixedConvex& polygon, const FixedGrid& grid) noexcept
+        : relative_(polygon), side_(grid.side) {
+        if (polygon.count < 3 || grid.side <= 0) return;
+        FixedPoint low{INT64_MAX, INT64_MAX};
+        FixedPoint high{INT64_MIN, INT64_MIN};
+        for (int i = 0; i < relative_.count; ++i) {
+            FixedPoint& p = relative_.vertices[static_cast<std::size_t>(i)];
+            p = {p.x - grid.origin_x, p.y - grid.origin_y};
+            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+        }
+        columns_ = {floor_div(low.x, side_), floor_div(high.x - 1, side_)};
+        rows_ = {floor_div(low.y, side_), floor_div(high.y - 1, side_)};
+    }
+    [[nodiscard]] FixedRun rows() const noexcept { return rows_; }
+    /// Cells of row `iy` whose interior the polygon overlaps; any row may be asked for.
+    [[nodiscard]] FixedRun run(std::int64_t iy) const noexcept {
+        if (iy < rows_.first || iy > rows_.last) return {};
+        return overlapped_run(relative_, side_, iy, columns_);
+    }
+
+  private:
+    FixedConvex relative_;  ///< counted from the grid's origin
+    std::int64_t side_ = 1;
+    FixedRun rows_;
+    FixedRun columns_;
+};
 
 /// Calls `visit(ix, iy) -> bool` for every cell whose interior the polygon overlaps, rows from the
 /// smallest y, until it returns false; cells outside the map are visited too. Returns whether all
-/// were visited. A polygon without area visits nothing. Exact: integers only.
+/// were visited. A polygon without area visits nothing.
 template <typename Visitor>
 bool for_each_overlapped_cell(const FixedConvex& polygon, const FixedGrid& grid, Visitor&& visit) {
-    if (polygon.count < 3 || grid.side <= 0) return true;
-    FixedConvex relative = polygon;
-    FixedPoint low{INT64_MAX, INT64_MAX};
-    FixedPoint high{INT64_MIN, INT64_MIN};
-    for (int i = 0; i < relative.count; ++i) {
-        FixedPoint& p = relative.vertices[static_cast<std::size_t>(i)];
-        p = {p.x - grid.origin_x, p.y - grid.origin_y};
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-    const std::int64_t first_x = floor_div(low.x, grid.side);
-    const std::int64_t last_x = floor_div(high.x - 1, grid.side);
-    const std::int64_t last_y = floor_div(high.y - 1, grid.side);
-    for (std::int64_t iy = floor_div(low.y, grid.side); iy <= last_y; ++iy) {
-        for (std::int64_t ix = first_x; ix <= last_x; ++ix) {
-            if (overlaps_cell(relative, grid.side, ix, iy) && !visit(ix, iy)) return false;
+    const RowRuns area(polygon, grid);
+    for (std::int64_t iy = area.rows().first; iy <= area.rows().last; ++iy) {
+        const FixedRun run = area.run(iy);
+        for (std::int64_t ix = run.first; ix <= run.last; ++ix) {
+            if (!visit(ix, iy)) return false;
         }
     }
     return true;

@@ -86,6 +86,51 @@ TEST(FixedPolygon, hull_of_few_or_collinear_points_has_no_area) {
     EXPECT_EQ(visited, 0);
 }
 
+/// Whether the open polygon and the open square of cell (ix, iy) overlap (separating axes; touching
+/// along an edge is no overlap): every axis by itself, what the runs must agree with.
+bool overlaps_cell(const FixedConvex& relative,
+                   std::int64_t side,
+                   std::int64_t ix,
+                   std::int64_t iy) {
+    const FixedPoint low{ix * side, iy * side};
+    const FixedPoint high{low.x + side, low.y + side};
+    for (int i = 0; i < relative.count; ++i) {
+        const FixedPoint a = relative.vertices[static_cast<std::size_t>(i)];
+        const FixedPoint b = relative.vertices[static_cast<std::size_t>((i + 1) % relative.count)];
+        // The corner farthest to the left of a -> b: is even that one not inside?
+        const FixedPoint corner{b.y > a.y ? low.x : high.x, b.x > a.x ? high.y : low.y};
+        if (cross(a, b, corner) <= 0) return false;
+    }
+    return true;
+}
+
+TEST(FixedPolygon, runs_are_the_cells_that_every_axis_says_overlap) {
+    Rng rng(12);
+    for (int round = 0; round < 20'000; ++round) {
+        const FixedConvex small = random_hull(rng, round % 2 == 0 ? 60 : 9000);
+        // Far out, as large as coordinates may become, nothing overflows.
+        const std::int64_t far =
+            round % 3 == 0 ? 0 : (round % 3 == 1 ? 1'000'000'000 : -1'000'000'000);
+        FixedConvex hull = small;
+        for (FixedPoint& p : hull.vertices) p = {p.x + far, p.y - far};
+        const std::int64_t side = round % 2 == 0 ? 7 : 250;
+        if (hull.count < 3) continue;
+        FixedPoint low = hull.vertices[0];
+        FixedPoint high = low;
+        for (const FixedPoint& p : hull.points()) {
+            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+        }
+        const FixedRun within{floor_div(low.x, side), floor_div(high.x - 1, side)};
+        for (auto iy = floor_div(low.y, side); iy <= floor_div(high.y - 1, side); ++iy) {
+            const FixedRun run = overlapped_run(hull, side, iy, within);
+            for (std::int64_t ix = within.first; ix <= within.last; ++ix)
+                ASSERT_EQ(ix >= run.first && ix <= run.last, overlaps_cell(hull, side, ix, iy))
+                    << "round " << round << " cell " << ix << " " << iy;
+        }
+    }
+}
+
 TEST(FixedPolygon, visits_exactly_the_cells_with_common_area) {
     Rng rng(11);
     // Integer corners up to 60: an area that is not zero is at least 1 / (2 * 120^2)^2, far above

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/grid/map_snapshot.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -21,23 +22,55 @@ std::uint64_t word_at(const unsigned char* bytes) noexcept {
 }
 
 /// Four independent chains keep the multiplier busy: one chain alone waits for every product. Plain
-/// variables, because an array of lanes would live in memory.
+/// variables, because an array of lanes would live in memory. `count` elements from `first` on.
 template <typename Layer>
-std::uint64_t add_layer(std::uint64_t hash, const Layer& layer) noexcept {
+std::uint64_t add_part(std::uint64_t hash,
+                       const Layer& layer,
+                       std::size_t first,
+                       std::size_t count) noexcept {
     constexpr std::size_t kWord = sizeof(std::uint64_t);
-    static_assert(sizeof(Layer) % (4 * kWord) == 0);
+    constexpr std::size_t kElement = sizeof(typename Layer::value_type);
     std::uint64_t a = hash;
     std::uint64_t b = hash ^ 1U;
     std::uint64_t c = hash ^ 2U;
     std::uint64_t d = hash ^ 3U;
-    const auto* bytes = reinterpret_cast<const unsigned char*>(layer.data());
-    for (const auto* const end = bytes + sizeof(Layer); bytes != end; bytes += 4 * kWord) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(layer.data()) + first * kElement;
+    for (const auto* const end = bytes + count * kElement; bytes != end; bytes += 4 * kWord) {
         a = step(a, word_at(bytes));
         b = step(b, word_at(bytes + kWord));
         c = step(c, word_at(bytes + 2 * kWord));
         d = step(d, word_at(bytes + 3 * kWord));
     }
     return step(step(step(step(hash, a), b), c), d);
+}
+
+template <typename Layer>
+std::uint64_t add_whole(std::uint64_t hash, const Layer& layer) noexcept {
+    static_assert(sizeof(Layer) % (4 * sizeof(std::uint64_t)) == 0);
+    return add_part(hash, layer, 0, layer.size());
+}
+
+std::uint64_t block_checksum(const MapSnapshot& s, std::size_t block) noexcept {
+    constexpr std::size_t kCells = MapSnapshot::kBlockCells;
+    static_assert(kCells % (4 * sizeof(std::uint64_t)) == 0, "whole words of the narrowest layer");
+    const auto add = [first = block * kCells](std::uint64_t hash, const auto& layer) {
+        return add_part(hash, layer, first, kCells);
+    };
+    std::uint64_t hash = step(kOffsetBasis, block);
+    hash = add(hash, s.height_tenth_mm);
+    hash = add(hash, s.sigma_tenth_mm);
+    hash = add(hash, s.drift_tenth_mm);
+    hash = add(hash, s.clearance_tenth_mm);
+    hash = add(hash, s.component);
+    hash = add(hash, s.drop_evidence);
+    return add(hash, s.source);
+}
+
+bool are_blocks_intact(const MapSnapshot& s, std::size_t first, std::size_t last) noexcept {
+    for (std::size_t block = first; block <= last; ++block) {
+        if (s.block_checksum[block] != block_checksum(s, block)) return false;
+    }
+    return true;
 }
 
 std::uint64_t header_hash(const MapSnapshot& s) noexcept {
@@ -67,6 +100,10 @@ std::uint64_t header_hash(const MapSnapshot& s) noexcept {
     return hash;
 }
 
+std::uint64_t top_checksum(const MapSnapshot& s) noexcept {
+    return add_whole(add_whole(header_hash(s), s.edges), s.block_checksum);
+}
+
 bool has_sound_header(const MapSnapshot& s) noexcept {
     // 5 mm is the finest and 0.2 m the coarsest cell that the rules of the gate were made for.
     constexpr std::int32_t kFinestTenthMm = 50;
@@ -88,20 +125,31 @@ bool has_sound_header(const MapSnapshot& s) noexcept {
 
 }  // namespace
 
-std::uint64_t snapshot_checksum(const MapSnapshot& snapshot) noexcept {
-    std::uint64_t hash = header_hash(snapshot);
-    hash = add_layer(hash, snapshot.height_tenth_mm);
-    hash = add_layer(hash, snapshot.sigma_tenth_mm);
-    hash = add_layer(hash, snapshot.drift_tenth_mm);
-    hash = add_layer(hash, snapshot.clearance_tenth_mm);
-    hash = add_layer(hash, snapshot.component);
-    hash = add_layer(hash, snapshot.drop_evidence);
-    hash = add_layer(hash, snapshot.source);
-    return add_layer(hash, snapshot.edges);
+void seal(MapSnapshot& snapshot) noexcept {
+    for (std::size_t block = 0; block < snapshot.block_checksum.size(); ++block)
+        snapshot.block_checksum[block] = block_checksum(snapshot, block);
+    snapshot.checksum = top_checksum(snapshot);
+}
+
+bool is_sealed(const MapSnapshot& snapshot) noexcept {
+    return has_sound_header(snapshot) && snapshot.checksum == top_checksum(snapshot);
+}
+
+bool are_rows_intact(const MapSnapshot& snapshot,
+                     std::int64_t first_row,
+                     std::int64_t last_row) noexcept {
+    first_row = std::max<std::int64_t>(first_row, 0);
+    last_row = std::min<std::int64_t>(last_row, snapshot.ny - 1);
+    if (first_row > last_row) return true;
+    const auto block_of = [](std::int64_t cell) {
+        return static_cast<std::size_t>(cell / MapSnapshot::kBlockCells);
+    };
+    return are_blocks_intact(
+        snapshot, block_of(first_row * snapshot.nx), block_of((last_row + 1) * snapshot.nx - 1));
 }
 
 bool is_intact(const MapSnapshot& snapshot) noexcept {
-    return has_sound_header(snapshot) && snapshot.checksum == snapshot_checksum(snapshot);
+    return is_sealed(snapshot) && are_blocks_intact(snapshot, 0, MapSnapshot::kBlocks - 1);
 }
 
 }  // namespace surefoot::grid

@@ -335,7 +335,7 @@ Status build_snapshot(const SnapshotInput& input, MapSnapshot& out) {
     Labeller(out, static_cast<std::int32_t>(tenth_mm(input.connect_step_m))).label_all();
     mark_drops(input, window, out);
     write_edges(input, out);
-    out.checksum = snapshot_checksum(out);
+    seal(out);
     return {};
 }
 

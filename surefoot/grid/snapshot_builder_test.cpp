@@ -87,13 +87,14 @@ TEST(MapSnapshot, checksum_sees_every_field_and_any_single_bit) {
     flip_everywhere(s.source.data(), sizeof(s.source), 60, "source");
     flip_everywhere(&s.edge_count, sizeof(s.edge_count), 10, "edge count");
     flip_everywhere(s.edges.data(), sizeof(s.edges), 60, "edges");
+    flip_everywhere(s.block_checksum.data(), sizeof(s.block_checksum), 60, "block checksums");
     EXPECT_TRUE(is_intact(s));
 }
 
 TEST(MapSnapshot, a_default_or_senseless_one_is_not_intact_even_with_its_checksum) {
     const auto s = std::make_unique<MapSnapshot>();
     const auto sealed = [&s] {
-        s->checksum = snapshot_checksum(*s);
+        seal(*s);
         return is_intact(*s);
     };
     EXPECT_FALSE(is_intact(*s));
