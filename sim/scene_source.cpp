@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/rigs.hpp"
+#include "sim/scene_motion.hpp"
 #include "sim/scenes.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/rng.hpp"
@@ -46,16 +47,17 @@ std::optional<Error> problem(const SceneOptions& options) {
     return std::nullopt;
 }
 
+StampedPose pose_of_frame(const Motion& motion, int frame, double rate_hz) {
+    const std::int64_t since_start_ns = ns_from_seconds(frame / rate_hz);
+    return {kStart_ns + since_start_ns, motion.at(seconds_from_ns(since_start_ns)).T_world_body};
+}
+
 std::vector<StampedPose> sampled(const Motion& motion, int frames, double rate_hz) {
     // Half a nanosecond of slack: the last frame belongs to the path when it falls on its end.
     const int whole_path = static_cast<int>(std::floor(motion.duration_s() * rate_hz + 1e-6)) + 1;
     const int count = frames > 0 ? frames : whole_path;
     std::vector<StampedPose> poses;
-    for (int i = 0; i < count; ++i) {
-        const std::int64_t since_start_ns = ns_from_seconds(i / rate_hz);
-        poses.push_back(
-            {kStart_ns + since_start_ns, motion.at(seconds_from_ns(since_start_ns)).T_world_body});
-    }
+    for (int i = 0; i < count; ++i) poses.push_back(pose_of_frame(motion, i, rate_hz));
     return poses;
 }
 
@@ -170,13 +172,20 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
 
     std::unique_ptr<SceneSource> source(new SceneSource);
     source->executor_ = executor != nullptr ? executor : &source->serial_;
-    source->truth_.trajectory = sampled(*script->motion, options.frames, options.rate_hz);
     source->motion_ = script->motion;
+    source->truth_.scene = std::move(script->scene);
+    source->rate_hz_ = options.rate_hz;
+    if (options.commanded) {
+        if (auto made = source->let_command(options, script->script); !made) return made.error();
+        script->steps.clear();
+        script->stops.clear();
+    } else {
+        source->truth_.trajectory = sampled(*script->motion, options.frames, options.rate_hz);
+    }
     if (!options.knock.none()) {
         source->motion_ = std::make_shared<KnockedMotion>(
-            script->motion, options.knock, rig->body_from_left().translation_m);
+            source->motion_, options.knock, rig->body_from_left().translation_m);
     }
-    source->truth_.scene = std::move(script->scene);
     source->truth_.scene.scale_contrast(options.contrast * figures_of(options.profile).contrast);
     source->truth_.steps = std::move(script->steps);
     source->truth_.stops = std::move(script->stops);
@@ -214,16 +223,48 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
                                   !options.camera.exposure.automatic &&
                                   !needs_images(options.faults);
     source->imu_until_ns_ = kStart_ns - kImuLead_ns;
-    source->info_ = {"sim",
-                     options.scene,
-                     frames - static_cast<int>(dropped),
-                     source->imu_.has_value(),
-                     source->analytic_.has_value(),
-                     source->odometry_.has_value()};
+    source->info_ = {
+        "sim",
+        options.scene,
+        options.commanded ? std::nullopt : std::optional<int>(frames - static_cast<int>(dropped)),
+        source->imu_.has_value(),
+        source->analytic_.has_value(),
+        source->odometry_.has_value()};
     if (options.known_motion) {
         source->info_.T_odom_first_body = source->truth_.trajectory.front().T_world_body;
     }
     return source;
+}
+
+Status SceneSource::let_command(const SceneOptions& options, const MotionScript& script) {
+    constexpr std::uint64_t kCommandStream = 0x636f6d6d;
+    const Waypoint& first = script.waypoints.front();
+    auto motion = CommandedMotion::make({first.x_m, first.y_m, first.yaw_rad},
+                                        ground_of(truth_.scene),
+                                        {},
+                                        mix_seed(options.seed, kCommandStream));
+    if (!motion) return motion.error();
+    commanded_ = *motion;
+    motion_ = commanded_;
+    frame_limit_ = options.frames > 0 ? static_cast<std::size_t>(options.frames) : kMaxFrames;
+    truth_.trajectory = {pose_of_frame(*commanded_, 0, rate_hz_)};
+    return {};
+}
+
+double SceneSource::now_s() const noexcept {
+    // Half a frame behind the last stamp: exposures and rolling shutters are shorter.
+    const double frames = next_pose_ == 0 ? 0.0 : static_cast<double>(next_pose_) - 0.5;
+    return frames / rate_hz_;
+}
+
+/// A commanded source learns where the next frame is when it is asked for.
+bool SceneSource::has_next() {
+    if (commanded_ && next_pose_ == truth_.trajectory.size() && next_pose_ < frame_limit_) {
+        truth_.trajectory.push_back(
+            pose_of_frame(*commanded_, static_cast<int>(next_pose_), rate_hz_));
+        truth_.steps = commanded_->steps();
+    }
+    return next_pose_ < truth_.trajectory.size();
 }
 
 /// Sets the rig of the truth, that which the frames are told to come from.
@@ -347,7 +388,7 @@ bool SceneSource::use_known_images(KnownImages known) {
 }
 
 Result<std::optional<StereoFrame>> SceneSource::next() {
-    while (next_pose_ < truth_.trajectory.size()) {
+    while (has_next()) {
         const StampedPose& now = truth_.trajectory[next_pose_];
         const InjectedFault* fault = nullptr;
         if (next_fault_ < faults_.size() &&

@@ -10,6 +10,7 @@
 #include "sim/analytic_stereo.hpp"
 #include "sim/calibration_error.hpp"
 #include "sim/camera_profile.hpp"
+#include "sim/commanded_motion.hpp"
 #include "sim/depth_camera.hpp"
 #include "sim/image_faults.hpp"
 #include "sim/imu.hpp"
@@ -44,7 +45,10 @@ struct SceneOptions {
     std::optional<camera::StereoRig> rig;  ///< any stereo rig; T_body_left as it says
     std::uint64_t seed = 1;                ///< textures, noise, centimetres of the path
     CarriedBy carrier = CarriedBy::scene;  ///< an error where it cannot go the scene's way
-    int frames = 0;                        ///< 0 = to the end of the path
+    /// A REX that stands where the scene's way begins, and goes where `SceneSource::commanded` is
+    /// told to, instead of that way. It has no end but `frames`.
+    bool commanded = false;
+    int frames = 0;  ///< 0 = to the end of the path
     double rate_hz = 10.0;
     Sensor sensor = Sensor::stereo;
     ImuKind imu = ImuKind::consumer;               ///< samples, where the rig has an IMU
@@ -97,7 +101,14 @@ class SceneSource final : public camera::FrameSource {
     /// How many were not rendered for that reason.
     [[nodiscard]] int known_frames() const noexcept { return known_frames_; }
 
-    /// Poses of all frames, also of those that are still to come, and the scene.
+    /// Who steers it, if it is to be steered. A step may begin at `now_s` or later.
+    [[nodiscard]] const std::shared_ptr<CommandedMotion>& commanded() const noexcept {
+        return commanded_;
+    }
+    /// Time of the motion from which on nothing was exposed yet.
+    [[nodiscard]] double now_s() const noexcept;
+    /// Poses of all frames, also of those that are still to come unless it is commanded, and the
+    /// scene.
     [[nodiscard]] const SceneTruth& truth() const noexcept { return truth_; }
     /// What was injected into the whole recording. `InjectedFault::frame` counts the poses of
     /// `truth().trajectory`; a dropped one has no StereoFrame, so indices of frames stay behind.
@@ -114,6 +125,8 @@ class SceneSource final : public camera::FrameSource {
     friend Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions&, Executor*);
     SceneSource() = default;
 
+    [[nodiscard]] Status let_command(const SceneOptions& options, const MotionScript& script);
+    [[nodiscard]] bool has_next();
     [[nodiscard]] Status make_sensor(const SceneOptions& options, const camera::StereoRig& rig);
     [[nodiscard]] Status make_renderer(const SceneOptions& options);
     [[nodiscard]] Status make_depth_camera(const SceneOptions& options);
@@ -126,7 +139,10 @@ class SceneSource final : public camera::FrameSource {
 
     camera::SourceInfo info_;
     SceneTruth truth_;
-    std::shared_ptr<const Motion> motion_;     ///< of the camera
+    std::shared_ptr<const Motion> motion_;  ///< of the camera
+    std::shared_ptr<CommandedMotion> commanded_;
+    double rate_hz_ = 0.0;
+    std::size_t frame_limit_ = 0;
     std::optional<Renderer> renderer_;         ///< both sensors with images
     std::optional<DepthCamera> depth_camera_;  ///< that sensor only
     std::optional<AnalyticStereo> analytic_;   ///< that sensor only

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "sim/motion_script.hpp"
+#include "sim/rex_gait.hpp"
+#include "sim/rex_plan.hpp"
+#include "sim/waypoint.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::sim {
+
+/// A REX that somebody steers: it stands until it is told to make a step, makes it to the end, and
+/// stands again. The past never changes. Any thread may ask and command.
+class CommandedMotion final : public Motion {
+  public:
+    /// Stands at `start` on `ground_z_m`, which is asked along the walk (see ground_of). A stand
+    /// that the legs cannot take is a usage error.
+    [[nodiscard]] static Result<std::shared_ptr<CommandedMotion>> make(const RexStand& start,
+                                                                       GroundHeight ground_z_m,
+                                                                       const RexGaitConfig& gait,
+                                                                       std::uint64_t seed);
+
+    [[nodiscard]] MotionState at(double time_s) const override;
+    /// Until the last step that was commanded has ended.
+    [[nodiscard]] double duration_s() const override;
+
+    /// The machine begins the movement of a joystick code at `time_s`. An error, and nothing
+    /// changes, where it has no such movement, the step before has not ended by then, or the legs
+    /// cannot make it on this ground.
+    [[nodiscard]] Result<StepEvent> step(int command, double time_s);
+    [[nodiscard]] std::vector<StepEvent> steps() const;
+
+  private:
+    struct Piece {
+        double start_s = 0.0;
+        RexMotion motion;
+    };
+    CommandedMotion(GroundHeight ground_z_m, const RexGaitConfig& gait, std::uint64_t seed);
+    [[nodiscard]] Result<RexMotion> walk(const RexPlan& plan, std::size_t number);
+
+    GroundHeight ground_z_m_;
+    RexGaitConfig gait_;
+    std::uint64_t seed_;
+    std::vector<RexMovement> movements_;
+
+    mutable std::mutex mutex_;   ///< of what follows
+    std::vector<Piece> pieces_;  ///< by time; the first one stands
+    std::vector<StepEvent> steps_;
+    RexStand stand_;  ///< after the last step
+    double free_s_ = 0.0;
+};
+
+}  // namespace surefoot::sim
