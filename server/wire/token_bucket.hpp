@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "surefoot/core/time.hpp"
+
+namespace surefoot::wire {
+
+/// How many things may happen: `burst` at once, `per_s` in the long run.
+struct RateLimit {
+    std::int64_t per_s = 1;
+    std::int64_t burst = 1;
+};
+
+/// A token bucket in whole nanoseconds: it keeps the time at which it would be full again, which
+/// every token moves on by one interval. What was refused costs nothing.
+class TokenBucket {
+  public:
+    /// Both numbers of the limit positive.
+    explicit TokenBucket(RateLimit limit) noexcept
+        : interval_ns_(std::max<std::int64_t>(1, kNanosecondsPerSecond / limit.per_s)),
+          depth_ns_(interval_ns_ * limit.burst) {}
+
+    [[nodiscard]] bool take(std::int64_t now_ns) noexcept {
+        const std::int64_t full_ns = std::max(full_ns_, now_ns) + interval_ns_;
+        if (full_ns - now_ns > depth_ns_) return false;
+        full_ns_ = full_ns;
+        return true;
+    }
+
+  private:
+    std::int64_t interval_ns_;
+    std::int64_t depth_ns_;
+    std::int64_t full_ns_ = 0;
+};
+
+}  // namespace surefoot::wire
