@@ -112,6 +112,10 @@ Json health_object(const GateReport& report) {
             {"allowed", report.allowed}};
 }
 
+std::string health_text(const GateReport& report) {
+    return dump(health_object(report));
+}
+
 Json diagnostics_object(const GateReport& report, std::int64_t now_ns) {
     const std::string state = name_of(report.health.state);
     const std::string why = to_string(report.why);

@@ -13,6 +13,8 @@ namespace surefoot::wire {
 /// {state, why, faults, map_version, frame_age_ms, pose_age_ms, vouching, asked, allowed}; an age
 /// is null before the first snapshot came.
 [[nodiscard]] Json health_object(const GateReport& report);
+/// The same on one line, for those who do not read JSON themselves.
+[[nodiscard]] std::string health_text(const GateReport& report);
 
 /// A diagnostic_msgs/DiagnosticArray of one status, stamped with the steady clock.
 [[nodiscard]] Json diagnostics_object(const GateReport& report, std::int64_t now_ns);

@@ -1,0 +1,481 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boost.Beast is included here and nowhere else: 25 seconds a translation unit.
+#include "server/wire/websocket_server.hpp"
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <optional>
+#include <vector>
+
+#include "server/wire/admission.hpp"
+#include "server/wire/out_queue.hpp"
+#include "server/wire/periodic_topics.hpp"
+#include "server/wire/topic_json.hpp"
+
+namespace surefoot::wire {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace net = boost::asio;
+namespace websocket = beast::websocket;
+using tcp = net::ip::tcp;
+using beast::error_code;
+/// Reads no more bytes in a second than the policy says.
+using Stream = beast::basic_stream<tcp, tcp::socket::executor_type, beast::simple_rate_policy>;
+
+constexpr std::int64_t kNsPerMs = 1'000'000;
+
+std::int64_t steady_ns() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+std::string_view view(beast::string_view text) {
+    return {text.data(), text.size()};
+}
+
+}  // namespace
+
+class Connection;
+
+/// The listener, and all that is connected.
+class SocketServer {
+  public:
+    SocketServer(const ServerConfig& its_config, StepGate& its_gate, WebsocketServer::Tick tick)
+        : config(its_config), gate(its_gate), tick_(std::move(tick)) {}
+    SocketServer(const SocketServer&) = delete;
+    SocketServer& operator=(const SocketServer&) = delete;
+    ~SocketServer() = default;
+
+    Status listen();
+    void run();
+    void poll();
+    void stop();
+    void publish(const std::vector<TopicMessage>& messages, std::int64_t now_ns);
+    void leave(const Connection& connection);
+    [[nodiscard]] std::uint64_t new_connection() { return next_connection_++; }
+    [[nodiscard]] std::uint16_t port() const { return port_; }
+    [[nodiscard]] ServerCounts counts() const;
+    [[nodiscard]] std::size_t clients() const;
+
+    const ServerConfig config;
+    StepGate& gate;
+    ServerCounts totals;
+
+  private:
+    void begin();
+    void accept();
+    void admit_to_door(tcp::socket socket);
+    void wait_for_tick();
+    void on_tick();
+
+    net::io_context io_{1};  // one thread: no locks. Destroyed last, with all waiting handlers
+    tcp::acceptor acceptor_{io_};
+    net::steady_timer timer_{io_};
+    WebsocketServer::Tick tick_;
+    PeriodicTopics topics_;
+    std::vector<std::shared_ptr<Connection>> connections_;  // shared with their waiting handlers
+    std::uint16_t port_ = 0;
+    std::uint64_t next_connection_ = 1;
+    int accepts_left_ = 0;
+    bool accepting_ = false;
+    bool begun_ = false;
+};
+
+/// One connection: first a HTTP request, then perhaps a WebSocket.
+class Connection : public std::enable_shared_from_this<Connection> {
+  public:
+    Connection(SocketServer& server, tcp::socket socket)
+        : server_(server),
+          ws_(std::move(socket)),
+          out_(server.config.max_queue_bytes),
+          controls_(server.config.control_frames) {}
+
+    void start();
+    /// Messages of topics for a client; nothing before it is one.
+    void offer(const TopicMessage& message, std::int64_t now_ns);
+    /// What waited for its time, and deadlines.
+    void on_tick(std::int64_t now_ns);
+    /// Ends it at once, whatever is on its way.
+    void end();
+    [[nodiscard]] bool is_client() const { return session_.has_value(); }
+
+  private:
+    void on_request(error_code error);
+    void refuse(http::status status, const std::string& text);
+    void answer(http::status status, const char* type, std::string body);
+    void upgrade();
+    void on_upgraded(error_code error);
+    void read();
+    void on_read(error_code error);
+    void on_message(std::int64_t now_ns);
+    void send_topics(std::vector<std::string> texts);
+    void write();
+    void on_written(error_code error);
+    void dismiss();
+    void drop();
+    void close_politely();
+
+    SocketServer& server_;
+    websocket::stream<Stream> ws_;
+    beast::flat_buffer buffer_;
+    std::optional<http::request_parser<http::empty_body>> parser_;
+    http::response<http::string_body> response_;
+    std::optional<RosbridgeSession> session_;
+    OutQueue out_;
+    TokenBucket controls_;
+    std::string writing_;                           // must stay while it is written
+    std::optional<std::int64_t> write_since_ns_;    // a text is on its way
+    std::optional<std::int64_t> message_since_ns_;  // a message has begun
+    bool dismissed_ = false;                        // it gets what is queued, then the door
+    bool flooded_ = false;                          // with control frames
+    bool ended_ = false;
+};
+
+void Connection::start() {
+    error_code ignored;
+    auto& socket = beast::get_lowest_layer(ws_).socket();
+    socket.set_option(tcp::no_delay(true), ignored);
+    // What a sleeping client lets pile up shall lie in our queue, where it is counted.
+    socket.set_option(net::socket_base::send_buffer_size(64 * 1024), ignored);
+    auto& stream = ws_.next_layer();
+    stream.rate_policy().read_limit(server_.config.max_read_bytes_per_s);
+    stream.expires_after(std::chrono::milliseconds(server_.config.handshake_ms));
+    parser_.emplace();
+    constexpr std::uint32_t kMaxHeaderBytes = 8 * 1024;
+    parser_->header_limit(kMaxHeaderBytes);
+    parser_->body_limit(0);
+    http::async_read(stream,
+                     buffer_,
+                     *parser_,
+                     [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
+                         self->on_request(error);
+                     });
+}
+
+void Connection::on_request(error_code error) {
+    if (ended_) return;
+    if (error) {
+        ++server_.totals.refused;
+        return end();
+    }
+    const auto& request = parser_->get();
+    const std::string_view target = view(request.target());
+    const auto origin = request.find(http::field::origin);
+    const auto admission =
+        admit(server_.config.token,
+              server_.config.origins,
+              target,
+              origin == request.end() ? std::nullopt : std::optional(view(origin->value())));
+    if (admission == Admission::wrong_origin)
+        return refuse(http::status::forbidden, "this page's origin is not allowed");
+    if (admission == Admission::wrong_token)
+        return refuse(http::status::unauthorized, "the URL needs the token: ?token=...");
+    if (websocket::is_upgrade(request)) return upgrade();
+    if (path_of(target) == "/health" && request.method() == http::verb::get) {
+        return answer(
+            http::status::ok, "application/json", health_text(server_.gate.report(steady_ns())));
+    }
+    if (path_of(target) == "/")
+        return refuse(http::status::upgrade_required, "a WebSocket is here");
+    refuse(http::status::not_found, "here are a WebSocket and /health");
+}
+
+void Connection::refuse(http::status status, const std::string& text) {
+    ++server_.totals.refused;
+    answer(status, "text/plain", text + "\n");
+}
+
+void Connection::answer(http::status status, const char* type, std::string body) {
+    constexpr unsigned kHttp11 = 11;
+    response_ = {status, kHttp11};
+    response_.set(http::field::content_type, type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("X-Content-Type-Options", "nosniff");
+    if (status == http::status::upgrade_required) response_.set(http::field::upgrade, "websocket");
+    response_.body() = std::move(body);
+    response_.keep_alive(false);
+    response_.prepare_payload();
+    http::async_write(ws_.next_layer(),
+                      response_,
+                      [self = shared_from_this()](error_code, std::size_t) { self->end(); });
+}
+
+void Connection::upgrade() {
+    if (server_.clients() >= server_.config.max_clients)
+        return refuse(http::status::service_unavailable, "too many clients");
+    ws_.next_layer().expires_never();  // the WebSocket has a clock of its own
+    ws_.set_option(
+        websocket::stream_base::timeout{std::chrono::milliseconds(server_.config.handshake_ms),
+                                        std::chrono::milliseconds(server_.config.idle_ms),
+                                        true});  // pings after half of it
+    ws_.read_message_max(server_.config.session.json.max_bytes);
+    ws_.text(true);
+    ws_.control_callback([this](websocket::frame_type, beast::string_view) {
+        if (!controls_.take(steady_ns())) flooded_ = true;
+    });
+    ws_.async_accept(parser_->get(),
+                     [self = shared_from_this()](error_code error) { self->on_upgraded(error); });
+}
+
+void Connection::on_upgraded(error_code error) {
+    if (ended_) return;
+    if (error) {
+        ++server_.totals.refused;
+        return end();
+    }
+    parser_.reset();
+    buffer_.clear();
+    session_.emplace(server_.new_connection(), server_.gate, server_.config.session);
+    read();
+}
+
+void Connection::read() {
+    ws_.async_read_some(buffer_,
+                        server_.config.session.json.max_bytes,
+                        [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
+                            self->on_read(error);
+                        });
+}
+
+void Connection::on_read(error_code error) {
+    if (ended_ || dismissed_) return;
+    if (error) return end();
+    const std::int64_t now_ns = steady_ns();
+    if (ws_.is_message_done()) {
+        message_since_ns_.reset();
+        on_message(now_ns);
+    } else if (!message_since_ns_) {
+        message_since_ns_ = now_ns;
+    }
+    if (!ended_ && !dismissed_) read();
+}
+
+void Connection::on_message(std::int64_t now_ns) {
+    const auto bytes = buffer_.cdata();
+    Reaction reaction =
+        session_->on_message({static_cast<const char*>(bytes.data()), bytes.size()}, now_ns);
+    buffer_.clear();
+    bool room = true;
+    for (auto& reply : reaction.replies) room = out_.push_reply(std::move(reply)) && room;
+    if (!room) return drop();
+    write();  // the answer is on its way before others hear of it
+    server_.publish(reaction.published, now_ns);
+    if (reaction.drop && !ended_) dismiss();
+}
+
+void Connection::offer(const TopicMessage& message, std::int64_t now_ns) {
+    if (session_ && !dismissed_) send_topics(session_->on_topic(message, now_ns));
+}
+
+void Connection::send_topics(std::vector<std::string> texts) {
+    for (auto& text : texts) {
+        if (!out_.push_topic(std::move(text))) return drop();
+    }
+    write();
+}
+
+void Connection::on_tick(std::int64_t now_ns) {
+    const auto late = [&](const std::optional<std::int64_t>& since_ns, int limit_ms) {
+        return since_ns && now_ns - *since_ns > limit_ms * kNsPerMs;
+    };
+    if (flooded_ || late(message_since_ns_, server_.config.message_ms) ||
+        late(write_since_ns_, server_.config.write_ms))
+        return drop();
+    if (session_ && !dismissed_) send_topics(session_->due(now_ns));
+}
+
+void Connection::write() {
+    if (ended_ || write_since_ns_ || out_.empty()) return;
+    writing_ = out_.pop();
+    write_since_ns_ = steady_ns();
+    ws_.async_write(net::buffer(writing_),
+                    [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
+                        self->on_written(error);
+                    });
+}
+
+void Connection::on_written(error_code error) {
+    if (ended_) return;
+    write_since_ns_.reset();
+    if (error) return end();
+    if (dismissed_ && out_.empty()) return close_politely();
+    write();
+}
+
+void Connection::dismiss() {
+    ++server_.totals.dropped;
+    dismissed_ = true;
+    if (!write_since_ns_) close_politely();
+}
+
+void Connection::close_politely() {
+    ws_.async_close(websocket::close_code::policy_error,
+                    [self = shared_from_this()](error_code) { self->end(); });
+}
+
+void Connection::drop() {
+    ++server_.totals.dropped;
+    end();
+}
+
+void Connection::end() {
+    if (ended_) return;
+    ended_ = true;
+    session_.reset();  // the gate forgets it now, whatever handlers still wait
+    beast::get_lowest_layer(ws_).close();
+    server_.leave(*this);
+}
+
+Status SocketServer::listen() {
+    next_connection_ = config.first_connection;
+    error_code error;
+    const tcp::endpoint endpoint(net::ip::make_address(config.bind_address, error), config.port);
+    if (!error) acceptor_.open(endpoint.protocol(), error);
+    if (!error) acceptor_.set_option(net::socket_base::reuse_address(true), error);
+    if (!error) acceptor_.bind(endpoint, error);
+    if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
+    if (error) {
+        return input_error("cannot listen at " + config.bind_address + " port " +
+                           std::to_string(config.port) + ": " + error.message());
+    }
+    port_ = acceptor_.local_endpoint().port();
+    return {};
+}
+
+void SocketServer::run() {
+    begin();
+    io_.run();
+}
+
+void SocketServer::poll() {
+    begin();
+    io_.poll();
+}
+
+void SocketServer::begin() {
+    if (begun_) return;
+    begun_ = true;
+    accepts_left_ = config.accepts_per_tick;
+    timer_.expires_after(std::chrono::milliseconds(config.tick_ms));
+    wait_for_tick();
+    accept();
+}
+
+void SocketServer::stop() {
+    net::post(io_, [this] {
+        error_code ignored;
+        acceptor_.close(ignored);
+        for (const auto& connection : std::vector(connections_)) connection->end();
+        io_.stop();
+    });
+}
+
+void SocketServer::accept() {
+    if (accepting_ || accepts_left_ == 0 || !acceptor_.is_open()) return;
+    accepting_ = true;
+    --accepts_left_;
+    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+        accepting_ = false;
+        if (error) return;  // no handles left, or gone already: the next tick tries again
+        admit_to_door(std::move(socket));
+        accept();
+    });
+}
+
+void SocketServer::admit_to_door(tcp::socket socket) {
+    ++totals.accepted;
+    if (connections_.size() - clients() >= config.max_handshakes) {
+        const auto oldest = std::find_if(connections_.begin(),
+                                         connections_.end(),
+                                         [](const auto& c) { return !c->is_client(); });
+        ++totals.refused;
+        std::shared_ptr(*oldest)->end();
+    }
+    connections_.push_back(std::make_shared<Connection>(*this, std::move(socket)));
+    connections_.back()->start();
+}
+
+void SocketServer::wait_for_tick() {
+    timer_.async_wait([this](error_code error) {
+        if (error) return;
+        on_tick();
+        const auto period = std::chrono::milliseconds(config.tick_ms);
+        // After a long pause the ticks that were missed are not made up for.
+        timer_.expires_at(std::max(timer_.expiry() + period, net::steady_timer::clock_type::now()));
+        wait_for_tick();
+    });
+}
+
+void SocketServer::on_tick() {
+    const std::int64_t now_ns = steady_ns();
+    if (tick_) tick_(now_ns);
+    publish(topics_.due(gate, now_ns), now_ns);
+    for (const auto& connection : std::vector(connections_)) connection->on_tick(now_ns);
+    accepts_left_ = config.accepts_per_tick;
+    accept();
+}
+
+void SocketServer::publish(const std::vector<TopicMessage>& messages, std::int64_t now_ns) {
+    if (messages.empty()) return;
+    // A copy: whoever is too slow leaves the list while it is walked.
+    for (const auto& connection : std::vector(connections_)) {
+        for (const auto& message : messages) connection->offer(message, now_ns);
+    }
+}
+
+void SocketServer::leave(const Connection& connection) {
+    std::erase_if(connections_, [&](const auto& other) { return other.get() == &connection; });
+}
+
+std::size_t SocketServer::clients() const {
+    return static_cast<std::size_t>(std::count_if(
+        connections_.begin(), connections_.end(), [](const auto& c) { return c->is_client(); }));
+}
+
+ServerCounts SocketServer::counts() const {
+    ServerCounts counts = totals;
+    counts.clients = clients();
+    counts.handshakes = connections_.size() - counts.clients;
+    return counts;
+}
+
+Result<std::unique_ptr<WebsocketServer>> WebsocketServer::open(const ServerConfig& config,
+                                                               StepGate& gate,
+                                                               Tick tick) {
+    if (const auto problem = config.problem()) return usage_error(*problem);
+    auto server = std::make_unique<SocketServer>(config, gate, std::move(tick));
+    if (const auto listening = server->listen(); !listening) return listening.error();
+    return std::unique_ptr<WebsocketServer>(new WebsocketServer(std::move(server)));
+}
+
+WebsocketServer::WebsocketServer(std::unique_ptr<SocketServer> server)
+    : server_(std::move(server)) {}
+WebsocketServer::~WebsocketServer() = default;
+
+std::uint16_t WebsocketServer::port() const noexcept {
+    return server_->port();
+}
+void WebsocketServer::run() {
+    server_->run();
+}
+void WebsocketServer::poll() {
+    server_->poll();
+}
+void WebsocketServer::stop() {
+    server_->stop();
+}
+ServerCounts WebsocketServer::counts() const {
+    return server_->counts();
+}
+
+}  // namespace surefoot::wire

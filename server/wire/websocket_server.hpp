@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "server/wire/server_config.hpp"
+#include "server/wire/step_gate.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::wire {
+
+struct ServerCounts {
+    std::size_t clients = 0;     ///< that speak rosbridge now
+    std::size_t handshakes = 0;  ///< that are still at the door
+    std::uint64_t accepted = 0;  ///< connections since the start
+    std::uint64_t refused = 0;   ///< of these turned away: token, origin, request, crowd
+    std::uint64_t dropped = 0;   ///< clients that were sent away: too slow, too much, nonsense
+};
+
+class SocketServer;
+
+/// The step gate on a socket: rosbridge over WebSocket, and GET /health. One thread, the caller's:
+/// it asks the gate, and a client that misbehaves, sleeps or floods costs the others nothing. Start
+/// no thread for it but the one that calls `run`.
+class WebsocketServer {
+  public:
+    /// Called every `tick_ms` before topics are published.
+    using Tick = std::function<void(std::int64_t now_ns)>;
+
+    /// Listens, and serves nobody yet. Fails where the configuration is not valid or the address is
+    /// taken. The gate outlives the server.
+    [[nodiscard]] static Result<std::unique_ptr<WebsocketServer>> open(const ServerConfig& config,
+                                                                       StepGate& gate,
+                                                                       Tick tick = {});
+    WebsocketServer(const WebsocketServer&) = delete;
+    WebsocketServer& operator=(const WebsocketServer&) = delete;
+    ~WebsocketServer();
+
+    /// The one that it listens at.
+    [[nodiscard]] std::uint16_t port() const noexcept;
+    /// Serves until stop(). Once.
+    void run();
+    /// Serves what is ready now, for an owner with a loop of its own.
+    void poll();
+    /// Ends run() and all connections. From any thread; not from a signal handler.
+    void stop();
+    /// In `run`'s thread (from the tick), or when it has ended.
+    [[nodiscard]] ServerCounts counts() const;
+
+  private:
+    explicit WebsocketServer(std::unique_ptr<SocketServer> server);
+    std::unique_ptr<SocketServer> server_;
+};
+
+}  // namespace surefoot::wire

@@ -1,0 +1,523 @@
+// SPDX-License-Identifier: Apache-2.0
+// The service over real sockets of this machine. Nothing here is measured against a clock: a client
+// waits for what must come, and the deadlines of the server are set short.
+#include "server/wire/websocket_server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "server/wire/json_text.hpp"
+#include "server/wire/wire_testing.hpp"
+
+namespace surefoot::wire {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace net = boost::asio;
+namespace websocket = beast::websocket;
+using beast::error_code;
+using tcp = net::ip::tcp;
+using testing::ScriptedGate;
+
+const std::string kToken = "0123456789abcdef";
+
+ServerConfig any_port() {
+    ServerConfig config;
+    config.port = 0;
+    return config;
+}
+
+/// A server on a thread of its own, with a gate that may be looked at when it has ended.
+class Service {
+  public:
+    explicit Service(const ServerConfig& config = any_port())
+        : server_(std::move(WebsocketServer::open(config,
+                                                  gate,
+                                                  [this](std::int64_t) {
+                                                      ++ticks;
+                                                      clients = server_->counts().clients;
+                                                      dropped = server_->counts().dropped;
+                                                  })
+                                .value())),
+          thread_([this] { server_->run(); }) {}
+    Service(const Service&) = delete;
+    Service& operator=(const Service&) = delete;
+    ~Service() { end(); }
+
+    void end() {
+        if (!thread_.joinable()) return;
+        server_->stop();
+        thread_.join();
+    }
+    [[nodiscard]] tcp::endpoint endpoint() const {
+        return {net::ip::make_address("127.0.0.1"), server_->port()};
+    }
+    [[nodiscard]] ServerCounts counts() const { return server_->counts(); }
+
+    ScriptedGate gate;
+    std::atomic<int> ticks = 0;
+    std::atomic<std::size_t> clients = 0;
+    std::atomic<std::uint64_t> dropped = 0;
+
+  private:
+    std::unique_ptr<WebsocketServer> server_;
+    std::thread thread_;
+};
+
+/// A well-behaved client, or one that is so until it writes to the bare socket.
+class Client {
+  public:
+    explicit Client(const Service& service) { socket().connect(service.endpoint()); }
+    explicit Client(const Service& service, const std::string& target, const std::string& origin)
+        : Client(service) {
+        open(target, origin);
+    }
+
+    void open(const std::string& target = "/", const std::string& origin = "") {
+        ws_.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
+            if (!origin.empty()) request.set(http::field::origin, origin);
+        }));
+        ws_.handshake("127.0.0.1", target);
+    }
+    void send(const std::string& text) { ws_.write(net::buffer(text)); }
+    Json receive() {
+        beast::flat_buffer buffer;
+        ws_.read(buffer);
+        return Json::parse(beast::buffers_to_string(buffer.data()));
+    }
+    Json ask(const std::string& text) {
+        send(text);
+        return receive();
+    }
+    /// Reads until the connection ends, and says what came last: a close code, or 0.
+    int end_of_reading() {
+        error_code error;
+        while (!error) {
+            beast::flat_buffer buffer;
+            ws_.read(buffer, error);
+        }
+        return error == websocket::error::closed ? ws_.reason().code : 0;
+    }
+    void send_bytes(const std::string& bytes) {
+        error_code ignored;
+        net::write(socket(), net::buffer(bytes), ignored);
+    }
+    /// Everything that still comes, without answering anything.
+    std::string read_bytes() {
+        std::string bytes;
+        error_code error;
+        net::read(socket(), net::dynamic_buffer(bytes), error);
+        return bytes;
+    }
+    tcp::socket& socket() { return ws_.next_layer(); }
+    websocket::stream<tcp::socket>& ws() { return ws_; }
+
+  private:
+    net::io_context io_;
+    websocket::stream<tcp::socket> ws_{io_};
+};
+
+const char* const kStep = R"({"op":"call_service","id":"q","service":"/step","args":[9]})";
+
+void expect_allowed(Client& client) {
+    const Json response = client.ask(kStep);
+    EXPECT_EQ(response["values"]["resultCode"], 0) << response;
+}
+
+http::response<http::string_body> answer_to(const Service& service,
+                                            const http::request<http::empty_body>& request) {
+    net::io_context io;
+    tcp::socket socket(io);
+    socket.connect(service.endpoint());
+    http::write(socket, request);
+    beast::flat_buffer buffer;
+    http::response_parser<http::string_body> parser;
+    parser.skip(request.find(http::field::upgrade) != request.end());
+    http::read(socket, buffer, parser);
+    return parser.release();
+}
+
+http::response<http::string_body> get(const Service& service,
+                                      const std::string& target,
+                                      http::verb verb = http::verb::get) {
+    return answer_to(service, {verb, target, 11});
+}
+
+/// 101 where a WebSocket would open.
+unsigned status_of_upgrade(const Service& service,
+                           const std::string& target,
+                           const std::string& origin = "") {
+    http::request<http::empty_body> request(http::verb::get, target, 11);
+    request.set(http::field::host, "127.0.0.1");
+    request.set(http::field::connection, "Upgrade");
+    request.set(http::field::upgrade, "websocket");
+    request.set(http::field::sec_websocket_version, "13");
+    request.set(http::field::sec_websocket_key, "MDEyMzQ1Njc4OWFiY2RlZg==");
+    if (!origin.empty()) request.set(http::field::origin, origin);
+    return answer_to(service, request).result_int();
+}
+
+TEST(WebsocketServer, AnswersAQuestion) {
+    Service service;
+    Client client(service, "/", "");
+    expect_allowed(client);
+    EXPECT_EQ(
+        client.ask(R"({"op":"call_service","id":"q","service":"/step","args":[17]})")["values"]
+                                                                                     ["resultCode"],
+        1);
+    service.end();
+    ASSERT_EQ(service.gate.questions.size(), 2U);
+    EXPECT_EQ(service.gate.questions[0].connection, 1U);
+    EXPECT_EQ(service.gate.forgotten, std::vector<std::uint64_t>{1});
+}
+
+TEST(WebsocketServer, EveryClientIsAConnectionOfItsOwn) {
+    ServerConfig config = any_port();
+    config.first_connection = 1000;
+    Service service(config);
+    for (std::uint64_t i = 0; i < 3; ++i) {
+        Client client(service, "/", "");
+        const Json response =
+            client.ask(R"({"op":"call_service","id":"q","service":"/surefoot/step","args":[9]})");
+        EXPECT_EQ(response["values"]["connection"], 1000 + i);
+        EXPECT_EQ(response["values"]["sequence"], 1);
+        client.ws().close(websocket::close_code::normal);
+    }
+}
+
+TEST(WebsocketServer, DoesNotListenOutsideWithoutAToken) {
+    ScriptedGate gate;
+    ServerConfig config = any_port();
+    config.bind_address = "0.0.0.0";
+    EXPECT_FALSE(WebsocketServer::open(config, gate));
+    config.token = kToken;
+    EXPECT_TRUE(WebsocketServer::open(config, gate));
+}
+
+TEST(WebsocketServer, APortThatIsTakenIsSaid) {
+    const Service service;
+    ScriptedGate gate;
+    ServerConfig config;
+    config.port = service.endpoint().port();
+    const auto server = WebsocketServer::open(config, gate);
+    ASSERT_FALSE(server);
+    EXPECT_NE(server.error().message.find(std::to_string(config.port)), std::string::npos);
+}
+
+TEST(WebsocketServer, TheTokenOpensTheDoor) {
+    ServerConfig config = any_port();
+    config.token = kToken;
+    Service service(config);
+    EXPECT_EQ(status_of_upgrade(service, "/"), 401U);
+    EXPECT_EQ(status_of_upgrade(service, "/?token=0123456789abcdeg"), 401U);
+    EXPECT_EQ(get(service, "/health").result_int(), 401U);
+    EXPECT_EQ(get(service, "/health?token=" + kToken).result_int(), 200U);
+    Client client(service, "/?token=" + kToken, "");
+    expect_allowed(client);
+}
+
+TEST(WebsocketServer, PagesOfOthersStayOutside) {
+    ServerConfig config = any_port();
+    config.origins = {"https://clinic.example"};
+    Service service(config);
+    EXPECT_EQ(status_of_upgrade(service, "/", "http://evil.example"), 403U);
+    EXPECT_EQ(status_of_upgrade(service, "/", "null"), 403U);
+    EXPECT_EQ(status_of_upgrade(service, "/", "http://localhost:8080"), 101U);
+    EXPECT_EQ(status_of_upgrade(service, "/", "https://clinic.example"), 101U);
+}
+
+TEST(WebsocketServer, HealthWithoutAWebSocket) {
+    Service service;
+    const auto response = get(service, "/health");
+    EXPECT_EQ(response.result_int(), 200U);
+    EXPECT_EQ(Json::parse(response.body())["state"], "READY");
+    EXPECT_EQ(get(service, "/").result_int(), 426U);
+    EXPECT_EQ(get(service, "/healthy").result_int(), 404U);
+    EXPECT_EQ(get(service, "/../etc/passwd").result_int(), 404U);
+    EXPECT_EQ(get(service, "/health", http::verb::delete_).result_int(), 404U);
+}
+
+TEST(WebsocketServer, RequestsThatAreNoneEnd) {
+    ServerConfig config = any_port();
+    config.handshake_ms = 100;
+    Service service(config);
+    Client other(service, "/", "");
+    for (const std::string& bytes :
+         {std::string(),
+          std::string("\0\1\2", 3),
+          std::string("GET / HTTP/1.1\r\nHost: x\r\n"),
+          std::string("GET / HTTP/1.1\r\n") + "a: " + std::string(20'000, 'b'),
+          std::string("POST /health HTTP/1.1\r\nContent-Length: 9999999\r\n\r\nabc")}) {
+        Client client(service);
+        client.send_bytes(bytes);
+        (void)client.read_bytes();  // returns: the server closed
+    }
+    expect_allowed(other);
+}
+
+TEST(WebsocketServer, SubscribersHearOfVerdictsAndHealth) {
+    Service service;
+    Client listener(service, "/", "");
+    Client asker(service, "/", "");
+    listener.send(R"({"op":"subscribe","topic":"/surefoot/health"})");
+    for (int i = 0; i < 3; ++i) {
+        const Json message = listener.receive();
+        EXPECT_EQ(message["topic"], "/surefoot/health");
+        EXPECT_EQ(message["msg"]["state"], "READY");
+    }
+    listener.send(R"({"op":"unsubscribe","topic":"/surefoot/health"})");
+    listener.send(R"({"op":"subscribe","topic":"/surefoot/verdict"})");
+    // The answer to a question of its own says that the subscription has been read. It comes first,
+    // though its verdict is a message to this client, too.
+    Json message = listener.ask(kStep);
+    while (message["topic"] == "/surefoot/health") message = listener.receive();
+    EXPECT_EQ(message["op"], "service_response");
+    EXPECT_EQ(listener.receive()["msg"]["connection"], 1);
+    expect_allowed(asker);
+    EXPECT_EQ(listener.receive()["msg"]["connection"], 2);
+}
+
+TEST(WebsocketServer, TheOwnerIsCalledAndCounts) {
+    Service service;
+    Client client(service, "/", "");
+    while (service.clients != 1 || service.ticks < 10) std::this_thread::yield();
+    client.ws().close(websocket::close_code::normal);
+    while (service.clients != 0) std::this_thread::yield();
+    service.end();
+    EXPECT_EQ(service.counts().accepted, 1U);
+    EXPECT_EQ(service.counts().refused, 0U);
+    EXPECT_EQ(service.counts().dropped, 0U);
+}
+
+TEST(WebsocketServer, AMessageThatIsTooLongEndsItsConnection) {
+    Service service;
+    Client other(service, "/", "");
+    Client client(service, "/", "");
+    error_code ignored;
+    client.ws().write(net::buffer(std::string(10'000'000, ' ')), ignored);
+    // The server does not read ten megabytes to be polite: the close frame may be lost.
+    const int code = client.end_of_reading();
+    EXPECT_TRUE(code == websocket::close_code::too_big || code == 0) << code;
+    expect_allowed(other);
+    service.end();
+    EXPECT_EQ(service.gate.questions.size(), 1U);
+}
+
+TEST(WebsocketServer, NonsenseGetsAStatusAndThenTheDoor) {
+    ServerConfig config = any_port();
+    config.session.faults = {.per_s = 1, .burst = 3};
+    Service service(config);
+    Client other(service, "/", "");
+    Client client(service, "/", "");
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(client.ask("{")["op"], "status");
+    EXPECT_EQ(client.ask("{")["op"], "status");
+    EXPECT_EQ(client.end_of_reading(), websocket::close_code::policy_error);
+    expect_allowed(other);
+    service.end();
+    EXPECT_EQ(service.counts().dropped, 1U);
+    EXPECT_EQ(service.gate.forgotten.front(), 2U);
+}
+
+TEST(WebsocketServer, HalfAFrameIsNotWaitedForForEver) {
+    ServerConfig config = any_port();
+    config.message_ms = 50;
+    Service service(config);
+    Client other(service, "/", "");
+    Client client(service, "/", "");
+    // A masked text frame of 100 bytes of which two come.
+    client.send_bytes(std::string("\x81\xe4\0\0\0\0ab", 8));
+    (void)client.read_bytes();
+    expect_allowed(other);
+    service.end();
+    EXPECT_EQ(service.counts().dropped, 1U);
+}
+
+TEST(WebsocketServer, AMessageInPiecesHasATimeAsAWhole) {
+    ServerConfig config = any_port();
+    config.message_ms = 50;
+    Service service(config);
+    Client client(service, "/", "");
+    // Pieces of one message without an end, and pings between them: each is a sign of life.
+    error_code error;
+    client.send_bytes(std::string("\x01\x81\0\0\0\0{", 7));
+    while (!error && service.dropped == 0) {
+        client.send_bytes(std::string("\0\x81\0\0\0\0 ", 7));
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    service.end();
+    EXPECT_EQ(service.counts().dropped, 1U);
+}
+
+TEST(WebsocketServer, FramesThatBreakTheRulesEndTheirConnection) {
+    Service service;
+    Client other(service, "/", "");
+    for (const std::string& bytes : {std::string("\x81\x01{", 3),          // not masked
+                                     std::string("\x83\x81\0\0\0\0{", 7),  // opcode 3
+                                     std::string("\xf1\x81\0\0\0\0{", 7),  // reserved bits
+                                     std::string("\x80\x81\0\0\0\0{", 7),  // goes on from nothing
+                                     std::string("\x89\xfe\0\x7e\0\0\0\0", 8),       // long ping
+                                     std::string("\x81\x82\0\0\0\0\xc0\xaf", 8)}) {  // no UTF-8
+        Client client(service, "/", "");
+        client.send_bytes(bytes);
+        (void)client.read_bytes();
+        expect_allowed(other);
+    }
+}
+
+TEST(WebsocketServer, WhoGivesNoSignOfLifeIsLeft) {
+    ServerConfig config = any_port();
+    config.idle_ms = 100;
+    Service service(config);
+    Client client(service, "/", "");
+    const std::string bytes = client.read_bytes();
+    ASSERT_FALSE(bytes.empty());
+    EXPECT_EQ(bytes[0], '\x89');  // it was asked by a ping
+    service.end();
+    EXPECT_EQ(service.gate.forgotten.size(), 1U);
+}
+
+TEST(WebsocketServer, AFloodOfPingsEndsItsConnection) {
+    Service service;
+    Client other(service, "/", "");
+    Client client(service, "/", "");
+    std::string pings;
+    for (int i = 0; i < 100; ++i) pings += std::string("\x89\x80\0\0\0\0", 6);
+    client.send_bytes(pings);
+    (void)client.read_bytes();
+    expect_allowed(other);
+    service.end();
+    EXPECT_EQ(service.counts().dropped, 1U);
+}
+
+TEST(WebsocketServer, WhoDoesNotReadIsLeftAndTheOthersGoOn) {
+    ServerConfig config = any_port();
+    config.max_queue_bytes = 64 * 1024;
+    config.session.messages = {.per_s = 1'000'000, .burst = 1'000'000};
+    Service service(config);
+    Client slow(service);
+    slow.socket().set_option(net::socket_base::receive_buffer_size(4096));
+    slow.open();
+    slow.send(R"({"op":"subscribe","topic":"/surefoot/verdict"})");
+    Client client(service, "/", "");
+    for (int i = 0; i < 100'000 && service.dropped == 0; ++i) expect_allowed(client);
+    EXPECT_EQ(service.dropped, 1U);
+    expect_allowed(client);
+}
+
+TEST(WebsocketServer, WhoAsksWithoutReadingIsLeft) {
+    ServerConfig config = any_port();
+    config.write_ms = 50;
+    config.session.messages = {.per_s = 1'000'000, .burst = 1'000'000};
+    Service service(config);
+    Client other(service, "/", "");
+    Client client(service, "/", "");
+    std::string question =
+        R"({"op":"call_service","id":"q","service":"/surefoot/step","args":[9]})";
+    error_code error;
+    while (!error && service.dropped == 0) client.ws().write(net::buffer(question), error);
+    while (service.dropped == 0) std::this_thread::yield();
+    expect_allowed(other);
+}
+
+TEST(WebsocketServer, TooManyQuestionsAreAnsweredAsErrors) {
+    ServerConfig config = any_port();
+    config.session.messages = {.per_s = 1, .burst = 2};
+    Service service(config);
+    Client client(service, "/", "");
+    expect_allowed(client);
+    expect_allowed(client);
+    const Json response =
+        client.ask(R"({"op":"call_service","id":"q","service":"/surefoot/step","args":[9]})");
+    EXPECT_EQ(response["values"]["primary"], "OVERLOAD");
+}
+
+TEST(WebsocketServer, NoMoreClientsThanTheLimit) {
+    ServerConfig config = any_port();
+    config.max_clients = 2;
+    Service service(config);
+    Client first(service, "/", "");
+    {
+        Client second(service, "/", "");
+        EXPECT_EQ(status_of_upgrade(service, "/"), 503U);
+        second.ws().close(websocket::close_code::normal);
+    }
+    while (service.clients != 1) std::this_thread::yield();
+    EXPECT_EQ(status_of_upgrade(service, "/"), 101U);
+    expect_allowed(first);
+}
+
+TEST(WebsocketServer, AThousandAtTheDoorDisturbNobody) {
+    Service service;
+    Client inside(service, "/", "");
+    net::io_context io;
+    std::vector<tcp::socket> crowd;
+    for (int i = 0; i < 1000; ++i) {
+        crowd.emplace_back(io);
+        error_code error;
+        crowd.back().connect(service.endpoint(), error);
+        ASSERT_FALSE(error) << i << ": " << error.message();
+        if (i % 20 == 0) expect_allowed(inside);
+    }
+    Client late(service, "/", "");
+    expect_allowed(late);
+    service.end();
+    EXPECT_EQ(service.counts().accepted, 1002U);
+    EXPECT_EQ(service.gate.forgotten.size(), 2U);
+}
+
+TEST(WebsocketServer, AClientThatVanishesIsForgotten) {
+    Service service;
+    Client other(service, "/", "");
+    {
+        Client client(service, "/", "");
+        client.send_bytes(std::string("\x81\xbf\0\0\0\0{\"op\":", 12));
+        client.socket().set_option(net::socket_base::linger(true, 0));
+    }
+    while (service.clients != 1) std::this_thread::yield();
+    expect_allowed(other);
+    service.end();
+    EXPECT_EQ(service.gate.forgotten.front(), 2U);
+    EXPECT_EQ(service.gate.questions.size(), 1U);
+}
+
+TEST(WebsocketServer, StopEndsEverything) {
+    Service service;
+    Client client(service, "/", "");
+    service.end();
+    EXPECT_EQ(client.end_of_reading(), 0);
+    EXPECT_EQ(service.counts().clients, 0U);
+}
+
+TEST(WebsocketServer, ServesInALoopOfItsOwner) {
+    ScriptedGate gate;
+    const auto server = std::move(WebsocketServer::open(any_port(), gate).value());
+    std::atomic<bool> done = false;
+    std::thread thread([&] {
+        net::io_context io;
+        websocket::stream<tcp::socket> ws(io);
+        ws.next_layer().connect({net::ip::make_address("127.0.0.1"), server->port()});
+        ws.handshake("127.0.0.1", "/");
+        ws.write(net::buffer(std::string(kStep)));
+        beast::flat_buffer buffer;
+        ws.read(buffer);
+        done = true;
+    });
+    while (!done) server->poll();
+    thread.join();
+    EXPECT_EQ(gate.questions.size(), 1U);
+}
+
+}  // namespace
+}  // namespace surefoot::wire
