@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The service with a gate that follows the script of tests/conformance/rosbridge. Prints the port
+// on one line and serves until its input ends: whoever started it holds the other end.
+#include <unistd.h>
+
+#include <cstdio>
+#include <thread>
+
+#include "server/wire/websocket_server.hpp"
+#include "server/wire/wire_testing.hpp"
+
+int main() {
+    using namespace surefoot::wire;
+    testing::ScriptedGate gate;
+    ServerConfig config;
+    config.port = 0;
+    auto server = WebsocketServer::open(config, gate);
+    if (!server) {
+        std::fprintf(stderr, "%s\n", server.error().message.c_str());
+        return 1;
+    }
+    std::printf("%u\n", static_cast<unsigned>(server.value()->port()));
+    std::fflush(stdout);
+    std::thread watch([&] {
+        char byte = 0;
+        while (read(STDIN_FILENO, &byte, 1) > 0) {
+        }
+        server.value()->stop();
+    });
+    server.value()->run();
+    watch.join();
+    return 0;
+}
