@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arbitrary messages to one session: whatever comes, no reply and no topic says OK but where the
+// gate did, in this very call, to this connection and sequence. The first byte chooses the gate's
+// mood, lines are messages, and the second byte is the time between them.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "server/wire/rosbridge_session.hpp"
+#include "server/wire/wire_testing.hpp"
+
+namespace {
+
+using namespace surefoot;
+using wire::Json;
+
+constexpr std::uint64_t kConnection = 77;
+
+/// Remembers to whom it said OK in the present call.
+struct Witness : wire::testing::ScriptedGate {
+    [[nodiscard]] wire::Answer ask_step(const wire::StepQuestion& question,
+                                        std::int64_t now_ns) override {
+        if (asked) std::abort();  // one message, one question
+        asked = question;
+        wire::Answer answer = ScriptedGate::ask_step(question, now_ns);
+        allowed = question.connection == kConnection && answer.verdict.allows_step(now_ns) &&
+                  answer.verdict.connection == kConnection &&
+                  answer.verdict.sequence == question.sequence &&
+                  answer.verdict.command == question.command;
+        return answer;
+    }
+    std::optional<wire::StepQuestion> asked;
+    bool allowed = false;
+};
+
+void set_mood(Witness& gate, std::uint8_t mood) {
+    using Change = void (*)(gate::Verdict&);
+    constexpr Change kChanges[] = {nullptr,
+                                   nullptr,
+                                   nullptr,
+                                   [](gate::Verdict& v) { ++v.connection; },
+                                   [](gate::Verdict& v) { v.sequence = 1; },
+                                   [](gate::Verdict& v) { v.command = 9; },
+                                   [](gate::Verdict& v) { v.valid_until_ns = v.decided_ns; },
+                                   [](gate::Verdict& v) { v.reasons.add(gate::Reason::blind); }};
+    gate.change_answer = kChanges[mood % 8];
+    if ((mood & 8U) != 0U) gate.report_.health.state = gate::GateState::fault;
+}
+
+bool is(const Json& values, const char* key, const Json& value) {
+    return values.is_object() && values.contains(key) && values[key] == value;
+}
+
+/// Does this say that a step is allowed? In any of the ways that a client may read it.
+bool says_ok(const Json& values) {
+    return is(values, "resultCode", 0) || is(values, "result_code", 0) ||
+           is(values, "verdict", "OK");
+}
+
+void check_verdict(const Witness& gate, const Json& values) {
+    if (!says_ok(values)) return;
+    if (!gate.allowed || !gate.asked) std::abort();
+    if (values.contains("verdict") &&
+        !(is(values, "connection", kConnection) && is(values, "sequence", gate.asked->sequence) &&
+          is(values, "result_code", 0)))
+        std::abort();
+}
+
+void check_reply(const Witness& gate, const std::string& text) {
+    const Json reply = Json::parse(text);  // throws where it is no JSON: a finding
+    if (!is(reply, "op", "service_response")) return;
+    check_verdict(gate, reply["values"]);
+    const std::string service = reply["service"];
+    if (service.ends_with("step_forward") && reply["result"] == true && !gate.allowed) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size < 2) return 0;
+    Witness gate;
+    set_mood(gate, data[0]);
+    wire::SessionLimits limits;
+    limits.messages = {.per_s = 100, .burst = 8};
+    limits.refusals = {.per_s = 100, .burst = 8};
+    wire::RosbridgeSession session(kConnection, gate, limits);
+    std::string_view rest(reinterpret_cast<const char*>(data) + 2, size - 2);
+    std::int64_t now_ns = 1'000'000'000;
+    for (bool dropped = false; !rest.empty() && !dropped;) {
+        const std::string_view line = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+        gate.asked.reset();
+        gate.allowed = false;
+        const wire::Reaction reaction = session.on_message(line, now_ns);
+        for (const auto& reply : reaction.replies) check_reply(gate, reply);
+        for (const auto& message : reaction.published) {
+            if (message.topic == wire::Topic::verdict)
+                check_verdict(gate, Json::parse(*message.body));
+            for (const auto& text : session.on_topic(message, now_ns)) (void)Json::parse(text);
+        }
+        now_ns += data[1] * wire::testing::kMs;
+        for (const auto& text : session.due(now_ns)) (void)Json::parse(text);
+        dropped = reaction.drop;
+    }
+    return 0;
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arbitrary bytes to the server over a socket of this machine: as they are, behind a handshake, or
+// cut into masked frames. The client then stops sending; the server must end the connection, forget
+// it, and have said OK no more often than the gate did.
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/wire/websocket_server.hpp"
+#include "server/wire/wire_testing.hpp"
+
+namespace {
+
+using namespace surefoot::wire;
+
+const char* const kHandshake =
+    "GET / HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+    "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n\r\n";
+
+/// The server and its gate, made once: nothing of a connection may outlive it.
+struct Rig {
+    Rig() {
+        ServerConfig config;
+        config.port = 0;
+        config.accepts_per_tick = 1'000'000;
+        config.session.json.max_bytes = 4096;
+        server = std::move(WebsocketServer::open(config, gate).value());
+    }
+    testing::ScriptedGate gate;
+    std::unique_ptr<WebsocketServer> server;
+};
+
+/// A socket to the server, from ever another address of 127/8: ports of one run out.
+int connect_to(std::uint16_t port) {
+    static std::uint32_t number = 0;
+    const int handle = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in from{};
+    from.sin_family = AF_INET;
+    from.sin_addr.s_addr = htonl((127U << 24U) + 2U + number++ % 60'000U);
+    sockaddr_in to = from;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(port);
+    if (bind(handle, reinterpret_cast<const sockaddr*>(&from), sizeof(from)) != 0 ||
+        connect(handle, reinterpret_cast<const sockaddr*>(&to), sizeof(to)) != 0)
+        std::abort();
+    return handle;
+}
+
+/// Frames whose heads the bytes choose: opcode and end in one byte, length in the next.
+std::string frames_of(std::string_view bytes) {
+    constexpr std::size_t kHead = 2;
+    constexpr std::size_t kShort = 126;
+    std::string frames;
+    while (bytes.size() > kHead) {
+        const auto size = std::min<std::size_t>(static_cast<std::uint8_t>(bytes[1]) % kShort,
+                                                bytes.size() - kHead);
+        frames += bytes[0];
+        frames += static_cast<char>(0x80U | size);
+        frames += std::string(4, '\0');
+        frames += bytes.substr(kHead, size);
+        bytes.remove_prefix(kHead + size);
+    }
+    return frames;
+}
+
+std::string bytes_to_send(std::uint8_t kind, std::string_view bytes) {
+    switch (kind % 4) {
+        case 0: return std::string(bytes);
+        case 1: return kHandshake + std::string(bytes);
+        case 2: return kHandshake + frames_of(bytes);
+        default: {  // one long text
+            std::string frame = "\x81\xfe";
+            frame += static_cast<char>(bytes.size() >> 8U);
+            frame += static_cast<char>(bytes.size() & 0xffU);
+            return kHandshake + frame + std::string(4, '\0') + std::string(bytes);
+        }
+    }
+}
+
+/// Sends all, stops sending, and reads until the server has closed.
+std::string converse(WebsocketServer& server, std::string_view bytes) {
+    const int handle = connect_to(server.port());
+    (void)send(handle, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    shutdown(handle, SHUT_WR);
+    std::string received;
+    constexpr int kPatience = 1'000'000;  // far beyond every deadline: it hangs
+    for (int i = 0;; ++i) {
+        if (i == kPatience) std::abort();
+        server.poll();
+        char part[4096];
+        const ssize_t count = recv(handle, part, sizeof(part), MSG_DONTWAIT);
+        if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) break;
+        if (count > 0) received.append(part, static_cast<std::size_t>(count));
+    }
+    close(handle);
+    server.poll();
+    return received;
+}
+
+std::size_t count_of(std::string_view text, std::string_view part) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string_view::npos;
+         at = text.find(part, at + 1))
+        ++count;
+    return count;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0 || size > 4096) return 0;
+    static Rig service;
+    const std::uint64_t allowed_before = service.gate.report_.allowed;
+    const std::string received =
+        converse(*service.server,
+                 bytes_to_send(data[0], {reinterpret_cast<const char*>(data) + 1, size - 1}));
+    const std::uint64_t allowed = service.gate.report_.allowed - allowed_before;
+    if (count_of(received, R"("resultCode":0)") + count_of(received, R"("result_code":0)") >
+        2 * allowed)  // a reply, and the topic where it was subscribed to
+        std::abort();
+    const ServerCounts counts = service.server->counts();
+    if (counts.clients != 0 || counts.handshakes != 0) std::abort();
+    service.gate.questions.clear();
+    service.gate.goals.clear();
+    service.gate.rearmed.clear();
+    service.gate.vouched.clear();
+    service.gate.forgotten.clear();
+    service.gate.last_sequence.clear();
+    return 0;
+}
