@@ -11,10 +11,6 @@ constexpr std::int64_t kLongestSilence_ns = 100'000'000;
 constexpr std::int64_t kLongestLife_ns = 300'000'000;
 constexpr std::int64_t kLongest_ns = 60'000'000'000;
 
-bool is_movement(std::uint8_t code) noexcept {
-    return code > 0 && code < Machine::kMovementCodes;
-}
-
 }  // namespace
 
 std::optional<std::string> RexLinkConfig::problem() const {
@@ -62,58 +58,54 @@ RexLink::RexLink(const RexLinkConfig& config) : config_(config) {
     SUREFOOT_ASSERT(!config.problem());
 }
 
-Actions RexLink::connected(std::uint64_t nonce, std::int64_t now_ns) {
+/// What every event has in common: its time is noted, and what fell due follows it.
+template <typename Meaning>
+Actions RexLink::event(std::int64_t now_ns, const Meaning& meaning) {
     Actions actions;
     note_time(now_ns, actions);
-    if (attempting()) inhibit(Inhibit::disconnected, actions);
-    nonce_ = nonce;
+    meaning(actions);
     fall_due(now_ns, actions);
     return actions;
+}
+
+Actions RexLink::connected(std::uint64_t nonce, std::int64_t now_ns) {
+    return event(now_ns, [&](Actions& actions) {
+        if (attempting()) inhibit(Inhibit::disconnected, actions);
+        nonce_ = nonce;
+    });
 }
 
 Actions RexLink::disconnected(std::int64_t now_ns) {
-    Actions actions;
-    note_time(now_ns, actions);
-    if (attempting()) inhibit(Inhibit::disconnected, actions);
-    nonce_.reset();
-    fall_due(now_ns, actions);
-    return actions;
+    return event(now_ns, [&](Actions& actions) {
+        if (attempting()) inhibit(Inhibit::disconnected, actions);
+        nonce_.reset();
+    });
 }
 
 Actions RexLink::joystick(std::uint8_t code, std::int64_t now_ns) {
-    Actions actions;
-    note_time(now_ns, actions);
-    if (code != code_) {
+    return event(now_ns, [&](Actions&) {
+        if (code == code_) return;
         if (attempting()) state_ = LinkState::idle;  // the user thought better of it
         if (code_ == 0 && now_ns - rest_since_ns_ >= config_.rest_pause_ns) refused_.reset();
         if (code == 0) rest_since_ns_ = now_ns;
         code_ = code;
-    }
-    fall_due(now_ns, actions);
-    return actions;
+    });
 }
 
 Actions RexLink::answer(const Answer& answer, std::int64_t now_ns) {
-    Actions actions;
-    note_time(now_ns, actions);
-    if (attempting()) accept(answer, now_ns, actions);
-    fall_due(now_ns, actions);
-    return actions;
+    return event(now_ns, [&](Actions& actions) {
+        if (attempting()) accept(answer, now_ns, actions);
+    });
 }
 
 Actions RexLink::damaged_answer(std::int64_t now_ns) {
-    Actions actions;
-    note_time(now_ns, actions);
-    if (attempting()) inhibit(Inhibit::damaged, actions);
-    fall_due(now_ns, actions);
-    return actions;
+    return event(now_ns, [&](Actions& actions) {
+        if (attempting()) inhibit(Inhibit::damaged, actions);
+    });
 }
 
 Actions RexLink::tick(std::int64_t now_ns) {
-    Actions actions;
-    note_time(now_ns, actions);
-    fall_due(now_ns, actions);
-    return actions;
+    return event(now_ns, [](Actions&) {});
 }
 
 std::optional<std::int64_t> RexLink::next_deadline_ns() const noexcept {
@@ -137,11 +129,11 @@ bool RexLink::asking() const noexcept {
 }
 
 void RexLink::note_time(std::int64_t now_ns, Actions& actions) {
-    if (now_ns < last_ns_) {
-        rest_since_ns_ = now_ns;  // how long the joystick rested is not known
-        if (attempting()) inhibit(Inhibit::clock, actions);
-    }
+    const bool backwards = now_ns < last_ns_;
     last_ns_ = now_ns;
+    if (!backwards) return;
+    rest_since_ns_ = now_ns;  // how long the joystick rested is not known
+    if (attempting()) inhibit(Inhibit::clock, actions);
 }
 
 /// What falls due by the time alone, and what the joystick still asks for.
@@ -162,7 +154,7 @@ void RexLink::fall_due(std::int64_t now_ns, Actions& actions) {
 
 /// The first question about what the joystick asks for.
 void RexLink::begin(std::int64_t now_ns, Actions& actions) {
-    if (!is_movement(code_)) {
+    if (code_ >= Machine::kMovementCodes) {
         inhibit(Inhibit::unknown_code, actions);
     } else if (!nonce_) {
         inhibit(Inhibit::disconnected, actions);

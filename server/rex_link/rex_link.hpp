@@ -125,7 +125,8 @@ class RexLink {
     void accept(const Answer& answer, std::int64_t now_ns, Actions& actions);
     void inhibit(Inhibit why, Actions& actions);
     void fall_due(std::int64_t now_ns, Actions& actions);
-    /// Notes the time; true when it went backwards, which ends an attempt.
+    template <typename Meaning>
+    [[nodiscard]] Actions event(std::int64_t now_ns, const Meaning& meaning);
     void note_time(std::int64_t now_ns, Actions& actions);
     [[nodiscard]] bool fits(const Answer& answer) const noexcept;
 
