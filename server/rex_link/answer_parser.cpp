@@ -90,25 +90,27 @@ bool read_id(const std::string& id, Answer& answer) {
     return format_id(answer.nonce, {answer.sequence, answer.command}) == id;
 }
 
-struct VerdictWords {
-    const char* verdict;
-    int result_code;
-    AnswerVerdict means;
-};
-constexpr std::array<VerdictWords, 3> kVerdicts = {
-    {{"OK", 0, AnswerVerdict::ok},
-     {"NOT_TRAVERSABLE", 1, AnswerVerdict::not_traversable},
-     {"ERROR", -1, AnswerVerdict::error}}};
+/// resultCode of the thesis' stepQuery.
+int result_code_of(AnswerVerdict verdict) {
+    switch (verdict) {
+        case AnswerVerdict::ok: return 0;
+        case AnswerVerdict::not_traversable: return 1;
+        case AnswerVerdict::error: return -1;
+    }
+    return -1;
+}
+constexpr std::array kVerdicts = {
+    AnswerVerdict::ok, AnswerVerdict::not_traversable, AnswerVerdict::error};
 
 Status read_verdict(const Json& values, Answer& answer) {
     const Json* verdict = find(values, "verdict");
-    const auto* const words =
-        std::find_if(kVerdicts.begin(), kVerdicts.end(), [verdict](const VerdictWords& known) {
-            return is_text(verdict, known.verdict);
+    const auto* const known =
+        std::find_if(kVerdicts.begin(), kVerdicts.end(), [verdict](AnswerVerdict candidate) {
+            return is_text(verdict, to_string(candidate));
         });
-    if (words == kVerdicts.end()) return missing("verdict", "OK, NOT_TRAVERSABLE or ERROR");
+    if (known == kVerdicts.end()) return missing("verdict", "OK, NOT_TRAVERSABLE or ERROR");
     const Json* code = find(values, "result_code");
-    if (code == nullptr || !code->is_number_integer() || *code != words->result_code)
+    if (code == nullptr || !code->is_number_integer() || *code != result_code_of(*known))
         return missing("result_code", "that of the verdict");
     const Json* reasons = find(values, "reasons");
     const bool is_list = reasons != nullptr && reasons->is_array();
@@ -117,9 +119,9 @@ Status read_verdict(const Json& values, Answer& answer) {
         })) {
         return missing("reasons", "a list of words");
     }
-    if (reasons->empty() != (words->means == AnswerVerdict::ok))
+    if (reasons->empty() != (*known == AnswerVerdict::ok))
         return missing("reasons", "empty for an OK alone");
-    answer.verdict = words->means;
+    answer.verdict = *known;
     return {};
 }
 

@@ -30,6 +30,15 @@ std::optional<std::string> RexLinkConfig::problem() const {
     return std::nullopt;
 }
 
+const char* to_string(AnswerVerdict verdict) noexcept {
+    switch (verdict) {
+        case AnswerVerdict::ok: return "OK";
+        case AnswerVerdict::not_traversable: return "NOT_TRAVERSABLE";
+        case AnswerVerdict::error: return "ERROR";
+    }
+    return "ERROR";
+}
+
 const char* to_string(Tone tone) noexcept {
     switch (tone) {
         case Tone::acknowledge: return "acknowledge";

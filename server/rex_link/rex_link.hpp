@@ -28,6 +28,8 @@ struct Question {
 
 /// What the gate said. Every value may come: bytes that were damaged on the way make one, too.
 enum class AnswerVerdict : std::uint8_t { error = 0, not_traversable = 1, ok = 2 };
+/// "OK", "NOT_TRAVERSABLE", "ERROR", the last one for what is none of the three.
+[[nodiscard]] const char* to_string(AnswerVerdict verdict) noexcept;
 
 /// An answer as its bytes tell it, whatever it answers.
 struct Answer {

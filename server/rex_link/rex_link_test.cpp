@@ -441,6 +441,10 @@ TEST(RexLinkConfigTest, LimitsMayOnlyTighten) {
 }
 
 TEST(RexLinkNames, EveryToneAndReasonHasOne) {
+    EXPECT_STREQ(to_string(AnswerVerdict::ok), "OK");
+    EXPECT_STREQ(to_string(AnswerVerdict::not_traversable), "NOT_TRAVERSABLE");
+    EXPECT_STREQ(to_string(AnswerVerdict::error), "ERROR");
+    EXPECT_STREQ(to_string(static_cast<AnswerVerdict>(77)), "ERROR");
     EXPECT_STREQ(to_string(Tone::acknowledge), "acknowledge");
     EXPECT_STREQ(to_string(Tone::not_traversable), "not_traversable");
     EXPECT_STREQ(to_string(Tone::cannot_judge), "cannot_judge");
