@@ -27,6 +27,7 @@
 #include "io/map_file.hpp"
 #include "io/recorder.hpp"
 #include "io/rig_formats.hpp"
+#include "server/rex_link/link_client.hpp"
 #include "sim/scenes.hpp"
 #include "surefoot/core/machine.hpp"
 #include "surefoot/elevation/region_merge.hpp"
@@ -87,6 +88,13 @@ struct TruthScale {
 [[nodiscard]] std::string replay_json(const std::vector<FrameReport>& frames,
                                       double speed,
                                       std::int64_t late);
+/// One event of the REX link; the file of a tone, where there is one.
+struct RexLinkRow {
+    rex_link::LinkEvent event;
+    std::string tone_file;
+};
+[[nodiscard]] std::string rex_link_json(const std::string& url,
+                                        const std::vector<RexLinkRow>& rows);
 [[nodiscard]] std::string rate_json(const grid::GridGeometry& geometry, const std::string& folder);
 [[nodiscard]] std::string map_info_json(const io::MapFile& map, const std::string& file);
 [[nodiscard]] std::string map_merge_json(const grid::MapRegion& merged,

@@ -96,6 +96,7 @@ struct AllOptions {
     FuseOptions fuse;
     GroundOptions ground;
     GateOptions gate;
+    RexLinkOptions rex_link;
     EvalTrajectoryOptions eval_trajectory;
     EvalMapsOptions eval_maps;
     EvalDepthOptions eval_depth;
@@ -336,6 +337,35 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
             "without it the ground under the present feet is assumed, and listed in 'assumed'")
         ->type_name("M")
         ->check(number_in(0.0, 2.0));
+}
+
+void add_rex_link(CLI::App& app, RexLinkOptions& o, int& exit_code) {
+    CLI::App* verb =
+        bind(add_verb(app,
+                      "rex-link",
+                      "plays the REX beside the machine: asks the gate about each movement of the "
+                      "joystick, twice, and moves on the second OK; exit 1 where no gate listens",
+                      "surefoot rex-link --url ws://127.0.0.1:9090 --script "
+                      "server/rex_link/example_joystick.txt --tones server/rex_link/tones"),
+             o,
+             rex_link_verb,
+             exit_code,
+             Reads::no_settings);
+    verb->add_option("--url", o.url, "of the gate's service: address in numbers or localhost")
+        ->type_name("ws://ADDRESS[:PORT][/PATH]");
+    CLI::Option* script = verb->add_option(
+        "--script", o.script_file, "lines 'time_s code', or joystick.csv of a simulated walk");
+    script->type_name("FILE");
+    verb->add_flag(
+            "--keys", o.keys, "keyboard: arrows or w a s d step, q and e turn, space rests, x ends")
+        ->excludes(script);
+    verb->add_option("--tones",
+                     o.tones_dir,
+                     "folder of the tones (tools/tones), which are played where there is an aplay")
+        ->type_name("DIR");
+    verb->add_option("--step-time", o.step_s, "how long a movement takes")
+        ->type_name("S")
+        ->check(number_in(0.01, 60.0));
 }
 
 void add_depth(CLI::App& app, DepthOptions& o, int& exit_code) {
@@ -908,6 +938,7 @@ int main_with_arguments(int argc, char** argv) {
     add_depth_accuracy(app, all.depth_accuracy, exit_code);
     add_dem(app, all.dem, exit_code);
     add_gate(app, all.gate, exit_code);
+    add_rex_link(app, all.rex_link, exit_code);
     add_eval(app, all, exit_code);
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);
     add_rig(app, all.rig, exit_code);

@@ -94,6 +94,17 @@ struct GateOptions {
 };
 int gate(const GateOptions& options);
 
+struct RexLinkOptions {
+    CommonOptions common;
+    std::string url = "ws://127.0.0.1:9090";
+    std::string script_file;
+    bool keys = false;
+    std::string tones_dir;  ///< empty = no sound
+    double step_s = 10.0;   ///< how long a movement takes
+};
+/// `rex-link`; a namespace has its name already.
+int rex_link_verb(const RexLinkOptions& options);
+
 struct EvalTrajectoryOptions {
     CommonOptions common;
     std::string estimate;

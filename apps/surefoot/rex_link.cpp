@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/rex_link/rex_link.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/joystick_script.hpp"
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/keyboard_joystick.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/tone_player.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "io/file.hpp"
+#include "server/rex_link/link_client.hpp"
+#include "surefoot/core/time.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using rex_link::LinkEvent;
+using rex_link::LinkEventKind;
+
+/// What an event has beyond its name, for people.
+std::string words_of(const LinkEvent& event, const std::string& tone_file) {
+    switch (event.kind) {
+        case LinkEventKind::connected: return "";
+        case LinkEventKind::disconnected:
+        case LinkEventKind::damaged: return event.text;
+        case LinkEventKind::joystick: return fmt::format("{}", event.command);
+        case LinkEventKind::question:
+            return fmt::format(
+                "{}: may the machine make movement {}?", event.sequence, event.command);
+        case LinkEventKind::answer:
+            return fmt::format("{}: {}: {}", event.sequence, to_string(event.verdict), event.text);
+        case LinkEventKind::inhibited: return to_string(event.inhibit);
+        case LinkEventKind::tone:
+            return fmt::format(
+                "{}{}{}", to_string(event.tone), tone_file.empty() ? "" : " ", tone_file);
+        case LinkEventKind::motion:
+            return fmt::format(
+                "{} for {:.1f} s", event.command, seconds_from_ns(event.duration_ns));
+    }
+    return "";
+}
+
+/// The script or the keyboard; nothing once it has ended, or the user pressed Ctrl-C.
+Result<rex_link::Joystick> make_joystick(const RexLinkOptions& options) {
+    if (options.keys) {
+        return rex_link::Joystick([keyboard = std::make_shared<KeyboardJoystick>()](std::int64_t) {
+            return interrupted() ? std::nullopt : keyboard->poll();
+        });
+    }
+    const auto text = io::read_file(options.script_file);
+    if (!text) return text.error();
+    auto script = parse_joystick_script(*text, options.script_file);
+    if (!script) return script.error();
+    return rex_link::Joystick(
+        [lines = std::move(*script)](std::int64_t elapsed_ns) -> std::optional<std::uint8_t> {
+            const bool over = lines.empty() || elapsed_ns > lines.back().time_ns;
+            if (over || interrupted()) return std::nullopt;
+            return code_at(lines, elapsed_ns);
+        });
+}
+
+/// Whether the user asked for a movement, and no gate was ever there to ask.
+bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
+    const auto has = [&rows](LinkEventKind kind) {
+        return std::any_of(rows.begin(), rows.end(), [kind](const RexLinkRow& row) {
+            return row.event.kind == kind;
+        });
+    };
+    return has(LinkEventKind::inhibited) && !has(LinkEventKind::connected);
+}
+
+}  // namespace
+
+int rex_link_verb(const RexLinkOptions& options) {
+    if (options.keys == !options.script_file.empty())
+        return report(usage_error("rex-link: either --script FILE or --keys is needed"));
+    const auto gate = rex_link::parse_gate_url(options.url);
+    if (!gate) return report(usage_error("--url: " + gate.error().message));
+    auto tones = TonePlayer::open(options.tones_dir);
+    if (!tones) return report(tones.error());
+    rex_link::LinkClientConfig config;
+    config.gate = *gate;
+    config.link.step_duration_ns = ns_from_seconds(options.step_s);
+    if (const auto problem = config.link.problem()) return report(usage_error(*problem));
+    watch_for_interrupts();
+    const auto joystick = make_joystick(options);
+    if (!joystick) return report(joystick.error());
+
+    std::vector<RexLinkRow> rows;
+    rex_link::run_link(config, *joystick, [&](const LinkEvent& event) {
+        const bool is_tone = event.kind == LinkEventKind::tone;
+        rows.push_back({event, is_tone ? tones->file_of(event.tone) : ""});
+        if (!options.common.json) {
+            fmt::print("{:9.3f} s  {:<12} {}\n",
+                       seconds_from_ns(event.time_ns),
+                       to_string(event.kind),
+                       words_of(event, rows.back().tone_file));
+            std::fflush(stdout);
+        }
+        if (is_tone) tones->play(event.tone);
+    });
+    if (options.common.json) print_answer(rex_link_json(options.url, rows));
+    if (nobody_to_ask(rows)) {
+        log_error(fmt::format("no gate answered at {}: every movement was inhibited", options.url));
+        return kExitFailed;
+    }
+    return kExitOk;
+}
+
+}  // namespace surefoot::app

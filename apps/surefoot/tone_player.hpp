@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+#include "server/rex_link/rex_link.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::app {
+
+/// Plays the tones of a folder with aplay, where there is one. Never waits.
+class TonePlayer {
+  public:
+    /// An empty folder is silence. Fails if the folder lacks one of the tones.
+    [[nodiscard]] static Result<TonePlayer> open(const std::string& folder);
+    TonePlayer(TonePlayer&&) = default;
+    TonePlayer& operator=(TonePlayer&&) = default;
+    TonePlayer(const TonePlayer&) = delete;
+    TonePlayer& operator=(const TonePlayer&) = delete;
+    ~TonePlayer() = default;
+
+    /// The file of the tone; empty where there is no folder.
+    [[nodiscard]] std::string file_of(rex_link::Tone tone) const;
+    void play(rex_link::Tone tone);
+
+  private:
+    explicit TonePlayer(std::string folder) : folder_(std::move(folder)) {}
+
+    std::string folder_;
+    std::vector<pid_t> playing_;  ///< to be collected when they have ended
+};
+
+}  // namespace surefoot::app
