@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/wire/query_zone.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "surefoot/gate/footprints.hpp"
+#include "surefoot/gate/ground.hpp"
+
+namespace surefoot::wire {
+namespace {
+
+using grid::MapSnapshot;
+
+/// 100 km and 2 m, as in the gate: within them no product overflows.
+constexpr std::int64_t kFarthestTenthMm = 1'000'000'000;
+constexpr std::int64_t kWidestVouchedTenthMm = 20'000;
+
+constexpr bool within(std::int64_t value, std::int64_t bound) noexcept {
+    return value >= -bound && value <= bound;
+}
+
+bool is_unit(double value) noexcept {
+    return value >= -1.001 && value <= 1.001;  // false for NaN
+}
+
+bool has_cells(const MapSnapshot& map) noexcept {
+    return map.nx >= 1 && map.nx <= MapSnapshot::kMaxSide && map.ny >= 1 &&
+           map.ny <= MapSnapshot::kMaxSide && map.resolution_tenth_mm >= 1 &&
+           within(map.origin_x_tenth_mm, kFarthestTenthMm) &&
+           within(map.origin_y_tenth_mm, kFarthestTenthMm);
+}
+
+/// Not narrower than what the gate asks before it looks at the ground.
+bool can_look(const Machine& machine, const gate::Query& query, const MapSnapshot& map) noexcept {
+    const gate::VouchedArea& area = query.vouched;
+    const bool vouched =
+        !area.active || (within(area.center_x_tenth_mm, kFarthestTenthMm) &&
+                         within(area.center_y_tenth_mm, kFarthestTenthMm) &&
+                         area.radius_tenth_mm > 0 && area.radius_tenth_mm <= kWidestVouchedTenthMm);
+    return has_cells(map) && machine.problem() == nullptr &&
+           query.command < Machine::kMovementCodes && machine.movements[query.command].configured &&
+           within(query.x_tenth_mm, kFarthestTenthMm) &&
+           within(query.y_tenth_mm, kFarthestTenthMm) && is_unit(query.cos_yaw) &&
+           is_unit(query.sin_yaw) && vouched;
+}
+
+/// Bounds of all ground that is asked, in units of 0.1 mm.
+struct Bounds {
+    grid::FixedPoint low{std::numeric_limits<std::int64_t>::max(),
+                         std::numeric_limits<std::int64_t>::max()};
+    grid::FixedPoint high{std::numeric_limits<std::int64_t>::min(),
+                          std::numeric_limits<std::int64_t>::min()};
+
+    void add(grid::FixedPoint p) noexcept {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    void add(const grid::FixedConvex& polygon) noexcept {
+        for (const grid::FixedPoint p : polygon.points()) add(p);
+    }
+};
+
+Bounds bounds_of(const Machine& machine, const gate::Query& query, const MapSnapshot& map) {
+    const gate::FixedPose start =
+        gate::fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
+    const gate::Sweep sweep = gate::sweep_of(machine, start, machine.movements[query.command]);
+    Bounds bounds;
+    for (const gate::FootSweep& foot : sweep.feet) {
+        bounds.add(foot.stance);
+        bounds.add(foot.landing);
+        bounds.add(foot.corridor);
+        bounds.add(foot.band);
+    }
+    for (const grid::FixedConvex& part : sweep.body) bounds.add(part);
+    const gate::Ground ground(map, query);
+    if (ground.is_vouching()) {  // as far as Ground and ReachableSurfaces::add_beside_vouched look
+        const gate::VouchedArea& area = query.vouched;
+        const std::int64_t reach = area.radius_tenth_mm + map.resolution_tenth_mm;
+        bounds.add(
+            grid::FixedPoint{area.center_x_tenth_mm - reach, area.center_y_tenth_mm - reach});
+        bounds.add(
+            grid::FixedPoint{area.center_x_tenth_mm + reach, area.center_y_tenth_mm + reach});
+    }
+    return bounds;
+}
+
+/// First cell and number of cells of [low, high] along one axis of `n` cells.
+struct Range {
+    std::int32_t first = 0;
+    std::int32_t count = 0;
+};
+Range cells_between(
+    std::int64_t low, std::int64_t high, std::int64_t origin, std::int64_t side, std::int64_t n) {
+    const std::int64_t first = std::clamp<std::int64_t>(grid::floor_div(low - origin, side), 0, n);
+    const std::int64_t end =
+        std::clamp<std::int64_t>(grid::floor_div(high - origin, side) + 1, first, n);
+    return {static_cast<std::int32_t>(first), static_cast<std::int32_t>(end - first)};
+}
+
+}  // namespace
+
+bool is_inside(const CellBox& box, const MapSnapshot& map) noexcept {
+    return has_cells(map) && box.x >= 0 && box.y >= 0 && box.nx >= 0 && box.ny >= 0 &&
+           box.x <= map.nx && box.nx <= map.nx - box.x && box.y <= map.ny &&
+           box.ny <= map.ny - box.y;
+}
+
+CellBox query_zone(const Machine& machine,
+                   const gate::Query& query,
+                   const MapSnapshot& map) noexcept {
+    if (!can_look(machine, query, map)) return {};
+    const Bounds bounds = bounds_of(machine, query, map);
+    const std::int64_t side = map.resolution_tenth_mm;
+    const Range x = cells_between(bounds.low.x, bounds.high.x, map.origin_x_tenth_mm, side, map.nx);
+    const Range y = cells_between(bounds.low.y, bounds.high.y, map.origin_y_tenth_mm, side, map.ny);
+    if (x.count == 0 || y.count == 0) return {};
+    return {x.first, y.first, x.count, y.count};
+}
+
+}  // namespace surefoot::wire
