@@ -9,6 +9,9 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/surefoot/bench_result.hpp"
@@ -18,6 +21,7 @@
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "server/wire/audit_log.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/camera/reproject.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
@@ -187,6 +191,32 @@ Result<std::vector<BenchResult>> bench_camera(const CommonOptions&, Executor&) {
     return results;
 }
 
+/// A disk that takes everything and keeps nothing.
+class NoDisk final : public wire::AuditDisk {
+  public:
+    Result<std::vector<Entry>> list() override { return std::vector<Entry>{}; }
+    Status create(const std::string&) override { return {}; }
+    Written write(std::string_view bytes) override { return {bytes.size(), 0}; }
+    Status truncate(std::uint64_t) override { return {}; }
+    Status sync() override { return {}; }
+    void close() override {}
+    Status remove(const std::string&) override { return {}; }
+};
+
+/// What the audit log costs the thread that decides.
+Result<BenchResult> bench_audit_push(const Machine& machine, const wire::AuditedVerdict& audited) {
+    constexpr int kRepeats = 2000;
+    wire::AuditConfig config;
+    config.memory_bytes = 128U << 20U;  // all of them: a full ring would be no copy
+    wire::AuditLog log(machine, std::make_unique<NoDisk>(), config);
+    if (auto status = log.start(); !status) return status.error();
+    const BenchResult result{"gate/audit_push", timed(kRepeats, [&] { log.push(audited); })};
+    log.stop();
+    if (log.report().lost > 0)
+        return input_error("bench gate: verdicts were lost; the timing would mean nothing");
+    return result;
+}
+
 Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
     const auto machine = load_machine("rex");
     if (!machine) return machine.error();
@@ -218,6 +248,10 @@ Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
     if (verdict.decision != gate::Decision::ok) {
         return input_error("bench gate: the flat floor was not OK; the timing would mean nothing");
     }
+    auto audit_push = bench_audit_push(
+        machine->value().machine, {query, health, snapshot->frame_time_ns, *snapshot, verdict});
+    if (!audit_push) return audit_push.error();
+    results.push_back(std::move(audit_push).value());
     return results;
 }
 

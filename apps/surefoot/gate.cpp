@@ -13,6 +13,7 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/text.hpp"
+#include "server/wire/audit_log.hpp"
 #include "surefoot/gate/verdict_text.hpp"
 
 namespace surefoot::app {
@@ -34,6 +35,24 @@ int refuse(const GateOptions& options, std::uint8_t command, const Error& error)
     verdict.command = command;
     if (options.common.json) print_answer(verdict_json(verdict, error.message, {}));
     return kExitGateError;
+}
+
+/// Adds the verdict to an audit log, as the gate process does.
+Status write_audit(const std::string& folder,
+                   const Machine& machine,
+                   const gate::Query& query,
+                   const grid::MapSnapshot& map,
+                   const gate::Verdict& verdict) {
+    wire::AuditConfig config;
+    config.files.run_id = wire::new_run_id();
+    wire::AuditLog log(machine, wire::make_folder_disk(folder), config);
+    if (auto status = log.start(); !status) return status;
+    const OfflineMoment moment = moment_of(map);
+    log.push({query, moment.health, moment.now_ns, map, verdict});
+    log.stop();
+    const wire::AuditReport done = log.report();
+    if (done.written == 1 && !done.failing) return {};
+    return output_error("the verdict is not in the audit log: " + done.last_error);
 }
 
 /// The movements of a machine, for people: "9 N, 25 left".
@@ -94,6 +113,10 @@ int gate(const GateOptions& options) {
         const auto status =
             write_explanation(options.explain_file, m, query, *map->snapshot, verdict, text);
         if (!status) log_error(status.error().message);  // the verdict stands without its picture
+    }
+    if (!options.audit_dir.empty()) {
+        const auto status = write_audit(options.audit_dir, m, query, *map->snapshot, verdict);
+        if (!status) log_error(status.error().message);  // no disk changes a verdict
     }
     return exit_code_of(verdict.decision);
 }

@@ -48,6 +48,25 @@ Json counts_json(const FusionCounts& f) {
             {"cells_cleared", f.cells_cleared}};
 }
 
+Json summary_json(const wire::AuditSummary& summary) {
+    Json damage = nullptr;
+    if (summary.damage) {
+        damage = {
+            {"file", summary.damage->file},
+            {"offset", summary.damage->offset},
+            {"frame", summary.damage->sequence ? Json(*summary.damage->sequence) : Json(nullptr)},
+            {"what", summary.damage->what}};
+    }
+    return {{"files", summary.files},
+            {"bytes", summary.bytes},
+            {"runs", summary.runs},
+            {"verdicts", summary.verdicts},
+            {"gaps", summary.gaps},
+            {"lost", summary.lost},
+            {"unfinished", summary.unfinished},
+            {"damage", damage}};
+}
+
 Json elevation_json(const eval::ElevationErrors& e) {
     return {{"median_abs_m", number(e.median_abs_m)},
             {"p90_abs_m", number(e.p90_abs_m)},
@@ -372,6 +391,29 @@ std::string verdict_json(const gate::Verdict& verdict,
                          {"command", verdict.command},
                          {"map_version", verdict.map_version},
                          {"config_hash", fmt::format("{:016x}", verdict.config_hash)}};
+    return object.dump(kIndent);
+}
+
+std::string audit_json(const wire::AuditSummary& summary) {
+    return summary_json(summary).dump(kIndent);
+}
+
+std::string audit_replay_json(const wire::AuditSummary& summary, const AuditReplay& replay) {
+    Json object = summary_json(summary);
+    object["equal"] = replay.equal;
+    object["different"] = replay.different;
+    Json first = nullptr;
+    if (replay.first) {
+        Json fields = Json::array();
+        for (const wire::FieldDifference& d : replay.first->fields)
+            fields.push_back(
+                {{"field", d.field}, {"recorded", d.recorded}, {"replayed", d.replayed}});
+        first = {{"file", replay.first->file},
+                 {"offset", replay.first->offset},
+                 {"frame", replay.first->sequence},
+                 {"fields", fields}};
+    }
+    object["first_difference"] = first;
     return object.dump(kIndent);
 }
 

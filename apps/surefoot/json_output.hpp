@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/surefoot/audit_replay.hpp"
 #include "apps/surefoot/bench_result.hpp"
 #include "apps/surefoot/board_accuracy.hpp"
 #include "apps/surefoot/cameras.hpp"
@@ -28,6 +29,7 @@
 #include "io/recorder.hpp"
 #include "io/rig_formats.hpp"
 #include "server/rex_link/link_client.hpp"
+#include "server/wire/audit_reader.hpp"
 #include "sim/scenes.hpp"
 #include "surefoot/core/machine.hpp"
 #include "surefoot/elevation/region_merge.hpp"
@@ -56,6 +58,9 @@ struct ReportCamera {
 [[nodiscard]] std::string verdict_json(const gate::Verdict& verdict,
                                        const std::string& text,
                                        const std::vector<std::string>& assumed);
+[[nodiscard]] std::string audit_json(const wire::AuditSummary& summary);
+[[nodiscard]] std::string audit_replay_json(const wire::AuditSummary& summary,
+                                            const AuditReplay& replay);
 [[nodiscard]] std::string trajectory_json(const eval::TrajectoryErrors& errors,
                                           const std::vector<eval::PathError>& by_length);
 [[nodiscard]] std::string maps_json(const eval::MapComparison& result);

@@ -97,6 +97,8 @@ struct AllOptions {
     GroundOptions ground;
     GateOptions gate;
     RexLinkOptions rex_link;
+    AuditOptions audit_verify;
+    AuditOptions audit_replay;
     EvalTrajectoryOptions eval_trajectory;
     EvalMapsOptions eval_maps;
     EvalDepthOptions eval_depth;
@@ -312,7 +314,8 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
                  "gate",
                  "one verdict: may this step be taken? exit 0 OK, 3 NOT_TRAVERSABLE, 4 ERROR; 2 "
                  "wrong call, 1 internal error: no permission either",
-                 "surefoot gate --map out/floor --pose 0,0,0 --command 9"),
+                 "surefoot gate --map out/floor --pose 0,0,0 --command 9\n"
+                 "  surefoot gate --map out/floor --pose 0,0,0 --command 25 --audit out/audit"),
         o,
         gate,
         exit_code,
@@ -337,6 +340,36 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
             "without it the ground under the present feet is assumed, and listed in 'assumed'")
         ->type_name("M")
         ->check(number_in(0.0, 2.0));
+    verb->add_option("--audit",
+                     o.audit_dir,
+                     "audit log that the verdict is added to, with all that it was made from")
+        ->type_name("DIR");
+}
+
+void add_audit(CLI::App& app, AllOptions& all, int& exit_code) {
+    CLI::App* verb = app.add_subcommand("audit", "logs of verdicts: are they whole, and right?");
+    verb->require_subcommand(1);
+    verb->footer("Example:\n  surefoot audit verify out/audit");
+    const auto add = [&](const char* name,
+                         const char* what,
+                         const char* example,
+                         AuditOptions& options,
+                         int (*handler)(const AuditOptions&)) {
+        bind(add_verb(*verb, name, what, example), options, handler, exit_code, Reads::no_settings)
+            ->add_option("path", options.path, "folder of a log, or one file of it")
+            ->required()
+            ->type_name("PATH");
+    };
+    add("verify",
+        "checksums, chain and gaps; exit 1 where a log is damaged",
+        "surefoot audit verify out/audit --json",
+        all.audit_verify,
+        audit_verify);
+    add("replay",
+        "decides every verdict anew; exit 0 only when all are the same, bit for bit",
+        "surefoot audit replay out/audit",
+        all.audit_replay,
+        audit_replay);
 }
 
 void add_rex_link(CLI::App& app, RexLinkOptions& o, int& exit_code) {
@@ -939,6 +972,7 @@ int main_with_arguments(int argc, char** argv) {
     add_dem(app, all.dem, exit_code);
     add_gate(app, all.gate, exit_code);
     add_rex_link(app, all.rex_link, exit_code);
+    add_audit(app, all, exit_code);
     add_eval(app, all, exit_code);
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);
     add_rig(app, all.rig, exit_code);

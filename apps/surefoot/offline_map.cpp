@@ -135,13 +135,17 @@ Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
     return area;
 }
 
+OfflineMoment moment_of(const grid::MapSnapshot& map) {
+    OfflineMoment moment;
+    moment.now_ns = std::max(map.frame_time_ns, map.pose_time_ns);
+    return moment;
+}
+
 gate::Verdict decide_offline(const Machine& machine,
                              const gate::Query& query,
                              const grid::MapSnapshot& map) {
-    gate::GateHealth health;
-    health.state = gate::GateState::ready;
-    const std::int64_t now_ns = std::max(map.frame_time_ns, map.pose_time_ns);
-    return gate::decide(machine, query, map, health, now_ns);
+    const OfflineMoment moment = moment_of(map);
+    return gate::decide(machine, query, map, moment.health, moment.now_ns);
 }
 
 }  // namespace surefoot::app

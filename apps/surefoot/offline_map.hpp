@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,8 +31,13 @@ struct OfflineMap {
                                                         double radius_m,
                                                         std::vector<std::string>& assumed);
 
-/// The verdict of a gate that is ready, as if asked right after the last thing that the run did; an
-/// old depth frame stays old.
+/// What a gate is told offline beside map and question: it is ready, and asked right after the last
+/// thing that the run did; an old depth frame stays old.
+struct OfflineMoment {
+    gate::GateHealth health{gate::GateState::ready, {}};
+    std::int64_t now_ns = 0;
+};
+[[nodiscard]] OfflineMoment moment_of(const grid::MapSnapshot& map);
 [[nodiscard]] gate::Verdict decide_offline(const Machine& machine,
                                            const gate::Query& query,
                                            const grid::MapSnapshot& map);

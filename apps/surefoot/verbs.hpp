@@ -91,6 +91,7 @@ struct GateOptions {
     std::string machine = "rex";
     std::string explain_file;
     double vouch_radius_m = -1.0;  ///< < 0: just the ground under the present feet
+    std::string audit_dir;         ///< folder of an audit log that gets the verdict; empty = none
 };
 int gate(const GateOptions& options);
 
@@ -104,6 +105,14 @@ struct RexLinkOptions {
 };
 /// `rex-link`; a namespace has its name already.
 int rex_link_verb(const RexLinkOptions& options);
+struct AuditOptions {
+    CommonOptions common;
+    std::string path;  ///< folder of a log, or one file of it
+};
+/// `audit verify`: is the log whole?
+int audit_verify(const AuditOptions& options);
+/// `audit replay`: does the gate give every verdict of the log again?
+int audit_replay(const AuditOptions& options);
 
 struct EvalTrajectoryOptions {
     CommonOptions common;

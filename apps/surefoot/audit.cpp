@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "apps/surefoot/audit_replay.hpp"
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "server/wire/audit_reader.hpp"
+
+namespace surefoot::app {
+namespace {
+
+void say_what_is_missing(const wire::AuditSummary& summary) {
+    for (const std::string& sentence : summary.unfinished) log_warning(sentence);
+    if (summary.gaps > 0)
+        log_warning(fmt::format(
+            "{} verdicts were lost in {} gaps: the disk took nothing", summary.lost, summary.gaps));
+    if (summary.damage) log_error(summary.damage->text());
+}
+
+std::string text_of(const wire::AuditSummary& summary) {
+    return fmt::format("{} verdicts of {} runs in {} files ({} bytes)",
+                       summary.verdicts,
+                       summary.runs,
+                       summary.files,
+                       summary.bytes);
+}
+
+void print_difference(const AuditDifference& first) {
+    fmt::print(
+        "first difference: {}, byte {}, frame {}\n", first.file, first.offset, first.sequence);
+    for (const wire::FieldDifference& d : first.fields)
+        fmt::print("  {}: recorded {}, now {}\n", d.field, d.recorded, d.replayed);
+}
+
+}  // namespace
+
+int audit_verify(const AuditOptions& options) {
+    const auto summary = wire::read_audit(options.path, {});
+    if (!summary) return report(summary.error());
+    say_what_is_missing(*summary);
+    if (options.common.json) {
+        print_answer(audit_json(*summary));
+    } else {
+        fmt::print("{}: {}\n", text_of(*summary), summary->damage ? "DAMAGED" : "whole");
+    }
+    return summary->damage ? kExitFailed : kExitOk;
+}
+
+int audit_replay(const AuditOptions& options) {
+    AuditReplay replay;
+    const auto summary = wire::read_audit(options.path, [&](const wire::AuditedAt& at) {
+        auto fields = wire::differences(at.record.verdict, wire::replay(at.machine, at.record));
+        if (fields.empty()) {
+            ++replay.equal;
+            return;
+        }
+        ++replay.different;
+        if (!replay.first)
+            replay.first = AuditDifference{at.file, at.offset, at.sequence, std::move(fields)};
+    });
+    if (!summary) return report(summary.error());
+    say_what_is_missing(*summary);
+    if (options.common.json) {
+        print_answer(audit_replay_json(*summary, replay));
+    } else {
+        fmt::print("{}: {} equal, {} different{}\n",
+                   text_of(*summary),
+                   replay.equal,
+                   replay.different,
+                   summary->damage ? ", DAMAGED" : "");
+        if (replay.first) print_difference(*replay.first);
+    }
+    if (replay.different > 0) log_error("the gate decides otherwise than the log says");
+    return summary->damage || replay.different > 0 ? kExitFailed : kExitOk;
+}
+
+}  // namespace surefoot::app
