@@ -199,6 +199,24 @@ TEST(AuditLog, a_disk_that_cannot_sync_is_failing_until_it_can) {
     EXPECT_FALSE(bench.platter->read().damage);
 }
 
+TEST(AuditLog, a_folder_that_cannot_be_written_is_failing_though_nobody_asks) {
+    Bench bench;
+    bench.platter->fails_create = true;
+    AuditConfig config = small_config();
+    config.sync_ns = 1;  // what is not there is synced at once
+    AuditLog log(rex(), std::make_unique<MemoryDisk>(bench.platter), config);
+    ASSERT_TRUE(log.start());
+    const auto tries = [&] {
+        const std::lock_guard lock(bench.platter->mutex);
+        return bench.platter->creates;
+    };
+    bench.await([&] { return tries() > 0 && log.state(kNowNs) == AuditState::failing; });
+    bench.await([&] { return tries() > 5 || log.state(kNowNs) != AuditState::failing; });
+    EXPECT_EQ(log.state(kNowNs), AuditState::failing);
+    bench.platter->set([](Platter& p) { p.fails_create = false; });
+    bench.await([&] { return log.state(kNowNs) == AuditState::ok; });
+}
+
 TEST(AuditLog, stops_on_a_disk_that_takes_nothing_and_counts_all_as_lost) {
     Bench bench;
     bench.platter->write_error = EIO;

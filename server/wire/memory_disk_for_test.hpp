@@ -32,6 +32,7 @@ struct Platter {
     bool hangs = false;  ///< writing does not return
     int waiting = 0;     ///< writes that hang
     int syncs = 0;
+    int creates = 0;  ///< tries
 
     template <typename Change>
     void set(Change change) {
@@ -77,6 +78,7 @@ class MemoryDisk final : public AuditDisk {
     }
     Status create(const std::string& name) override {
         const std::lock_guard lock(platter_->mutex);
+        ++platter_->creates;
         if (platter_->fails_create || platter_->files.contains(name))
             return output_error(name + ": cannot be made");
         platter_->files[name] = "";
