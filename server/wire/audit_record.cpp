@@ -29,14 +29,18 @@ std::size_t bytes_of_ground(const MapSnapshot& map, const CellBox& zone) noexcep
     return bytes;
 }
 
+std::size_t first_cell_of(const CellBox& zone, const MapSnapshot& map) noexcept {
+    return static_cast<std::size_t>(zone.y) * static_cast<std::size_t>(map.nx) +
+           static_cast<std::size_t>(zone.x);
+}
+
 /// copy(first cell, bytes) of every row of the zone in one layer.
 template <typename Layer, typename Copy>
 void for_each_row(Layer& layer, const MapSnapshot& map, const CellBox& zone, Copy&& copy) {
     constexpr std::size_t kCellBytes = sizeof(typename std::decay_t<Layer>::value_type);
     for (std::int32_t row = 0; row < zone.ny; ++row) {
-        const std::size_t first =
-            static_cast<std::size_t>(zone.y + row) * static_cast<std::size_t>(map.nx) +
-            static_cast<std::size_t>(zone.x);
+        const std::size_t first = first_cell_of(zone, map) +
+                                  static_cast<std::size_t>(row) * static_cast<std::size_t>(map.nx);
         copy(layer.data() + first, static_cast<std::size_t>(zone.nx) * kCellBytes);
     }
 }
@@ -50,6 +54,7 @@ void for_each_record_field(Record& record, Map& map, Visit& visit) {
     visit("now_ns", record.now_ns);
     for_each_verdict_field(record.verdict, visit);
     visit("snapshot_intact", record.snapshot_intact);
+    visit("cells_intact", record.cells_intact);
     for_each_snapshot_field(map, visit);
     for_each_zone_field(record.zone, visit);
 }
@@ -62,8 +67,18 @@ struct RecordView {
     std::int64_t now_ns;
     const gate::Verdict& verdict;
     bool snapshot_intact;
+    bool cells_intact;
     const CellBox& zone;
 };
+
+/// The ground was looked at, and its cells were not those that had been sealed: the only verdict
+/// that says so without having counted a cell.
+bool found_damaged_cells(const gate::Verdict& verdict) {
+    const gate::Evidence& e = verdict.evidence;
+    return verdict.reasons == gate::ReasonSet(gate::Reason::internal) && e.cells == 0 &&
+           e.lacks(gate::Proof::cells_intact) && !e.lacks(gate::Proof::snapshot_intact) &&
+           !e.lacks(gate::Proof::process_ready) && !e.lacks(gate::Proof::command_known);
+}
 
 RecordView view_of(std::uint64_t machine_hash, const AuditedVerdict& a, const CellBox& zone) {
     return {machine_hash,
@@ -72,6 +87,7 @@ RecordView view_of(std::uint64_t machine_hash, const AuditedVerdict& a, const Ce
             a.now_ns,
             a.verdict,
             !a.verdict.evidence.lacks(gate::Proof::snapshot_intact),
+            !found_damaged_cells(a.verdict),
             zone};
 }
 
@@ -173,8 +189,10 @@ Status parse_record(std::string_view bytes, AuditRecord& record) {
         });
     });
     record.map_checksum = map.checksum;
-    map.checksum = grid::snapshot_checksum(map);
+    grid::seal(map);
     if (!record.snapshot_intact) map.checksum = ~map.checksum;
+    if (!record.cells_intact && zone != CellBox{})
+        map.height_tenth_mm[first_cell_of(zone, map)] ^= 1;
     return {};
 }
 

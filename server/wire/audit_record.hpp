@@ -34,11 +34,12 @@ struct AuditRecord {
     /// Whether the snapshot was intact as a whole. Taken from the verdict: without the cells that
     /// are not in the record nobody can tell.
     bool snapshot_intact = false;
+    bool cells_intact = false;  ///< likewise, of the cells that were to be read
     CellBox zone;
     /// Checksum that the whole snapshot carried: says which map of a recording it was.
     std::uint64_t map_checksum = 0;
     /// The snapshot with its own header, edges and the cells of the zone; nothing else of it is
-    /// known. Its checksum is right exactly when `snapshot_intact`.
+    /// known. Its checksums are right exactly when `snapshot_intact` and `cells_intact`.
     std::unique_ptr<grid::MapSnapshot> map = std::make_unique<grid::MapSnapshot>();
 };
 

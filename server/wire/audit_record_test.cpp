@@ -57,8 +57,14 @@ TEST(AuditRecord, verdicts_about_what_is_broken_come_again_too) {
     };
     const double nan = std::nan("");
     expect_same("no snapshot yet", [](Case& c) { *c.map = grid::MapSnapshot{}; });
-    expect_same("a flipped bit far away", [](Case& c) { c.map->height_tenth_mm[0] ^= 1; });
     expect_same("a flipped bit of the checksum", [](Case& c) { c.map->checksum ^= 1U; });
+    expect_same("a flipped bit of a cell that is read", [](Case& c) {
+        c.map->height_tenth_mm[gate::testing::cell_at(*c.map, 0.3, 0.2)] ^= 1;
+    });
+    expect_same("a flipped bit of every block", [](Case& c) {
+        for (std::size_t i = 0; i < c.map->drift_tenth_mm.size(); i += 512)
+            c.map->drift_tenth_mm[i] ^= 1U;
+    });
     expect_same("another layout", with_seal([](auto& m) { m.layout = 2; }));
     expect_same("absurd size", with_seal([](auto& m) { m.nx = 2'000'000'000; }));
     expect_same("absurd edges", with_seal([](auto& m) { m.edge_count = -5; }));
@@ -152,7 +158,7 @@ TEST(AuditRecord, holds_every_field_of_its_version) {
     Case c;
     c.map = std::make_unique<grid::MapSnapshot>();
     c.decide();
-    EXPECT_EQ(record_of(c).size(), 431U);
+    EXPECT_EQ(record_of(c).size(), 432U);
     EXPECT_EQ(format_machine(c.machine).size(), 1265U);
     EXPECT_EQ(sizeof(gate::Query), 96U);
     EXPECT_EQ(sizeof(gate::GateHealth), 16U);

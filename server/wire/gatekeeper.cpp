@@ -84,6 +84,12 @@ void Gatekeeper::ask_canary(std::int64_t now_ns) {
     canary_ = (canary_ + 1) % canaries_->count();
 }
 
+gate::GateHealth Gatekeeper::health() const noexcept {
+    gate::GateHealth health = readiness_.health();
+    if (log_failing_) health.faults.add(gate::Reason::audit);
+    return health;
+}
+
 bool Gatekeeper::is_in_sequence(const StepQuestion& question) {
     const auto [last, is_new] = sequences_.try_emplace(question.connection, question.sequence);
     if (is_new) return true;
@@ -96,7 +102,7 @@ Judgement Gatekeeper::judge(const StepQuestion& question,
                             bool in_sequence,
                             std::int64_t now_ns) const {
     Judgement judgement;
-    judgement.health = readiness_.health();
+    judgement.health = health();
     if (!in_sequence) judgement.health.faults.add(gate::Reason::seq);
     judgement.query = gate::query_at_body(question.command, *map_);
     judgement.query.vouched = vouching_.area();
@@ -124,7 +130,7 @@ Answer Gatekeeper::ask_step(const StepQuestion& question, std::int64_t now_ns) {
 
 Answer Gatekeeper::ask_goal(const GoalQuestion& question, std::int64_t now_ns) {
     fetch(now_ns);
-    gate::GateHealth health = readiness_.health();
+    gate::GateHealth health = this->health();
     if (question.frame_id != "odom") health.faults.add(gate::Reason::frame_id);
     gate::Query here = gate::query_at_body(0, *map_);
     here.vouched = vouching_.area();
@@ -140,7 +146,7 @@ Answer Gatekeeper::ask_goal(const GoalQuestion& question, std::int64_t now_ns) {
 
 GateReport Gatekeeper::report(std::int64_t now_ns) {
     GateReport report;
-    report.health = readiness_.health();
+    report.health = health();
     report.why = report.health.faults.primary();
     if (report.why == gate::Reason::none) {
         if (report.health.state == gate::GateState::warmup)

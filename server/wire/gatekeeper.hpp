@@ -42,6 +42,8 @@ class Gatekeeper final : public StepGate {
     /// Fetches what is new, lets time pass, asks a canary now and then. `boottime_ns` is steady
     /// time with what the computer slept.
     void poll(std::int64_t now_ns, std::int64_t boottime_ns);
+    /// An assured gate gives no OK (Reason::audit) while its log cannot be written.
+    void set_log_failing(bool failing) noexcept { log_failing_ = failing; }
     /// The process ends: nothing is OK any more.
     void stop() noexcept { readiness_.stop(); }
 
@@ -58,6 +60,7 @@ class Gatekeeper final : public StepGate {
     void fetch(std::int64_t now_ns);
     void open_channel(std::int64_t now_ns);
     void ask_canary(std::int64_t now_ns);
+    [[nodiscard]] gate::GateHealth health() const noexcept;
     [[nodiscard]] bool is_in_sequence(const StepQuestion& question);
     [[nodiscard]] Judgement judge(const StepQuestion& question,
                                   bool in_sequence,
@@ -79,6 +82,7 @@ class Gatekeeper final : public StepGate {
     std::int64_t next_canary_ns_ = 0;
     int canary_ = 0;
     std::map<std::uint64_t, std::uint64_t> sequences_;  ///< of each connection, the last one
+    bool log_failing_ = false;
     std::uint64_t asked_ = 0;
     std::uint64_t allowed_ = 0;
 };

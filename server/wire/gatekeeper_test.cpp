@@ -229,6 +229,15 @@ TEST_F(GatekeeperTest, every_verdict_is_audited_with_what_it_was_made_of) {
     }
 }
 
+TEST_F(GatekeeperTest, an_assured_gate_gives_no_ok_without_its_log) {
+    become_ready();
+    keeper_->set_log_failing(true);
+    EXPECT_EQ(ask().verdict.primary, Reason::audit);
+    EXPECT_EQ(keeper_->report(now_ns_).why, Reason::audit);
+    keeper_->set_log_failing(false);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_));
+}
+
 TEST_F(GatekeeperTest, after_stopping_nothing_is_ok) {
     become_ready();
     keeper_->stop();

@@ -166,6 +166,7 @@ void judge_terrain(const Machine& machine,
         const Extent extent = extent_of(sweep);
         if (!ground.is_intact(extent.low_y, extent.high_y)) findings.deny(Reason::internal);
     });
+    if (!findings.reasons().empty()) return;  // of a damaged map nothing is said
     const std::optional<std::int64_t> stance = stance_height(ground, query, sweep);
     const Scene scene{machine, movement, ground, sweep, stance.value_or(0)};
     findings.evidence.stance_known = stance.has_value();

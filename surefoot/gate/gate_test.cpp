@@ -700,6 +700,7 @@ TEST(GateReadiness, a_damaged_map_is_an_internal_error) {
     const Verdict verdict = ask(*map, kForward);
     expect_error(verdict, Reason::internal);
     EXPECT_TRUE(verdict.evidence.lacks(Proof::cells_intact));
+    EXPECT_EQ(verdict.evidence.cells, 0) << "nothing is judged on it";
     height ^= 1;
     expect_ok(ask(*map, kForward));
     map->version ^= 1;

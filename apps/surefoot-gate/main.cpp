@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// The step gate as a process: newest map through shared memory, questions over a WebSocket, every
+// verdict into the audit log. One thread decides; the log writes on its own.
+#include <fmt/format.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <memory>
+#include <numbers>
+
+#include "apps/surefoot/resources.hpp"
+#include "io/file.hpp"
+#include "io/machine_file.hpp"
+#include "server/wire/audit_log.hpp"
+#include "server/wire/gatekeeper.hpp"
+#include "server/wire/websocket_server.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr int kExitOk = 0;
+constexpr int kExitFailed = 1;
+constexpr int kExitUsage = 2;
+/// So long an orphan tells its clients that perception is gone before it ends.
+constexpr std::int64_t kOrphanLife_ns = 5'000'000'000;
+
+std::atomic<bool> stop_wanted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+struct Options {
+    std::string machine = "rex";
+    std::string snapshots;
+    std::string token_file;
+    std::string audit_dir;
+    bool assured = false;
+    bool orphan_ends = false;
+    wire::ServerConfig server;
+};
+
+std::int64_t clock_ns(clockid_t clock) {
+    timespec now{};
+    clock_gettime(clock, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+int fail(const Error& error) {
+    fmt::print(stderr, "surefoot-gate: {}\n", error.message);
+    return error.code == ErrorCode::usage ? kExitUsage : kExitFailed;
+}
+
+Result<io::MachineFile> load_machine(const std::string& name) {
+    if (io::is_file(name)) return io::read_machine(name);
+    const auto text = find_resource("machines", name);
+    if (!text) return text.error();
+    return io::parse_machine(*text, name);
+}
+
+/// A token on the command line would be seen by everybody on the machine.
+Result<std::string> read_token(const std::string& path) {
+    auto text = io::read_file(path, 4096);
+    if (!text) return text.error();
+    while (!text->empty() && (text->back() == '\n' || text->back() == '\r')) text->pop_back();
+    if (text->empty()) return usage_error(path + ": the token is empty");
+    return text;
+}
+
+gate::ReadinessLimits limits_of(const io::MachineFile& file) {
+    gate::ReadinessLimits limits;
+    if (file.speed_m_s > 0.0) limits.fastest_m_s = file.speed_m_s;
+    if (file.turn_deg_s > 0.0) limits.fastest_rad_s = file.turn_deg_s * std::numbers::pi / 180.0;
+    return limits;
+}
+
+/// The log of the process; none where nobody asked for one.
+Result<std::unique_ptr<wire::AuditLog>> open_log(const Options& options, const Machine& machine) {
+    std::unique_ptr<wire::AuditLog> log;
+    if (options.audit_dir.empty()) return log;
+    wire::AuditConfig config;
+    config.files.run_id = wire::new_run_id();
+    log = std::make_unique<wire::AuditLog>(
+        machine, wire::make_folder_disk(options.audit_dir), config);
+    if (auto status = log->start(); !status) return status.error();
+    return log;
+}
+
+int serve(const Options& options, const io::MachineFile& file) {
+    auto log = open_log(options, file.machine);
+    if (!log) return fail(log.error());
+    wire::AuditLog* const audit = log->get();
+    wire::Gatekeeper keeper(file.machine,
+                            limits_of(file),
+                            options.snapshots,
+                            [audit](const wire::Judgement& j, const grid::MapSnapshot& map) {
+                                if (audit != nullptr)
+                                    audit->push({j.query, j.health, j.now_ns, map, j.verdict});
+                            });
+    const pid_t parent = ::getppid();
+    std::int64_t orphan_since_ns = 0;
+    wire::WebsocketServer* running = nullptr;
+    const auto tick = [&](std::int64_t now_ns) {
+        keeper.poll(now_ns, clock_ns(CLOCK_BOOTTIME));
+        if (options.assured && audit != nullptr)
+            keeper.set_log_failing(audit->state(now_ns) != wire::AuditState::ok);
+        if (options.orphan_ends && ::getppid() != parent && orphan_since_ns == 0)
+            orphan_since_ns = now_ns;
+        if (stop_wanted || (orphan_since_ns != 0 && now_ns - orphan_since_ns > kOrphanLife_ns))
+            running->stop();
+    };
+    const auto server = wire::WebsocketServer::open(options.server, keeper, tick);
+    if (!server) return fail(server.error());
+    running = server->get();
+    fmt::print("listening on ws://{}:{}\n", options.server.bind_address, running->port());
+    std::fflush(stdout);
+    running->run();
+    keeper.stop();
+    if (audit != nullptr) audit->stop();
+    return kExitOk;
+}
+
+int run(Options options) {
+    const auto machine = load_machine(options.machine);
+    if (!machine) return fail(machine.error());
+    if (const char* problem = machine->machine.problem())
+        return fail(usage_error(options.machine + ": " + problem));
+    if (!options.token_file.empty()) {
+        auto token = read_token(options.token_file);
+        if (!token) return fail(token.error());
+        options.server.token = std::move(token).value();
+    }
+    if (options.assured && options.audit_dir.empty())
+        return fail(usage_error("--assured gives no OK without a log: name its folder (--audit)"));
+    // Every start of the gate counts its clients anew: a verdict of before answers none of them.
+    options.server.first_connection = wire::new_run_id() >> 24U | 1U;
+    struct sigaction action = {};
+    action.sa_handler = [](int) { stop_wanted = true; };
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+    return serve(options, *machine);
+}
+
+}  // namespace
+}  // namespace surefoot::app
+
+int main(int argc, char** argv) {
+    using namespace surefoot::app;
+    Options options;
+    CLI::App app(
+        "The step gate: answers over a WebSocket whether a step may be taken. It may only "
+        "inhibit.\n"
+        "Usually started by `surefoot serve`.");
+    app.footer("Example:\n  surefoot-gate --snapshots /dev/shm/surefoot.channel --audit out/audit");
+    app.add_option("--snapshots", options.snapshots, "file in shared memory with the maps")
+        ->required()
+        ->type_name("FILE");
+    app.add_option("--machine", options.machine, "machine file, or a built-in name")
+        ->capture_default_str();
+    app.add_option("--port", options.server.port, "0 = any free one")->capture_default_str();
+    app.add_option("--bind", options.server.bind_address, "address; beyond loopback a token is due")
+        ->capture_default_str();
+    app.add_option("--token-file", options.token_file, "file with what clients put into ?token=")
+        ->type_name("FILE");
+    app.add_option("--origin", options.server.origins, "web pages of this origin may connect")
+        ->type_name("URL");
+    app.add_option("--audit", options.audit_dir, "folder of the audit log")->type_name("DIR");
+    app.add_flag("--assured", options.assured, "no OK while the audit log cannot be written");
+    app.add_flag("--orphan-ends",
+                 options.orphan_ends,
+                 "end a few seconds after the program that started the gate");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? kExitOk : kExitUsage;
+    }
+    return run(std::move(options));
+}
