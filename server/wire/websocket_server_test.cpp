@@ -13,8 +13,8 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <mutex>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <thread>
 
 #include "server/wire/json_text.hpp"
@@ -43,14 +43,8 @@ ServerConfig any_port() {
 class Service {
   public:
     explicit Service(const ServerConfig& config = any_port())
-        : server_(std::move(WebsocketServer::open(config,
-                                                  gate,
-                                                  [this](std::int64_t) {
-                                                      ++ticks;
-                                                      clients = server_->counts().clients;
-                                                      dropped = server_->counts().dropped;
-                                                  })
-                                .value())),
+        : server_(std::move(
+              WebsocketServer::open(config, gate, [this](std::int64_t) { look(); }).value())),
           thread_([this] { server_->run(); }) {}
     Service(const Service&) = delete;
     Service& operator=(const Service&) = delete;
@@ -60,18 +54,36 @@ class Service {
         if (!thread_.joinable()) return;
         server_->stop();
         thread_.join();
+        look();
     }
     [[nodiscard]] tcp::endpoint endpoint() const {
         return {net::ip::make_address("127.0.0.1"), server_->port()};
     }
-    [[nodiscard]] ServerCounts counts() const { return server_->counts(); }
+    /// As the last tick saw them.
+    [[nodiscard]] ServerCounts counts() {
+        const std::lock_guard lock(mutex_);
+        return counts_;
+    }
+    /// Waits until so many have come, nobody is at the door and so many clients are left.
+    void wait_for(std::uint64_t accepted, std::size_t clients) {
+        for (ServerCounts now = counts();
+             now.accepted != accepted || now.clients != clients || now.handshakes != 0;
+             now = counts())
+            std::this_thread::yield();
+    }
 
     ScriptedGate gate;
     std::atomic<int> ticks = 0;
-    std::atomic<std::size_t> clients = 0;
-    std::atomic<std::uint64_t> dropped = 0;
 
   private:
+    void look() {
+        ++ticks;
+        const std::lock_guard lock(mutex_);
+        counts_ = server_->counts();
+    }
+
+    std::mutex mutex_;
+    ServerCounts counts_;
     std::unique_ptr<WebsocketServer> server_;
     std::thread thread_;
 };
@@ -207,7 +219,7 @@ TEST(WebsocketServer, DoesNotListenOutsideWithoutAToken) {
 }
 
 TEST(WebsocketServer, APortThatIsTakenIsSaid) {
-    const Service service;
+    Service service;
     ScriptedGate gate;
     ServerConfig config;
     config.port = service.endpoint().port();
@@ -292,9 +304,11 @@ TEST(WebsocketServer, SubscribersHearOfVerdictsAndHealth) {
 TEST(WebsocketServer, TheOwnerIsCalledAndCounts) {
     Service service;
     Client client(service, "/", "");
-    while (service.clients != 1 || service.ticks < 10) std::this_thread::yield();
+    service.wait_for(1, 1);
+    const int ticks = service.ticks;
+    while (service.ticks < ticks + 10) std::this_thread::yield();
     client.ws().close(websocket::close_code::normal);
-    while (service.clients != 0) std::this_thread::yield();
+    service.wait_for(1, 0);
     service.end();
     EXPECT_EQ(service.counts().accepted, 1U);
     EXPECT_EQ(service.counts().refused, 0U);
@@ -324,6 +338,7 @@ TEST(WebsocketServer, NonsenseGetsAStatusAndThenTheDoor) {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(client.ask("{")["op"], "status");
     EXPECT_EQ(client.ask("{")["op"], "status");
     EXPECT_EQ(client.end_of_reading(), websocket::close_code::policy_error);
+    service.wait_for(2, 1);
     expect_allowed(other);
     service.end();
     EXPECT_EQ(service.counts().dropped, 1U);
@@ -352,7 +367,7 @@ TEST(WebsocketServer, AMessageInPiecesHasATimeAsAWhole) {
     // Pieces of one message without an end, and pings between them: each is a sign of life.
     error_code error;
     client.send_bytes(std::string("\x01\x81\0\0\0\0{", 7));
-    while (!error && service.dropped == 0) {
+    while (!error && service.counts().dropped == 0) {
         client.send_bytes(std::string("\0\x81\0\0\0\0 ", 7));
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -404,6 +419,7 @@ TEST(WebsocketServer, AFloodOfPingsEndsItsConnection) {
 TEST(WebsocketServer, WhoDoesNotReadIsLeftAndTheOthersGoOn) {
     ServerConfig config = any_port();
     config.max_queue_bytes = 64 * 1024;
+    config.write_ms = 60'000;  // the queue is full before
     config.session.messages = {.per_s = 1'000'000, .burst = 1'000'000};
     Service service(config);
     Client slow(service);
@@ -411,23 +427,27 @@ TEST(WebsocketServer, WhoDoesNotReadIsLeftAndTheOthersGoOn) {
     slow.open();
     slow.send(R"({"op":"subscribe","topic":"/surefoot/verdict"})");
     Client client(service, "/", "");
-    for (int i = 0; i < 100'000 && service.dropped == 0; ++i) expect_allowed(client);
-    EXPECT_EQ(service.dropped, 1U);
+    for (int i = 0; i < 100'000 && service.counts().dropped == 0; ++i) expect_allowed(client);
+    EXPECT_EQ(service.counts().dropped, 1U);
     expect_allowed(client);
 }
 
 TEST(WebsocketServer, WhoAsksWithoutReadingIsLeft) {
     ServerConfig config = any_port();
     config.write_ms = 50;
+    config.max_queue_bytes = 64 << 20;  // never full
     config.session.messages = {.per_s = 1'000'000, .burst = 1'000'000};
     Service service(config);
     Client other(service, "/", "");
-    Client client(service, "/", "");
-    std::string question =
+    Client client(service);
+    client.socket().set_option(net::socket_base::receive_buffer_size(4096));
+    client.open();
+    // Answers of some megabytes: more than the sockets hold.
+    const std::string question =
         R"({"op":"call_service","id":"q","service":"/surefoot/step","args":[9]})";
     error_code error;
-    while (!error && service.dropped == 0) client.ws().write(net::buffer(question), error);
-    while (service.dropped == 0) std::this_thread::yield();
+    for (int i = 0; i < 8000 && !error; ++i) client.ws().write(net::buffer(question), error);
+    while (service.counts().dropped == 0) std::this_thread::yield();
     expect_allowed(other);
 }
 
@@ -453,7 +473,7 @@ TEST(WebsocketServer, NoMoreClientsThanTheLimit) {
         EXPECT_EQ(status_of_upgrade(service, "/"), 503U);
         second.ws().close(websocket::close_code::normal);
     }
-    while (service.clients != 1) std::this_thread::yield();
+    service.wait_for(3, 1);
     EXPECT_EQ(status_of_upgrade(service, "/"), 101U);
     expect_allowed(first);
 }
@@ -485,7 +505,7 @@ TEST(WebsocketServer, AClientThatVanishesIsForgotten) {
         client.send_bytes(std::string("\x81\xbf\0\0\0\0{\"op\":", 12));
         client.socket().set_option(net::socket_base::linger(true, 0));
     }
-    while (service.clients != 1) std::this_thread::yield();
+    service.wait_for(2, 1);
     expect_allowed(other);
     service.end();
     EXPECT_EQ(service.gate.forgotten.front(), 2U);
