@@ -58,7 +58,7 @@ std::optional<std::string> ServerConfig::problem() const {
     if (token.empty() && !is_loopback_address(bind_address))
         return "bind_address " + bind_address + " is reached from outside: a token is needed";
     if (!token.empty()) {
-        if (const auto token_problem = problem_of_token(token)) return token_problem;
+        if (auto token_problem = problem_of_token(token)) return token_problem;
     }
     if (first_connection == 0 || first_connection > kMaxExact / 2)
         return "first_connection: from 1 to 2^52";

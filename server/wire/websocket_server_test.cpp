@@ -436,6 +436,9 @@ TEST(WebsocketServer, WhoAsksWithoutReadingIsLeft) {
     ServerConfig config = any_port();
     config.write_ms = 50;
     config.max_queue_bytes = 64 << 20;  // never full
+    // A client without room for what comes may lose the word that its own was received, and stops
+    // in the middle of a message: that is another deadline.
+    config.message_ms = 60'000;
     config.session.messages = {.per_s = 1'000'000, .burst = 1'000'000};
     Service service(config);
     Client other(service, "/", "");
@@ -476,6 +479,22 @@ TEST(WebsocketServer, NoMoreClientsThanTheLimit) {
     service.wait_for(3, 1);
     EXPECT_EQ(status_of_upgrade(service, "/"), 101U);
     expect_allowed(first);
+}
+
+TEST(WebsocketServer, AtAFullDoorTheOldestGivesWay) {
+    ServerConfig config = any_port();
+    config.max_handshakes = 2;
+    config.handshake_ms = 60'000;
+    Service service(config);
+    Client oldest(service);
+    Client other(service);
+    Client newest(service, "/", "");
+    EXPECT_EQ(oldest.read_bytes(), "");
+    expect_allowed(newest);
+    other.open();
+    expect_allowed(other);
+    service.end();
+    EXPECT_EQ(service.counts().refused, 1U);
 }
 
 TEST(WebsocketServer, AThousandAtTheDoorDisturbNobody) {
