@@ -37,6 +37,7 @@ struct Options {
     std::string audit_dir;
     bool assured = false;
     bool orphan_ends = false;
+    double vouch_radius_m = 0.0;
     wire::ServerConfig server;
 };
 
@@ -99,9 +100,15 @@ int serve(const Options& options, const io::MachineFile& file) {
                             });
     const pid_t parent = ::getppid();
     std::int64_t orphan_since_ns = 0;
+    bool word_given = options.vouch_radius_m == 0.0;
     wire::WebsocketServer* running = nullptr;
     const auto tick = [&](std::int64_t now_ns) {
         keeper.poll(now_ns, clock_ns(CLOCK_BOOTTIME));
+        if (!word_given && keeper.report(now_ns).health.state == gate::GateState::ready) {
+            word_given = true;
+            if (const auto given = keeper.vouch(0, options.vouch_radius_m, now_ns); !given)
+                fmt::print(stderr, "surefoot-gate: {}\n", given.error().message);
+        }
         if (options.assured && audit != nullptr)
             keeper.set_log_failing(audit->state(now_ns) != wire::AuditState::ok);
         if (options.orphan_ends && ::getppid() != parent && orphan_since_ns == 0)
@@ -167,6 +174,12 @@ int main(int argc, char** argv) {
         ->type_name("URL");
     app.add_option("--audit", options.audit_dir, "folder of the audit log")->type_name("DIR");
     app.add_flag("--assured", options.assured, "no OK while the audit log cannot be written");
+    app.add_option("--vouch",
+                   options.vouch_radius_m,
+                   "once, when the gate is ready: whoever starts it answers for level ground so "
+                   "far around the machine; void after leaving")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("M");
     app.add_flag("--orphan-ends",
                  options.orphan_ends,
                  "end a few seconds after the program that started the gate");

@@ -672,6 +672,17 @@ std::string replay_json(const std::vector<FrameReport>& frames, double speed, st
     return object.dump(kIndent);
 }
 
+std::string serve_json(const std::vector<AskedStep>& steps) {
+    Json list = Json::array();
+    for (const AskedStep& step : steps) {
+        list.push_back({{"command", step.command},
+                        {"moved", step.moved},
+                        {"verdict", step.verdict},
+                        {"text", step.text}});
+    }
+    return Json{{"movements", list}}.dump(kIndent);
+}
+
 std::string rex_link_json(const std::string& url, const std::vector<RexLinkRow>& rows) {
     Json list = Json::array();
     for (const RexLinkRow& row : rows) list.push_back(event_json(row));

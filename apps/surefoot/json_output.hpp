@@ -15,6 +15,7 @@
 #include "apps/surefoot/rig_view.hpp"
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/scan.hpp"
+#include "apps/surefoot/steered_walk.hpp"
 #include "apps/surefoot/suite_case.hpp"
 #include "eval/dem.hpp"
 #include "eval/depth_design.hpp"
@@ -98,6 +99,7 @@ struct RexLinkRow {
     rex_link::LinkEvent event;
     std::string tone_file;
 };
+[[nodiscard]] std::string serve_json(const std::vector<AskedStep>& steps);
 [[nodiscard]] std::string rex_link_json(const std::string& url,
                                         const std::vector<RexLinkRow>& rows);
 [[nodiscard]] std::string rate_json(const grid::GridGeometry& geometry, const std::string& folder);

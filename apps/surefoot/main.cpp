@@ -97,6 +97,7 @@ struct AllOptions {
     GroundOptions ground;
     GateOptions gate;
     RexLinkOptions rex_link;
+    ServeOptions serve;
     AuditOptions audit_verify;
     AuditOptions audit_replay;
     EvalTrajectoryOptions eval_trajectory;
@@ -370,6 +371,55 @@ void add_audit(CLI::App& app, AllOptions& all, int& exit_code) {
         "surefoot audit replay out/audit",
         all.audit_replay,
         audit_replay);
+}
+
+void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
+    CLI::App* verb =
+        bind(add_verb(app,
+                      "serve",
+                      "the whole chain, live, with the gate process beside it that answers over a "
+                      "WebSocket (docs/rosbridge.md)",
+                      "surefoot serve sim:walk_floor --vouch 1 --walk 9,9 --port 0 --once "
+                      "--set sim.sensor=analytic"),
+             o,
+             serve,
+             exit_code);
+    verb->add_option("source", o.source, "as for run")->required();
+    verb->add_option("--rig", o.rig_file, "calibration, where the source has none")
+        ->type_name("FILE");
+    verb->add_option("--machine", o.machine, "machine file, or a built-in name")
+        ->capture_default_str();
+    verb->add_option("--rate", o.rate_hz, "frames per second of a source without stamps")
+        ->type_name("HZ");
+    verb->add_option("--max-frames", o.max_frames, "ends after so many")->type_name("N");
+    verb->add_option("--speed", o.speed, "of a recording, times real time; 0 = as it comes")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    verb->add_option("--port", o.port, "of the gate; 0 = any free one")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    verb->add_option("--bind", o.bind_address, "of the gate; beyond loopback a token is due")
+        ->capture_default_str();
+    verb->add_option("--token-file", o.token_file, "what clients of the gate put into ?token=")
+        ->type_name("FILE");
+    verb->add_option("--audit", o.audit_dir, "folder of the gate's audit log")->type_name("DIR");
+    verb->add_flag("--assured", o.assured, "no OK while the audit log cannot be written");
+    verb->add_option("--vouch",
+                     o.vouch_radius_m,
+                     "the operator's word for level ground so far around the machine where it "
+                     "stands; void once it has left")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("M");
+    verb->add_option("--walk",
+                     o.walk,
+                     "steers a simulated REX: joystick codes like 9,9,17,25*6, each asked for "
+                     "through the gate by a REX link")
+        ->type_name("CODES");
+    verb->add_option("--out", o.out_dir, "a picture of every movement that was asked for")
+        ->type_name("DIR");
+    verb->add_option("--channel", o.channel, "file in shared memory for the maps")
+        ->type_name("FILE");
+    verb->add_flag("--once", o.once, "ends with the source or the walk");
 }
 
 void add_rex_link(CLI::App& app, RexLinkOptions& o, int& exit_code) {
@@ -972,6 +1022,7 @@ int main_with_arguments(int argc, char** argv) {
     add_dem(app, all.dem, exit_code);
     add_gate(app, all.gate, exit_code);
     add_rex_link(app, all.rex_link, exit_code);
+    add_serve(app, all.serve, exit_code);
     add_audit(app, all, exit_code);
     add_eval(app, all, exit_code);
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "apps/surefoot/fit_settings.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/place_session.hpp"
@@ -12,30 +13,6 @@
 #include "io/file.hpp"
 
 namespace surefoot::app {
-namespace {
-
-/// RGB-D cameras bring the Kinect's error model unless the user chose one.
-void choose_sensor_model(const camera::StereoRig& rig, Settings& settings) {
-    auto& model = settings.pipeline.elevation.sensor.model;
-    if (!rig.right && model == elevation::SensorModel::matcher)
-        model = elevation::SensorModel::kinect;
-}
-
-/// Where base_link stands over its own ground, and how fast it can move, is known from the machine
-/// file, unless the user said otherwise.
-void expect_machine(const std::optional<io::MachineFile>& machine, Settings& settings) {
-    if (!machine) return;
-    const auto unless_set = [](double& value, double known) {
-        if (value == 0.0) value = known;
-    };
-    unless_set(settings.pipeline.ground.expected_height_m,
-               1e-4 * machine->machine.sole_depth_tenth_mm);
-    unless_set(settings.pipeline.odometry.machine_speed_m_s, machine->speed_m_s);
-    unless_set(settings.pipeline.odometry.machine_turn_deg_s, machine->turn_deg_s);
-}
-
-}  // namespace
-
 int run(const RunOptions& options) {
     auto settings = load_settings(options.common);
     if (!settings) return report(settings.error());
@@ -53,8 +30,7 @@ int run(const RunOptions& options) {
                               *executor);
     if (!source) return report(source.error());
     const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);
-    choose_sensor_model(rig, *settings);
-    expect_machine(*machine, *settings);
+    fit_settings(rig, *machine, *settings);
     auto pipeline = pipeline::Pipeline::make(settings->pipeline, rig, *executor, steady_now_ns);
     if (!pipeline) return report(pipeline.error());
     std::optional<PlaceSession> place;

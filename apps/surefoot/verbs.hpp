@@ -95,6 +95,28 @@ struct GateOptions {
 };
 int gate(const GateOptions& options);
 
+struct ServeOptions {
+    CommonOptions common;
+    std::string source;
+    std::string rig_file;
+    std::string machine = "rex";
+    double rate_hz = 0.0;
+    int max_frames = 0;
+    double speed = 1.0;  ///< of a recording; simulated scenes come as fast as they are made
+    int port = 9090;     ///< of the gate; 0 = any free one
+    std::string bind_address = "127.0.0.1";
+    std::string token_file;
+    std::string audit_dir;
+    bool assured = false;
+    double vouch_radius_m = 0.0;  ///< an operator's word for the start area; 0 = none
+    std::string walk;             ///< joystick codes for a simulated REX; empty = nobody steers
+    std::string out_dir;          ///< pictures of each movement that was asked for
+    std::string channel;          ///< file in shared memory; empty = one of its own
+    bool once = false;
+};
+/// Perception over a source, with the gate process beside it.
+int serve(const ServeOptions& options);
+
 struct RexLinkOptions {
     CommonOptions common;
     std::string url = "ws://127.0.0.1:9090";

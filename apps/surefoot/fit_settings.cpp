@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/fit_settings.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// RGB-D cameras bring the Kinect's error model unless the user chose one.
+void choose_sensor_model(const camera::StereoRig& rig, Settings& settings) {
+    auto& model = settings.pipeline.elevation.sensor.model;
+    if (!rig.right && model == elevation::SensorModel::matcher)
+        model = elevation::SensorModel::kinect;
+}
+
+/// Where base_link stands over its own ground, and how fast it can move, is known from the machine
+/// file, unless the user said otherwise.
+void expect_machine(const std::optional<io::MachineFile>& machine, Settings& settings) {
+    if (!machine) return;
+    const auto unless_set = [](double& value, double known) {
+        if (value == 0.0) value = known;
+    };
+    unless_set(settings.pipeline.ground.expected_height_m,
+               1e-4 * machine->machine.sole_depth_tenth_mm);
+    unless_set(settings.pipeline.odometry.machine_speed_m_s, machine->speed_m_s);
+    unless_set(settings.pipeline.odometry.machine_turn_deg_s, machine->turn_deg_s);
+}
+
+}  // namespace
+
+void fit_settings(const camera::StereoRig& rig,
+                  const std::optional<io::MachineFile>& machine,
+                  Settings& settings) {
+    choose_sensor_model(rig, settings);
+    expect_machine(machine, settings);
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "apps/surefoot/settings.hpp"
+#include "io/machine_file.hpp"
+#include "surefoot/camera/stereo_rig.hpp"
+
+namespace surefoot::app {
+
+/// What the camera and the machine file know goes into settings that the user left alone.
+void fit_settings(const camera::StereoRig& rig,
+                  const std::optional<io::MachineFile>& machine,
+                  Settings& settings);
+
+}  // namespace surefoot::app

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/rex_link/link_client.hpp"
+#include "sim/commanded_motion.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::app {
+
+/// What became of one movement that the user asked for.
+struct AskedStep {
+    std::uint8_t command = 0;
+    bool moved = false;
+    std::string verdict;  ///< of the last answer; "-" where none came
+    std::string text;
+};
+
+/// "9,9,17,25*12" -> joystick codes in turn, x*n = n times.
+[[nodiscard]] Result<std::vector<std::uint8_t>> parse_walk(const std::string& text);
+
+/// A user who asks for one movement after the other, a REX link that asks the gate, and the
+/// simulated REX that moves when the link says so. Where the gate cannot judge (it warms up), the
+/// user waits and asks again; where it says no, the user goes on with the next movement. Runs on a
+/// thread of its own.
+class SteeredWalk {
+  public:
+    SteeredWalk(std::vector<std::uint8_t> codes,
+                std::uint16_t gate_port,
+                std::shared_ptr<sim::CommandedMotion> motion);
+    SteeredWalk(const SteeredWalk&) = delete;
+    SteeredWalk& operator=(const SteeredWalk&) = delete;
+    /// Ends the thread.
+    ~SteeredWalk();
+
+    /// Before the next frame is exposed: a step may begin at `time_s` of the motion or later.
+    void next_frame_begins(double time_s) noexcept { steer_from_s_ = time_s; }
+    /// All was asked, and the machine stands.
+    [[nodiscard]] bool is_over() const noexcept { return over_; }
+    /// What was asked and answered since the last call.
+    [[nodiscard]] std::vector<AskedStep> news();
+
+  private:
+    [[nodiscard]] std::optional<std::uint8_t> joystick(std::int64_t elapsed_ns);
+    void on_event(const rex_link::LinkEvent& event);
+    void finish(bool moved);
+    [[nodiscard]] bool is_walking() const;
+
+    std::vector<std::uint8_t> codes_;
+    std::shared_ptr<sim::CommandedMotion> motion_;
+    std::atomic<double> steer_from_s_{0.0};
+    std::atomic<bool> stopped_{false};
+    std::atomic<bool> over_{false};
+
+    // Of the thread.
+    std::size_t next_ = 0;
+    std::int64_t elapsed_ns_ = 0;
+    std::int64_t rest_until_ns_ = 0;
+    bool asking_ = false;
+    AskedStep asked_;
+
+    std::mutex mutex_;
+    std::vector<AskedStep> news_;
+    std::thread thread_;
+};
+
+}  // namespace surefoot::app
