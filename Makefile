@@ -24,11 +24,11 @@ test: build
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
 	@echo "$$(grep -cE 'skipped 1 check' $(BUILD)/Testing/Temporary/LastTest.log) checks skipped for want of data"
 
-# Readers, gate, stairs and audit log under AddressSanitizer and UndefinedBehaviorSanitizer.
+# Readers, gate, its service and log, REX link and stairs under AddressSanitizer and UndefinedBehaviorSanitizer.
 asan: setup
 	@test -f build/asan-ubsan/build.ninja || cmake --preset asan-ubsan > /dev/null
-	@cmake --build build/asan-ubsan -j $(JOBS) --target core_test io_test gate_test grid_test stairs_test wire_test
-	ctest --test-dir build/asan-ubsan -j $(JOBS) --output-on-failure -R '^(core|io|gate|grid|stairs|wire)\.'
+	@cmake --build build/asan-ubsan -j $(JOBS) --target core_test io_test gate_test grid_test stairs_test wire_test rex_link_test
+	ctest --test-dir build/asan-ubsan -j $(JOBS) --output-on-failure -R '^(core|io|gate|grid|stairs|wire|rex_link)\.'
 
 check:
 	@tools/check

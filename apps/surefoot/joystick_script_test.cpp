@@ -34,6 +34,11 @@ TEST(JoystickScript, AnEmptyOneRests) {
     EXPECT_EQ(code_at(script.value(), 5), 0);
 }
 
+TEST(JoystickScript, BeginsAtZeroAtTheEarliest) {
+    EXPECT_TRUE(parse_joystick_script("0 9\n", "s"));
+    EXPECT_FALSE(parse_joystick_script("-0.1 9\n", "s"));
+}
+
 TEST(JoystickScript, NamesTheLineThatIsNone) {
     for (const char* line : {"1",
                              "1 2 3 4",

@@ -36,6 +36,8 @@ TEST(KeyReader, OtherKeysChangeNothingAndArrowsMayComeInPieces) {
     EXPECT_EQ(reader.code(), 9);
     reader.read("B");
     EXPECT_EQ(reader.code(), 17);
+    reader.read("\x1bz[A");
+    EXPECT_EQ(reader.code(), 17);
     reader.read("\x1b[Zd");
     EXPECT_EQ(reader.code(), 13);
 }
