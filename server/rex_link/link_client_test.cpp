@@ -35,9 +35,9 @@ std::string ok_to(const std::string& question) {
 class Walk {
   public:
     explicit Walk(std::uint16_t port) {
-        config_.gate = parse_gate_url("ws://127.0.0.1:" + std::to_string(port)).value();
-        config_.link.step_duration_ns = 100 * kMs;
-        config_.reconnect_pause_ns = 20 * kMs;
+        config.gate = parse_gate_url("ws://127.0.0.1:" + std::to_string(port)).value();
+        config.link.step_duration_ns = 100 * kMs;
+        config.reconnect_pause_ns = 20 * kMs;
     }
 
     using Wanted = std::function<bool(const LinkEvent&)>;
@@ -47,7 +47,7 @@ class Walk {
         std::int64_t rest_until_ns = 0;
         bool connected = false;
         run_link(
-            config_,
+            config,
             [&](std::int64_t elapsed_ns) -> std::optional<std::uint8_t> {
                 elapsed_ns_ = elapsed_ns;
                 if (seen || elapsed_ns > kPatience_ns) return std::nullopt;
@@ -74,10 +74,10 @@ class Walk {
     }
 
     bool wait_for_connection = true;
+    LinkClientConfig config;
     std::vector<LinkEvent> events;
 
   private:
-    LinkClientConfig config_;
     std::int64_t elapsed_ns_ = 0;
 };
 
@@ -166,6 +166,14 @@ TEST(LinkClient, AGateThatHangsUpInhibitsAndIsFoundAgain) {
     EXPECT_GE(walk.count(LinkEventKind::disconnected), 1U);
     EXPECT_GE(walk.count(LinkEventKind::connected), 2U);
     EXPECT_GE(walk.count(LinkEventKind::inhibited), 1U);
+}
+
+TEST(LinkClient, TheEndOfAConnectionInhibitsBeforeThereIsAnother) {
+    FakeGate gate([](const std::string&, int) { return Reply{{}, false, true}; });
+    Walk walk(gate.port());
+    walk.config.reconnect_pause_ns = 2 * kPatience_ns;
+    EXPECT_TRUE(walk.until_inhibit(Inhibit::disconnected));
+    EXPECT_EQ(walk.count(LinkEventKind::connected), 1U);
 }
 
 TEST(LinkClient, WithoutAGateEveryPushIsWarned) {
