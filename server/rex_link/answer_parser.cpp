@@ -64,30 +64,24 @@ std::optional<std::string> printable(const Json* value) {
     return text;
 }
 
-/// The whole of `text` as a number without sign or leading zeros but those of a fixed width.
 template <typename T>
-bool read_number(std::string_view text, int base, T& value) {
-    const auto end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, value, base);
-    return read.ec == std::errc() && read.ptr == end;
+bool begins_with_number(std::string_view text, int base, T& value) {
+    return std::from_chars(text.data(), text.data() + text.size(), value, base).ec == std::errc();
 }
 
 std::string format_id(std::uint64_t nonce, const Question& question) {
     return fmt::format("rex:{:016x}:{}:{}", nonce, question.sequence, question.command);
 }
 
-/// The question that an id names, as only format_id writes it.
+/// The question that an id names. What is read of it must give the same id again, to the letter.
 bool read_id(const std::string& id, Answer& answer) {
     const std::string_view text = id;
     constexpr std::size_t kNonceAt = 4, kSequenceAt = 21;
-    const std::size_t colon = text.rfind(':');
-    if (text.size() < kSequenceAt || colon < kSequenceAt) return false;
-    if (!read_number(text.substr(kNonceAt, 16), 16, answer.nonce) ||
-        !read_number(text.substr(kSequenceAt, colon - kSequenceAt), 10, answer.sequence) ||
-        !read_number(text.substr(colon + 1), 10, answer.command)) {
-        return false;
-    }
-    return format_id(answer.nonce, {answer.sequence, answer.command}) == id;
+    if (text.size() < kSequenceAt) return false;
+    return begins_with_number(text.substr(kNonceAt, 16), 16, answer.nonce) &&
+           begins_with_number(text.substr(kSequenceAt), 10, answer.sequence) &&
+           begins_with_number(text.substr(text.rfind(':') + 1), 10, answer.command) &&
+           format_id(answer.nonce, {answer.sequence, answer.command}) == id;
 }
 
 /// resultCode of the thesis' stepQuery.

@@ -142,6 +142,7 @@ TEST(AnswerParser, ANameThatComesTwiceIsRefused) {
 TEST(AnswerParser, WhatIsNoObjectOrTooLargeIsRefused) {
     for (const char* text : {"", "null", "[]", "17", "\"OK\"", "{}", "{\"values\":{}}", "\xff\xfe"})
         EXPECT_NE(refusal(text), "") << text;
+    EXPECT_NE(refusal("[]").find("no JSON object"), std::string::npos);
     EXPECT_NE(refusal(replaced(kOk, "[0.1,-0.2]", "[[[[[[[[[[1]]]]]]]]]]")), "");
     EXPECT_NE(refusal(replaced(kOk, "the step", "\xc3\x28")), "") << "no UTF-8";
     const std::string long_text(kLongestAnswer_bytes, 'a');
