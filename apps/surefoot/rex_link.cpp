@@ -24,6 +24,8 @@ namespace {
 using rex_link::LinkEvent;
 using rex_link::LinkEventKind;
 
+constexpr int kNameWidth = 13;  // of the longest kind of event, and a space
+
 /// What an event has beyond its name, for people.
 std::string words_of(const LinkEvent& event, const std::string& tone_file) {
     switch (event.kind) {
@@ -98,10 +100,12 @@ int rex_link_verb(const RexLinkOptions& options) {
         const bool is_tone = event.kind == LinkEventKind::tone;
         rows.push_back({event, is_tone ? tones->file_of(event.tone) : ""});
         if (!options.common.json) {
-            fmt::print("{:9.3f} s  {:<12} {}\n",
+            const std::string words = words_of(event, rows.back().tone_file);
+            fmt::print("{:9.3f} s  {:<{}}{}\n",
                        seconds_from_ns(event.time_ns),
                        to_string(event.kind),
-                       words_of(event, rows.back().tone_file));
+                       words.empty() ? 0 : kNameWidth,
+                       words);
             std::fflush(stdout);
         }
         if (is_tone) tones->play(event.tone);

@@ -19,6 +19,11 @@ class FakeRosbridge:
         self.thread.start()
 
     def close(self):
+        """Nobody is served any more. A second call changes nothing."""
+        try:
+            self.listener.shutdown(socket.SHUT_RDWR)  # close() alone leaves a waiting accept() with the port
+        except OSError:
+            pass
         self.listener.close()
 
     def serve(self):

@@ -3,12 +3,14 @@ machine may be silent for 100 ms, so that a joystick is pushed several times and
 import signal
 import subprocess
 import sys
+import threading
 import unittest
 
 from fake_rosbridge import FakeRosbridge
 from surefoot_cli import BINARY, ROOT, CliTest, surefoot
 
 TONES = ROOT / "server" / "rex_link" / "tones"
+PATIENCE_S = 60.0
 PUSHES = "".join(f"{time_s:.1f} 9\n{time_s + 0.9:.1f} 0\n" for time_s in (0.5, 2.0, 3.5))
 
 
@@ -26,6 +28,15 @@ class RexLink(CliTest):
     def link(self, port, *words):
         return self.json_of("rex-link", "--url", f"ws://127.0.0.1:{port}", "--script", self.script, "--step-time", 0.3,
                             *words)
+
+    def start(self, *words):
+        """The program with pipes, ended after a minute: a test that waits for a line then fails instead of hanging."""
+        process = subprocess.Popen([BINARY, "rex-link", *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        patience = threading.Timer(PATIENCE_S, process.kill)
+        patience.start()
+        for end in (process.stdin.close, process.stdout.close, process.wait, patience.cancel, process.kill):
+            self.addCleanup(end)
+        return process
 
     def test_two_oks_move_it_and_the_tone_has_a_file(self):
         gate = self.gate(lambda command: "OK")
@@ -62,26 +73,23 @@ class RexLink(CliTest):
 
     def test_keys_come_through_a_pipe(self):
         gate = self.gate(lambda command: "OK")
-        process = subprocess.Popen([BINARY, "rex-link", "--url", f"ws://127.0.0.1:{gate.port}", "--keys"],
-                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        self.addCleanup(process.stdout.close)
+        process = self.start("--url", f"ws://127.0.0.1:{gate.port}", "--keys")
         self.assertIn("connected", process.stdout.readline())
         process.stdin.write("s")
         process.stdin.flush()
         self.assertRegex(process.stdout.readline(), r"joystick +17")
         self.assertRegex(process.stdout.readline(), r"question +1: may the machine make movement 17\?")
         process.stdin.write("x")
-        process.stdin.close()
-        self.assertEqual(process.wait(timeout=60), 0)
+        process.stdin.flush()
+        self.assertEqual(process.wait(), 0)
 
     def test_an_interrupt_ends_it(self):
         self.script.write_text("0 0\n500 9\n")
-        process = subprocess.Popen([BINARY, "rex-link", "--url", f"ws://127.0.0.1:{self.gate(lambda c: 'OK').port}",
-                                    "--script", self.script], stdout=subprocess.PIPE, text=True)
-        self.addCleanup(process.stdout.close)
+        gate = self.gate(lambda command: "OK")
+        process = self.start("--url", f"ws://127.0.0.1:{gate.port}", "--script", self.script)
         self.assertIn("connected", process.stdout.readline())
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=60), 0)
+        self.assertEqual(process.wait(), 0)
 
     def test_wrong_calls_are_told(self):
         for words, why in ((["--script", self.script, "--url", "ws://rex.example"], "--url"),
