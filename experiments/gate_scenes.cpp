@@ -33,6 +33,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -439,36 +440,44 @@ class Campaign {
     std::unique_ptr<grid::MapSnapshot> snapshot_ = std::make_unique<grid::MapSnapshot>();
 };
 
-/// The noise, and one limit at a time at noise 1; the gate's own limits stand at factor 1.
+/// The noise, and single limits: those of sureness at noise 1, those of what a foot or a body
+/// passes on the overconfident map, where nothing else refuses. Labels are those of the machine as
+/// it is.
 std::vector<Variant> curve_variants(const Machine& machine) {
     std::vector<Variant> all;
-    constexpr int kNoiseOne = 0;
-    const auto with = [&](const char* name, double value, auto&& change) {
-        Variant changed{fmt::format("{} {}", name, value), machine, kNoiseOne, MapNoise()};
-        change(changed.machine.limits, value);
-        if (changed.machine.problem() == nullptr) all.push_back(std::move(changed));
+    int map = 0;
+    MapNoise noise;
+    const auto with = [&](const char* name, std::initializer_list<double> values, auto&& change) {
+        for (const double value : values) {
+            Variant changed{fmt::format("{} {}", name, value), machine, map, noise};
+            change(changed.machine.limits, value);
+            if (changed.machine.problem() == nullptr) all.push_back(std::move(changed));
+        }
     };
     const auto tenth_mm = [](double mm) {
         return static_cast<std::int32_t>(std::lround(10.0 * mm));
     };
-    for (const double value : {3.0, 4.0, 5.0, 7.0, 10.0})
-        with("sigma_factor", value, [](GateLimits& l, double v) { l.sigma_factor = v; });
-    for (const double value : {15.0, 20.0, 30.0, 40.0, 50.0})
-        with("patch_residual_mm", value, [&](GateLimits& l, double v) {
-            l.patch_residual_tenth_mm = tenth_mm(v);
-        });
-    for (const double value : {1.5, 2.0, 4.0, 6.0, 10.0})
-        with("patch_sigma_mm", value, [&](GateLimits& l, double v) {
-            l.patch_sigma_tenth_mm = tenth_mm(v);
-        });
-    for (const double value : {25.0, 30.0, 50.0, 60.0, 80.0})
-        with("swing_clearance_mm", value, [&](GateLimits& l, double v) {
-            l.swing_clearance_tenth_mm = tenth_mm(v);
-        });
-    int map = kNoiseOne;
-    for (const double factor : {1.0, 0.5, 1.5, 2.0, 3.0, 4.0})
+    with("sigma_factor", {3.0, 5.0, 7.0}, [](GateLimits& l, double v) { l.sigma_factor = v; });
+    with("patch_residual_mm", {10.0, 15.0, 50.0}, [&](GateLimits& l, double v) {
+        l.patch_residual_tenth_mm = tenth_mm(v);
+    });
+    with("patch_sigma_mm", {2.0, 4.0, 10.0}, [&](GateLimits& l, double v) {
+        l.patch_sigma_tenth_mm = tenth_mm(v);
+    });
+    for (const double factor : {1.0, 0.5, 1.5, 2.0, 3.0, 4.0}) {
         all.push_back({fmt::format("noise {}", factor), machine, map++, MapNoise().times(factor)});
-    for (const double factor : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0})
+    }
+    noise = overconfident(MapNoise());
+    with("step_mm", {10.0, 15.0, 30.0, 40.0, 60.0, 100.0}, [&](GateLimits& l, double v) {
+        l.step[0].up_tenth_mm = l.step[0].down_tenth_mm = tenth_mm(v);
+    });
+    with("drop_mm", {25.0, 35.0, 70.0, 100.0}, [&](GateLimits& l, double v) {
+        l.drop_tenth_mm = tenth_mm(v);
+    });
+    with("swing_clearance_mm", {15.0, 25.0, 60.0, 80.0, 120.0}, [&](GateLimits& l, double v) {
+        l.swing_clearance_tenth_mm = tenth_mm(v);
+    });
+    for (const double factor : {1.0, 2.0, 4.0, 6.0})
         all.push_back({fmt::format("overconfident {}", factor),
                        machine,
                        map++,

@@ -73,7 +73,7 @@ Reach reach_of(const Machine& machine, const Movement& movement, const Vector2d&
 /// Builds the solids with the thing's near border at `at` along `n`, in the frame of the machine.
 class Builder {
   public:
-    Builder(const Vector2d& n, Rng& rng) : n_(n), t_(-n.y(), n.x()), rng_(rng) {}
+    explicit Builder(const Vector2d& n) : n_(n), t_(-n.y(), n.x()) {}
 
     /// From `from_m` to `to_m` along the normal, `left_m` to `right_m` across it.
     void box(
@@ -142,14 +142,14 @@ class Builder {
   private:
     Vector2d n_;
     Vector2d t_;
-    Rng& rng_;
 };
 
 /// What is drawn for one thing; every thing draws all, so that hazard and relief share the rest.
 struct Draw {
-    double share = 0.0;                         ///< along the range of places
-    double across = 0.0;                        ///< -1 to 1
-    double a = 0.0, b = 0.0, c = 0.0, d = 0.0;  ///< sizes, 0 to 1
+    double share = 0.0;                ///< along the range of places
+    double across = 0.0;               ///< -1 to 1
+    double a = 0.0, b = 0.0, c = 0.0;  ///< sizes, 0 to 1
+    double spare = 0.0;                ///< for one more size, which then changes no other draw
 };
 
 double between(double low, double high, double share) {
@@ -275,7 +275,7 @@ Vector2d normal_for(const Movement& movement, Vector2d& ahead, bool& was_turned,
     was_turned = towards.x() < -0.05;
     ahead = was_turned ? Vector2d(-Vector2d::UnitX()) : Vector2d(Vector2d::UnitX());
     for (;;) {
-        const Vector2d n = turned(towards, rng.uniform(-35.0, 35.0) / kDeg);
+        Vector2d n = turned(towards, rng.uniform(-35.0, 35.0) / kDeg);
         if (n.dot(ahead) >= 0.0) return n;
     }
 }
@@ -442,7 +442,7 @@ HazardScene make_hazard_scene(
                     rng.uniform(),
                     rng.uniform()};
     const double low_m = rng.uniform(0.001, 0.010);
-    Builder builder(n, rng);
+    Builder builder(n);
     const Thing thing = build(
         scene.thing, relief_only ? &low_m : nullptr, draw, reach_of(machine, movement, n), builder);
     scene.solids = std::move(builder.solids);

@@ -74,7 +74,7 @@ struct HazardScene {
     /// The scene for the oracle and the simulator's sensors; every solid has a look of its own.
     [[nodiscard]] sim::Scene scene() const;
     /// The same as a file for the simulator, with a room around it and the machine's way on a
-    /// trolley. Only for scenes placed with `place_on_way`.
+    /// trolley. Only for scenes placed `on_way`.
     [[nodiscard]] std::string yaml() const;
 };
 
