@@ -8,6 +8,7 @@
 //       depth   the map of a run with analytic depth and true poses
 //       images  the map of a run of the whole chain with images of the fitted ZED
 //       curve   maps again, with the noise and single limits of the gate scaled
+//       drift   maps again; the machine stands beside where it believes, by as much as the map says
 // gate_scenes again SCRATCH KIND SCENE_SEED: one hazard of `maps` again, by the seed in its line;
 // what the gate says, and again.csv with the cells of each map.
 //
@@ -71,6 +72,7 @@ struct Variant {
     Machine machine;
     int map = 0;  ///< those with the same number are asked about the same map
     std::optional<MapNoise> noise = std::nullopt;  ///< none: a clean map
+    double shift_m = 0.0;  ///< 1 sigma, both axes: the machine stands beside where it believes
 };
 
 /// A scene whose movement is clearly dangerous, or clearly safe.
@@ -321,6 +323,31 @@ MadeMap map_of(const HazardScene& scene, const SceneCells& cells, const Variant&
     return noisy_map(cells, *variant.noise, scene.way_m == 0.0, rng);
 }
 
+Pose believed_pose(const Question& question, double shift_m) {
+    Pose pose = question.scene.T_world_body;
+    Rng rng(mix_seed(question.scene_seed, 2));
+    pose.translation_m.head<2>() += shift_m * Eigen::Vector2d(rng.normal(), rng.normal());
+    return pose;
+}
+
+/// Drifts that the gate's limit for a cell (25 mm) lets pass, stated as they are.
+std::vector<Variant> drift_variants(const Machine& machine) {
+    std::vector<Variant> all;
+    int map = 0;
+    for (const double shift_mm : {0.0, 2.5, 5.0, 10.0, 17.0, 25.0}) {
+        for (const bool sure : {false, true}) {
+            MapNoise noise;
+            noise.drift_m = std::max(noise.drift_m, 1e-3 * shift_mm - 1e-6);
+            all.push_back({fmt::format("{} {}", sure ? "overconfident drift" : "drift", shift_mm),
+                           machine,
+                           map++,
+                           sure ? overconfident(noise) : noise,
+                           1e-3 * shift_mm});
+        }
+    }
+    return all;
+}
+
 /// Asks about the scenes of one tier.
 class Campaign {
   public:
@@ -347,9 +374,9 @@ class Campaign {
         for (std::uint64_t index = from; index < from + count; ++index) {
             for (const bool relief_only : {false, true}) {
                 if (relief_only && tier_ == "maps" && index % kSafeEvery != 0) continue;
-                const Status done = tier_ == "maps" || tier_ == "curve"
-                                        ? ask_on_map(kind, relief_only, seed, index, tally)
-                                        : ask_after_run(kind, relief_only, seed, index, tally);
+                Status done = tier_ == "maps" || tier_ == "curve" || tier_ == "drift"
+                                  ? ask_on_map(kind, relief_only, seed, index, tally)
+                                  : ask_after_run(kind, relief_only, seed, index, tally);
                 if (!done) return done;
             }
         }
@@ -387,8 +414,10 @@ class Campaign {
                     return taken;
                 rater_.rate(map.height_m.view(), map.geometry.resolution_m, serial_, rating_);
             }
-            const AskedMap asked{
-                *snapshot_, map.geometry, rating_.traversability.view(), scene.T_world_body};
+            const AskedMap asked{*snapshot_,
+                                 map.geometry,
+                                 rating_.traversability.view(),
+                                 believed_pose(question, variant.shift_m)};
             ask_own(question, asked, variant, tally);
             if (!truths.empty()) ask_all(question, truths, asked, variant, tally);
         }
@@ -440,6 +469,24 @@ class Campaign {
     std::unique_ptr<grid::MapSnapshot> snapshot_ = std::make_unique<grid::MapSnapshot>();
 };
 
+/// Every limit looser by a factor, as far as a machine file may state it.
+void loosen(GateLimits& limits, double factor) {
+    const auto times = [factor](std::int32_t& limit, std::int32_t most) {
+        limit = std::min(most, static_cast<std::int32_t>(std::lround(factor * limit)));
+    };
+    times(limits.step[0].up_tenth_mm, 3'000);
+    times(limits.step[0].down_tenth_mm, 3'000);
+    times(limits.patch_residual_tenth_mm, 500);
+    times(limits.patch_sigma_tenth_mm, 100);
+    times(limits.cell_sigma_tenth_mm, 300);
+    times(limits.swing_clearance_tenth_mm, 2'000);
+    times(limits.drop_tenth_mm, 1'000);
+    limits.min_normal_z = std::max(0.98, std::cos(factor * std::acos(limits.min_normal_z)));
+    limits.foot_margin_tenth_mm = static_cast<std::int32_t>(limits.foot_margin_tenth_mm / factor);
+    limits.drop_band_tenth_mm =
+        std::max(500, static_cast<std::int32_t>(limits.drop_band_tenth_mm / factor));
+}
+
 /// The noise, and single limits: those of sureness at noise 1, those of what a foot or a body
 /// passes on the overconfident map, where nothing else refuses. Labels are those of the machine as
 /// it is.
@@ -464,6 +511,7 @@ std::vector<Variant> curve_variants(const Machine& machine) {
     with("patch_sigma_mm", {2.0, 4.0, 10.0}, [&](GateLimits& l, double v) {
         l.patch_sigma_tenth_mm = tenth_mm(v);
     });
+    with("every_limit", {0.75, 1.5, 2.0, 3.0, 5.0}, loosen);
     for (const double factor : {1.0, 0.5, 1.5, 2.0, 3.0, 4.0}) {
         all.push_back({fmt::format("noise {}", factor), machine, map++, MapNoise().times(factor)});
     }
@@ -534,12 +582,12 @@ int show_again(const std::string& folder,
 }
 
 int run(const std::vector<std::string>& words) {
-    const std::vector<std::string> tiers{"maps", "depth", "images", "curve", "again"};
+    const std::vector<std::string> tiers{"maps", "depth", "images", "curve", "drift", "again"};
     const bool known =
         words.size() >= 4 && std::find(tiers.begin(), tiers.end(), words[0]) != tiers.end();
     if (!known)
         return app::report(usage_error(
-            "gate_scenes maps|depth|images|curve SCRATCH FIRST_SEED SCENES [KINDS [FROM]]"));
+            "gate_scenes maps|depth|images|curve|drift SCRATCH FIRST_SEED SCENES [KINDS [FROM]]"));
     const auto machine_file = app::load_machine("rex");
     if (!machine_file) return app::report(machine_file.error());
     const Machine& machine = (*machine_file)->machine;
@@ -561,13 +609,15 @@ int run(const std::vector<std::string>& words) {
         variants = map_variants(machine);
     } else if (words[0] == "curve") {
         variants = curve_variants(machine);
+    } else if (words[0] == "drift") {
+        variants = drift_variants(machine);
     } else {
         variants.push_back({"noise 1", machine});
     }
-    const std::uint64_t chunk = words[0] == "maps"    ? 250
-                                : words[0] == "curve" ? 50
-                                : words[0] == "depth" ? 5
-                                                      : 1;
+    const std::uint64_t chunk = words[0] == "maps"                           ? 250
+                                : words[0] == "curve" || words[0] == "drift" ? 50
+                                : words[0] == "depth"                        ? 5
+                                                                             : 1;
     const std::uint64_t first = words.size() > 5 ? std::strtoull(words[5].c_str(), nullptr, 10) : 0;
     Campaign campaign(words[0], folder, machine, std::move(variants));
     for (std::uint64_t from = first; from < scenes; from += chunk) {

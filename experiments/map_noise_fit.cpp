@@ -40,8 +40,9 @@ bool range_in(const HazardScene& scene,
     low_m = 1e9;
     high_m = -1e9;
     for (int i = 0; i < 25; ++i) {
-        const Eigen::Vector2d at =
-            center_m + side_m * Eigen::Vector2d((i % 5 - 2) / 5.0, (i / 5 - 2) / 5.0);
+        const int column = i % 5 - 2;
+        const int row = i / 5 - 2;
+        const Eigen::Vector2d at = center_m + side_m / 5.0 * Eigen::Vector2d(column, row);
         const Heights h = heights_at(scene, at);
         if (std::isnan(h.top_m)) return false;
         low_m = std::min(low_m, h.top_m);
