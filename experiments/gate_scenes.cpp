@@ -430,6 +430,8 @@ class Campaign {
         if (question.draws == 0) return {};
         const Look look = tier_ == "depth" ? Look::analytic : Look::images;
         const auto run = run_chain(question.scene, look, 1.0, folder_, serial_);
+        // A run that was stopped says nothing; a map that cannot be made is a result.
+        if (!run && run.error().code == ErrorCode::interrupted) return run.error();
         if (!run) {
             fmt::print(stderr,
                        "{} {}: {}\n",
@@ -616,7 +618,6 @@ int run(const std::vector<std::string>& words) {
     }
     const std::uint64_t chunk = words[0] == "maps"                           ? 250
                                 : words[0] == "curve" || words[0] == "drift" ? 50
-                                : words[0] == "depth"                        ? 5
                                                                              : 1;
     const std::uint64_t first = words.size() > 5 ? std::strtoull(words[5].c_str(), nullptr, 10) : 0;
     Campaign campaign(words[0], folder, machine, std::move(variants));
