@@ -64,10 +64,13 @@ Reach reach_of(const Machine& machine, const Movement& movement, const Vector2d&
                         reach_m(machine.right_foot, 0.0, when, n));
     };
     const double sway_m = metres(machine.body.sway_tenth_mm);
-    return {feet(nullptr),
-            feet(&movement),
-            reach_m(machine.body.box, sway_m, nullptr, n),
-            reach_m(machine.body.box, sway_m, &movement, n)};
+    const auto body = [&](const Movement* when) {
+        double farthest_m = -1e9;
+        for (const BodyPart& part : machine.body.all())
+            farthest_m = std::max(farthest_m, reach_m(part.box, sway_m, when, n));
+        return farthest_m;
+    };
+    return {feet(nullptr), feet(&movement), body(nullptr), body(&movement)};
 }
 
 /// Builds the solids with the thing's near border at `at` along `n`, in the frame of the machine.

@@ -160,7 +160,7 @@ TEST(Gate, given_ground_never_seen_ahead_then_a_step_there_is_refused) {
     floor.draw({"????????????",  //
                 "????????????",  //
                 "????????????",  //
-                "????????????",  //
+                "............",  //
                 "............",  //
                 "............",  //
                 "............",  //
@@ -188,7 +188,7 @@ TEST(Gate, given_the_edge_of_the_map_ahead_then_outside_map) {
 TEST(Gate, given_a_table_ahead_then_the_way_is_blocked) {
     Terrain room;
     room.draw({"...777777...",  //
-               "...777777...",  //
+               "............",  //
                "............",  //
                "............",  //
                "............",  //
@@ -199,7 +199,7 @@ TEST(Gate, given_a_table_ahead_then_the_way_is_blocked) {
                "............",  //
                "............",  //
                "............"});
-    expect_ok(ask(room, kForward));  // 0.8 m away: one step stays short of it
+    expect_ok(ask(room, kForward));  // 1.0 m away: one step stays short of it
     room.box(0.6, 1.0, -0.6, 0.6, 0.7);
     const Verdict blocked = ask(room, kForward);
     expect_refused(blocked, Reason::corridor_blocked);
@@ -421,7 +421,7 @@ TEST(Gate, a_gentle_wedge_along_or_across_the_foot_is_a_plane_not_roughness) {
 
 TEST(Gate, given_one_unsure_cell_beside_the_feet_then_not_resolvable) {
     Terrain floor;
-    floor.paint(floor.variance, 0.40, 0.425, 0.0, 0.025, 0.013 * 0.013);
+    floor.paint(floor.variance, 0.425, 0.45, 0.0, 0.025, 0.013 * 0.013);
     const Verdict verdict = ask(floor, kForward);
     expect_refused(verdict, Reason::not_resolvable);
     EXPECT_EQ(verdict.evidence.limit_tenth_mm, 120);
@@ -822,6 +822,26 @@ TEST(VerdictText, every_reason_has_a_sentence_and_a_code) {
     }
     EXPECT_STREQ(to_string(static_cast<Reason>(200)), "INTERNAL");
     EXPECT_STREQ(to_string(static_cast<Decision>(200)), "ERROR");
+}
+
+/// A rim that the map shows a cell too far away is met all the same.
+TEST(Gate, what_the_map_shows_a_cell_beside_its_place_still_counts) {
+    const double body_m = 0.4 + 0.33 + 0.05;  // step, half the box, sway
+    const auto table_at = [](double x_m) {
+        Terrain room;
+        room.box(x_m, x_m + 0.2, 0.25, 0.3, 0.7);
+        return ask(room, kForward);
+    };
+    expect_refused(table_at(body_m + 0.02), Reason::body_clearance);
+    expect_ok(table_at(body_m + 0.05));
+    const auto drop_at = [](double x_m) {
+        Terrain room;
+        room.box(x_m, 3.0, -3.0, 3.0, -0.3);
+        return ask(room, kForward).reasons.contains(Reason::drop_off);
+    };
+    const double toes_m = 0.4 + 0.057 + 0.183;
+    EXPECT_TRUE(drop_at(toes_m + 0.10 + 0.02));
+    EXPECT_FALSE(drop_at(toes_m + 0.10 + 0.05));
 }
 
 // ---- parts of the body --------------------------------------------------------------------------
