@@ -77,12 +77,15 @@ Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
     return open_source(request, executor);
 }
 
-void print_news(const std::vector<AskedStep>& news) {
+void print_news(const std::vector<AskedStep>& news, std::FILE* out) {
     for (const AskedStep& step : news) {
-        fmt::print(
-            "movement {}: {}: {}\n", step.command, step.moved ? "moved" : step.verdict, step.text);
+        fmt::print(out,
+                   "movement {}: {}: {}\n",
+                   step.command,
+                   step.moved ? "moved" : step.verdict,
+                   step.text);
     }
-    std::fflush(stdout);
+    std::fflush(out);
 }
 
 /// Perception, the gate process beside it, and perhaps somebody who walks.
@@ -99,6 +102,7 @@ class Service {
 
   private:
     Status perceive(camera::FrameSource& source, wire::SnapshotWriter& writer, GateChild& gate);
+    void tell_where(const GateChild& gate) const;
     void look_after(GateChild& gate);
     void draw(const AskedStep& step, const grid::MapSnapshot& map);
 
@@ -110,12 +114,21 @@ class Service {
     std::vector<AskedStep> steps_;
 };
 
+/// With --json the answer has stdout for itself.
+void Service::tell_where(const GateChild& gate) const {
+    if (gate.port() == 0) return;
+    std::FILE* const out = options_.common.json ? stderr : stdout;
+    fmt::print(out, "the gate listens on ws://{}:{}\n", options_.bind_address, gate.port());
+    std::fflush(out);
+}
+
 void Service::look_after(GateChild& gate) {
-    if (!gate.watch(steady_now_ns()))
-        log_warning(
-            fmt::format("the gate process ended and was started again ({} times now); "
-                        "nothing is allowed until it is ready",
-                        gate.restarts()));
+    if (gate.watch(steady_now_ns())) return;
+    log_warning(fmt::format(
+        "the gate process ended and was started again ({} times now); nothing is allowed until it "
+        "is ready",
+        gate.restarts()));
+    tell_where(gate);
 }
 
 void Service::draw(const AskedStep& step, const grid::MapSnapshot& map) {
@@ -146,7 +159,7 @@ Status Service::perceive(camera::FrameSource& source,
             if (!walk_) return true;
             walk_->next_frame_begins(scene->now_s() + 1.0 / settings_.sim.rate_hz);
             const auto news = walk_->news();
-            print_news(news);
+            print_news(news, options_.common.json ? stderr : stdout);
             for (const AskedStep& step : news) {
                 steps_.push_back(step);
                 draw(step, session.last());
@@ -171,8 +184,7 @@ Status Service::run() {
         first = {"--vouch", fmt::format("{}", options_.vouch_radius_m)};
     auto gate = GateChild::start(gate_arguments(options_, channel.path()), first);
     if (!gate) return gate.error();
-    fmt::print("the gate listens on ws://{}:{}\n", options_.bind_address, gate->port());
-    std::fflush(stdout);
+    tell_where(*gate);
     ::setpriority(PRIO_PROCESS, 0, 10);  // the gate's answers come first
     watch_for_interrupts();
     if (!options_.walk.empty()) {

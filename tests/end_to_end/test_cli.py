@@ -13,7 +13,8 @@ from surefoot_cli import BINARY, ROOT, CliTest, grey_png, read_asc, surefoot
 
 # In the order in which one example needs another's results.
 VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["stairs"], ["fuse"], ["ground"], ["dem"], ["gate"],
-         ["rex-link"], ["audit"], ["audit", "verify"], ["audit", "replay"], ["eval"], ["eval", "trajectory"], ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["calibrate"],
+         ["serve"], ["rex-link"], ["audit"], ["audit", "verify"], ["audit", "replay"], ["eval"], ["eval", "trajectory"],
+         ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["calibrate"],
          ["calibrate", "render"], ["calibrate", "mono"], ["calibrate", "stereo"], ["config"], ["doctor"], ["bench"],
          ["record"], ["replay"], ["info"], ["rig"], ["map"], ["map", "info"], ["map", "merge"], ["map", "export"]]
 GATE_EXIT_CODES = (0, 3, 4)
@@ -112,12 +113,16 @@ class Verbs(CliTest):
             (["bench", "gate"], "benchmarks"),
             (["record", recording, "--out", self.dir / "copy"], "frames complete error folder"),
             (["rex-link", "--script", recording / "joystick.csv"], "url connections questions motions inhibited events"),
+            (["serve", "sim:walk_floor", "--walk", 9, "--vouch", 1, "--port", 0, "--once", "--set",
+              "sim.sensor=analytic", "--audit", self.dir / "log"], "movements"),
+            (["audit", "verify", self.dir / "log"], "files bytes runs verdicts gaps lost unfinished damage"),
+            (["audit", "replay", self.dir / "log"], "verdicts equal different first_difference"),
             (["replay", recording, "--speed", 1000], "frames late speed per_frame"),
             (["info", recording], "kind frames rate_hz gaps imu_samples has_truth"),
             (["rig", recording], "format width height focal_left_px focal_right_px baseline_m rectified notes written"),
         )
-        self.assertEqual({tuple(v) for v in VERBS} - {("gate",), ("eval",), ("calibrate",), ("map",)},
-                         {tuple(call[:2]) if call[0] in ("eval", "calibrate", "map") else (call[0],) for call, _ in promised})
+        self.assertEqual({tuple(v) for v in VERBS} - {("gate",), ("eval",), ("calibrate",), ("map",), ("audit",)},
+                         {tuple(call[:2]) if call[0] in ("eval", "calibrate", "map", "audit") else (call[0],) for call, _ in promised})
         answers = {}
         for call, names in promised:
             with self.subTest(" ".join(map(str, call[:2]))):
