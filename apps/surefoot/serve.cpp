@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <thread>
+#include <tuple>
 
 #include "apps/surefoot/explain.hpp"
 #include "apps/surefoot/fit_settings.hpp"
@@ -19,6 +20,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "io/file.hpp"
 #include "sim/scene_source.hpp"
+#include "surefoot/gate/vouching.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -104,6 +106,7 @@ class Service {
     Status perceive(camera::FrameSource& source, wire::SnapshotWriter& writer, GateChild& gate);
     void tell_where(const GateChild& gate) const;
     void look_after(GateChild& gate);
+    void remember_word(const LiveSession& session);
     void draw(const AskedStep& step, const grid::MapSnapshot& map);
 
     const ServeOptions& options_;
@@ -112,6 +115,8 @@ class Service {
     Executor& executor_;
     std::unique_ptr<SteeredWalk> walk_;
     std::vector<AskedStep> steps_;
+    gate::Vouching word_;
+    bool word_given_ = false;
 };
 
 /// With --json the answer has stdout for itself.
@@ -131,9 +136,22 @@ void Service::look_after(GateChild& gate) {
     tell_where(gate);
 }
 
+/// The gate has the operator's word from the first map on; so have the pictures.
+void Service::remember_word(const LiveSession& session) {
+    if (session.published() == 0) return;
+    if (!word_given_) {
+        word_given_ = true;
+        std::ignore = word_.vouch(machine_->machine,
+                                  session.last(),
+                                  static_cast<std::int64_t>(1e4 * options_.vouch_radius_m));
+    }
+    word_.observe(session.last());
+}
+
 void Service::draw(const AskedStep& step, const grid::MapSnapshot& map) {
     if (options_.out_dir.empty() || !grid::is_intact(map)) return;
-    const gate::Query query = gate::query_at_body(step.command, map);
+    gate::Query query = gate::query_at_body(step.command, map);
+    query.vouched = word_.area();
     const gate::GateHealth ready{gate::GateState::ready, {}};
     const gate::Verdict verdict =
         gate::decide(machine_->machine, query, map, ready, map.frame_time_ns);
@@ -157,6 +175,7 @@ Status Service::perceive(camera::FrameSource& source,
         const auto end = session.run(speed, [&] {
             look_after(gate);
             if (!walk_) return true;
+            remember_word(session);
             walk_->next_frame_begins(scene->now_s() + 1.0 / settings_.sim.rate_hz);
             const auto news = walk_->news();
             print_news(news, options_.common.json ? stderr : stdout);
