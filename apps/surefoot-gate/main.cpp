@@ -8,6 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
+#include <cstdio>
+#include <exception>
 #include <memory>
 #include <numbers>
 
@@ -149,11 +151,7 @@ int run(Options options) {
     return serve(options, *machine);
 }
 
-}  // namespace
-}  // namespace surefoot::app
-
-int main(int argc, char** argv) {
-    using namespace surefoot::app;
+int main_with_arguments(int argc, char** argv) {
     Options options;
     CLI::App app(
         "The step gate: answers over a WebSocket whether a step may be taken. It may only "
@@ -189,4 +187,18 @@ int main(int argc, char** argv) {
         return app.exit(error) == 0 ? kExitOk : kExitUsage;
     }
     return run(std::move(options));
+}
+
+}  // namespace
+}  // namespace surefoot::app
+
+// Whatever ends the process, its clients hear nothing more, and nothing is allowed.
+int main(int argc, char** argv) {
+    try {
+        return surefoot::app::main_with_arguments(argc, argv);
+    } catch (const std::exception& error) {
+        std::fputs("surefoot-gate: internal error: ", stderr);
+        std::fputs(error.what(), stderr);
+        return surefoot::app::kExitFailed;
+    }
 }

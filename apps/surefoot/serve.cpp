@@ -215,7 +215,7 @@ Status Service::run() {
         walk_ = std::make_unique<SteeredWalk>(
             std::move(codes).value(), gate->port(), scene->commanded());
     }
-    const Status perceived = perceive(**source, *writer, *gate);
+    Status perceived = perceive(**source, *writer, *gate);
     walk_.reset();
     if (!perceived) return perceived;
     while (!options_.once && !interrupted()) {  // whoever asks now hears that the frames are old
