@@ -57,6 +57,7 @@ std::vector<StampedPose> sampled(const Motion& motion, int frames, double rate_h
     const int whole_path = static_cast<int>(std::floor(motion.duration_s() * rate_hz + 1e-6)) + 1;
     const int count = frames > 0 ? frames : whole_path;
     std::vector<StampedPose> poses;
+    poses.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) poses.push_back(pose_of_frame(motion, i, rate_hz));
     return poses;
 }

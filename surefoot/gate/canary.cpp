@@ -85,7 +85,7 @@ struct Fault {
     void (*happen)(const Setting&);
 };
 
-const auto kFaultList = std::to_array<Fault>({
+constexpr auto kFaultList = std::to_array<Fault>({
     // What perception says of itself, and of time.
     {Reason::frame_stale,
      [](const Setting& s) { s.map.frame_time_ns -= s.machine.limits.frame_age_ns + 1; }},
