@@ -119,6 +119,19 @@ TEST_F(GatekeeperTest, when_ready_it_allows_a_step_on_the_newest_map_and_answers
     EXPECT_EQ(report.allowed, 1U);
 }
 
+TEST_F(GatekeeperTest, what_has_gone_from_the_newest_map_stops_nothing) {
+    gate::testing::Terrain blocked;
+    blocked.box(0.6, 0.8, -0.5, 0.5, 0.7);
+    map_ = blocked.snapshot();
+    become_ready();
+    EXPECT_EQ(ask().verdict.decision, Decision::not_traversable);
+    const std::uint64_t version = map_->version;
+    map_ = gate::testing::Terrain{}.snapshot();
+    map_->version = version;
+    publish();  // not polled yet
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_));
+}
+
 TEST_F(GatekeeperTest, a_sequence_must_grow_within_its_connection) {
     become_ready();
     const auto asked = [&](std::uint64_t connection, std::uint64_t sequence) {
@@ -193,6 +206,24 @@ TEST_F(GatekeeperTest, an_operators_word_lasts_until_the_machine_has_left_or_a_f
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << gate::testing::words(ask().verdict);
     run(0.5);
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << "it lasts while the machine stands";
+    map_->camera = CameraState::dark;
+    publish();
+    EXPECT_FALSE(keeper_->vouch(1, 1.0, now_ns_).ok()) << "nobody knows where the machine is";
+    map_->camera = CameraState::ok;
+    run(1.5);
+    ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
+    while (map_->body_x_tenth_mm < 10'100) {  // at half a metre a second
+        map_->body_x_tenth_mm += 325;
+        run(0.065);
+    }
+    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "the machine has left";
+    while (map_->body_x_tenth_mm > 0) {
+        map_->body_x_tenth_mm -= 325;
+        run(0.065);
+    }
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
+    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "and coming back revives nothing";
+    ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
     map_->camera = CameraState::moved;
     publish();
     run(0.01, false);
