@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does the gate miss hazards, and what does it stop that is safe?
 // Usage: gate_scenes TIER SCRATCH FIRST_SEED SCENES [KINDS [FROM]]
-//   gate_scenes maps /tmp/scenes 73001 30000
+//   gate_scenes maps out/scenes 73001 30000
 // TIER: maps    true heights with the errors that maps of whole runs have (map_noise), as clean as
 //               they are, at the measured noise and at twice that; and as wrong as measured but
 //               stating the least sigma everywhere
