@@ -8,46 +8,12 @@
 
 #include "io/bytes.hpp"
 #include "io/file.hpp"
+#include "surefoot/grid/snapshot_fields.hpp"
 
 namespace surefoot::io {
 namespace {
 
 using grid::MapSnapshot;
-
-/// Visits every header field after magic and layout in file order; the one list that reading and
-/// writing share.
-template <typename Snapshot, typename Visit>
-void for_each_header_field(Snapshot& s, Visit visit) {
-    visit(s.version);
-    visit(s.config_hash);
-    visit(s.frame_time_ns);
-    visit(s.pose_time_ns);
-    visit(s.resolution_tenth_mm);
-    visit(s.nx);
-    visit(s.ny);
-    visit(s.edge_count);
-    visit(s.origin_x_tenth_mm);
-    visit(s.origin_y_tenth_mm);
-    visit(s.body_x_tenth_mm);
-    visit(s.body_y_tenth_mm);
-    visit(s.body_z_tenth_mm);
-    visit(s.body_cos_yaw);
-    visit(s.body_sin_yaw);
-    visit(s.gravity_source);
-    visit(s.health);
-    visit(s.camera);
-}
-
-template <typename Snapshot, typename Visit>
-void for_each_layer(Snapshot& s, Visit visit) {
-    visit(s.height_tenth_mm);
-    visit(s.sigma_tenth_mm);
-    visit(s.drift_tenth_mm);
-    visit(s.clearance_tenth_mm);
-    visit(s.component);
-    visit(s.drop_evidence);
-    visit(s.source);
-}
 
 template <typename Edge, typename Visit>
 void for_each_field(Edge& edge, Visit visit) {
@@ -133,7 +99,7 @@ Result<std::string> format_snapshot(const MapSnapshot& snapshot) {
     const auto clean = std::make_unique<MapSnapshot>(snapshot);
     clean->padding = {};
     std::fill(clean->edges.begin() + clean->edge_count, clean->edges.end(), grid::SnapshotEdge{});
-    for_each_layer(*clean, [used = cells_of(snapshot)](auto& layer) {
+    grid::for_each_snapshot_layer(*clean, [used = cells_of(snapshot)](auto& layer) {
         std::fill(layer.begin() + static_cast<std::ptrdiff_t>(used),
                   layer.end(),
                   typename std::decay_t<decltype(layer)>::value_type{});
@@ -142,8 +108,8 @@ Result<std::string> format_snapshot(const MapSnapshot& snapshot) {
     const auto put = [&out](const auto& value) { store_le(out, stored(value)); };
     put(clean->magic);
     put(clean->layout);
-    for_each_header_field(*clean, put);
-    for_each_layer(
+    grid::for_each_header_field(*clean, [&](const char*, const auto& value) { put(value); });
+    grid::for_each_snapshot_layer(
         *clean, [&](const auto& layer) { std::for_each_n(layer.begin(), cells_of(*clean), put); });
     for (int i = 0; i < clean->edge_count; ++i)
         for_each_field(clean->edges[static_cast<std::size_t>(i)], put);
@@ -173,7 +139,7 @@ Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
                                    snapshot->layout,
                                    MapSnapshot::kLayout));
     }
-    for_each_header_field(*snapshot, [&](auto& field) { reader(field); });
+    grid::for_each_header_field(*snapshot, [&](const char*, auto& field) { reader(field); });
     if (!reader.complete) return damaged(file, "truncated map snapshot: its header is cut off");
     if (!has_sound_size(*snapshot)) {
         return damaged(file,
@@ -185,7 +151,7 @@ Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
                                    MapSnapshot::kMaxSide,
                                    MapSnapshot::kMaxEdges));
     }
-    for_each_layer(*snapshot, [&](auto& layer) {
+    grid::for_each_snapshot_layer(*snapshot, [&](auto& layer) {
         std::for_each_n(layer.begin(), cells_of(*snapshot), [&](auto& cell) { reader(cell); });
     });
     for (int i = 0; i < snapshot->edge_count; ++i) {

@@ -3,6 +3,7 @@
 
 #include "surefoot/core/machine.hpp"
 #include "surefoot/gate/gate.hpp"
+#include "surefoot/grid/snapshot_fields.hpp"
 
 /// The fields of the audit log in the order of the file: one list each for writing, reading,
 /// comparing and naming. A change here is a new version of the format (docs/audit_format.md).
@@ -131,24 +132,7 @@ template <typename Snapshot, typename Visit>
 void for_each_snapshot_field(Snapshot& map, Visit& visit) {
     visit("magic", map.magic);
     visit("layout", map.layout);
-    visit("version", map.version);
-    visit("config_hash", map.config_hash);
-    visit("frame_time_ns", map.frame_time_ns);
-    visit("pose_time_ns", map.pose_time_ns);
-    visit("resolution_tenth_mm", map.resolution_tenth_mm);
-    visit("nx", map.nx);
-    visit("ny", map.ny);
-    visit("edge_count", map.edge_count);
-    visit("origin_x_tenth_mm", map.origin_x_tenth_mm);
-    visit("origin_y_tenth_mm", map.origin_y_tenth_mm);
-    visit("body_x_tenth_mm", map.body_x_tenth_mm);
-    visit("body_y_tenth_mm", map.body_y_tenth_mm);
-    visit("body_z_tenth_mm", map.body_z_tenth_mm);
-    visit("body_cos_yaw", map.body_cos_yaw);
-    visit("body_sin_yaw", map.body_sin_yaw);
-    visit("gravity_source", map.gravity_source);
-    visit("health", map.health);
-    visit("camera", map.camera);
+    grid::for_each_header_field(map, visit);
     visit("checksum", map.checksum);
 }
 
@@ -158,18 +142,6 @@ void for_each_zone_field(Box& zone, Visit& visit) {
     visit("zone.y", zone.y);
     visit("zone.nx", zone.nx);
     visit("zone.ny", zone.ny);
-}
-
-/// visit(layer): the layers of a snapshot that a record holds the zone of.
-template <typename Snapshot, typename Visit>
-void for_each_layer(Snapshot& map, Visit&& visit) {
-    visit(map.height_tenth_mm);
-    visit(map.sigma_tenth_mm);
-    visit(map.drift_tenth_mm);
-    visit(map.clearance_tenth_mm);
-    visit(map.component);
-    visit(map.drop_evidence);
-    visit(map.source);
 }
 
 }  // namespace surefoot::wire

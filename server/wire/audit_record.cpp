@@ -23,7 +23,7 @@ std::size_t edges_of(const MapSnapshot& map) noexcept {
 /// Edges and cells of a record.
 std::size_t bytes_of_ground(const MapSnapshot& map, const CellBox& zone) noexcept {
     std::size_t bytes = edges_of(map) * sizeof(SnapshotEdge);
-    for_each_layer(map, [&](const auto& layer) {
+    grid::for_each_snapshot_layer(map, [&](const auto& layer) {
         bytes += zone.cells() * sizeof(typename std::decay_t<decltype(layer)>::value_type);
     });
     return bytes;
@@ -154,7 +154,7 @@ void write_record(std::uint64_t machine_hash,
     const RecordView view = view_of(machine_hash, audited, zone);
     for_each_record_field(view, audited.map, writer);
     writer.copy(audited.map.edges.data(), edges_of(audited.map) * sizeof(SnapshotEdge));
-    for_each_layer(audited.map, [&](const auto& layer) {
+    grid::for_each_snapshot_layer(audited.map, [&](const auto& layer) {
         for_each_row(layer, audited.map, zone, [&](const auto* row, std::size_t bytes) {
             writer.copy(row, bytes);
         });
@@ -183,7 +183,7 @@ Status parse_record(std::string_view bytes, AuditRecord& record) {
                                        zone.ny));
     forget_ground(map);
     reader.copy(map.edges.data(), edges_of(map) * sizeof(SnapshotEdge));
-    for_each_layer(map, [&](auto& layer) {
+    grid::for_each_snapshot_layer(map, [&](auto& layer) {
         for_each_row(layer, map, zone, [&](auto* row, std::size_t row_bytes) {
             reader.copy(row, row_bytes);
         });

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <type_traits>
+
+#include "surefoot/grid/snapshot_fields.hpp"
 
 namespace surefoot::grid {
 namespace {
@@ -53,17 +56,11 @@ std::uint64_t add_whole(std::uint64_t hash, const Layer& layer) noexcept {
 std::uint64_t block_checksum(const MapSnapshot& s, std::size_t block) noexcept {
     constexpr std::size_t kCells = MapSnapshot::kBlockCells;
     static_assert(kCells % (4 * sizeof(std::uint64_t)) == 0, "whole words of the narrowest layer");
-    const auto add = [first = block * kCells](std::uint64_t hash, const auto& layer) {
-        return add_part(hash, layer, first, kCells);
-    };
     std::uint64_t hash = step(kOffsetBasis, block);
-    hash = add(hash, s.height_tenth_mm);
-    hash = add(hash, s.sigma_tenth_mm);
-    hash = add(hash, s.drift_tenth_mm);
-    hash = add(hash, s.clearance_tenth_mm);
-    hash = add(hash, s.component);
-    hash = add(hash, s.drop_evidence);
-    return add(hash, s.source);
+    for_each_snapshot_layer(s, [&hash, first = block * kCells](const auto& layer) {
+        hash = add_part(hash, layer, first, kCells);
+    });
+    return hash;
 }
 
 bool are_blocks_intact(const MapSnapshot& s, std::size_t first, std::size_t last) noexcept {
@@ -75,28 +72,16 @@ bool are_blocks_intact(const MapSnapshot& s, std::size_t first, std::size_t last
 
 std::uint64_t header_hash(const MapSnapshot& s) noexcept {
     std::uint64_t hash = kOffsetBasis;
-    const auto add = [&hash](auto value) { hash = step(hash, static_cast<std::uint64_t>(value)); };
-    add(s.magic);
-    add(s.layout);
-    add(s.version);
-    add(s.config_hash);
-    add(s.frame_time_ns);
-    add(s.pose_time_ns);
-    add(s.resolution_tenth_mm);
-    add(s.nx);
-    add(s.ny);
-    add(s.edge_count);
-    add(s.origin_x_tenth_mm);
-    add(s.origin_y_tenth_mm);
-    add(s.body_x_tenth_mm);
-    add(s.body_y_tenth_mm);
-    add(s.body_z_tenth_mm);
-    add(std::bit_cast<std::uint64_t>(s.body_cos_yaw));
-    add(std::bit_cast<std::uint64_t>(s.body_sin_yaw));
-    add(s.gravity_source);
-    add(s.health);
-    add(s.camera);
-    for (const std::uint8_t byte : s.padding) add(byte);
+    const auto add = [&hash](const char*, auto value) {
+        if constexpr (std::is_floating_point_v<decltype(value)>)
+            hash = step(hash, std::bit_cast<std::uint64_t>(value));
+        else
+            hash = step(hash, static_cast<std::uint64_t>(value));
+    };
+    add("magic", s.magic);
+    add("layout", s.layout);
+    for_each_header_field(s, add);
+    for (const std::uint8_t byte : s.padding) add("padding", byte);
     return hash;
 }
 
