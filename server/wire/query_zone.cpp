@@ -2,7 +2,6 @@
 #include "server/wire/query_zone.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "surefoot/gate/footprints.hpp"
 #include "surefoot/gate/ground.hpp"
@@ -45,46 +44,6 @@ bool can_look(const Machine& machine, const gate::Query& query, const MapSnapsho
            is_unit(query.sin_yaw) && vouched;
 }
 
-/// Bounds of all ground that is asked, in units of 0.1 mm.
-struct Bounds {
-    grid::FixedPoint low{std::numeric_limits<std::int64_t>::max(),
-                         std::numeric_limits<std::int64_t>::max()};
-    grid::FixedPoint high{std::numeric_limits<std::int64_t>::min(),
-                          std::numeric_limits<std::int64_t>::min()};
-
-    void add(grid::FixedPoint p) noexcept {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-    void add(const grid::FixedConvex& polygon) noexcept {
-        for (const grid::FixedPoint p : polygon.points()) add(p);
-    }
-};
-
-Bounds bounds_of(const Machine& machine, const gate::Query& query, const MapSnapshot& map) {
-    const gate::FixedPose start =
-        gate::fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
-    const gate::Sweep sweep = gate::sweep_of(machine, start, machine.movements[query.command]);
-    Bounds bounds;
-    for (const gate::FootSweep& foot : sweep.feet) {
-        bounds.add(foot.stance);
-        bounds.add(foot.landing);
-        bounds.add(foot.corridor);
-        bounds.add(foot.band);
-    }
-    for (const grid::FixedConvex& part : sweep.body) bounds.add(part);
-    const gate::Ground ground(map, query);
-    if (ground.is_vouching()) {  // as far as Ground and ReachableSurfaces::add_beside_vouched look
-        const gate::VouchedArea& area = query.vouched;
-        const std::int64_t reach = area.radius_tenth_mm + map.resolution_tenth_mm;
-        bounds.add(
-            grid::FixedPoint{area.center_x_tenth_mm - reach, area.center_y_tenth_mm - reach});
-        bounds.add(
-            grid::FixedPoint{area.center_x_tenth_mm + reach, area.center_y_tenth_mm + reach});
-    }
-    return bounds;
-}
-
 /// First cell and number of cells of [low, high] along one axis of `n` cells.
 struct Range {
     std::int32_t first = 0;
@@ -110,7 +69,11 @@ CellBox query_zone(const Machine& machine,
                    const gate::Query& query,
                    const MapSnapshot& map) noexcept {
     if (!can_look(machine, query, map)) return {};
-    const Bounds bounds = bounds_of(machine, query, map);
+    const gate::FixedPose start =
+        gate::fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
+    const gate::Extent bounds =
+        gate::Ground(map, query)
+            .zone_of(gate::sweep_of(machine, start, machine.movements[query.command]));
     const std::int64_t side = map.resolution_tenth_mm;
     const Range x = cells_between(bounds.low.x, bounds.high.x, map.origin_x_tenth_mm, side, map.nx);
     const Range y = cells_between(bounds.low.y, bounds.high.y, map.origin_y_tenth_mm, side, map.ny);

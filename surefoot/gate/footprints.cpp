@@ -88,13 +88,15 @@ FixedPose moved(const FixedPose& pose, const Movement& movement) noexcept {
     return target;
 }
 
+void Extent::include(grid::FixedPoint p) noexcept {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+}
+
 Extent extent_of(const Sweep& sweep) noexcept {
-    Extent extent{sweep.target.position.y, sweep.target.position.y};
+    Extent extent{sweep.target.position, sweep.target.position};
     const auto include = [&extent](const grid::FixedConvex& polygon) {
-        for (const grid::FixedPoint& p : polygon.points()) {
-            extent.low_y = std::min(extent.low_y, p.y);
-            extent.high_y = std::max(extent.high_y, p.y);
-        }
+        for (const grid::FixedPoint& p : polygon.points()) extent.include(p);
     };
     for (const FootSweep& foot : sweep.feet) {
         include(foot.stance);

@@ -50,11 +50,14 @@ struct Sweep {
     FixedPose target;
 };
 
-/// Rows of y that hold all of a sweep.
+/// A rectangle of odom, parallel to its axes.
 struct Extent {
-    std::int64_t low_y = 0;
-    std::int64_t high_y = 0;
+    grid::FixedPoint low;
+    grid::FixedPoint high;
+
+    void include(grid::FixedPoint p) noexcept;
 };
+/// That holds all of a sweep.
 [[nodiscard]] Extent extent_of(const Sweep& sweep) noexcept;
 
 [[nodiscard]] Sweep sweep_of(const Machine& machine,

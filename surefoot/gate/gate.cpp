@@ -163,8 +163,7 @@ void judge_terrain(const Machine& machine,
     const Sweep sweep = sweep_of(machine, start, movement);
     const Ground ground(map, query);
     findings.prove(Proof::cells_intact, [&] {
-        const Extent extent = extent_of(sweep);
-        if (!ground.is_intact(extent.low_y, extent.high_y)) findings.deny(Reason::internal);
+        if (!ground.is_intact(ground.zone_of(sweep))) findings.deny(Reason::internal);
     });
     if (!findings.reasons().empty()) return;  // of a damaged map nothing is said
     const std::optional<std::int64_t> stance = stance_height(ground, query, sweep);

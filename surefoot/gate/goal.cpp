@@ -21,8 +21,7 @@ void check_joined(const Machine& machine,
     const Movement stay;
     const Sweep sweep = sweep_of(
         machine, fixed_pose(here.x_tenth_mm, here.y_tenth_mm, here.cos_yaw, here.sin_yaw), stay);
-    const Extent extent = extent_of(sweep);
-    if (!ground.is_intact(extent.low_y, extent.high_y)) findings.deny(Reason::internal);
+    if (!ground.is_intact(ground.zone_of(sweep))) findings.deny(Reason::internal);
     const std::optional<std::int64_t> stance = stance_height(ground, here, sweep);
     if (!stance) {
         findings.deny(Reason::disconnected);

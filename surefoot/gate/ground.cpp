@@ -57,15 +57,22 @@ GroundCell Ground::cell(std::int64_t ix, std::int64_t iy) const noexcept {
     return cell;
 }
 
-bool Ground::is_intact(std::int64_t low_y_tenth_mm, std::int64_t high_y_tenth_mm) const noexcept {
+Extent Ground::zone_of(const Sweep& sweep) const noexcept {
+    Extent zone = extent_of(sweep);
     if (vouching_) {
         const std::int64_t reach = std::int64_t{vouched_.radius_tenth_mm} + grid_.side;
-        low_y_tenth_mm = std::min(low_y_tenth_mm, vouched_.center_y_tenth_mm - reach);
-        high_y_tenth_mm = std::max(high_y_tenth_mm, vouched_.center_y_tenth_mm + reach);
+        const std::int64_t x = vouched_.center_x_tenth_mm;
+        const std::int64_t y = vouched_.center_y_tenth_mm;
+        zone.include({x - reach, y - reach});
+        zone.include({x + reach, y + reach});
     }
+    return zone;
+}
+
+bool Ground::is_intact(const Extent& zone) const noexcept {
     return grid::are_rows_intact(map_,
-                                 grid::floor_div(low_y_tenth_mm - grid_.origin_y, grid_.side),
-                                 grid::floor_div(high_y_tenth_mm - grid_.origin_y, grid_.side));
+                                 grid::floor_div(zone.low.y - grid_.origin_y, grid_.side),
+                                 grid::floor_div(zone.high.y - grid_.origin_y, grid_.side));
 }
 
 grid::FixedPoint Ground::doubled_center(std::int64_t ix,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "surefoot/gate/footprints.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/fixed_polygon.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
@@ -42,10 +43,12 @@ class Ground {
                                                   std::int64_t iy,
                                                   grid::FixedPoint origin) const noexcept;
     [[nodiscard]] bool is_vouching() const noexcept { return vouching_; }
-    /// Nobody changed a cell between these y (odom), nor around the vouched area, since the map was
-    /// sealed. Precondition: grid::is_sealed().
-    [[nodiscard]] bool is_intact(std::int64_t low_y_tenth_mm,
-                                 std::int64_t high_y_tenth_mm) const noexcept;
+    /// What a verdict about `sweep` may read: the sweep, and the vouched area with the ring of
+    /// cells beside it (`ReachableSurfaces::add_beside_vouched`).
+    [[nodiscard]] Extent zone_of(const Sweep& sweep) const noexcept;
+    /// Nobody changed a cell of the rows of a zone since the map was sealed. Precondition:
+    /// grid::is_sealed().
+    [[nodiscard]] bool is_intact(const Extent& zone) const noexcept;
     [[nodiscard]] const VouchedArea& vouched() const noexcept { return vouched_; }
 
   private:
