@@ -11,6 +11,7 @@
 #include "apps/surefoot/ground_box.hpp"
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/suite_rows.hpp"
+#include "server/wire/verdict_json.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
@@ -359,11 +360,6 @@ std::string failure_json(const std::string& error, int exit_code) {
 std::string verdict_json(const gate::Verdict& verdict,
                          const std::string& text,
                          const std::vector<std::string>& assumed) {
-    Json reasons = Json::array();
-    for (int i = 0; i < gate::kReasonCount; ++i) {
-        const auto reason = static_cast<gate::Reason>(i);
-        if (verdict.reasons.contains(reason)) reasons.push_back(to_string(reason));
-    }
     const gate::Evidence& e = verdict.evidence;
     Json evidence = {
         {"primary", to_string(verdict.primary)},
@@ -384,7 +380,7 @@ std::string verdict_json(const gate::Verdict& verdict,
         {"known_cells", e.known_cells},
         {"vouched_cells", e.vouched_cells}};
     const Json object = {{"verdict", to_string(verdict.decision)},
-                         {"reasons", reasons},
+                         {"reasons", wire::reasons_array(verdict.reasons)},
                          {"text", text},
                          {"evidence", evidence},
                          {"assumed", assumed},
