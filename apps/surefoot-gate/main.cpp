@@ -54,13 +54,6 @@ int fail(const Error& error) {
     return error.code == ErrorCode::usage ? kExitUsage : kExitFailed;
 }
 
-Result<io::MachineFile> load_machine(const std::string& name) {
-    if (io::is_file(name)) return io::read_machine(name);
-    const auto text = find_resource("machines", name);
-    if (!text) return text.error();
-    return io::parse_machine(*text, name);
-}
-
 /// A token on the command line would be seen by everybody on the machine.
 Result<std::string> read_token(const std::string& path) {
     auto text = io::read_file(path, 4096);
@@ -130,7 +123,7 @@ int serve(const Options& options, const io::MachineFile& file) {
 }
 
 int run(Options options) {
-    const auto machine = load_machine(options.machine);
+    const auto machine = find_machine(options.machine);
     if (!machine) return fail(machine.error());
     if (const char* problem = machine->machine.problem())
         return fail(usage_error(options.machine + ": " + problem));

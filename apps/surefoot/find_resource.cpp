@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
+
 #include "apps/surefoot/resources.hpp"
 #include "surefoot/core/nearest_names.hpp"
 
@@ -25,6 +27,18 @@ Result<std::string> find_resource(std::string_view folder, std::string_view name
                     folder,
                     likely.empty() ? "." : likely,
                     fmt::join(known, ", ")));
+}
+
+Result<io::MachineFile> find_machine(const std::string& path_or_name) {
+    const auto read = [&]() -> Result<io::MachineFile> {
+        if (std::filesystem::exists(path_or_name)) return io::read_machine(path_or_name);
+        const auto text = find_resource("machines", path_or_name);
+        if (!text) return text.error();
+        return io::parse_machine(*text, fmt::format("machine {}", path_or_name));
+    };
+    auto machine = read();
+    if (!machine) return usage_error(machine.error().message);
+    return machine;
 }
 
 }  // namespace surefoot::app

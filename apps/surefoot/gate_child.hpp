@@ -27,7 +27,6 @@ class GateChild {
     /// Starts it anew if it has died, twice a second at most. False in the call that noticed.
     [[nodiscard]] bool watch(std::int64_t now_ns);
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
-    [[nodiscard]] pid_t process() const noexcept { return process_; }
     [[nodiscard]] int restarts() const noexcept { return restarts_; }
 
   private:

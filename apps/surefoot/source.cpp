@@ -116,15 +116,9 @@ Result<camera::StereoRig> load_rig(const std::string& path_or_name) {
 
 Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_name) {
     if (path_or_name.empty()) return std::optional<io::MachineFile>{};
-    const auto as_optional =
-        [](Result<io::MachineFile> machine) -> Result<std::optional<io::MachineFile>> {
-        if (!machine) return usage_error(machine.error().message);
-        return std::optional<io::MachineFile>(std::move(machine).value());
-    };
-    if (std::filesystem::exists(path_or_name)) return as_optional(io::read_machine(path_or_name));
-    const auto text = find_resource("machines", path_or_name);
-    if (!text) return text.error();
-    return as_optional(io::parse_machine(*text, fmt::format("machine {}", path_or_name)));
+    auto machine = find_machine(path_or_name);
+    if (!machine) return machine.error();
+    return std::optional<io::MachineFile>(std::move(machine).value());
 }
 
 camera::StereoRig mounted_rig(const camera::StereoRig& rig,

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "server/wire/steady_clock.hpp"
+
 namespace surefoot::wire {
 namespace {
 
@@ -20,12 +22,6 @@ EntryHead head_of(std::string_view entry) noexcept {
     EntryHead head;
     std::memcpy(&head, entry.data(), sizeof(head));
     return head;
-}
-
-std::int64_t steady_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
 }
 
 }  // namespace

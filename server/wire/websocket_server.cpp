@@ -17,6 +17,7 @@
 #include "server/wire/admission.hpp"
 #include "server/wire/out_queue.hpp"
 #include "server/wire/periodic_topics.hpp"
+#include "server/wire/steady_clock.hpp"
 #include "server/wire/topic_json.hpp"
 
 namespace surefoot::wire {
@@ -32,12 +33,6 @@ using beast::error_code;
 using Stream = beast::basic_stream<tcp, tcp::socket::executor_type, beast::simple_rate_policy>;
 
 constexpr std::int64_t kNsPerMs = 1'000'000;
-
-std::int64_t steady_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(
-               std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
 
 std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
