@@ -19,6 +19,8 @@ struct SourceInfo {
     bool has_imu = false;
     bool modelled_depth = false;   ///< frames come with depth that nobody measured
     bool modelled_motion = false;  ///< frames come with motion that nobody measured
+    /// Stamps are of this machine's steady clock (CLOCK_MONOTONIC): how old a frame is can be told.
+    bool steady_stamps = false;
     /// base_link of the first frame in odom (z up, the ground at 0), where the source knows.
     std::optional<Pose> T_odom_first_body = {};
     std::vector<std::string> notes = {};  ///< what a user should know about how it was opened

@@ -15,6 +15,7 @@ enum class CameraState : std::uint8_t {
     overexposed = 4,  ///< too much of the images is saturated
     dark = 5,         ///< most of the images is black
     moved = 6,        ///< no longer where it was on the machine; stays so
+    leaning = 7,      ///< by what it sees, the machine is in mid-step, or it was knocked
 };
 [[nodiscard]] const char* to_string(CameraState state) noexcept;
 

@@ -84,6 +84,10 @@ struct GateLimits {
     std::int32_t drop_band_tenth_mm = 0;        ///< solid ground wanted beyond a landing foot
     std::uint8_t drop_evidence = 0;             ///< evidence from here on is a drop
     std::int32_t drift_tenth_mm = 0;            ///< 1-sigma horizontal drift since a cell was seen
+    /// Class stair: share of a foot's length that its tread must carry, in thousandths, and how far
+    /// the foot may reach over the nosing.
+    std::int32_t tread_share_permille = 1'000;
+    std::int32_t tread_overhang_tenth_mm = 0;
     std::int64_t frame_age_ns = 0;
     std::int64_t pose_age_ns = 0;
     std::int64_t future_tolerance_ns = 0;    ///< stamps later than now by more are refused
@@ -98,6 +102,7 @@ struct Machine {
     std::int32_t sole_depth_tenth_mm = 0;  ///< soles below base_link
     GroundBox left_foot;                   ///< where the feet stand, before and after a movement
     GroundBox right_foot;
+    std::int32_t ankle_from_heel_tenth_mm = 0;  ///< of both feet: what a tread carries first
     Body body;
     std::array<Movement, kMovementCodes> movements{};
     GateLimits limits;
@@ -174,6 +179,9 @@ constexpr const char* problem_of(const GateLimits& limits) noexcept {
         limits.drop_evidence == 0)
         return "a drop limit is outside its range";
     if (!within(limits.drift_tenth_mm, 1, 1'000)) return "the drift limit is outside 0.1-100 mm";
+    if (!within(limits.tread_share_permille, 500, 1'000) ||
+        !within(limits.tread_overhang_tenth_mm, 0, 1'000))
+        return "a limit of treads is outside its range";
     // Time limits have no value that switches them off.
     constexpr std::int64_t kSecondNs = 1'000'000'000;
     if (!within(limits.frame_age_ns, std::int64_t{1}, kSecondNs) ||
@@ -197,6 +205,8 @@ constexpr const char* Machine::problem() const noexcept {
         if (foot->length_tenth_mm > 16 * limits.patch_side_tenth_mm ||
             foot->width_tenth_mm > 16 * limits.patch_side_tenth_mm)
             return "a foot is longer or wider than 16 patches";
+        if (!detail::within(ankle_from_heel_tenth_mm, 0, foot->length_tenth_mm))
+            return "an ankle is not over its foot";
     }
     if (const char* why = detail::problem_of(body)) return why;
     if (movements[0].configured) return "code 0 is the joystick at rest and cannot be a movement";

@@ -44,6 +44,7 @@ const char* to_string(CameraState state) noexcept {
         case CameraState::overexposed: return "OVEREXPOSED";
         case CameraState::dark: return "DARK";
         case CameraState::moved: return "MOVED";
+        case CameraState::leaning: return "LEANING";
     }
     return "UNKNOWN";
 }

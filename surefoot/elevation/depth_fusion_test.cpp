@@ -7,31 +7,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <new>
 #include <numbers>
 #include <vector>
 
+#include "surefoot/core/allocations_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
-
-namespace {
-bool counting_allocations = false;
-int allocations = 0;
-}  // namespace
-
-// Counts allocations of the whole test program while asked to. Not inlined: the compiler would see
-// malloc and delete meet.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    if (counting_allocations) ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 namespace surefoot::elevation {
 namespace {
@@ -403,11 +384,9 @@ TEST(DepthFusion, NothingIsAllocatedOnceWarm) {
         map.add_points(cloud, {}, T_odom_body, k);
     };
     for (int k = 0; k < 3; ++k) frame(k);
-    allocations = 0;
-    counting_allocations = true;
+    const std::int64_t before = heap::allocations;
     for (int k = 3; k < 30; ++k) frame(k);
-    counting_allocations = false;
-    EXPECT_EQ(allocations, 0);
+    EXPECT_EQ(heap::allocations - before, 0);
 }
 
 TEST(DepthFusion, NothingIsAllocatedWhenHeightsAreAlignedEither) {
@@ -431,11 +410,9 @@ TEST(DepthFusion, NothingIsAllocatedWhenHeightsAreAlignedEither) {
     };
     for (int k = 0; k < 2; ++k) frame(k);
     ASSERT_EQ(map.height_drift().reason, HeightDriftReason::no_old_ground);
-    allocations = 0;
-    counting_allocations = true;
+    const std::int64_t before = heap::allocations;
     for (int k = 2; k < 30; ++k) frame(k);
-    counting_allocations = false;
-    EXPECT_EQ(allocations, 0);
+    EXPECT_EQ(heap::allocations - before, 0);
     EXPECT_GT(moved, 0);
 }
 

@@ -18,12 +18,15 @@ FusionResult disagree(const FusionConfig& config,
     if (same_scan && measured.z_m < cell.z_m) return {cell, FusionOutcome::ignored};
     // A cell that is a little off the gate has a tail of the noise to explain, not another surface:
     // it is widened as far as the measurement asks, and by no more than the step for one
-    // contradiction.
+    // contradiction. One wrong match says little against a sure cell, a second in a row much more:
+    // the step grows with the variance.
     const double innovation_m = measured.z_m - cell.z_m;
     const double explained_m2 =
         innovation_m * innovation_m / (config.gate_sigma * config.gate_sigma) - measured.var_m2;
-    const double inflated_m2 =
-        std::min(cell.var_m2 + config.multi_height_var_m2, std::max(explained_m2, cell.var_m2));
+    const double growth_sq = config.contradiction_growth * config.contradiction_growth;
+    const double most_m2 =
+        cell.var_m2 + std::min(config.multi_height_var_m2, (growth_sq - 1.0) * cell.var_m2);
+    const double inflated_m2 = std::min(most_m2, std::max(explained_m2, cell.var_m2));
     if (same_scan || inflated_m2 > config.max_height_var_m2) {
         return {measured, FusionOutcome::replaced};
     }
@@ -50,6 +53,11 @@ void FusionConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    100.0,
                    "largest that is added to a cell's variance when a measurement is gated out");
+    visitor.number("contradiction_growth",
+                   contradiction_growth,
+                   1.0,
+                   1e6,
+                   "largest factor on a cell's sigma when a measurement is gated out");
     visitor.number("scan_duration_s",
                    scan_duration_s,
                    0.0,
@@ -75,6 +83,11 @@ std::optional<std::string> FusionConfig::problem() const {
     if (!(multi_height_var_m2 >= 0.0)) {
         return fmt::format("elevation.multi_height_var_m2 = {} must not be negative",
                            multi_height_var_m2);
+    }
+    if (!(contradiction_growth > 1.0)) {
+        return fmt::format(
+            "elevation.contradiction_growth = {} must exceed 1, or no changed scene is ever learnt",
+            contradiction_growth);
     }
     return std::nullopt;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "surefoot/core/rng.hpp"
 
@@ -50,15 +51,30 @@ TEST(HeightFusion, GateUsesCellAndMeasurementVariance) {
 
 TEST(HeightFusion, DisagreementCostsTrustNotHeight) {
     const FusionConfig config;
-    const FusionResult result = fuse(config, {0.1, 1e-5}, {0.3, 1e-5});
+    const FusionResult result = fuse(config, {0.1, 1e-4}, {0.3, 1e-5});
     EXPECT_EQ(result.outcome, FusionOutcome::inflated);
     EXPECT_EQ(result.cell.z_m, 0.1);
-    EXPECT_DOUBLE_EQ(result.cell.var_m2, 1e-5 + config.multi_height_var_m2);
+    EXPECT_DOUBLE_EQ(result.cell.var_m2, 1e-4 + config.multi_height_var_m2);
+}
+
+TEST(HeightFusion, OneWrongMatchSaysLittleAgainstASureCellTheNextOnesMore) {
+    const FusionConfig config;
+    const Height wrong{0.3, 1e-5};
+    Height cell{0.1, 1e-5};
+    std::vector<double> sigma_mm;
+    for (int k = 0; k < 3; ++k) {
+        cell = fuse(config, cell, wrong).cell;
+        sigma_mm.push_back(1e3 * std::sqrt(cell.var_m2));
+    }
+    EXPECT_NEAR(sigma_mm[0], 2.0 * std::sqrt(10.0), 1e-9);  // twice what it was
+    EXPECT_NEAR(sigma_mm[1], std::sqrt(40.0 + 100.0), 1e-9);
+    EXPECT_NEAR(sigma_mm[2], std::sqrt(40.0 + 200.0), 1e-9);
+    EXPECT_EQ(cell.z_m, 0.1);
 }
 
 TEST(HeightFusion, ATailOfTheNoiseCostsNoMoreTrustThanItAsksFor) {
     const FusionConfig config;
-    const Height cell{0.1, 2.5e-5};
+    const Height cell{0.1, 4e-5};
     const double measured_m2 = 4e-5;
     const double sigma_m = std::sqrt(cell.var_m2 + measured_m2);
     double last_m2 = cell.var_m2;
@@ -84,8 +100,8 @@ TEST(HeightFusion, ATailOfTheNoiseCostsNoMoreTrustThanItAsksFor) {
 
 TEST(HeightFusion, AChangedSceneTakesOverAfterSomeCycles) {
     const FusionConfig config;
-    // Each contradiction adds (10 mm)^2; beyond (50 mm)^2 the cell is replaced: 25 + 1 frames at
-    // most.
+    // Each contradiction but the first adds (10 mm)^2; beyond (50 mm)^2 the cell is replaced: 25 +
+    // 1 frames at most.
     const int limit =
         static_cast<int>(std::ceil(config.max_height_var_m2 / config.multi_height_var_m2)) + 1;
     for (const double change_m : {-1.0, -0.18, 0.1, 0.5}) {
@@ -127,6 +143,9 @@ TEST(HeightFusion, ConfigurationProblemsNameTheKeyAndTheValue) {
         << *config.problem();
     config = {};
     config.gate_sigma = NAN;
+    EXPECT_TRUE(config.problem());
+    config = {};
+    config.contradiction_growth = 1.0;
     EXPECT_TRUE(config.problem());
 }
 

@@ -175,9 +175,7 @@ void write_edges(const SnapshotInput& input, MapSnapshot& out) {
     const Eigen::Vector2d body_m = input.T_odom_body.translation_m.head<2>();
     for (const SnapshotInput::Edge& edge : input.edges)
         if (is_sound(edge)) sorted.emplace_back(distance_m(edge, body_m), &edge);
-    std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) {
-        return a.first < b.first;
-    });
+    std::sort(sorted.begin(), sorted.end());  // of two as far away the one that came first
     const std::size_t count =
         std::min(sorted.size(), static_cast<std::size_t>(MapSnapshot::kMaxEdges));
     out.edge_count = static_cast<std::int32_t>(count);

@@ -73,6 +73,11 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    45.0,
                    "base_link may lean so far from how it stood at the start for long");
     visitor.number("max_sway_deg", max_sway_deg, 0.1, 90.0, "farther than any gait leans");
+    visitor.number("max_lean_before_step_deg",
+                   max_lean_before_step_deg,
+                   0.1,
+                   20.0,
+                   "no step may begin while base_link leans by more");
     visitor.number("max_lean_still_s", max_lean_still_s, 0.1, 600.0, "longest lean at rest");
     visitor.number("max_lean_walking_s",
                    max_lean_walking_s,

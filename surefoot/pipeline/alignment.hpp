@@ -25,6 +25,8 @@ struct AlignmentConfig {
     /// `max_lean_walking_s` without having come home; at once beyond `max_sway_deg`. ASSUMPTION,
     /// after the simulated REX: home within 0.3 deg, sways by 5.4, stands leaning for 2 s at most.
     double max_lean_deg = 1.0;
+    /// No step may begin while base_link leans by more: it is in mid-step, or was just knocked.
+    double max_lean_before_step_deg = 0.7;
     double max_sway_deg = 7.0;
     double max_lean_still_s = 4.0;
     double max_lean_walking_s = 12.0;

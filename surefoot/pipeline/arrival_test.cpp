@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "surefoot/camera/test_rigs.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
@@ -14,10 +16,10 @@ constexpr int kWidth = 160;
 constexpr int kHeight = 120;
 constexpr std::int64_t kPeriod_ns = 66'000'000;
 
-/// One metre above the ground.
+/// One metre above the ground, looking straight down.
 camera::StereoRig small_rig() {
     camera::StereoRig rig = camera::test::ideal_rig(kWidth, kHeight, 120.0);
-    rig.T_body_left = Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, 1.0}};
+    rig.T_body_left = Pose{Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), {0.0, 0.0, 1.0}};
     return rig;
 }
 
@@ -60,6 +62,37 @@ TEST(Light, AFrameInGlaringLightIsFollowedButNotFused) {
     grid::MapSnapshot snapshot;
     ASSERT_TRUE(pipeline->snapshot(1, snapshot).ok());
     EXPECT_EQ(snapshot.camera, CameraState::overexposed);
+}
+
+/// Hazards H3 and H20: frames come, the motion is known, and the depth of all pixels is no number.
+TEST(Blind, AFrameThatMeasuresNothingIsNoLookAtTheGround) {
+    Serial serial;
+    auto pipeline = Pipeline::make({}, small_rig(), serial);
+    ASSERT_TRUE(pipeline.ok()) << pipeline.error().message;
+    const StereoFrame first = moving_frame(0, 0.02);
+    pipeline->align({&first, 1});
+    EXPECT_GT(pipeline->process(first, Work::full).fusion.cells_measured, 0);
+    grid::MapSnapshot snapshot;
+    ASSERT_TRUE(pipeline->snapshot(1, snapshot).ok());
+    const std::uint64_t version = snapshot.version;
+    EXPECT_EQ(snapshot.frame_time_ns, first.time_ns);
+    int index = 1;
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
+                            std::numeric_limits<float>::infinity(),
+                            0.0F,
+                            -1.0F}) {
+        StereoFrame blind = moving_frame(index++, 0.02);
+        blind.known_depth->disparity_px.fill(bad);
+        EXPECT_EQ(pipeline->process(blind, Work::full).fusion.cells_measured, 0);
+        ASSERT_TRUE(pipeline->snapshot(1, snapshot).ok());
+        EXPECT_EQ(snapshot.frame_time_ns, first.time_ns) << "the gate must see it grow old";
+        EXPECT_EQ(snapshot.pose_time_ns, blind.time_ns) << "where it is, is known";
+        EXPECT_EQ(snapshot.version, version);
+    }
+    const StereoFrame sees = moving_frame(index, 0.02);
+    std::ignore = pipeline->process(sees, Work::full);
+    ASSERT_TRUE(pipeline->snapshot(1, snapshot).ok());
+    EXPECT_EQ(snapshot.frame_time_ns, sees.time_ns);
 }
 
 class Arrival : public ::testing::TestWithParam<bool> {};

@@ -25,13 +25,15 @@ bool stands(const MotionEstimate& motion) {
 
 }  // namespace
 
-double MountMonitor::common_lean_rad(const Pose& T_odom_body,
-                                     const Eigen::Vector3d& normal_body) const {
+void MountMonitor::compare(const Pose& T_odom_body, const Eigen::Vector3d& normal_body) {
     const Eigen::Vector3d by_odom =
         T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ() - up_body_;
     const Eigen::Vector3d by_ground = normal_body - normal_body_;
     const bool same = (by_odom - by_ground).norm() <= config_.max_lean_deg * kRadPerDeg;
-    return same ? std::min(by_odom.norm(), by_ground.norm()) : 0.0;
+    lean_rad_ = same ? std::min(by_odom.norm(), by_ground.norm()) : 0.0;
+    // The plane of one frame is uncertain by some 0.1 deg: it need only take sides.
+    leans_ = by_odom.norm() > config_.max_lean_before_step_deg * kRadPerDeg &&
+             by_ground.dot(by_odom) > 0.5 * by_odom.squaredNorm();
 }
 
 void MountMonitor::add(const MotionEstimate& motion, const GroundObservation& ground_body) {
@@ -46,7 +48,7 @@ void MountMonitor::add(const MotionEstimate& motion, const GroundObservation& gr
         up_body_ = motion.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
         normal_body_ = ground_body.normal;
     }
-    lean_rad_ = common_lean_rad(motion.T_odom_body, ground_body.normal);
+    compare(motion.T_odom_body, ground_body.normal);
     const bool leans = lean_rad_ > config_.max_lean_deg * kRadPerDeg;
     upright_s_ = leans ? 0.0 : upright_s_ + since_s;
     leaning_s_ = leans && stands(motion) ? leaning_s_ + since_s : 0.0;

@@ -30,12 +30,15 @@ class MountMonitor {
     void add(const MotionEstimate& motion, const GroundObservation& ground_body);
 
     [[nodiscard]] bool moved() const noexcept { return moved_; }
+    /// Leaning, by the last frame that was judged: in mid-step, or knocked. A knock of more than
+    /// `max_lean_before_step_deg` shows in the next frame, and stays until `moved` says so; a step
+    /// ends upright.
+    [[nodiscard]] bool leans() const noexcept { return leans_; }
     /// By how much both witnesses say that base_link leans [rad]; of the last frame judged.
     [[nodiscard]] double lean_rad() const noexcept { return lean_rad_; }
 
   private:
-    [[nodiscard]] double common_lean_rad(const Pose& T_odom_body,
-                                         const Eigen::Vector3d& normal_body) const;
+    void compare(const Pose& T_odom_body, const Eigen::Vector3d& normal_body);
 
     AlignmentConfig config_;
     bool started_ = false;
@@ -47,6 +50,7 @@ class MountMonitor {
     double swaying_s_ = 0.0;  ///< farther than any gait, until now
     double away_s_ = 0.0;     ///< leaning, in all, since it stood as at the start
     double lean_rad_ = 0.0;
+    bool leans_ = false;
     bool moved_ = false;
 };
 

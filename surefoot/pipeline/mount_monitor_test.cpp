@@ -87,6 +87,65 @@ TEST(MountMonitor, AKnockIsSaidWithinFourSecondsOfRestOrTwoSteps) {
     EXPECT_LE(*hard, 12.7) << "farther than any gait";
 }
 
+/// Of a minute: when it leans first, and for how long in all.
+struct Leaning {
+    std::optional<double> first_s;
+    double lasts_s = 0.0;
+};
+
+Leaning leaning_of(const World& world) {
+    MountMonitor monitor({});
+    Leaning told;
+    for (int i = 0; i <= 600; ++i) {
+        const double time_s = i * kPeriod_s;
+        MotionEstimate motion;
+        motion.time_ns = static_cast<std::int64_t>(1e9 * time_s);
+        motion.health = Health::ok;
+        motion.T_odom_body.rotation = world.machine(time_s) * world.knock(time_s);
+        GroundObservation plane;
+        plane.accepted = true;
+        // What a plane of one frame is off by, from side to side.
+        const Eigen::Quaterniond wrong = leaning(i % 2 == 0 ? 0.3 : -0.3, i % 3 == 0 ? 0.3 : -0.3);
+        plane.normal = motion.T_odom_body.rotation.conjugate() *
+                       (world.ground(time_s) * wrong * Eigen::Vector3d::UnitZ());
+        if (i == 0) plane.normal = Eigen::Vector3d::UnitZ();
+        monitor.add(motion, plane);
+        if (!monitor.leans()) continue;
+        if (!told.first_s) told.first_s = time_s;
+        told.lasts_s += kPeriod_s;
+    }
+    return told;
+}
+
+TEST(MountMonitor, NoStepBeginsFromTheFirstFrameThatShowsAKnock) {
+    for (const auto& knock :
+         {leaning(1.0, 0.0), leaning(-1.0, 0.0), leaning(0.0, 1.5), leaning(3.0, -4.0)}) {
+        const Leaning told = leaning_of({upright, from(10.0, knock), upright});
+        ASSERT_TRUE(told.first_s);
+        EXPECT_NEAR(*told.first_s, 10.0, 1e-9);
+        EXPECT_NEAR(told.lasts_s, 50.1, 0.15) << "and not from any other";
+    }
+}
+
+TEST(MountMonitor, AWalkingMachineLeansInItsStepsAndStandsBetweenThem) {
+    const Leaning walk = leaning_of({[](double t) { return gait(t, 3.0); }, upright, upright});
+    ASSERT_TRUE(walk.first_s);
+    EXPECT_LT(*walk.first_s, 1.0);
+    EXPECT_GT(walk.lasts_s, 30.0);
+    const Leaning stand =
+        leaning_of({[](double t) { return gait(8.5 + std::fmod(t, 1.5), 3.0); }, upright, upright});
+    EXPECT_FALSE(stand.first_s);
+}
+
+TEST(MountMonitor, SlopesAndDriftDoNotKeepStepsFromBeginning) {
+    const Eigen::Quaterniond ramp = leaning(0.0, -4.8);
+    EXPECT_FALSE(leaning_of({upright, upright, from(10.0, ramp)}).first_s) << "upright on a ramp";
+    EXPECT_FALSE(leaning_of({from(10.0, ramp), upright, from(10.0, ramp)}).first_s)
+        << "square to it";
+    const Eigen::Quaterniond drift = leaning(1.5, 1.0);
+    EXPECT_FALSE(leaning_of({from(10.0, drift), upright, from(10.0, drift)}).first_s);
+}
+
 TEST(MountMonitor, SlopesAndDriftLeanAloneAndAreNoKnock) {
     const Eigen::Quaterniond ramp = leaning(0.0, -4.8);
     EXPECT_FALSE(said_at_s({upright, upright, from(10.0, ramp)})) << "upright on a ramp";
@@ -105,6 +164,7 @@ TEST(MountMonitor, WhatWasNotSeenIsNotJudged) {
     MotionEstimate first;
     first.health = Health::ok;
     monitor.add(first, level);
+    EXPECT_FALSE(monitor.leans());
     GroundObservation knocked = level;
     knocked.normal = leaning(0.0, 5.0).conjugate() * Eigen::Vector3d::UnitZ();
     for (int i = 0; i < 300; ++i) {

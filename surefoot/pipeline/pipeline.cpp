@@ -41,6 +41,16 @@ class StageTimer {
     std::int64_t start_ns_ = 0;
 };
 
+/// A camera that is alive and blind delivers frames all the same (hazards H3 and H20): a frame that
+/// measures less than so much of the map is no look at the ground. ASSUMPTION: a tenth of a sole; a
+/// wall half a metre ahead that fills the view measures several times as much.
+constexpr double kLeastMeasured_m2 = 0.01;
+
+bool shows_ground(const FusionCounts& counts, double resolution_m) {
+    return static_cast<double>(counts.cells_measured) * resolution_m * resolution_m >=
+           kLeastMeasured_m2;
+}
+
 std::int64_t count_valid(const Image<float>& disparity_px) {
     return std::count_if(disparity_px.data(),
                          disparity_px.data() + disparity_px.size(),
@@ -298,7 +308,9 @@ void Pipeline::watch_mount(FrameReport& report) {
 }
 
 CameraState Pipeline::camera_state() const noexcept {
-    return mount_monitor_.moved() ? CameraState::moved : camera_monitor_.state();
+    if (mount_monitor_.moved()) return CameraState::moved;
+    const CameraState images = camera_monitor_.state();
+    return images == CameraState::ok && mount_monitor_.leans() ? CameraState::leaning : images;
 }
 
 void Pipeline::follow(const MotionEstimate& motion) {
@@ -310,9 +322,12 @@ void Pipeline::follow(const MotionEstimate& motion) {
 
 FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
     if (motion.health == Health::lost) return {};  // where would it go?
+    const FusionCounts counts =
+        map_.add(rectifier_->rig(), motion.T_odom_body, depth_, motion.time_ns, *executor_);
+    if (!shows_ground(counts, map_.geometry().resolution_m)) return counts;
     last_fused_ns_ = motion.time_ns;
     ++version_;
-    return map_.add(rectifier_->rig(), motion.T_odom_body, depth_, motion.time_ns, *executor_);
+    return counts;
 }
 
 void Pipeline::rate() {

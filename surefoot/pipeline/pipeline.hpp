@@ -40,7 +40,8 @@ using Clock = std::int64_t (*)();
 /// stamps of the last good frame, so that the gate sees it grow old, and says what is wrong with
 /// the camera when there are several in a row.
 ///
-/// Frames too bright or too dark get odometry only; several in a row are said likewise.
+/// Frames too bright or too dark get odometry only; several in a row are said likewise. A frame
+/// whose depth measures nothing of the map leaves the stamp of the last one that did.
 ///
 /// Order of calls: `make`, `align` with the first frames (start.hpp says which) and, if it found no
 /// ground, perhaps with later ones; then `process` for every frame in time order (those used for

@@ -184,6 +184,8 @@ std::vector<CameraState> states_when_knocked(double expected_height_m) {
 TEST(Start, TheMountIsWatchedOnAMachine) {
     const auto machine = states_when_knocked(kHeight_m);
     EXPECT_EQ(machine[19], CameraState::ok);
+    for (const std::size_t i : {20U, 30U, 50U})
+        EXPECT_EQ(machine[i], CameraState::leaning) << "at once, for the time being";
     EXPECT_EQ(machine[69], CameraState::moved);
     const auto in_hand = states_when_knocked(0.0);
     EXPECT_EQ(in_hand[69], CameraState::ok) << "a camera in the hand has no mount";

@@ -2,65 +2,27 @@
 // What the terrain part of a frame costs in memory: motion, depth image, cloud, clean-up, height
 // bounds, rating and footprints. Counts every allocation of this test program.
 #include <gtest/gtest.h>
-#include <malloc.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <new>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "surefoot/core/allocations_for_test.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/elevation/height_bounds.hpp"
 #include "surefoot/stairs/feature_follower.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
-namespace {
-std::int64_t allocations = 0;
-std::int64_t held_bytes = 0;  ///< with what the allocator rounds up to
-
-void* counted(void* memory) {
-    if (memory == nullptr) throw std::bad_alloc();
-    ++allocations;
-    held_bytes += static_cast<std::int64_t>(malloc_usable_size(memory));
-    return memory;
-}
-
-void let_go(void* memory) noexcept {
-    held_bytes -= static_cast<std::int64_t>(malloc_usable_size(memory));
-    std::free(memory);
-}
-}  // namespace
-
-// Not inlined, or the compiler takes malloc and delete for a mismatched pair.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    return counted(std::malloc(size == 0 ? 1 : size));
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-    const auto align = static_cast<std::size_t>(alignment);
-    return counted(std::aligned_alloc(align, (size + align) / align * align));
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    let_go(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    let_go(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    let_go(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    let_go(memory);
-}
-
 namespace surefoot::pipeline {
 namespace {
 
+using heap::allocations;
+using heap::held_bytes;
 using traversability::Footprint;
 using traversability::FootprintPose;
 

@@ -4,47 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <atomic>
-#include <cstdlib>
-#include <new>
+#include <cstdint>
 
+#include "surefoot/core/allocations_for_test.hpp"
 #include "surefoot/traversability/foothold.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"
 #include "surefoot/traversability/reachability.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Not inlined, or the compiler takes malloc and delete for a mismatched pair.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-    ++allocations;
-    const auto align = static_cast<std::size_t>(alignment);
-    if (void* memory = std::aligned_alloc(align, (size + align) / align * align)) return memory;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-
 namespace surefoot::traversability {
 namespace {
+
+using heap::allocations;
 
 TEST(TraversabilityAllocation, NoneAfterTheFirstMap) {
     const grid::Layer map(120, 100, 0.25F);
@@ -52,7 +24,7 @@ TEST(TraversabilityAllocation, NoneAfterTheFirstMap) {
     Traversability rater{TraversabilityConfig{}};
     TraversabilityLayers layers;
     rater.rate(map.view(), 0.025, serial, layers);
-    const long before = allocations;
+    const std::int64_t before = allocations;
     rater.rate(map.view(), 0.025, serial, layers);
     rater.rate(map.view(), 0.025, CellRect{10, 10, 30, 30}, serial, layers);
     EXPECT_EQ(allocations - before, 0);
@@ -67,9 +39,9 @@ TEST(TraversabilityAllocation, NoneInReachabilityAfterTheFirstMap) {
     const grid::GridGeometry geometry{0.025, 120, 100, {-1.5, -1.25}};
     Reachability reachability({});
     grid::Layer out;
-    const long before_first = allocations;
+    const std::int64_t before_first = allocations;
     reachability.reach(geometry, map.view(), {0.0, 0.0}, out);
-    const long before = allocations;
+    const std::int64_t before = allocations;
     EXPECT_GT(before, before_first) << "the counter works";
     reachability.reach(geometry, rough.view(), {0.0, 0.0}, out);
     reachability.reach(geometry, rough.view(), {9.0, 9.0}, out);
@@ -87,9 +59,9 @@ TEST(TraversabilityAllocation, NoneInConfidenceAfterTheFirstMap) {
     ConfidenceLayers out;
     const RatingConfidence::Input input{
         map.view(), var_m2.view(), rater.rated_step_heights(), layers};
-    const long before_first = allocations;
+    const std::int64_t before_first = allocations;
     confidence.compute(input, out);
-    const long before = allocations;
+    const std::int64_t before = allocations;
     EXPECT_GT(before, before_first) << "the counter works";
     confidence.compute(input, out);
     EXPECT_EQ(allocations - before, 0);
@@ -105,9 +77,9 @@ TEST(TraversabilityAllocation, NoneInFootholdsAfterTheFirstMap) {
     const FootholdGround uneven{rough.view(), var_m2.view(), map.view(), map.view(), {}, 0.025};
     FootholdFinder finder{FootholdConfig{}};
     Image<Foothold> out;
-    const long before_first = allocations;
+    const std::int64_t before_first = allocations;
     finder.find(flat, serial(), out);
-    const long before = allocations;
+    const std::int64_t before = allocations;
     EXPECT_GT(before, before_first) << "the counter works";
     EXPECT_EQ(out.at(60, 50), Foothold::safe);
     finder.find(uneven, serial(), out);
@@ -125,9 +97,9 @@ TEST(TraversabilityAllocation, NoneInFootprintQueriesAfterTheFirstPath) {
     ASSERT_TRUE(foot.ok() && disc.ok());
     const std::array<FootprintPose, 3> way{{{-0.5, 0.0, 0.0}, {0.5, 0.0, 0.5}, {0.5, 0.0, 3.0}}};
     PathScratch scratch;
-    const long before_first = allocations;
+    const std::int64_t before_first = allocations;
     const std::int64_t cells = query_path(*foot, way, layers, scratch).cells;
-    const long before = allocations;
+    const std::int64_t before = allocations;
     EXPECT_GT(before, before_first) << "the counter works";
     EXPECT_EQ(query_path(*foot, way, layers, scratch).cells, cells);
     EXPECT_GT(query(*foot, way[0], layers).cells, 0);
