@@ -213,6 +213,9 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.drop_evidence = static_cast<std::uint8_t>(
         std::max(1L, std::lround(255.0 * group.number("drop_evidence", 0.004, 1.0))));
     limits.drift_tenth_mm = group.length("drift_m", 0.0001, 0.1);
+    limits.tread_share_permille =
+        static_cast<std::int32_t>(std::lround(1e3 * group.number("tread_share", 0.5, 1.0)));
+    limits.tread_overhang_tenth_mm = group.length("tread_overhang_m", 0.0, 0.1);
     limits.frame_age_ns = group.duration_ns("frame_age_ms", 1, 1000);
     limits.pose_age_ns = group.duration_ns("pose_age_ms", 1, 1000);
     limits.future_tolerance_ns = group.duration_ns("future_tolerance_ms", 0, 100);
@@ -226,6 +229,7 @@ void read_document(Group& root, MachineFile& out) {
     machine.sole_depth_tenth_mm = root.length("sole_depth_m", 0.0001, 3.0);
     root.group("mount", [&](Group& mount) { read_mount(mount, out); });
     root.group("feet", [&](Group& feet) {
+        machine.ankle_from_heel_tenth_mm = feet.length("ankle_from_heel_m", 0.0, 2.0);
         feet.group("left", [&](Group& box) { machine.left_foot = read_box(box); });
         feet.group("right", [&](Group& box) { machine.right_foot = read_box(box); });
     });

@@ -52,6 +52,9 @@ TEST(MachineFile, the_rex_is_read_completely) {
     EXPECT_TRUE(m.limits.step[0].enabled);
     EXPECT_FALSE(m.limits.step[1].enabled) << "stairs are off by default";
     EXPECT_EQ(m.limits.step[0].up_tenth_mm, 200);
+    EXPECT_EQ(m.ankle_from_heel_tenth_mm, 1260);
+    EXPECT_EQ(m.limits.tread_share_permille, 800);
+    EXPECT_EQ(m.limits.tread_overhang_tenth_mm, 730);
     EXPECT_NEAR(m.limits.min_normal_z, std::cos(6.0 * std::numbers::pi / 180.0), 1e-15);
     EXPECT_EQ(m.limits.frame_age_ns, 200'000'000);
     EXPECT_EQ(m.limits.verdict_ttl_ns, 300'000'000);

@@ -48,7 +48,7 @@ constexpr std::uint8_t last_of(grid::SnapshotHealth) {
     return 2;
 }
 constexpr std::uint8_t last_of(CameraState) {
-    return 6;
+    return 7;
 }
 
 struct Reader {
@@ -126,19 +126,23 @@ Status write_snapshot(const std::string& path, const MapSnapshot& snapshot) {
 
 Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
                                                     const std::string& file) {
-    auto snapshot = std::make_unique<MapSnapshot>();
     Reader reader{bytes};
-    reader(snapshot->magic);
-    reader(snapshot->layout);
-    if (!reader.complete || snapshot->magic != MapSnapshot::kMagic) {
+    decltype(MapSnapshot::magic) magic = 0;
+    decltype(MapSnapshot::layout) layout = 0;
+    reader(magic);
+    reader(layout);
+    if (!reader.complete || magic != MapSnapshot::kMagic) {
         return input_error(file + ": not a map snapshot (wrong first bytes)");
     }
-    if (snapshot->layout != MapSnapshot::kLayout) {
+    if (layout != MapSnapshot::kLayout) {
         return damaged(file,
                        fmt::format("map snapshot of layout {}; this program reads layout {}",
-                                   snapshot->layout,
+                                   layout,
                                    MapSnapshot::kLayout));
     }
+    auto snapshot = std::make_unique<MapSnapshot>();  // a megabyte: not for every wrong file
+    snapshot->magic = magic;
+    snapshot->layout = layout;
     grid::for_each_header_field(*snapshot, [&](const char*, auto& field) { reader(field); });
     if (!reader.complete) return damaged(file, "truncated map snapshot: its header is cut off");
     if (!has_sound_size(*snapshot)) {

@@ -59,18 +59,45 @@ void make_level(grid::MapSnapshot& map) noexcept {
     map.edges.fill({});
 }
 
-/// The cell in the middle of the landing left foot, or the last one of the map where that lies
-/// outside: there the canary fails, and says so.
+/// Well inside the landing left foot and as far from where it stands as can be: with a short step
+/// the middle would be ground that carries already.
+grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
+    const grid::FixedPoint center = foot.landing_center;
+    const auto from_stance = [&](grid::FixedPoint p) {  // the sum for all corners of what stands
+        std::int64_t sum_sq = 0;
+        for (const grid::FixedPoint q : foot.stance.points())
+            sum_sq += (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+        return sum_sq;
+    };
+    grid::FixedPoint farthest = center;
+    for (const grid::FixedPoint corner : foot.landing.points()) {
+        const grid::FixedPoint inside{(center.x + 3 * corner.x) / 4, (center.y + 3 * corner.y) / 4};
+        if (from_stance(inside) > from_stance(farthest)) farthest = inside;
+    }
+    return farthest;
+}
+
+/// A cell of new ground, or the last one of the map where that lies outside: there the canary
+/// fails, and says so.
 template <typename Change>
 void change_one_cell(const Setting& s, Change&& change) noexcept {
-    const grid::FixedPoint middle = s.sweep.feet[0].landing_center;
-    const auto index = [&](std::int64_t place, std::int64_t origin) {
-        const std::int64_t i = grid::floor_div(place - origin, s.map.resolution_tenth_mm);
+    const grid::FixedPoint place = new_ground(s.sweep.feet[0]);
+    const auto index = [&](std::int64_t at, std::int64_t origin) {
+        const std::int64_t i = grid::floor_div(at - origin, s.map.resolution_tenth_mm);
         return i < 0 ? 0 : i >= s.map.nx ? std::int64_t{s.map.nx} - 1 : i;
     };
-    const std::int64_t ix = index(middle.x, s.map.origin_x_tenth_mm);
-    const std::int64_t iy = index(middle.y, s.map.origin_y_tenth_mm);
+    const std::int64_t ix = index(place.x, s.map.origin_x_tenth_mm);
+    const std::int64_t iy = index(place.y, s.map.origin_y_tenth_mm);
     change(static_cast<std::size_t>(iy * s.map.nx + ix));
+}
+
+/// That cell and the one beside it: one alone is a pebble.
+template <typename Change>
+void change_two_cells(const Setting& s, Change&& change) noexcept {
+    change_one_cell(s, [&](std::size_t i) {
+        change(i);
+        change(i > 0 ? i - 1 : i + 1);
+    });
 }
 
 std::int32_t limit_of(const Setting& s, bool up) noexcept {
@@ -101,6 +128,7 @@ constexpr auto kFaultList = std::to_array<Fault>({
     {Reason::frame_frozen, [](const Setting& s) { s.map.camera = CameraState::frozen; }},
     {Reason::frame_corrupt, [](const Setting& s) { s.map.camera = CameraState::corrupt; }},
     {Reason::mount_moved, [](const Setting& s) { s.map.camera = CameraState::moved; }},
+    {Reason::plane_invalid, [](const Setting& s) { s.map.camera = CameraState::leaning; }},
     {Reason::internal, [](const Setting& s) { s.map.magic = 0; }},
     // The gate itself, and the question.
     {Reason::not_ready, [](const Setting& s) { s.health.state = GateState::degraded; }},
@@ -145,13 +173,13 @@ constexpr auto kFaultList = std::to_array<Fault>({
      }},
     {Reason::step_too_high,
      [](const Setting& s) {
-         const std::int32_t higher = limit_of(s, true) + 300;
-         change_one_cell(s, [&](std::size_t i) { s.map.height_tenth_mm[i] = higher; });
+         const std::int32_t higher = limit_of(s, true) + 10;
+         change_two_cells(s, [&](std::size_t i) { s.map.height_tenth_mm[i] = higher; });
      }},
     {Reason::step_too_low,
      [](const Setting& s) {
-         const std::int32_t lower = limit_of(s, false) + 300;
-         change_one_cell(s, [&](std::size_t i) { s.map.height_tenth_mm[i] = -lower; });
+         const std::int32_t lower = limit_of(s, false) + 10;
+         change_two_cells(s, [&](std::size_t i) { s.map.height_tenth_mm[i] = -lower; });
      }},
     {Reason::drop_off,
      [](const Setting& s) {
@@ -163,6 +191,13 @@ constexpr auto kFaultList = std::to_array<Fault>({
 std::int64_t length_sq(const Movement& m) noexcept {
     return std::int64_t{m.forward_tenth_mm} * m.forward_tenth_mm +
            std::int64_t{m.left_tenth_mm} * m.left_tenth_mm;
+}
+
+/// The longest movement has the most ground to find a fault in. Faults are of flat ground: on
+/// stairs some of them are treads.
+bool is_harder(const Movement& a, const Movement& b) noexcept {
+    if (a.movement_class != b.movement_class) return a.movement_class == MovementClass::walk;
+    return length_sq(a) > length_sq(b);
 }
 
 bool is_usable(const Machine& machine, std::size_t code) noexcept {
@@ -180,8 +215,7 @@ Canaries::Canaries(const Machine& machine) noexcept : machine_(machine) {
     for (std::size_t code = 1; code < machine.movements.size(); ++code) {
         if (!is_usable(machine, code)) continue;
         ++first_fault_;
-        if (longest_ == 0 ||
-            length_sq(machine.movements[code]) > length_sq(machine.movements[longest_]))
+        if (longest_ == 0 || is_harder(machine.movements[code], machine.movements[longest_]))
             longest_ = static_cast<std::uint8_t>(code);
     }
 }

@@ -13,9 +13,8 @@ struct Sums {
     std::int64_t n = 0;
     std::int64_t x = 0, y = 0, z = 0;
     std::int64_t xx = 0, xy = 0, yy = 0, xz = 0, yz = 0;
-    std::int64_t variance = 0;
 
-    void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
+    void add(FixedPoint p, std::int64_t height) noexcept {
         ++n;
         x += p.x;
         y += p.y;
@@ -25,7 +24,26 @@ struct Sums {
         yy += p.y * p.y;
         xz += p.x * height;
         yz += p.y * height;
-        variance += sigma * sigma;
+    }
+};
+
+/// The mean of a patch. Cells that are less sure than a patch must be weigh less, by their
+/// variance, so that one that has just refused a measurement does not spoil what the others know.
+struct PatchSums {
+    std::int64_t n = 0;
+    double weight = 0.0;
+    double x = 0.0, y = 0.0, z = 0.0;  ///< as in Sums, weighted
+    double variance = 0.0;             ///< weighted twice
+
+    void add(FixedPoint p, std::int64_t height, std::int64_t sigma, std::int64_t sure) noexcept {
+        const auto variance_of = [](std::int64_t s) { return static_cast<double>(s * s); };
+        const double w = variance_of(sure) / variance_of(std::max(sigma, sure));
+        ++n;
+        weight += w;
+        x += w * static_cast<double>(p.x);
+        y += w * static_cast<double>(p.y);
+        z += w * static_cast<double>(height);
+        variance += w * w * variance_of(sigma);
     }
 };
 
@@ -81,12 +99,13 @@ class Patches {
   public:
     static constexpr std::int64_t kMaxPerSide = 16;  // Machine::problem() bounds the foot
 
-    Patches(const GroundBox& box, const FixedPose& target, std::int64_t side) noexcept
+    Patches(const GroundBox& box, const FixedPose& target, const GateLimits& limits) noexcept
         : pose_(target),
+          sure_(limits.patch_sigma_tenth_mm),
           length_(box.length_tenth_mm),
           width_(box.width_tenth_mm),
-          along_(std::clamp<std::int64_t>(length_ / side, 1, kMaxPerSide)),
-          across_(std::clamp<std::int64_t>(width_ / side, 1, kMaxPerSide)) {}
+          along_(per_side(length_, limits)),
+          across_(per_side(width_, limits)) {}
 
     /// `p` in doubled odom coordinates from the foot's middle. Cells that only overlap the rim
     /// count to the nearest patch: none gets lost.
@@ -95,14 +114,17 @@ class Patches {
         const std::int64_t left = p.y * pose_.cos_yaw - p.x * pose_.sin_yaw;
         const std::int64_t row = index(forward, length_, along_);
         const std::int64_t column = index(left, width_, across_);
-        sums_[static_cast<std::size_t>(row * across_ + column)].add(p, height, sigma);
+        sums_[static_cast<std::size_t>(row * across_ + column)].add(p, height, sigma, sure_);
     }
     [[nodiscard]] std::int64_t count() const noexcept { return along_ * across_; }
-    [[nodiscard]] const Sums& operator[](std::int64_t i) const noexcept {
+    [[nodiscard]] const PatchSums& operator[](std::int64_t i) const noexcept {
         return sums_[static_cast<std::size_t>(i)];
     }
 
   private:
+    static std::int64_t per_side(std::int64_t size, const GateLimits& limits) noexcept {
+        return std::clamp<std::int64_t>(size / limits.patch_side_tenth_mm, 1, kMaxPerSide);
+    }
     static std::int64_t index(std::int64_t at, std::int64_t size, std::int64_t count) noexcept {
         const std::int64_t from_edge =
             at + size * FixedPose::kOne;  // doubled: half a size is `size`
@@ -111,11 +133,12 @@ class Patches {
     }
 
     FixedPose pose_;
+    std::int64_t sure_;
     std::int64_t length_;
     std::int64_t width_;
     std::int64_t along_;
     std::int64_t across_;
-    std::array<Sums, static_cast<std::size_t>(kMaxPerSide* kMaxPerSide)> sums_{};
+    std::array<PatchSums, static_cast<std::size_t>(kMaxPerSide* kMaxPerSide)> sums_{};
 };
 
 /// Everything about one landing foot while it is judged.
@@ -180,17 +203,17 @@ bool check_tilt(const Landing& landing) noexcept {
     return false;
 }
 
-bool check_patch(const Landing& landing, const Sums& patch) noexcept {
+bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
     if (patch.n == 0)
         return true;  // every cell is in some patch; cells larger than patches leave gaps
     const GateLimits& limits = landing.scene.machine.limits;
-    const auto n = static_cast<double>(patch.n);
-    const double x = static_cast<double>(patch.x) / n;
-    const double y = static_cast<double>(patch.y) / n;
+    const double x = patch.x / patch.weight;
+    const double y = patch.y / patch.weight;
+    // The errors of neighbours hang together: more cells than `independent` average no further.
     const std::int64_t independent =
         std::min<std::int64_t>(patch.n, limits.patch_independent_cells);
-    const double variance =
-        static_cast<double>(patch.variance) / (n * static_cast<double>(independent));
+    const double alike = static_cast<double>(patch.n) / static_cast<double>(independent);
+    const double variance = alike * patch.variance / (patch.weight * patch.weight);
     Evidence& evidence = landing.findings.evidence;
     evidence.max_patch_sigma_sq_tenth_mm2 =
         std::max(evidence.max_patch_sigma_sq_tenth_mm2, variance);
@@ -203,7 +226,7 @@ bool check_patch(const Landing& landing, const Sums& patch) noexcept {
     }
     // Where the noise alone has refused the patch, the residual speaks only for itself.
     const double noise_sq = resolvable ? limits.sigma_factor * limits.sigma_factor * variance : 0.0;
-    const double residual = static_cast<double>(patch.z) / n - landing.plane.at(x, y);
+    const double residual = patch.z / patch.weight - landing.plane.at(x, y);
     const double size = residual < 0.0 ? -residual : residual;
     const double slack = static_cast<double>(limits.patch_residual_tenth_mm) - size;
     const bool even = slack >= 0.0 && noise_sq <= slack * slack;  // false for NaN
@@ -217,17 +240,40 @@ bool check_patch(const Landing& landing, const Sums& patch) noexcept {
 struct FootCells {
     Sums all{};
     Patches patches;
-    Finding lowest{};  ///< its value: the height over the stance
+    std::int64_t grounds = 0;  ///< cells that do not stand alone
+    Finding lowest{};          ///< of these; its value: the height over the stance
     Finding highest{};
 
-    void add(Finding here, FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
-        here.value_tenth_mm = height;
-        if (all.n == 0 || height < lowest.value_tenth_mm) lowest = here;
-        if (all.n == 0 || height > highest.value_tenth_mm) highest = here;
-        all.add(p, height, sigma);
+    void add(FixedPoint p, std::int64_t height, std::int64_t sigma) noexcept {
+        all.add(p, height);
         patches.add(p, height, sigma);
     }
+    void add_extreme(Finding here, std::int64_t height) noexcept {
+        here.value_tenth_mm = height;
+        if (grounds == 0 || height < lowest.value_tenth_mm) lowest = here;
+        if (grounds == 0 || height > highest.value_tenth_mm) highest = here;
+        ++grounds;
+    }
 };
+
+/// A single cell beyond the step limits while all eight around it are known and keep them, and no
+/// obstacle for a swinging foot nor a drop itself: a wrong match, or a pebble, of which the mean of
+/// its patch speaks. What a foot could stand on, a kerb or a sill, fills more than one cell.
+bool stands_alone(const Scene& scene,
+                  std::int64_t ix,
+                  std::int64_t iy,
+                  std::int64_t rise) noexcept {
+    const StepLimits& step = step_limits(scene);
+    const auto kept = [&](std::int64_t height) {
+        return height <= step.up_tenth_mm && -height <= step.down_tenth_mm;
+    };
+    const GateLimits& limits = scene.machine.limits;
+    if (kept(rise) || rise > limits.swing_clearance_tenth_mm || -rise > limits.drop_tenth_mm)
+        return false;
+    return scene.ground.all_around(ix, iy, [&](const GroundCell& beside) {
+        return kept(beside.height_tenth_mm - scene.stance_tenth_mm);
+    });
+}
 
 /// False when a cell is not known: there is no plane then.
 bool gather_cells(const Scene& scene,
@@ -249,10 +295,10 @@ bool gather_cells(const Scene& scene,
             // 3 m above or below is refused by the other rules; the bound keeps the sums exact.
             const std::int64_t height = std::clamp<std::int64_t>(
                 cell.height_tenth_mm - scene.stance_tenth_mm, -30'000, 30'000);
-            cells.add(here,
-                      scene.ground.doubled_center(ix, iy, foot.landing_center),
+            cells.add(scene.ground.doubled_center(ix, iy, foot.landing_center),
                       height,
                       cell.sigma_tenth_mm);
+            if (!stands_alone(scene, ix, iy, height)) cells.add_extreme(here, height);
             return true;
         });
 }
@@ -265,7 +311,7 @@ void check_landing(const Scene& scene,
                    const ReachableSurfaces& reachable,
                    Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
-    FootCells cells{.patches = Patches(box, scene.sweep.target, limits.patch_side_tenth_mm)};
+    FootCells cells{.patches = Patches(box, scene.sweep.target, limits)};
     if (!gather_cells(scene, foot, reachable, findings, cells)) return;
     const Landing landing{scene, foot, fit_plane(cells.all), findings};
     if (!landing.plane.valid) {

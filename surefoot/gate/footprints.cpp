@@ -8,11 +8,9 @@ namespace {
 
 using Corners = std::array<grid::FixedPoint, 4>;
 
-/// The map shows things up to a cell of 25 mm beside their place: the rim of a table that was seen
-/// past is bare floor in the cells that it half covers. Of hazards that were missed on maps with
-/// measured noise, every one but a hole's corner had a cell that knew of it so far away
-/// (docs/experiments/gate_scenes.md).
-constexpr std::int64_t kBesideTenthMm = 250;
+/// Drift that kBesideTenthMm and the margins of feet and body take up: up to here nothing was
+/// missed where the machine stood beside where it believed (docs/experiments/gate_scenes.md).
+constexpr std::int64_t kDriftWithinTenthMm = 100;
 
 /// x / 2^20 rounded to nearest, halves upward: the same for every sign of x.
 constexpr std::int64_t round_fraction(std::int64_t x) noexcept {
@@ -48,16 +46,16 @@ FootSweep foot_sweep(Foot foot,
                      const GroundBox& box,
                      const GateLimits& limits,
                      const FixedPose& start,
-                     const FixedPose& target) noexcept {
+                     const FixedPose& target,
+                     std::int64_t beside) noexcept {
     FootSweep sweep;
     sweep.foot = foot;
     sweep.stance = grid::convex_hull(corners_of(box, start, 0));
     sweep.landing = grid::convex_hull(corners_of(box, target, 0));
     sweep.landing_center = to_odom(target, box.center_x_tenth_mm, box.center_y_tenth_mm);
-    const std::int64_t margin = limits.foot_margin_tenth_mm + kBesideTenthMm;
+    const std::int64_t margin = limits.foot_margin_tenth_mm + beside;
     sweep.corridor = hull_of(corners_of(box, start, margin), corners_of(box, target, margin));
-    sweep.band =
-        grid::convex_hull(corners_of(box, target, limits.drop_band_tenth_mm + kBesideTenthMm));
+    sweep.band = grid::convex_hull(corners_of(box, target, limits.drop_band_tenth_mm + beside));
     return sweep;
 }
 
@@ -107,14 +105,25 @@ Extent extent_of(const Sweep& sweep) noexcept {
     return extent;
 }
 
-Sweep sweep_of(const Machine& machine, const FixedPose& start, const Movement& movement) noexcept {
+std::int64_t drift_margin(const GateLimits& limits, std::int64_t drift_tenth_mm) noexcept {
+    const std::int64_t beyond = drift_tenth_mm - kDriftWithinTenthMm;
+    if (beyond <= 0) return 0;
+    return static_cast<std::int64_t>(limits.sigma_factor * static_cast<double>(beyond)) + 1;
+}
+
+Sweep sweep_of(const Machine& machine,
+               const FixedPose& start,
+               const Movement& movement,
+               std::int64_t margin_tenth_mm) noexcept {
+    const std::int64_t beside = kBesideTenthMm + margin_tenth_mm;
     Sweep sweep;
     sweep.target = moved(start, movement);
-    sweep.feet = {foot_sweep(Foot::left, machine.left_foot, machine.limits, start, sweep.target),
-                  foot_sweep(Foot::right, machine.right_foot, machine.limits, start, sweep.target)};
+    sweep.feet = {
+        foot_sweep(Foot::left, machine.left_foot, machine.limits, start, sweep.target, beside),
+        foot_sweep(Foot::right, machine.right_foot, machine.limits, start, sweep.target, beside)};
     std::size_t part = 0;
     for (const auto& [box, low, high] : machine.body.all()) {
-        const std::int64_t margin = machine.body.sway_tenth_mm + kBesideTenthMm;
+        const std::int64_t margin = machine.body.sway_tenth_mm + beside;
         sweep.body[part++] =
             hull_of(corners_of(box, start, margin), corners_of(box, sweep.target, margin));
     }

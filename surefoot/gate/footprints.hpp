@@ -10,6 +10,12 @@
 
 namespace surefoot::gate {
 
+/// The map shows things up to a cell of 25 mm beside their place: the rim of a table that was seen
+/// past is bare floor in the cells that it half covers. Of hazards that were missed on maps with
+/// measured noise, every one but a hole's corner had a cell that knew of it so far away
+/// (docs/experiments/gate_scenes.md).
+inline constexpr std::int64_t kBesideTenthMm = 250;
+
 /// A pose in the plane: position in units of 0.1 mm, cosine and sine of the yaw times 2^20.
 struct FixedPose {
     static constexpr int kFractionBits = 20;
@@ -60,8 +66,15 @@ struct Extent {
 /// That holds all of a sweep.
 [[nodiscard]] Extent extent_of(const Sweep& sweep) noexcept;
 
+/// How much farther every region reaches, on all sides, when the cells have drifted by this much
+/// (1 sigma, horizontal) since they were seen: `sigma_factor` times what the margins of the regions
+/// do not take up.
+[[nodiscard]] std::int64_t drift_margin(const GateLimits& limits,
+                                        std::int64_t drift_tenth_mm) noexcept;
+/// `margin_tenth_mm`: added to every region, but to where the feet stand and land.
 [[nodiscard]] Sweep sweep_of(const Machine& machine,
                              const FixedPose& start,
-                             const Movement& movement) noexcept;
+                             const Movement& movement,
+                             std::int64_t margin_tenth_mm = 0) noexcept;
 
 }  // namespace surefoot::gate

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -104,6 +105,150 @@ TEST(Footprints, corridor_and_body_hull_hold_every_pose_on_the_way) {
             expect_inside(machine.body.parts[0].box, sweep.body[0]);
         }
     }
+}
+
+/// The smallest and largest coordinates of a polygon.
+Extent box_around(const grid::FixedConvex& polygon) {
+    Extent extent{polygon.vertices[0], polygon.vertices[0]};
+    for (const grid::FixedPoint& p : polygon.points()) {
+        extent.low = {std::min(extent.low.x, p.x), std::min(extent.low.y, p.y)};
+        extent.high = {std::max(extent.high.x, p.x), std::max(extent.high.y, p.y)};
+    }
+    return extent;
+}
+void expect_box(const char* what, const Extent& box, grid::FixedPoint low, grid::FixedPoint high) {
+    EXPECT_EQ(box.low.x, low.x) << what;
+    EXPECT_EQ(box.low.y, low.y) << what;
+    EXPECT_EQ(box.high.x, high.x) << what;
+    EXPECT_EQ(box.high.y, high.y) << what;
+}
+
+TEST(Footprints, every_region_has_its_margin_to_the_tenth_of_a_millimetre) {
+    // Foot 366.0 x 190.0 mm, 57 mm ahead and 180 mm to a side; margins 20 and 100 mm, sway 50 mm,
+    // and 25 mm by which a map may show things beside their place. A step of 400 mm.
+    const Machine machine = rex();
+    for (const std::int64_t extra : {0, 70}) {
+        const Sweep sweep = sweep_of(machine, FixedPose{}, machine.movements[kForward], extra);
+        EXPECT_EQ(sweep.target.position, (grid::FixedPoint{4000, 0}));
+        EXPECT_EQ(sweep.target.cos_yaw, FixedPose::kOne);
+        EXPECT_EQ(sweep.target.sin_yaw, 0);
+        const FootSweep& left = sweep.feet[0];
+        EXPECT_EQ(left.foot, Foot::left);
+        EXPECT_EQ(left.landing_center, (grid::FixedPoint{4570, 1800}));
+        expect_box("stance", box_around(left.stance), {-1260, 850}, {2400, 2750});
+        expect_box("landing", box_around(left.landing), {2740, 850}, {6400, 2750});
+        expect_box("corridor",
+                   box_around(left.corridor),
+                   {-1260 - 450 - extra, 850 - 450 - extra},
+                   {6400 + 450 + extra, 2750 + 450 + extra});
+        expect_box("band",
+                   box_around(left.band),
+                   {2740 - 1250 - extra, 850 - 1250 - extra},
+                   {6400 + 1250 + extra, 2750 + 1250 + extra});
+        const FootSweep& right = sweep.feet[1];
+        EXPECT_EQ(right.foot, Foot::right);
+        EXPECT_EQ(right.landing_center, (grid::FixedPoint{4570, -1800}));
+        expect_box("right", box_around(right.landing), {2740, -2750}, {6400, -850});
+        expect_box("body",
+                   box_around(sweep.body[0]),
+                   {-3300 - 750 - extra, -3225 - 750 - extra},
+                   {7300 + 750 + extra, 3225 + 750 + extra});
+        EXPECT_EQ(sweep.body[1].count, 0) << "there is one part";
+        // Landing and body reach farthest; each side of the whole is that of some region.
+        expect_box(
+            "all", extent_of(sweep), {-4050 - extra, -4000 - extra}, {8050 + extra, 4000 + extra});
+    }
+}
+
+TEST(Footprints, a_box_of_odd_size_grows_and_never_shrinks) {
+    Machine machine = rex();
+    machine.left_foot = {0, 0, 3661, 1901};
+    const Sweep sweep = sweep_of(machine, FixedPose{}, Movement{});
+    expect_box("odd", box_around(sweep.feet[0].landing), {-1831, -951}, {1831, 951});
+    machine.left_foot = {0, 0, 3662, 1902};
+    const Sweep even = sweep_of(machine, FixedPose{}, Movement{});
+    expect_box("even", box_around(even.feet[0].landing), {-1831, -951}, {1831, 951});
+}
+
+TEST(Footprints, all_of_a_sweep_lies_in_its_extent_and_touches_its_four_sides) {
+    const Machine machine = rex();
+    for (const std::uint8_t code : {kForward, kBackward, kLeft, kRight, kTurnLeft}) {
+        const Sweep sweep =
+            sweep_of(machine, fixed_pose(-70, 30, 0.6, -0.8), machine.movements[code]);
+        const Extent all = extent_of(sweep);
+        Extent found{sweep.target.position, sweep.target.position};
+        const auto look = [&](const grid::FixedConvex& polygon) {
+            const Extent box = box_around(polygon);
+            found = {{std::min(found.low.x, box.low.x), std::min(found.low.y, box.low.y)},
+                     {std::max(found.high.x, box.high.x), std::max(found.high.y, box.high.y)}};
+        };
+        for (const FootSweep& foot : sweep.feet) {
+            look(foot.stance);
+            look(foot.landing);
+            look(foot.corridor);
+            look(foot.band);
+        }
+        look(sweep.body[0]);
+        expect_box("all", all, found.low, found.high);
+    }
+}
+
+/// Where a foot reaches farther than the body, the extent is that of the foot's regions.
+TEST(Footprints, the_extent_holds_feet_that_stand_far_out) {
+    Machine machine = rex();
+    machine.left_foot.center_y_tenth_mm = 20'000;
+    machine.right_foot.center_y_tenth_mm = -20'000;
+    const Sweep sweep = sweep_of(machine, FixedPose{}, machine.movements[kForward]);
+    EXPECT_EQ(extent_of(sweep).high.y, 20'000 + 950 + 1250) << "the drop band";
+    EXPECT_EQ(extent_of(sweep).low.y, -20'000 - 950 - 1250);
+    machine.movements[kForward].forward_tenth_mm = -20'000;
+    machine.limits.foot_margin_tenth_mm = 2'000;
+    const Sweep back = sweep_of(machine, FixedPose{}, machine.movements[kForward]);
+    EXPECT_EQ(extent_of(back).high.x, std::max(570 + 1830 + 2'000 + 250, 3300 + 750));
+    EXPECT_EQ(extent_of(back).high.y, 20'000 + 950 + 2'250) << "the corridor";
+}
+
+TEST(Footprints, angles_and_places_are_rounded_to_the_nearest) {
+    for (const double value : {0.3, -0.3, 0.7, -0.7, 1.0, -1.0, 0.0, 1e-7, -1e-7}) {
+        const FixedPose pose = fixed_pose(1, 2, value, -value);
+        EXPECT_EQ(pose.cos_yaw, std::llround(value * 1048576.0)) << value;
+        EXPECT_EQ(pose.sin_yaw, std::llround(-value * 1048576.0)) << value;
+        EXPECT_EQ(pose.position, (grid::FixedPoint{1, 2}));
+    }
+    // A quarter of a turn to the left, then places by hand: (x, y) becomes (-y, x).
+    const FixedPose quarter = fixed_pose(100, 200, 0.0, 1.0);
+    EXPECT_EQ(to_odom(quarter, 30, 4), (grid::FixedPoint{96, 230}));
+    // Half of a tenth goes up, whatever the sign: 0.5 * 1 and 0.5 * -1.
+    FixedPose half;
+    half.cos_yaw = FixedPose::kOne / 2;
+    EXPECT_EQ(to_odom(half, 1, 0), (grid::FixedPoint{1, 0}));
+    EXPECT_EQ(to_odom(half, -1, 0), (grid::FixedPoint{0, 0}));
+    EXPECT_EQ(to_odom(half, 3, 1), (grid::FixedPoint{2, 1}));
+    EXPECT_EQ(to_odom(half, -3, -1), (grid::FixedPoint{-1, 0}));
+}
+
+TEST(Footprints, a_turn_adds_to_the_heading) {
+    Movement turn;
+    turn.cos_turn = 0.8;
+    turn.sin_turn = 0.6;
+    turn.forward_tenth_mm = 1000;
+    turn.left_tenth_mm = 500;
+    const FixedPose target = moved(fixed_pose(10, 20, 0.6, 0.8), turn);
+    EXPECT_EQ(target.position, (grid::FixedPoint{10 + 600 - 400, 20 + 800 + 300}));
+    EXPECT_NEAR(static_cast<double>(target.cos_yaw), 0.0, 1.0);  // 0.48 - 0.48
+    EXPECT_NEAR(static_cast<double>(target.sin_yaw), 1048576.0, 1.0);
+    const FixedPose back = moved(fixed_pose(0, 0, 0.8, -0.6), turn);
+    EXPECT_NEAR(static_cast<double>(back.cos_yaw), 1048576.0, 1.0);
+    EXPECT_NEAR(static_cast<double>(back.sin_yaw), 0.0, 1.0);
+}
+
+TEST(Footprints, drift_beyond_a_centimetre_widens_by_3_4_times_as_much) {
+    const GateLimits limits = rex().limits;
+    EXPECT_EQ(drift_margin(limits, 0), 0);
+    EXPECT_EQ(drift_margin(limits, 100), 0);
+    EXPECT_EQ(drift_margin(limits, 101), 4);    // 3.4, rounded up
+    EXPECT_EQ(drift_margin(limits, 200), 341);  // 340 and one for what rounding takes
+    EXPECT_EQ(drift_margin(limits, 250), 511);
 }
 
 TEST(Findings, are_complete_only_with_every_proof) {

@@ -59,8 +59,10 @@ struct GateHealth {
 };
 
 /// What speaks against a snapshot at `now_ns`, whatever is asked of it: damage, age, a stamp of the
-/// future, gravity, pose, camera. decide() asks the same; empty = it may be used.
-[[nodiscard]] ReasonSet snapshot_faults(const GateLimits& limits,
+/// future, gravity, pose, camera: decide() asks the same. And ground that was measured where the
+/// feet stand but does not lie where the soles are (PLANE_INVALID), which only a machine that
+/// stands on the map can say. Empty = it may be used.
+[[nodiscard]] ReasonSet snapshot_faults(const Machine& machine,
                                         const grid::MapSnapshot& map,
                                         std::int64_t now_ns) noexcept;
 

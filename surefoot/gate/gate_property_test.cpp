@@ -4,34 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <new>
 #include <set>
 
+#include "surefoot/core/allocations_for_test.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/gate/gate_testing.hpp"
-
-namespace {
-std::atomic<long> allocations{0};
-}  // namespace
-
-void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 namespace surefoot::gate::testing {
 namespace {
@@ -201,9 +183,9 @@ TEST(GateProperty, decide_allocates_nothing) {
     for (int code = 0; code < 30; ++code) {
         Query query = query_at_body(static_cast<std::uint8_t>(code), *map);
         query.vouched = {true, 0, 0, 8000, 0};
-        const long before = allocations.load();
+        const std::int64_t before = heap::allocations;
         const Verdict verdict = decide(machine, query, *map, kReady, kNowNs);
-        EXPECT_EQ(allocations.load(), before) << words(verdict);
+        EXPECT_EQ(heap::allocations, before) << words(verdict);
     }
 }
 

@@ -35,6 +35,7 @@ inline Machine rex() {
     m.sole_depth_tenth_mm = 9900;
     m.left_foot = {570, 1800, 3660, 1900};
     m.right_foot = {570, -1800, 3660, 1900};
+    m.ankle_from_heel_tenth_mm = 1260;
     m.body.parts[0] = {{0, 0, 6600, 6450}, 1440, 20500};
     m.body.count = 1;
     m.body.sway_tenth_mm = 500;
@@ -70,6 +71,8 @@ inline Machine rex() {
     l.drop_band_tenth_mm = 1000;
     l.drop_evidence = 128;
     l.drift_tenth_mm = 250;
+    l.tread_share_permille = 800;
+    l.tread_overhang_tenth_mm = 730;
     l.frame_age_ns = 200 * kMs;
     l.pose_age_ns = 200 * kMs;
     l.future_tolerance_ns = 5 * kMs;

@@ -51,6 +51,71 @@ TEST(Goal, where_the_machine_stands_must_be_known) {
     blind.box(-0.7, 0.7, -0.7, 0.7, static_cast<double>(kNaN));
     const Verdict verdict = point_at(*blind.snapshot(), 1.5, -1.0);
     EXPECT_EQ(verdict.primary, Reason::disconnected) << words(verdict);
+    EXPECT_FALSE(verdict.evidence.has_worst_cell) << "it is not about the goal";
+}
+
+TEST(Goal, damage_where_the_machine_stands_is_an_error_though_the_goal_is_elsewhere) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    map->height_tenth_mm[cell_at(*map, 0.1, 0.18)] ^= 1;
+    const Verdict verdict = point_at(*map, 0.0, 2.0);
+    EXPECT_EQ(verdict.decision, Decision::error) << words(verdict);
+    EXPECT_EQ(verdict.reasons, ReasonSet(Reason::internal)) << words(verdict);
+}
+
+TEST(Goal, vouched_ground_belongs_to_where_the_machine_stands) {
+    Terrain blind;
+    blind.box(-0.9, 0.9, -0.9, 0.9, static_cast<double>(kNaN));
+    const auto map = blind.snapshot();
+    Query here = query_at_body(0, *map);
+    here.vouched = {true, 0, 0, 10'000, 0};
+    const GoalPose near{500, -300, 1.0, 0.0};
+    EXPECT_EQ(judge_goal(rex(), here, near, *map, kReady, kNowNs).decision, Decision::ok);
+    here.vouched.active = false;
+    EXPECT_EQ(judge_goal(rex(), here, near, *map, kReady, kNowNs).primary, Reason::unknown_cells);
+}
+
+TEST(Goal, is_judged_at_its_own_place_heading_and_height) {
+    Terrain room;
+    room.box(1.6, 2.6, -3.0, 3.0, 0.01);
+    const auto map = room.snapshot();
+    Query here = query_at_body(0, *map);
+    here.stance_source = StanceHeight::given;  // that of here says nothing about there
+    here.stance_height_tenth_mm = -30;
+    const GoalPose there{21'000, -4'000, 0.0, 1.0};
+    const Verdict verdict = judge_goal(rex(), here, there, *map, kReady, kNowNs);
+    EXPECT_EQ(verdict.decision, Decision::ok) << words(verdict);
+    EXPECT_EQ(verdict.evidence.stance_height_tenth_mm, 100);
+
+    // A post beside a machine that looks along +x, in the way of one that looks along -y.
+    Terrain post;
+    post.box(1.97, 2.0, -0.56, -0.53, 0.5);
+    const auto with_post = post.snapshot();
+    Machine longer = rex();
+    longer.body.parts[0].box.length_tenth_mm = 12'000;
+    const auto looking = [&](double cos_yaw, double sin_yaw) {
+        return judge_goal(longer,
+                          query_at_body(0, *with_post),
+                          {20'000, 0, cos_yaw, sin_yaw},
+                          *with_post,
+                          kReady,
+                          kNowNs)
+            .decision;
+    };
+    EXPECT_EQ(looking(1.0, 0.0), Decision::ok);
+    EXPECT_EQ(looking(0.0, -1.0), Decision::not_traversable);
+}
+
+TEST(Goal, works_where_every_movement_is_off) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    Machine still = rex();
+    still.movements = {};
+    still.limits.step[0].enabled = false;
+    const Verdict verdict =
+        judge_goal(still, query_at_body(0, *map), {0, 0, 1.0, 0.0}, *map, kReady, kNowNs);
+    EXPECT_EQ(verdict.decision, Decision::ok) << words(verdict);
+    EXPECT_EQ(verdict.valid_until_ns, verdict.decided_ns);
 }
 
 TEST(Goal, a_gate_that_cannot_judge_says_so) {

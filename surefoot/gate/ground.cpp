@@ -24,6 +24,11 @@ Ground::Ground(const grid::MapSnapshot& map, const Query& query) noexcept
                 dx * dx + dy * dy <= radius * radius;
 }
 
+std::span<const grid::SnapshotEdge> Ground::edges() const noexcept {
+    const auto count = std::clamp(map_.edge_count, 0, grid::MapSnapshot::kMaxEdges);
+    return {map_.edges.data(), static_cast<std::size_t>(count)};
+}
+
 bool Ground::is_vouched(std::int64_t ix, std::int64_t iy) const noexcept {
     if (!vouching_) return false;
     const std::int64_t x = grid_.origin_x + ix * grid_.side - vouched_.center_x_tenth_mm;
@@ -59,6 +64,8 @@ GroundCell Ground::cell(std::int64_t ix, std::int64_t iy) const noexcept {
 
 Extent Ground::zone_of(const Sweep& sweep) const noexcept {
     Extent zone = extent_of(sweep);
+    zone = {{zone.low.x - grid_.side, zone.low.y - grid_.side},
+            {zone.high.x + grid_.side, zone.high.y + grid_.side}};
     if (vouching_) {
         const std::int64_t reach = std::int64_t{vouched_.radius_tenth_mm} + grid_.side;
         const std::int64_t x = vouched_.center_x_tenth_mm;

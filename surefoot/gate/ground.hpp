@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "surefoot/gate/footprints.hpp"
 #include "surefoot/gate/gate.hpp"
@@ -37,14 +38,27 @@ class Ground {
     Ground(const grid::MapSnapshot& map, const Query& query) noexcept;
 
     [[nodiscard]] const grid::FixedGrid& grid() const noexcept { return grid_; }
+    [[nodiscard]] std::span<const grid::SnapshotEdge> edges() const noexcept;
     [[nodiscard]] GroundCell cell(std::int64_t ix, std::int64_t iy) const noexcept;
+    /// The eight cells around one are known, and each passes `test(cell)`.
+    template <typename Test>
+    [[nodiscard]] bool all_around(std::int64_t ix, std::int64_t iy, Test&& test) const noexcept {
+        for (std::int64_t y = iy - 1; y <= iy + 1; ++y) {
+            for (std::int64_t x = ix - 1; x <= ix + 1; ++x) {
+                if (x == ix && y == iy) continue;
+                const GroundCell beside = cell(x, y);
+                if (!beside.known() || !test(beside)) return false;
+            }
+        }
+        return true;
+    }
     /// Twice the centre of a cell relative to twice `origin`: exact for every cell size.
     [[nodiscard]] grid::FixedPoint doubled_center(std::int64_t ix,
                                                   std::int64_t iy,
                                                   grid::FixedPoint origin) const noexcept;
     [[nodiscard]] bool is_vouching() const noexcept { return vouching_; }
-    /// What a verdict about `sweep` may read: the sweep, and the vouched area with the ring of
-    /// cells beside it (`ReachableSurfaces::add_beside_vouched`).
+    /// What a verdict about `sweep` may read: the sweep and the vouched area, with a ring of cells
+    /// beside both (`all_around`, `ReachableSurfaces::add_beside_vouched`).
     [[nodiscard]] Extent zone_of(const Sweep& sweep) const noexcept;
     /// Nobody changed a cell of the rows of a zone since the map was sealed. Precondition:
     /// grid::is_sealed().

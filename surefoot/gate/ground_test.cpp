@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "surefoot/core/rng.hpp"
 #include "surefoot/gate/gate_testing.hpp"
@@ -61,6 +62,8 @@ TEST(Ground, the_word_is_void_once_base_link_is_outside_of_the_circle) {
     };
     const Case cases[] = {{0.5, 0.0, true},
                           {0.5001, 0.0, false},
+                          {0.0, 0.5, true},
+                          {0.0, -0.5, true},
                           {0.0, -0.5001, false},
                           {0.3, 0.4, true},
                           {0.4, 0.4, false},
@@ -100,6 +103,140 @@ TEST(ReachableSurfaces, hold_exactly_what_was_added_and_never_the_label_none) {
         EXPECT_EQ(surfaces.contains(static_cast<std::uint16_t>(label)),
                   label == 1 || label == 64 || label == 65535)
             << label;
+}
+
+TEST(Ground, a_zone_is_the_sweep_and_the_vouched_area_with_a_cell_beside_both) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    const auto zone_with = [&](const Query& query) {
+        const Sweep sweep = sweep_of(rex(), FixedPose{}, rex().movements[kForward]);
+        return Ground(*map, query).zone_of(sweep);
+    };
+    const Query plain = make_query(kForward, 0.0, 0.0, 1.0, 0.0);
+    const Extent without = zone_with(plain);
+    const Extent sweep = extent_of(sweep_of(rex(), FixedPose{}, rex().movements[kForward]));
+    EXPECT_EQ(without.low, (grid::FixedPoint{sweep.low.x - 250, sweep.low.y - 250}));
+    EXPECT_EQ(without.high, (grid::FixedPoint{sweep.high.x + 250, sweep.high.y + 250}));
+    const Extent with = zone_with(vouching(0.0, 0.0, 1.0, 0.1, -0.2));
+    EXPECT_EQ(with.low, (grid::FixedPoint{1000 - 10'250, -2000 - 10'250}));
+    EXPECT_EQ(with.high, (grid::FixedPoint{1000 + 10'250, -2000 + 10'250}));
+    const Extent void_word = zone_with(vouching(2.0, 0.0, 1.0, 0.0, 0.0));
+    EXPECT_EQ(void_word.low, without.low);
+    EXPECT_EQ(void_word.high, without.high);
+}
+
+TEST(Ground, is_intact_where_nobody_changed_a_row_of_the_zone) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0));
+    const Extent low{{-20'000, -25'000}, {20'000, -24'000}};
+    const Extent high{{-20'000, 24'000}, {20'000, 25'000}};
+    EXPECT_TRUE(ground.is_intact(low));
+    map->height_tenth_mm[cell_at(*map, 2.5, 2.45)] ^= 1;  // beside the zone, but in its rows
+    EXPECT_TRUE(ground.is_intact(low));
+    EXPECT_FALSE(ground.is_intact(high));
+    EXPECT_FALSE(ground.is_intact({low.low, high.high}));
+    EXPECT_FALSE(ground.is_intact({{0, 0}, {0, 24'500}}));
+    map->height_tenth_mm[cell_at(*map, 2.5, 2.45)] ^= 1;
+    map->height_tenth_mm[cell_at(*map, 2.5, -2.45)] ^= 1;
+    EXPECT_TRUE(ground.is_intact(high));
+    EXPECT_FALSE(ground.is_intact(low));
+}
+
+TEST(Ground, all_around_asks_the_eight_and_not_the_one) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0));
+    const auto is_level = [](const GroundCell& cell) { return cell.height_tenth_mm == 0; };
+    EXPECT_TRUE(ground.all_around(100, 100, is_level));
+    map->height_tenth_mm[100 * 240 + 100] = 1;
+    EXPECT_TRUE(ground.all_around(100, 100, is_level));
+    map->source[100 * 240 + 100] = grid::EvidenceSource::unknown;
+    EXPECT_TRUE(ground.all_around(100, 100, is_level));
+    for (const auto& [ix, iy] : {std::pair{99, 99},
+                                 {100, 99},
+                                 {101, 99},
+                                 {99, 100},
+                                 {101, 100},
+                                 {99, 101},
+                                 {100, 101},
+                                 {101, 101}}) {
+        const auto at = static_cast<std::size_t>(iy * 240 + ix);
+        map->height_tenth_mm[at] = 1;
+        EXPECT_FALSE(ground.all_around(100, 100, is_level)) << ix << " " << iy;
+        map->height_tenth_mm[at] = 0;
+        map->source[at] = grid::EvidenceSource::unknown;
+        EXPECT_FALSE(ground.all_around(100, 100, is_level)) << ix << " " << iy;
+        map->source[at] = grid::EvidenceSource::measured;
+    }
+    int asked = 0;
+    EXPECT_TRUE(ground.all_around(100, 100, [&asked](const GroundCell&) { return ++asked > 0; }));
+    EXPECT_EQ(asked, 8);
+    EXPECT_FALSE(ground.all_around(0, 100, is_level)) << "beyond the map nothing is known";
+}
+
+TEST(Ground, a_cell_is_what_the_layers_say_of_it) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    const std::size_t at = 7 * 240 + 5;
+    map->height_tenth_mm[at] = -11;
+    map->sigma_tenth_mm[at] = 22;
+    map->drift_tenth_mm[at] = 33;
+    map->clearance_tenth_mm[at] = 44;
+    map->component[at] = 55;
+    map->drop_evidence[at] = 66;
+    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0));
+    const GroundCell cell = ground.cell(5, 7);
+    EXPECT_EQ(cell.knowledge, Knowledge::measured);
+    EXPECT_EQ(cell.height_tenth_mm, -11);
+    EXPECT_EQ(cell.sigma_tenth_mm, 22);
+    EXPECT_EQ(cell.drift_tenth_mm, 33);
+    EXPECT_EQ(cell.clearance_tenth_mm, 44);
+    EXPECT_EQ(cell.component, 55);
+    EXPECT_EQ(cell.drop_evidence, 66);
+    EXPECT_EQ(ground.doubled_center(5, 7, {100, -200}),
+              (grid::FixedPoint{2 * (-30'000 - 100) + 11 * 250, 2 * (-30'000 + 200) + 15 * 250}));
+    map->source[at] = grid::EvidenceSource::unknown;
+    const GroundCell unknown = ground.cell(5, 7);
+    EXPECT_EQ(unknown.drop_evidence, 66) << "an edge needs no measurement";
+    EXPECT_EQ(unknown.component, grid::MapSnapshot::kNoComponent);
+    EXPECT_EQ(unknown.height_tenth_mm, 0);
+    EXPECT_EQ(unknown.clearance_tenth_mm, grid::MapSnapshot::kNoCeiling);
+}
+
+/// The surfaces beside a vouched area, held against plain distances.
+TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
+    Terrain floor;
+    const auto map = floor.snapshot();
+    for (std::size_t i = 0; i < 240UL * 240UL; ++i)
+        map->component[i] = static_cast<std::uint16_t>(i % 60'000 + 1);  // each cell its own
+    const Query query = vouching(0.31, -0.42, 0.5, 0.3, -0.4);
+    std::size_t lower = cell_at(*map, 0.3, -0.3);
+    map->height_tenth_mm.fill(-123);
+    map->height_tenth_mm[lower] = -123 - 401;
+    map->height_tenth_mm[lower + 1] = -123 - 400;
+    map->height_tenth_mm[lower + 2] = -123 + 400;
+    map->height_tenth_mm[lower + 3] = -123 + 401;
+    map->source[lower + 4] = grid::EvidenceSource::unknown;
+    ReachableSurfaces surfaces;
+    surfaces.add_beside_vouched(Ground(*map, query), 400);
+    for (std::size_t i = 0; i < 240UL * 240UL; ++i) {
+        const double x = -3.0 + 0.025 * (static_cast<double>(i % 240) + 0.5) - 0.3;
+        const double y = -3.0 + 0.025 * (static_cast<double>(i / 240) + 0.5) + 0.4;
+        const bool near = x * x + y * y <= 0.525 * 0.525 + 1e-9;
+        const bool excluded = i == lower || i == lower + 3 || i == lower + 4;
+        ASSERT_EQ(surfaces.contains(map->component[i]), near && !excluded) << i;
+    }
+    // The middle of a cell lies as far away as is reached: on all four sides.
+    const Query centred = vouching(0.3125, -0.4125, 0.5, 0.3125, -0.4125);
+    ReachableSurfaces rim;
+    rim.add_beside_vouched(Ground(*map, centred), 400);
+    for (const auto& [x, y] : {std::pair{0.525, 0.0}, {-0.525, 0.0}, {0.0, 0.525}, {0.0, -0.525}})
+        EXPECT_TRUE(rim.contains(map->component[cell_at(*map, 0.3125 + x, -0.4125 + y)]))
+            << x << " " << y;
+    ReachableSurfaces none;
+    none.add_beside_vouched(Ground(*map, make_query(kForward, 0.3, -0.4, 1.0, 0.0)), 400);
+    EXPECT_FALSE(none.contains(map->component[lower + 1]));
 }
 
 TEST(ReachableSurfaces, of_a_vouched_area_are_those_that_it_touches_at_its_height) {

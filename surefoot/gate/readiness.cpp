@@ -35,7 +35,7 @@ const char* ReadinessLimits::problem() const noexcept {
 }
 
 Readiness::Readiness(const Machine& machine, const ReadinessLimits& limits) noexcept
-    : gate_limits_(machine.limits),
+    : machine_(machine),
       limits_(limits),
       config_valid_(machine.problem() == nullptr && limits.problem() == nullptr) {
     present_.add(Reason::not_ready);
@@ -75,7 +75,7 @@ void Readiness::self_tested(bool passed, std::int64_t now_ns) noexcept {
 
 void Readiness::observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept {
     if (!time_runs(now_ns)) return;
-    present_ = snapshot_faults(gate_limits_, map, now_ns);
+    present_ = snapshot_faults(machine_, map, now_ns);
     for (int i = 0; i < kReasonCount; ++i) {
         const auto reason = static_cast<Reason>(i);
         if (present_.contains(reason) && is_latched(reason)) latch(reason, now_ns);
@@ -106,6 +106,7 @@ void Readiness::check_succession(const grid::MapSnapshot& map, std::int64_t now_
              map.pose_time_ns,
              map.body_x_tenth_mm,
              map.body_y_tenth_mm,
+             map.body_z_tenth_mm,
              map.body_cos_yaw,
              map.body_sin_yaw};
 }
@@ -116,7 +117,8 @@ bool Readiness::has_jumped(const grid::MapSnapshot& map) const noexcept {
     const double reach_m = limits_.fastest_m_s * time_s + limits_.jump_m;
     const double dx_m = static_cast<double>(map.body_x_tenth_mm - last_.x_tenth_mm) / kTenthMmPerM;
     const double dy_m = static_cast<double>(map.body_y_tenth_mm - last_.y_tenth_mm) / kTenthMmPerM;
-    if (!(dx_m * dx_m + dy_m * dy_m <= reach_m * reach_m)) return true;
+    const double dz_m = static_cast<double>(map.body_z_tenth_mm - last_.z_tenth_mm) / kTenthMmPerM;
+    if (!(dx_m * dx_m + dy_m * dy_m + dz_m * dz_m <= reach_m * reach_m)) return true;
     const double turn_rad = limits_.fastest_rad_s * time_s + limits_.jump_rad;
     constexpr double kQuarter_rad = 1.5;  // beyond it nothing is excluded
     if (turn_rad >= kQuarter_rad) return false;
@@ -137,9 +139,9 @@ ReasonSet Readiness::stale_stamps(std::int64_t now_ns) const noexcept {
     const auto is_old = [now_ns](std::int64_t stamp_ns, std::int64_t limit_ns) {
         return stamp_ns <= now_ns && gap(now_ns, stamp_ns) > static_cast<std::uint64_t>(limit_ns);
     };
-    if (!last_.any || is_old(last_.frame_time_ns, gate_limits_.frame_age_ns))
+    if (!last_.any || is_old(last_.frame_time_ns, machine_.limits.frame_age_ns))
         stale.add(Reason::frame_stale);
-    if (!last_.any || is_old(last_.pose_time_ns, gate_limits_.pose_age_ns))
+    if (!last_.any || is_old(last_.pose_time_ns, machine_.limits.pose_age_ns))
         stale.add(Reason::pose_stale);
     return stale;
 }

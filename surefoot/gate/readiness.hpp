@@ -77,6 +77,7 @@ class Readiness {
         std::int64_t pose_time_ns = 0;
         std::int64_t x_tenth_mm = 0;
         std::int64_t y_tenth_mm = 0;
+        std::int64_t z_tenth_mm = 0;
         double cos_yaw = 1.0;
         double sin_yaw = 0.0;
     };
@@ -89,7 +90,7 @@ class Readiness {
     void judge(std::int64_t now_ns) noexcept;
     [[nodiscard]] bool time_runs(std::int64_t now_ns) noexcept;
 
-    GateLimits gate_limits_;
+    Machine machine_;
     ReadinessLimits limits_;
     GateState state_ = GateState::init;
     ReasonSet latched_;  ///< of FAULT

@@ -45,6 +45,8 @@ const char* to_string(Reason reason) noexcept {
         case Reason::disconnected: return "DISCONNECTED";
         case Reason::memory_uncertain: return "MEMORY_UNCERTAIN";
         case Reason::not_resolvable: return "NOT_RESOLVABLE";
+        case Reason::support_area: return "SUPPORT_AREA";
+        case Reason::edge_margin: return "EDGE_MARGIN";
         case Reason::none: return "NONE";
     }
     return "INTERNAL";  // a value outside the enum came over a wire: it is no permission

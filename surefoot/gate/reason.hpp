@@ -48,7 +48,9 @@ enum class Reason : std::uint8_t {
     disconnected,
     memory_uncertain,
     not_resolvable,
-    none,  ///< only an OK has no reason
+    support_area,  ///< too little of a foot on its tread
+    edge_margin,   ///< enough of it only if the edge lies just where it seems to
+    none,          ///< only an OK has no reason
 };
 inline constexpr int kReasonCount = static_cast<int>(Reason::none);
 

@@ -35,9 +35,22 @@ void deny(Findings& findings,
     findings.deny(reason, finding_at(place.ix, place.iy, place.foot, value, limit));
 }
 
+/// Not less sure than `cell_sigma`; a single cell among eight that are known and sure may be less
+/// sure by a factor of two: it has just refused measurements, and nothing beside it has.
+bool is_sure(const Scene& scene, const Place& place) noexcept {
+    constexpr std::int64_t kAloneFactor = 2;
+    const std::int64_t limit = scene.machine.limits.cell_sigma_tenth_mm;
+    if (place.cell.sigma_tenth_mm <= limit) return true;
+    return place.cell.sigma_tenth_mm <= kAloneFactor * limit &&
+           scene.ground.all_around(place.ix, place.iy, [limit](const GroundCell& beside) {
+               return beside.sigma_tenth_mm <= limit;
+           });
+}
+
 /// Knowledge, sureness and drift: what every region asks of every cell. False when the cell says
 /// nothing about the height of the ground.
-bool check_knowledge(const Place& place, const GateLimits& limits, Findings& findings) noexcept {
+bool check_knowledge(const Scene& scene, const Place& place, Findings& findings) noexcept {
+    const GateLimits& limits = scene.machine.limits;
     const GroundCell& cell = place.cell;
     count(cell, findings.evidence);
     if (cell.knowledge == Knowledge::outside) {
@@ -48,7 +61,7 @@ bool check_knowledge(const Place& place, const GateLimits& limits, Findings& fin
         deny(findings, Reason::unknown_cells, place, 0, 0);
         return false;
     }
-    if (cell.sigma_tenth_mm > limits.cell_sigma_tenth_mm)
+    if (!is_sure(scene, place))
         deny(findings,
              Reason::not_resolvable,
              place,
@@ -59,37 +72,62 @@ bool check_knowledge(const Place& place, const GateLimits& limits, Findings& fin
     return true;
 }
 
-/// Wanted: `value`, a height or depth that the ground of the place is measured at, below `limit`
-/// by `sigma_factor` sigma. What is measured beyond the limit is refused for `reason`; what is only
-/// not sure to be below is not resolvable.
-void check_below(const Place& place,
-                 std::int64_t value,
+/// Height over the stance.
+std::int64_t rise_of(const Scene& scene, const GroundCell& cell) noexcept {
+    return cell.height_tenth_mm - scene.stance_tenth_mm;
+}
+
+/// Which way from the height of the stance.
+enum class Side : std::int8_t { up = 1, down = -1 };
+
+/// The ground of a cell lies below `limit` on this side of the stance by `factor` sigma.
+bool is_below(const Scene& scene,
+              const GroundCell& cell,
+              Side side,
+              std::int64_t limit,
+              double factor) noexcept {
+    const std::int64_t slack = limit - static_cast<std::int64_t>(side) * rise_of(scene, cell);
+    return factor * static_cast<double>(cell.sigma_tenth_mm) <= static_cast<double>(slack);
+}
+
+/// Wanted: the ground of the place below `limit` on this side of the stance by `sigma_factor`
+/// sigma. One cell alone, among eight that are, need only be so by one sigma: it has just refused
+/// measurements, and what stands or gapes on the ground is seldom smaller than a cell. What is
+/// measured beyond the limit is refused for `reason`; what is only not sure to be below is not
+/// resolvable.
+void check_below(const Scene& scene,
+                 const Place& place,
+                 Side side,
                  std::int64_t limit,
                  Reason reason,
-                 const GateLimits& limits,
                  Findings& findings) noexcept {
+    const std::int64_t value = static_cast<std::int64_t>(side) * rise_of(scene, place.cell);
     if (value > limit) {
         deny(findings, reason, place, value, limit);
         return;
     }
-    const double slack = static_cast<double>(limit - value);
-    const std::int64_t sigma = place.cell.sigma_tenth_mm;
-    if (!(limits.sigma_factor * static_cast<double>(sigma) <= slack))
-        deny(findings,
-             Reason::not_resolvable,
-             place,
-             sigma,
-             static_cast<std::int64_t>(slack / limits.sigma_factor));
+    const double factor = scene.machine.limits.sigma_factor;
+    if (is_below(scene, place.cell, side, limit, factor)) return;
+    if (is_below(scene, place.cell, side, limit, 1.0) &&
+        scene.ground.all_around(place.ix, place.iy, [&](const GroundCell& beside) {
+            return is_below(scene, beside, side, limit, factor);
+        }))
+        return;
+    deny(findings,
+         Reason::not_resolvable,
+         place,
+         place.cell.sigma_tenth_mm,
+         static_cast<std::int64_t>(static_cast<double>(limit - value) / factor));
 }
 
 /// Wanted: nothing hangs lower over the stance than `height`.
-void check_overhead(const Place& place,
-                    std::int64_t rise,
+void check_overhead(const Scene& scene,
+                    const Place& place,
                     std::int64_t height,
                     Reason reason,
                     Findings& findings) noexcept {
     if (place.cell.clearance_tenth_mm == grid::MapSnapshot::kNoCeiling) return;
-    const std::int64_t ceiling = rise + place.cell.clearance_tenth_mm;
+    const std::int64_t ceiling = rise_of(scene, place.cell) + place.cell.clearance_tenth_mm;
     if (!(ceiling < height)) return;
     Finding finding = finding_at(place.ix, place.iy, place.foot, ceiling, height);
     finding.severity = height - ceiling;
@@ -97,9 +135,9 @@ void check_overhead(const Place& place,
     findings.deny(reason, finding);
 }
 
-/// Asks one cell of a region; `test(place, rise)` sees it with its height over the stance if it is
-/// known, `always(place)` if it is inside the map. False when it is not: one cell beyond the map
-/// ends a region, the rest of it out there tells nothing new.
+/// Asks one cell of a region; `test(place)` sees it if it is known, `always(place)` if it is inside
+/// the map. False when it is not: one cell beyond the map ends a region, the rest of it out there
+/// tells nothing new.
 template <typename Test, typename Always>
 bool check_cell(const Scene& scene,
                 std::int64_t ix,
@@ -111,8 +149,7 @@ bool check_cell(const Scene& scene,
     const Place place{scene.ground.cell(ix, iy), ix, iy, foot};
     const bool inside = place.cell.knowledge != Knowledge::outside;
     if (inside) always(place);
-    if (check_knowledge(place, scene.machine.limits, findings))
-        test(place, place.cell.height_tenth_mm - scene.stance_tenth_mm);
+    if (check_knowledge(scene, place, findings)) test(place);
     return inside;
 }
 
@@ -130,14 +167,38 @@ void check_region(const Scene& scene,
         });
 }
 
-/// Nothing stands as high as a part of the body begins, nor hangs lower than it ends.
-void check_part(const BodyPart& part,
-                const Place& place,
-                std::int64_t rise,
-                Findings& findings) noexcept {
-    if (rise > part.low_tenth_mm)
-        deny(findings, Reason::body_clearance, place, rise, part.low_tenth_mm);
-    check_overhead(place, rise, part.high_tenth_mm, Reason::body_clearance, findings);
+/// The room that the body takes over some neighbouring cells of a row: from the lowest of its parts
+/// there to the highest, whatever is free between two of them.
+struct BodyOver {
+    std::int64_t low_tenth_mm = INT64_MAX;
+    std::int64_t high_tenth_mm = INT64_MIN;
+    std::int64_t last = INT64_MAX;  ///< last cell of the row with the same parts above it
+
+    [[nodiscard]] bool any() const noexcept { return high_tenth_mm > low_tenth_mm; }
+};
+
+BodyOver body_over(std::span<const BodyPart> parts,
+                   std::span<const grid::FixedRun> runs,
+                   std::int64_t ix) noexcept {
+    BodyOver over;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (runs[i].last < runs[i].first) continue;
+        if (ix < runs[i].first) over.last = std::min(over.last, runs[i].first - 1);
+        if (!runs[i].contains(ix)) continue;
+        over.last = std::min(over.last, runs[i].last);
+        over.low_tenth_mm = std::min<std::int64_t>(over.low_tenth_mm, parts[i].low_tenth_mm);
+        over.high_tenth_mm = std::max<std::int64_t>(over.high_tenth_mm, parts[i].high_tenth_mm);
+    }
+    return over;
+}
+
+/// The highest thing in the way of a swinging foot: on stairs the nosing that it steps over.
+std::int64_t swing_height(const Scene& scene) noexcept {
+    const GateLimits& limits = scene.machine.limits;
+    const bool stairs = scene.movement.movement_class == MovementClass::stair;
+    const auto movement_class = static_cast<std::size_t>(scene.movement.movement_class);
+    return std::int64_t{limits.swing_clearance_tenth_mm} +
+           (stairs ? limits.step[movement_class].up_tenth_mm : 0);
 }
 
 constexpr auto kNothing = [](const Place&) noexcept {};
@@ -180,7 +241,7 @@ ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {
         grid::for_each_overlapped_cell(
             foot.stance, scene.ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                 const GroundCell cell = scene.ground.cell(ix, iy);
-                const std::int64_t rise = cell.height_tenth_mm - scene.stance_tenth_mm;
+                const std::int64_t rise = rise_of(scene, cell);
                 if (cell.knowledge == Knowledge::measured && rise >= -step && rise <= step)
                     reachable.add(cell.component);
                 return true;
@@ -193,26 +254,20 @@ ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {
 void check_stance(const Scene& scene, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
     for (const FootSweep& foot : scene.sweep.feet) {
-        const auto test = [&](const Place& place, std::int64_t rise) {
-            check_below(place, -rise, limits.drop_tenth_mm, Reason::drop_off, limits, findings);
+        const auto test = [&](const Place& place) {
+            check_below(scene, place, Side::down, limits.drop_tenth_mm, Reason::drop_off, findings);
         };
         check_region(scene, foot.stance, foot.foot, findings, test, kNothing);
     }
 }
 
 void check_corridors(const Scene& scene, Findings& findings) noexcept {
-    const GateLimits& limits = scene.machine.limits;
-    const std::int64_t lifted =
-        std::int64_t{scene.machine.body.lower_edge_tenth_mm()} + limits.swing_clearance_tenth_mm;
+    const std::int64_t height = swing_height(scene);
+    const std::int64_t lifted = scene.machine.body.lower_edge_tenth_mm() + height;
     for (const FootSweep& foot : scene.sweep.feet) {
-        const auto test = [&](const Place& place, std::int64_t rise) {
-            check_below(place,
-                        rise,
-                        limits.swing_clearance_tenth_mm,
-                        Reason::corridor_blocked,
-                        limits,
-                        findings);
-            check_overhead(place, rise, lifted, Reason::corridor_blocked, findings);
+        const auto test = [&](const Place& place) {
+            check_below(scene, place, Side::up, height, Reason::corridor_blocked, findings);
+            check_overhead(scene, place, lifted, Reason::corridor_blocked, findings);
         };
         check_region(scene, foot.corridor, foot.foot, findings, test, kNothing);
     }
@@ -227,7 +282,7 @@ void check_body(const Scene& scene, Findings& findings) noexcept {
         rows = {std::min(rows.first, areas[i].rows().first),
                 std::max(rows.last, areas[i].rows().last)};
     }
-    // The parts lie over each other: every cell is asked once, and then for each part above it.
+    // The parts lie over each other: every cell is asked once, for all that are above it.
     for (std::int64_t iy = rows.first; iy <= rows.last; ++iy) {
         std::array<grid::FixedRun, Body::kMaxParts> runs;
         grid::FixedRun all{INT64_MAX, INT64_MIN};
@@ -236,21 +291,28 @@ void check_body(const Scene& scene, Findings& findings) noexcept {
             if (runs[i].last < runs[i].first) continue;
             all = {std::min(all.first, runs[i].first), std::max(all.last, runs[i].last)};
         }
-        const auto over = [&](std::int64_t ix) {
-            std::uint32_t mask = 0;
-            for (std::size_t i = 0; i < parts.size(); ++i)
-                mask |= (runs[i].contains(ix) ? 1U : 0U) << i;
-            return mask;
-        };
-        for (std::int64_t ix = all.first; ix <= all.last; ++ix) {
-            const std::uint32_t mask = over(ix);
-            if (mask == 0) continue;
-            const auto test = [&](const Place& place, std::int64_t rise) {
-                for (std::size_t i = 0; i < parts.size(); ++i) {
-                    if ((mask >> i & 1U) != 0) check_part(parts[i], place, rise, findings);
-                }
+        for (std::int64_t ix = all.first; ix <= all.last;) {
+            const BodyOver over = body_over(parts, runs, ix);
+            if (!over.any()) {
+                ix = over.last + 1;
+                continue;
+            }
+            const auto test = [&](const Place& place) {
+                check_below(scene,
+                            place,
+                            Side::up,
+                            over.low_tenth_mm + scene.lift_tenth_mm,
+                            Reason::body_clearance,
+                            findings);
+                check_overhead(scene,
+                               place,
+                               over.high_tenth_mm + scene.lift_tenth_mm,
+                               Reason::body_clearance,
+                               findings);
             };
-            if (!check_cell(scene, ix, iy, Foot::none, findings, test, kNothing)) return;
+            for (; ix <= over.last; ++ix) {
+                if (!check_cell(scene, ix, iy, Foot::none, findings, test, kNothing)) return;
+            }
         }
     }
 }
@@ -258,15 +320,14 @@ void check_body(const Scene& scene, Findings& findings) noexcept {
 void check_bands(const Scene& scene, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
     for (const FootSweep& foot : scene.sweep.feet) {
-        const auto test = [&](const Place& place, std::int64_t rise) {
-            check_below(place, -rise, limits.drop_tenth_mm, Reason::drop_off, limits, findings);
+        const auto test = [&](const Place& place) {
+            check_below(scene, place, Side::down, limits.drop_tenth_mm, Reason::drop_off, findings);
         };
         // A drop below a table top beside the foot is no drop for a foot on the floor: evidence on
         // a cell that was measured higher than a foot may stand belongs to somebody up there.
         const auto evidence = [&](const Place& place) {
             const bool above =
-                place.cell.known() && place.cell.height_tenth_mm - scene.stance_tenth_mm >
-                                          limits.swing_clearance_tenth_mm;
+                place.cell.known() && rise_of(scene, place.cell) > limits.swing_clearance_tenth_mm;
             if (place.cell.drop_evidence >= limits.drop_evidence && !above)
                 deny(findings, Reason::drop_off, place, 0, limits.drop_tenth_mm);
         };

@@ -18,6 +18,7 @@ struct Scene {
     const Ground& ground;
     const Sweep& sweep;
     std::int64_t stance_tenth_mm = 0;  ///< odom z of the ground under the present feet
+    std::int64_t lift_tenth_mm = 0;    ///< how much higher the body stands at the target
 };
 
 /// A finding at a cell.
@@ -39,7 +40,9 @@ struct Scene {
 
 /// The four regions of safety.md 7 (4). In each every cell must be inside the map, known (or
 /// vouched), surer than `cell_sigma` and not drifted more than `drift`. Where a limit counts in
-/// millimetres, the height must keep it by `sigma_factor` sigma, else NOT_RESOLVABLE:
+/// millimetres, the height must keep it by `sigma_factor` sigma, else NOT_RESOLVABLE. A single cell
+/// may be less sure, never higher or lower, when each of the eight around it passes: it has just
+/// refused a wrong match, and its neighbours know.
 /// - under the present feet none is a drop;
 void check_stance(const Scene& scene, Findings& findings) noexcept;
 /// - in the way of a foot nothing stands higher over the stance than `swing_clearance`, nor hangs

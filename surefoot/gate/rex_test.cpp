@@ -39,6 +39,12 @@ TEST(Rex, is_a_valid_machine_and_each_broken_number_is_a_problem) {
     expect_problem([](Machine& m) { m.limits.drop_evidence = 0; }, "evidence off");
     expect_problem([](Machine& m) { m.limits.drop_band_tenth_mm = 0; }, "band off");
     expect_problem([](Machine& m) { m.limits.patch_sigma_tenth_mm = 0; }, "no patch sigma");
+    expect_problem([](Machine& m) { m.limits.tread_share_permille = 400; },
+                   "less than half a foot");
+    expect_problem([](Machine& m) { m.limits.tread_share_permille = 1100; }, "more than a foot");
+    expect_problem([](Machine& m) { m.limits.tread_overhang_tenth_mm = 1100; }, "long overhang");
+    expect_problem([](Machine& m) { m.ankle_from_heel_tenth_mm = -1; }, "ankle behind the heel");
+    expect_problem([](Machine& m) { m.ankle_from_heel_tenth_mm = 3700; }, "ankle before the toes");
 }
 
 }  // namespace surefoot::gate::testing

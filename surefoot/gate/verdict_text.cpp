@@ -97,6 +97,12 @@ std::string terrain_text(const Verdict& verdict, const Query& query, const Machi
             return "ground seen too far back to be sure where it is" + where + ": drift " + value +
                    limit(e);
         case Reason::not_resolvable: return "ground not seen well enough" + where + limit(e);
+        case Reason::support_area:
+            return "only " + value + " of the foot on its tread" + where + ", wanted " +
+                   length(e.limit_tenth_mm);
+        case Reason::edge_margin:
+            return "only " + value + " of the foot surely on its tread" + where + ", wanted " +
+                   length(e.limit_tenth_mm);
         default: return to_string(verdict.primary);
     }
 }
@@ -116,7 +122,7 @@ const char* error_text(Reason reason) {
         case Reason::mount_moved: return "the camera has moved on its mount";
         case Reason::pose_jump: return "the position jumped";
         case Reason::pose_lost: return "the position is lost";
-        case Reason::plane_invalid: return "the direction of gravity is not measured";
+        case Reason::plane_invalid: return "it is not known how the machine stands on the ground";
         case Reason::blind: return "the camera sees nothing";
         case Reason::exposure: return "the image is too bright or too dark";
         case Reason::frame_corrupt: return "the camera image is damaged";

@@ -61,6 +61,56 @@ TEST(Vouching, is_void_for_good_once_the_machine_has_left) {
     EXPECT_FALSE(diagonal.area().active);
 }
 
+TEST(Vouching, holds_up_to_the_rim_on_every_side) {
+    const auto map = blind_zone();
+    const auto here = std::make_unique<grid::MapSnapshot>(*map);
+    struct Case {
+        std::int64_t x, y;
+        bool holds;
+    };
+    // (6'000, 8'000) lies on the rim of 10'000.
+    const Case cases[] = {{10'000, 0, true},
+                          {10'001, 0, false},
+                          {-10'000, 0, true},
+                          {-10'001, 0, false},
+                          {0, 10'000, true},
+                          {0, 10'001, false},
+                          {0, -10'000, true},
+                          {0, -10'001, false},
+                          {6'000, -8'000, true},
+                          {6'001, 8'000, false},
+                          {-6'000, 8'001, false},
+                          {std::int64_t{1} << 32, 0, false},
+                          {0, std::int64_t{1} << 32, false}};
+    for (const Case& c : cases) {
+        Vouching vouching;
+        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+        here->body_x_tenth_mm = c.x;
+        here->body_y_tenth_mm = c.y;
+        vouching.observe(*here);
+        EXPECT_EQ(vouching.area().active, c.holds) << c.x << " " << c.y;
+    }
+}
+
+TEST(Vouching, the_area_lies_around_the_machine_wherever_that_is) {
+    Terrain floor;
+    floor.input.T_odom_body.translation_m = {0.5, -0.25, 1.19};
+    const auto map = floor.snapshot();
+    Vouching vouching;
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 1));
+    EXPECT_TRUE(vouching.area().active);
+    EXPECT_EQ(vouching.area().center_x_tenth_mm, 5'000);
+    EXPECT_EQ(vouching.area().center_y_tenth_mm, -2'500);
+    EXPECT_EQ(vouching.area().radius_tenth_mm, 1);
+    EXPECT_EQ(vouching.area().height_tenth_mm, 2'000);
+    vouching.observe(*map);
+    EXPECT_TRUE(vouching.area().active);
+    const auto away = std::make_unique<grid::MapSnapshot>(*map);
+    away->body_y_tenth_mm = 2'500;  // as far from the origin of odom, but not here
+    vouching.observe(*away);
+    EXPECT_FALSE(vouching.area().active);
+}
+
 TEST(Vouching, nobody_can_vouch_for_more_than_the_machine_file_allows) {
     const auto map = blind_zone();
     Vouching vouching;
