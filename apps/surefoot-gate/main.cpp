@@ -2,10 +2,14 @@
 // The step gate as a process: newest map through shared memory, questions over a WebSocket, every
 // verdict into the audit log. One thread decides; the log writes on its own.
 #include <fmt/format.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -19,6 +23,7 @@
 #include "server/wire/audit_log.hpp"
 #include "server/wire/gatekeeper.hpp"
 #include "server/wire/websocket_server.hpp"
+#include "surefoot/gate/canary.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -38,6 +43,7 @@ struct Options {
     std::string token_file;
     std::string audit_dir;
     bool assured = false;
+    int audit_mb = 1024;
     bool orphan_ends = false;
     double vouch_radius_m = 0.0;
     wire::ServerConfig server;
@@ -70,12 +76,50 @@ gate::ReadinessLimits limits_of(const io::MachineFile& file) {
     return limits;
 }
 
+/// Asks for the processor soon, and for little of it at a time: a thread that sleeps until it is
+/// asked need not wait for the end of another one's slice (milliseconds). Linux 6.12 and later; any
+/// other takes no notice, and rights are not needed. For the calling thread alone.
+void ask_for_short_slices() {
+    if (::sched_getscheduler(0) != SCHED_OTHER) return;  // whoever started it chose something else
+    struct {  // sched_setattr(2), whose header does not get on with the C library's
+        std::uint32_t size = 48;
+        std::uint32_t policy = SCHED_OTHER;
+        std::uint64_t flags = 0;
+        std::int32_t nice = ::getpriority(PRIO_PROCESS, 0);  // stays what it is
+        std::uint32_t priority = 0;
+        std::uint64_t slice_ns = 100'000;  // the shortest there is
+        std::uint64_t deadline_ns = 0;
+        std::uint64_t period_ns = 0;
+    } wish;
+    static_assert(sizeof(wish) == 48);
+    ::syscall(SYS_sched_setattr, 0, &wish, 0U);
+}
+
+/// With a machine that makes the gate fail its own questions it would never be ready: that is said
+/// before anybody waits for it.
+Status self_test(const std::string& name, const Machine& machine) {
+    const auto told = std::make_unique<gate::Canaries>(machine)->judge_all();
+    if (told.passed) return {};
+    return usage_error(
+        fmt::format("{}: with this machine the gate fails its self-test, the question {} with "
+                    "movement {}: {} is expected, {} was found; check feet, body, movements and "
+                    "limits",
+                    name,
+                    told.name,
+                    told.command,
+                    gate::to_string(told.expected),
+                    gate::to_string(told.found)));
+}
+
 /// The log of the process; none where nobody asked for one.
 Result<std::unique_ptr<wire::AuditLog>> open_log(const Options& options, const Machine& machine) {
     std::unique_ptr<wire::AuditLog> log;
     if (options.audit_dir.empty()) return log;
     wire::AuditConfig config;
     config.files.run_id = wire::new_run_id();
+    config.files.total_bytes = static_cast<std::uint64_t>(options.audit_mb) << 20U;
+    // The newest file is never removed: where little is allowed, files are small.
+    config.files.file_bytes = std::min(config.files.file_bytes, config.files.total_bytes / 4);
     log = std::make_unique<wire::AuditLog>(
         machine, wire::make_folder_disk(options.audit_dir), config);
     if (auto status = log->start(); !status) return status.error();
@@ -116,6 +160,7 @@ int serve(const Options& options, const io::MachineFile& file) {
     running = server->get();
     fmt::print("listening on ws://{}:{}\n", options.server.bind_address, running->port());
     std::fflush(stdout);
+    ask_for_short_slices();
     running->run();
     keeper.stop();
     if (audit != nullptr) audit->stop();
@@ -127,6 +172,8 @@ int run(Options options) {
     if (!machine) return fail(machine.error());
     if (const char* problem = machine->machine.problem())
         return fail(usage_error(options.machine + ": " + problem));
+    if (auto status = self_test(options.machine, machine->machine); !status)
+        return fail(status.error());
     if (!options.token_file.empty()) {
         auto token = read_token(options.token_file);
         if (!token) return fail(token.error());
@@ -141,6 +188,7 @@ int run(Options options) {
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on files is a bad disk, not the end of the gate
     return serve(options, *machine);
 }
 
@@ -165,6 +213,16 @@ int main_with_arguments(int argc, char** argv) {
         ->type_name("URL");
     app.add_option("--audit", options.audit_dir, "folder of the audit log")->type_name("DIR");
     app.add_flag("--assured", options.assured, "no OK while the audit log cannot be written");
+    app.add_option("--audit-mb", options.audit_mb, "of that folder; then the oldest logs go")
+        ->check(CLI::Range(8, 1 << 20))
+        ->capture_default_str()
+        ->type_name("MB");
+    app.add_option("--max-rate",
+                   options.server.session.messages.per_s,
+                   "messages of a client in a second, beyond it the answer is OVERLOAD")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str()
+        ->type_name("HZ");
     app.add_option("--vouch",
                    options.vouch_radius_m,
                    "once, when the gate is ready: whoever starts it answers for level ground so "

@@ -37,6 +37,8 @@ void for_each_limit(Limits& limits, Visit& visit) {
     visit("drop_band_tenth_mm", limits.drop_band_tenth_mm);
     visit("drop_evidence", limits.drop_evidence);
     visit("drift_tenth_mm", limits.drift_tenth_mm);
+    visit("tread_share_permille", limits.tread_share_permille);
+    visit("tread_overhang_tenth_mm", limits.tread_overhang_tenth_mm);
     visit("frame_age_ns", limits.frame_age_ns);
     visit("pose_age_ns", limits.pose_age_ns);
     visit("future_tolerance_ns", limits.future_tolerance_ns);
@@ -49,6 +51,7 @@ void for_each_machine_field(Machine& machine, Visit& visit) {
     visit("sole_depth_tenth_mm", machine.sole_depth_tenth_mm);
     for_each_box_field(machine.left_foot, visit);
     for_each_box_field(machine.right_foot, visit);
+    visit("ankle_from_heel_tenth_mm", machine.ankle_from_heel_tenth_mm);
     for (auto& part : machine.body.parts) {
         for_each_box_field(part.box, visit);
         visit("low_tenth_mm", part.low_tenth_mm);

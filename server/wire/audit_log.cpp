@@ -69,7 +69,8 @@ Status AuditLog::start() {
 }
 
 void AuditLog::push(const AuditedVerdict& audited) noexcept {
-    const CellBox zone = query_zone(machine_, audited.query, audited.map);
+    const CellBox zone = query_zone(
+        machine_, audited.query, audited.map, audited.verdict.evidence.max_drift_tenth_mm);
     char* at = ring_ == nullptr ? nullptr
                                 : ring_->reserve(sizeof(EntryHead) + record_bytes(audited, zone));
     if (at == nullptr) {

@@ -159,11 +159,11 @@ TEST(AuditRecord, holds_every_field_of_its_version) {
     c.map = std::make_unique<grid::MapSnapshot>();
     c.decide();
     EXPECT_EQ(record_of(c).size(), 432U);
-    EXPECT_EQ(format_machine(c.machine).size(), 1265U);
+    EXPECT_EQ(format_machine(c.machine).size(), 1277U);
     EXPECT_EQ(sizeof(gate::Query), 96U);
     EXPECT_EQ(sizeof(gate::GateHealth), 16U);
     EXPECT_EQ(sizeof(gate::Verdict), 232U);
-    EXPECT_EQ(sizeof(Machine), 1448U);
+    EXPECT_EQ(sizeof(Machine), 1456U);
 }
 
 /// A record that was written for another answer is noticed when it is decided again.

@@ -27,7 +27,9 @@ struct Case {
 
     void decide() { verdict = gate::decide(machine, query, *map, health, now_ns); }
     [[nodiscard]] AuditedVerdict audited() const { return {query, health, now_ns, *map, verdict}; }
-    [[nodiscard]] CellBox zone() const { return query_zone(machine, query, *map); }
+    [[nodiscard]] CellBox zone() const {
+        return query_zone(machine, query, *map, verdict.evidence.max_drift_tenth_mm);
+    }
 };
 
 /// A floor with noise, things, holes, unseen ground and evidence of drops.

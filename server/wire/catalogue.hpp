@@ -8,7 +8,7 @@
 namespace surefoot::wire {
 
 /// Everything that has a name on the wire. Closed: a name that is not here is not served.
-enum class Topic : std::uint8_t { verdict, health, diagnostics, goal_marker, goal };
+enum class Topic : std::uint8_t { verdict, health, diagnostics, outlook, goal_marker, goal };
 
 struct TopicEntry {
     Topic topic;
@@ -17,10 +17,11 @@ struct TopicEntry {
     bool from_client;  ///< clients publish it; all others are for them to subscribe to
 };
 
-inline constexpr std::array<TopicEntry, 5> kTopics{{
+inline constexpr std::array<TopicEntry, 6> kTopics{{
     {Topic::verdict, "/surefoot/verdict", "surefoot/Verdict", false},
     {Topic::health, "/surefoot/health", "surefoot/Health", false},
     {Topic::diagnostics, "/diagnostics", "diagnostic_msgs/DiagnosticArray", false},
+    {Topic::outlook, "/surefoot/outlook", "surefoot/Outlook", false},
     {Topic::goal_marker, "/surefoot/goal_marker", "visualization_msgs/Marker", false},
     {Topic::goal, "/move_base_simple/goal", "geometry_msgs/PoseStamped", true},
 }};

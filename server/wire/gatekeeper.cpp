@@ -40,7 +40,12 @@ Gatekeeper::Gatekeeper(const Machine& machine,
       readiness_(machine, limits),
       canaries_(std::make_unique<gate::Canaries>(machine)),
       map_(nothing_seen()),
-      incoming_(nothing_seen()) {}
+      incoming_(nothing_seen()) {
+    for (std::size_t code = 0; code < machine_.movements.size(); ++code) {
+        if (machine_.movements[code].configured)
+            movements_[movement_count_++] = static_cast<std::uint8_t>(code);
+    }
+}
 
 void Gatekeeper::poll(std::int64_t now_ns, std::int64_t boottime_ns) {
     if (readiness_.state() == gate::GateState::init)
@@ -100,7 +105,7 @@ bool Gatekeeper::is_in_sequence(const StepQuestion& question) {
 
 Judgement Gatekeeper::judge(const StepQuestion& question,
                             bool in_sequence,
-                            std::int64_t now_ns) const {
+                            std::int64_t now_ns) const noexcept {
     Judgement judgement;
     judgement.health = health();
     if (!in_sequence) judgement.health.faults.add(gate::Reason::seq);
@@ -144,6 +149,21 @@ Answer Gatekeeper::ask_goal(const GoalQuestion& question, std::int64_t now_ns) {
     return answer;
 }
 
+std::span<const std::uint8_t> Gatekeeper::movements() const noexcept {
+    return std::span(movements_).first(movement_count_);
+}
+
+Prospect Gatekeeper::prospect_of(std::uint8_t command, std::int64_t now_ns) const noexcept {
+    // Connection 0 is nobody's, and the map is the one that the last poll fetched.
+    Judgement judgement = judge({.connection = 0, .sequence = 0, .command = command}, true, now_ns);
+    judgement.verdict.valid_until_ns = judgement.verdict.decided_ns;
+    return {judgement.query, judgement.verdict};
+}
+
+std::string Gatekeeper::words_of(const Prospect& prospect) const {
+    return gate::text_of(prospect.verdict, prospect.query, machine_);
+}
+
 GateReport Gatekeeper::report(std::int64_t now_ns) {
     GateReport report;
     report.health = health();
@@ -183,7 +203,7 @@ Status Gatekeeper::vouch(std::uint64_t /*connection*/, double radius_m, std::int
     const auto refuse = [](const std::string& why) {
         return Status(Error{ErrorCode::usage, "the ground cannot be vouched for: " + why});
     };
-    if (!has_map_ || !gate::snapshot_faults(machine_.limits, *map_, now_ns).empty())
+    if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
         return refuse("no healthy pose is known");
     if (readiness_.state() == gate::GateState::fault) return refuse("the gate is in a fault");
     const double limit_m = machine_.limits.vouch_radius_tenth_mm * 1e-4;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -49,6 +51,10 @@ class Gatekeeper final : public StepGate {
 
     [[nodiscard]] Answer ask_step(const StepQuestion& question, std::int64_t now_ns) override;
     [[nodiscard]] Answer ask_goal(const GoalQuestion& question, std::int64_t now_ns) override;
+    [[nodiscard]] std::span<const std::uint8_t> movements() const noexcept override;
+    [[nodiscard]] Prospect prospect_of(std::uint8_t command,
+                                       std::int64_t now_ns) const noexcept override;
+    [[nodiscard]] std::string words_of(const Prospect& prospect) const override;
     [[nodiscard]] GateReport report(std::int64_t now_ns) override;
     [[nodiscard]] Status rearm(std::uint64_t connection, std::int64_t now_ns) override;
     [[nodiscard]] Status vouch(std::uint64_t connection,
@@ -64,9 +70,11 @@ class Gatekeeper final : public StepGate {
     [[nodiscard]] bool is_in_sequence(const StepQuestion& question);
     [[nodiscard]] Judgement judge(const StepQuestion& question,
                                   bool in_sequence,
-                                  std::int64_t now_ns) const;
+                                  std::int64_t now_ns) const noexcept;
 
     Machine machine_;
+    std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< the first movement_count_
+    std::size_t movement_count_ = 0;
     std::string channel_path_;
     Audit audit_;
     gate::Readiness readiness_;

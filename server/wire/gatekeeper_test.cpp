@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "server/wire/outlook.hpp"
+#include "surefoot/core/allocations_for_test.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
 namespace surefoot::wire {
@@ -242,6 +244,47 @@ TEST_F(GatekeeperTest, goals_are_pictures_and_their_frame_must_be_known) {
               Reason::bad_number);
     EXPECT_EQ(keeper_->ask_goal({1, "odom", 1.0, -1.0, nan}, now_ns_).verdict.primary,
               Reason::bad_number);
+}
+
+TEST_F(GatekeeperTest, a_prospect_says_what_a_question_would_and_is_none) {
+    gate::testing::Terrain blocked;
+    blocked.box(0.6, 0.8, -0.5, 0.5, 0.7);
+    map_ = blocked.snapshot();
+    become_ready();
+    ASSERT_EQ(keeper_->movements().size(), 26U);
+    int allowed = 0;
+    for (const std::uint8_t command : keeper_->movements()) {
+        const Prospect prospect = keeper_->prospect_of(command, now_ns_);
+        EXPECT_FALSE(prospect.verdict.allows_step(now_ns_)) << "a picture is no permission";
+        EXPECT_EQ(prospect.verdict.connection, 0U);
+        const GateReport before = keeper_->report(now_ns_);
+        EXPECT_EQ(before.asked, 0U);
+        EXPECT_EQ(before.allowed, 0U);
+        EXPECT_TRUE(audited_.empty());
+        allowed += prospect.verdict.decision == Decision::ok ? 1 : 0;
+    }
+    EXPECT_GT(allowed, 0);
+    EXPECT_LT(allowed, 26);
+    for (const std::uint8_t command : keeper_->movements()) {
+        const Prospect prospect = keeper_->prospect_of(command, now_ns_);
+        const Answer answer = keeper_->ask_step({0, ++sequence_, command}, now_ns_);
+        EXPECT_EQ(prospect.verdict.decision, answer.verdict.decision) << int{command};
+        EXPECT_EQ(prospect.verdict.reasons, answer.verdict.reasons);
+        EXPECT_EQ(prospect.verdict.map_version, answer.verdict.map_version);
+        EXPECT_EQ(keeper_->words_of(prospect), answer.text);
+    }
+}
+
+TEST_F(GatekeeperTest, rounds_of_the_outlook_allocate_nothing_until_they_are_published) {
+    become_ready();
+    OutlookRounds rounds;
+    const OutlookDemand listening{.subscribed = true, .question_waits = false};
+    const std::size_t whole = keeper_->movements().size();
+    const std::int64_t before = heap::allocations;
+    for (std::size_t i = 0; i + 1 < whole; ++i)
+        EXPECT_FALSE(rounds.next(*keeper_, listening, now_ns_));
+    EXPECT_EQ(heap::allocations, before);
+    EXPECT_TRUE(rounds.next(*keeper_, listening, now_ns_));
 }
 
 TEST_F(GatekeeperTest, every_verdict_is_audited_with_what_it_was_made_of) {

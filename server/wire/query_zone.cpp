@@ -67,13 +67,19 @@ bool is_inside(const CellBox& box, const MapSnapshot& map) noexcept {
 
 CellBox query_zone(const Machine& machine,
                    const gate::Query& query,
-                   const MapSnapshot& map) noexcept {
+                   const MapSnapshot& map,
+                   std::int64_t drift_tenth_mm) noexcept {
     if (!can_look(machine, query, map)) return {};
     const gate::FixedPose start =
         gate::fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
-    const gate::Extent bounds =
-        gate::Ground(map, query)
-            .zone_of(gate::sweep_of(machine, start, machine.movements[query.command]));
+    // Cells with more drift than the gate allows are refused before any region grows for them.
+    const std::int64_t drift =
+        std::clamp<std::int64_t>(drift_tenth_mm, 0, machine.limits.drift_tenth_mm);
+    const gate::Sweep sweep = gate::sweep_of(machine,
+                                             start,
+                                             machine.movements[query.command],
+                                             gate::drift_margin(machine.limits, drift));
+    const gate::Extent bounds = gate::Ground(map, query).zone_of(sweep);
     const std::int64_t side = map.resolution_tenth_mm;
     const Range x = cells_between(bounds.low.x, bounds.high.x, map.origin_x_tenth_mm, side, map.nx);
     const Range y = cells_between(bounds.low.y, bounds.high.y, map.origin_y_tenth_mm, side, map.ny);

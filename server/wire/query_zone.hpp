@@ -25,12 +25,14 @@ struct CellBox {
 [[nodiscard]] bool is_inside(const CellBox& box, const grid::MapSnapshot& map) noexcept;
 
 /// Every cell that decide() may read for a query, and some more: the rectangle around both feet at
-/// start and target with their corridors and drop bands, the body's way, and the vouched area with
-/// the ring of cells beside it. Any arguments may come: empty where decide() does not look at the
+/// start and target with their corridors and drop bands, the body's way, and the vouched area, with
+/// a ring of cells beside them. `drift_tenth_mm`: the most that a verdict met (Evidence), the wider
+/// are the regions. Any arguments may come: empty where decide() does not look at the
 /// ground (a pose, a command, a machine or a size of the map that cannot be), or where the zone
 /// lies beyond the map. Pure, allocates nothing; about a microsecond.
 [[nodiscard]] CellBox query_zone(const Machine& machine,
                                  const gate::Query& query,
-                                 const grid::MapSnapshot& map) noexcept;
+                                 const grid::MapSnapshot& map,
+                                 std::int64_t drift_tenth_mm) noexcept;
 
 }  // namespace surefoot::wire

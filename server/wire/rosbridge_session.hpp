@@ -52,6 +52,7 @@ class RosbridgeSession {
     /// Messages whose throttle time has passed. Call it every few milliseconds.
     [[nodiscard]] std::vector<std::string> due(std::int64_t now_ns);
 
+    [[nodiscard]] bool wants(Topic topic) const noexcept { return subscriptions_.wants(topic); }
     [[nodiscard]] std::uint64_t connection() const noexcept { return connection_; }
 
   private:

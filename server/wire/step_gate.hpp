@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "surefoot/core/result.hpp"
@@ -32,6 +33,13 @@ struct Answer {
     std::string text;
 };
 
+/// What the gate would answer to a movement if somebody asked now. A picture for people, never a
+/// permission: nobody asked, and its life ends when it begins.
+struct Prospect {
+    gate::Query query;
+    gate::Verdict verdict;
+};
+
 /// How the gate is, for topics and pages.
 struct GateReport {
     gate::GateHealth health;
@@ -56,6 +64,13 @@ class StepGate {
     /// A sequence that does not grow within its connection is ERROR / SEQ.
     [[nodiscard]] virtual Answer ask_step(const StepQuestion& question, std::int64_t now_ns) = 0;
     [[nodiscard]] virtual Answer ask_goal(const GoalQuestion& question, std::int64_t now_ns) = 0;
+    /// Codes of the machine's movements, in order; the same in every call.
+    [[nodiscard]] virtual std::span<const std::uint8_t> movements() const noexcept = 0;
+    /// Changes nothing that a question meets, is not counted and in no log; allocates nothing.
+    [[nodiscard]] virtual Prospect prospect_of(std::uint8_t command,
+                                               std::int64_t now_ns) const noexcept = 0;
+    /// What a prospect says to people.
+    [[nodiscard]] virtual std::string words_of(const Prospect& prospect) const = 0;
     [[nodiscard]] virtual GateReport report(std::int64_t now_ns) = 0;
     /// An operator's explicit act after a fault: back to warm-up. Never starts a motion.
     [[nodiscard]] virtual Status rearm(std::uint64_t connection, std::int64_t now_ns) = 0;

@@ -40,6 +40,11 @@ Subscriptions::Stream* Subscriptions::find(Topic topic) noexcept {
     return found == streams_.end() ? nullptr : &*found;
 }
 
+bool Subscriptions::wants(Topic topic) const noexcept {
+    return std::any_of(
+        streams_.begin(), streams_.end(), [&](const Stream& s) { return s.topic == topic; });
+}
+
 std::size_t Subscriptions::count() const noexcept {
     std::size_t count = 0;
     for (const auto& stream : streams_) count += stream.wishes.size();

@@ -43,6 +43,7 @@ class Subscriptions {
     [[nodiscard]] std::vector<std::string> offer(const TopicMessage& message, std::int64_t now_ns);
     /// What has waited for its interval.
     [[nodiscard]] std::vector<std::string> due(std::int64_t now_ns);
+    [[nodiscard]] bool wants(Topic topic) const noexcept;
     [[nodiscard]] std::size_t count() const noexcept;
 
   private:

@@ -128,6 +128,21 @@ Json diagnostics_object(const GateReport& report, std::int64_t now_ns) {
             {"status", Json::array({status})}};
 }
 
+Json outlook_object(const GateReport& report,
+                    const StepGate& gate,
+                    std::span<const Prospect> prospects) {
+    Json verdicts = Json::array();
+    for (const Prospect& prospect : prospects) {
+        verdicts.push_back({{"command", prospect.verdict.command},
+                            {"verdict", verdict_name(prospect.verdict)},
+                            {"primary", to_string(prospect.verdict.primary)},
+                            {"text", gate.words_of(prospect)}});
+    }
+    return {{"map_version", report.map_version},
+            {"state", name_of(report.health.state)},
+            {"verdicts", std::move(verdicts)}};
+}
+
 std::array<Json, 2> goal_markers(const GoalQuestion& goal, const Answer& answer) {
     constexpr int kAdd = 0;
     constexpr double kWordsHeight_m = 0.5;  // over the arrow

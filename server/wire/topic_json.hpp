@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "server/wire/json_text.hpp"
 #include "server/wire/step_gate.hpp"
@@ -18,6 +19,12 @@ namespace surefoot::wire {
 
 /// A diagnostic_msgs/DiagnosticArray of one status, stamped with the steady clock.
 [[nodiscard]] Json diagnostics_object(const GateReport& report, std::int64_t now_ns);
+
+/// {map_version, state, verdicts: [{command, verdict, primary, text}]}: what `gate` would say to
+/// each movement.
+[[nodiscard]] Json outlook_object(const GateReport& report,
+                                  const StepGate& gate,
+                                  std::span<const Prospect> prospects);
 
 /// Two visualization_msgs/Marker for a goal that was judged: an arrow and its words. Bluish green,
 /// vermilion, and magenta where the gate cannot judge: three colours that people with any of the

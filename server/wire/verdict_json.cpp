@@ -31,13 +31,6 @@ const char* name_of(gate::Foot foot) {
     return "none";
 }
 
-/// An OK with a reason against it is none.
-const char* name_of(const gate::Verdict& verdict) {
-    if (verdict.decision == gate::Decision::ok && result_code(verdict) != 0)
-        return to_string(gate::Decision::error);
-    return to_string(verdict.decision);
-}
-
 std::string hexadecimal(std::uint64_t value) {
     char text[17];
     std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(value));
@@ -58,6 +51,12 @@ Json unproven_array(const gate::Evidence& evidence) {
 int result_code(const gate::Verdict& verdict) noexcept {
     if (verdict.decision == gate::Decision::ok && verdict.reasons.empty()) return 0;
     return verdict.decision == gate::Decision::not_traversable ? 1 : -1;
+}
+
+const char* verdict_name(const gate::Verdict& verdict) noexcept {
+    if (verdict.decision == gate::Decision::ok && result_code(verdict) != 0)
+        return to_string(gate::Decision::error);
+    return to_string(verdict.decision);
 }
 
 Json reasons_array(gate::ReasonSet reasons) {
@@ -97,7 +96,7 @@ Json evidence_object(const gate::Verdict& verdict) {
 Json verdict_object(const gate::Verdict& verdict, const std::string& text) {
     constexpr std::int64_t kNsPerMs = 1'000'000;
     const std::int64_t life_ns = verdict.valid_until_ns - verdict.decided_ns;
-    return {{"verdict", name_of(verdict)},
+    return {{"verdict", verdict_name(verdict)},
             {"result_code", result_code(verdict)},
             {"reasons", reasons_array(verdict.reasons)},
             {"primary", to_string(verdict.primary)},

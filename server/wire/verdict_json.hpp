@@ -13,6 +13,8 @@ namespace surefoot::wire {
 /// reason stands against it.
 [[nodiscard]] int result_code(const gate::Verdict& verdict) noexcept;
 
+/// "OK", "NOT_TRAVERSABLE", "ERROR". An OK with a reason against it is none.
+[[nodiscard]] const char* verdict_name(const gate::Verdict& verdict) noexcept;
 /// The names of all reasons, in order of precedence.
 [[nodiscard]] Json reasons_array(gate::ReasonSet reasons);
 /// Numbers behind a verdict, lengths in m; what is not known is null.

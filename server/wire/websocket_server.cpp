@@ -16,6 +16,7 @@
 
 #include "server/wire/admission.hpp"
 #include "server/wire/out_queue.hpp"
+#include "server/wire/outlook.hpp"
 #include "server/wire/periodic_topics.hpp"
 #include "server/wire/steady_clock.hpp"
 #include "server/wire/topic_json.hpp"
@@ -72,12 +73,14 @@ class SocketServer {
     void admit_to_door(tcp::socket socket);
     void wait_for_tick();
     void on_tick();
+    void look_ahead(std::int64_t now_ns);
 
     net::io_context io_{1};  // one thread: no locks. Destroyed last, with all waiting handlers
     tcp::acceptor acceptor_{io_};
     net::steady_timer timer_{io_};
     WebsocketServer::Tick tick_;
     PeriodicTopics topics_;
+    OutlookRounds outlook_;
     std::vector<std::shared_ptr<Connection>> connections_;  // shared with their waiting handlers
     std::uint16_t port_ = 0;
     std::uint64_t next_connection_ = 1;
@@ -103,6 +106,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     /// Ends it at once, whatever is on its way.
     void end();
     [[nodiscard]] bool is_client() const { return session_.has_value(); }
+    [[nodiscard]] bool wants(Topic topic) const;
+    /// Bytes of a client have come that are not read yet.
+    [[nodiscard]] bool has_bytes();
 
   private:
     void on_request(error_code error);
@@ -272,6 +278,15 @@ void Connection::offer(const TopicMessage& message, std::int64_t now_ns) {
     if (session_ && !dismissed_) send_topics(session_->on_topic(message, now_ns));
 }
 
+bool Connection::wants(Topic topic) const {
+    return session_ && !dismissed_ && session_->wants(topic);
+}
+
+bool Connection::has_bytes() {
+    error_code ignored;
+    return session_ && !dismissed_ && beast::get_lowest_layer(ws_).socket().available(ignored) > 0;
+}
+
 void Connection::send_topics(std::vector<std::string> texts) {
     for (auto& text : texts) {
         if (!out_.push_topic(std::move(text))) return drop();
@@ -416,8 +431,21 @@ void SocketServer::on_tick() {
     if (tick_) tick_(now_ns);
     publish(topics_.due(gate, now_ns), now_ns);
     for (const auto& connection : std::vector(connections_)) connection->on_tick(now_ns);
+    look_ahead(now_ns);
     accepts_left_ = config.accepts_per_tick;
     accept();
+}
+
+void SocketServer::look_ahead(std::int64_t now_ns) {
+    OutlookDemand demand;
+    demand.subscribed = std::any_of(connections_.begin(), connections_.end(), [](const auto& c) {
+        return c->wants(Topic::outlook);
+    });
+    demand.question_waits =
+        demand.subscribed &&
+        std::any_of(
+            connections_.begin(), connections_.end(), [](const auto& c) { return c->has_bytes(); });
+    if (auto message = outlook_.next(gate, demand, now_ns)) publish({std::move(*message)}, now_ns);
 }
 
 void SocketServer::publish(const std::vector<TopicMessage>& messages, std::int64_t now_ns) {

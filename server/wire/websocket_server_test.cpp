@@ -301,6 +301,67 @@ TEST(WebsocketServer, SubscribersHearOfVerdictsAndHealth) {
     EXPECT_EQ(listener.receive()["msg"]["connection"], 2);
 }
 
+TEST(WebsocketServer, TheOutlookComesToWhoSubscribesAndOnlyWhileTheyDo) {
+    Service service;
+    Client listener(service, "/", "");
+    listener.send(R"({"op":"subscribe","topic":"/surefoot/outlook","type":"surefoot/Outlook"})");
+    for (int i = 0; i < 2; ++i) {
+        const Json message = listener.receive();
+        EXPECT_EQ(message["topic"], "/surefoot/outlook");
+        EXPECT_EQ(message["msg"]["verdicts"].size(), 3U);
+    }
+    listener.send(R"({"op":"unsubscribe","topic":"/surefoot/outlook"})");
+    while (listener.ask(kStep)["op"] != "service_response") {
+    }
+    const int ticks = service.ticks;
+    while (service.ticks < ticks + 2) std::this_thread::yield();
+    service.end();
+    const std::size_t looks = service.gate.looked_at.size();
+    EXPECT_GE(looks, 6U);
+    EXPECT_LE(looks, 9U) << "two rounds, and what was left of a third";
+}
+
+/// The tick's hook sends a question to the server that calls it: its bytes lie in the socket when
+/// the server's turn comes to look ahead.
+TEST(WebsocketServer, AQuestionThatWaitsGoesBeforeTheOutlook) {
+    ScriptedGate gate;
+    std::function<void()> hook;
+    const auto server = std::move(WebsocketServer::open(any_port(), gate, [&](std::int64_t) {
+                                      if (hook) hook();
+                                  }).value());
+    net::io_context io;
+    websocket::stream<tcp::socket> ws(io);
+    ws.next_layer().connect({net::ip::make_address("127.0.0.1"), server->port()});
+    ws.next_layer().set_option(tcp::no_delay(true));  // or a second message waits for an ACK
+    std::atomic<bool> done = false;
+    std::thread thread([&] {
+        ws.handshake("127.0.0.1", "/");
+        ws.write(net::buffer(std::string(R"({"op":"subscribe","topic":"/surefoot/outlook"})")));
+        done = true;
+    });
+    while (!done || gate.looked_at.empty()) server->poll();
+    thread.join();
+    std::size_t asked = 0;
+    std::size_t looks = 0;
+    bool its_turn = false;
+    hook = [&] {
+        // In every second tick at most: who asks in each gets past the look only four times in
+        // five.
+        its_turn = !its_turn;
+        if (!its_turn || asked != gate.questions.size()) return;
+        looks = gate.looked_at.size();
+        ws.write(net::buffer(std::string(kStep)));
+        ++asked;
+    };
+    while (gate.questions.size() < 50) {
+        const std::size_t answered = gate.questions.size();
+        server->poll();
+        if (gate.questions.size() > answered) {
+            EXPECT_EQ(gate.looked_at.size(), looks) << "question " << answered;
+        }
+    }
+}
+
 TEST(WebsocketServer, TheOwnerIsCalledAndCounts) {
     Service service;
     Client client(service, "/", "");

@@ -38,10 +38,8 @@ class ScriptedGate : public StepGate {
         if (grows) last = question.sequence;
         if (!grows) {
             deny(answer, gate::Reason::seq, "the query is out of sequence");
-        } else if (report_.health.state != gate::GateState::ready) {
-            deny(answer, report_.why, "the system is not ready");
         } else {
-            judge(answer, question.command);
+            answer_by_script(answer, question.command);
         }
         verdict.valid_until_ns = now_ns + (verdict.decision == gate::Decision::ok ? life_ns : 0);
         if (change_answer) change_answer(verdict);
@@ -67,6 +65,21 @@ class ScriptedGate : public StepGate {
         return answer;
     }
 
+    [[nodiscard]] std::span<const std::uint8_t> movements() const noexcept override {
+        return movement_codes;
+    }
+    [[nodiscard]] Prospect prospect_of(std::uint8_t command,
+                                       std::int64_t now_ns) const noexcept override {
+        looked_at.push_back(command);
+        Prospect prospect;
+        prospect.verdict = scripted_answer(command).verdict;
+        prospect.verdict.command = command;
+        prospect.verdict.decided_ns = prospect.verdict.valid_until_ns = now_ns;
+        return prospect;
+    }
+    [[nodiscard]] std::string words_of(const Prospect& prospect) const override {
+        return scripted_answer(prospect.verdict.command).text;
+    }
     [[nodiscard]] GateReport report(std::int64_t /*now_ns*/) override { return report_; }
     [[nodiscard]] Status rearm(std::uint64_t connection, std::int64_t /*now_ns*/) override {
         rearmed.push_back(connection);
@@ -93,7 +106,20 @@ class ScriptedGate : public StepGate {
     std::vector<std::uint64_t> forgotten;
     std::map<std::uint64_t, std::uint64_t> last_sequence;
 
+    std::vector<std::uint8_t> movement_codes{kForward, kBackward, 21};
+    mutable std::vector<std::uint8_t> looked_at;  ///< commands of prospects
+
   private:
+    void answer_by_script(Answer& answer, std::uint8_t command) const {
+        if (report_.health.state != gate::GateState::ready)
+            return deny(answer, report_.why, "the system is not ready");
+        judge(answer, command);
+    }
+    [[nodiscard]] Answer scripted_answer(std::uint8_t command) const {
+        Answer answer;
+        answer_by_script(answer, command);
+        return answer;
+    }
     static GateReport ready_report() {
         GateReport report;
         report.health.state = gate::GateState::ready;

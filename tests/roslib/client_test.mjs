@@ -115,6 +115,28 @@ test("topics: every verdict, health, diagnostics", () =>
     assert.deepEqual((await verdict).reasons, ["UNKNOWN_CELLS"]);
   }));
 
+test("the outlook: every movement of the machine in one message, and no permission", () =>
+  withRos(async (ros) => {
+    const topic = new ROSLIB.Topic({ ros, name: "/surefoot/outlook", messageType: "surefoot/Outlook" });
+    const outlook = await new Promise((resolve) => topic.subscribe(resolve));
+    topic.unsubscribe();
+    assert.deepEqual(Object.keys(outlook), ["map_version", "state", "verdicts"]);
+    assert.equal(outlook.state, "READY");
+    assert.deepEqual(
+      outlook.verdicts.map((v) => [v.command, v.verdict, v.primary]),
+      [
+        [9, "OK", "NONE"],
+        [17, "NOT_TRAVERSABLE", "DROP_OFF"],
+        [21, "NOT_TRAVERSABLE", "UNKNOWN_CELLS"],
+      ],
+    );
+    for (const verdict of outlook.verdicts) {
+      assert.deepEqual(Object.keys(verdict), ["command", "verdict", "primary", "text"]);
+    }
+    const health = await call(ros, "/surefoot/health", "surefoot/GetHealth", {});
+    assert.equal(typeof health.asked, "number");
+  }));
+
 test("a goal is answered by a marker", () =>
   withRos(async (ros) => {
     const markers = [];
