@@ -22,15 +22,17 @@ Result<std::shared_ptr<CommandedMotion>> CommandedMotion::make(const RexStand& s
     std::shared_ptr<CommandedMotion> made(new CommandedMotion(std::move(ground_z_m), gait, seed));
     RexPlan still;
     still.start = start;
-    auto motion = made->walk(still, 0);
+    auto motion = made->walk(still);
     if (!motion) return motion.error();
     made->pieces_.push_back({0.0, std::move(motion).value()});
     made->stand_ = start;
     return made;
 }
 
-Result<RexMotion> CommandedMotion::walk(const RexPlan& plan, std::size_t number) {
-    return RexMotion::make(plan, gait_, ground_z_m_, mix_seed(seed_, number));
+Result<RexMotion> CommandedMotion::walk(const RexPlan& plan) {
+    auto motion = RexMotion::make(plan, gait_, ground_z_m_, mix_seed(seed_, walked_));
+    if (motion) ++walked_;
+    return motion;
 }
 
 MotionState CommandedMotion::at(double time_s) const {
@@ -53,6 +55,14 @@ std::vector<StepEvent> CommandedMotion::steps() const {
     return steps_;
 }
 
+void CommandedMotion::forget_before(double time_s) {
+    const std::lock_guard lock(mutex_);
+    const auto begins_later = [](double time, const auto& part) { return time < part.start_s; };
+    const auto now = std::upper_bound(pieces_.begin() + 1, pieces_.end(), time_s, begins_later) - 1;
+    pieces_.erase(pieces_.begin(), now);
+    std::erase_if(steps_, [&](const StepEvent& step) { return step.end_s < time_s; });
+}
+
 Result<StepEvent> CommandedMotion::step(int command, double time_s) {
     const std::lock_guard lock(mutex_);
     const auto movement = std::find_if(
@@ -67,7 +77,7 @@ Result<StepEvent> CommandedMotion::step(int command, double time_s) {
     RexPlan plan;
     plan.start = stand_;
     plan.steps.push_back({0.0, *movement, stand_, moved(stand_, *movement, 1.0)});
-    auto motion = walk(plan, pieces_.size());
+    auto motion = walk(plan);
     if (!motion) return motion.error();
     const RexMotion::Span& span = motion->steps().front();
     const StepEvent event{time_s + span.start_s,

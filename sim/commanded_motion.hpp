@@ -33,6 +33,9 @@ class CommandedMotion final : public Motion {
     /// cannot make it on this ground.
     [[nodiscard]] Result<StepEvent> step(int command, double time_s);
     [[nodiscard]] std::vector<StepEvent> steps() const;
+    /// Steps that ended before `time_s` are not kept: who walks for hours would fill the memory.
+    /// Before what is left, the machine is where that begins.
+    void forget_before(double time_s);
 
   private:
     struct Piece {
@@ -40,7 +43,7 @@ class CommandedMotion final : public Motion {
         RexMotion motion;
     };
     CommandedMotion(GroundHeight ground_z_m, const RexGaitConfig& gait, std::uint64_t seed);
-    [[nodiscard]] Result<RexMotion> walk(const RexPlan& plan, std::size_t number);
+    [[nodiscard]] Result<RexMotion> walk(const RexPlan& plan);
 
     GroundHeight ground_z_m_;
     RexGaitConfig gait_;
@@ -50,7 +53,8 @@ class CommandedMotion final : public Motion {
     mutable std::mutex mutex_;   ///< of what follows
     std::vector<Piece> pieces_;  ///< by time; the first one stands
     std::vector<StepEvent> steps_;
-    RexStand stand_;  ///< after the last step
+    std::size_t walked_ = 0;  ///< pieces that were made
+    RexStand stand_;          ///< after the last step
     double free_s_ = 0.0;
 };
 

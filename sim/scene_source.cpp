@@ -260,12 +260,10 @@ double SceneSource::now_s() const noexcept {
 
 /// A commanded source learns where the next frame is when it is asked for.
 bool SceneSource::has_next() {
-    if (commanded_ && next_pose_ == truth_.trajectory.size() && next_pose_ < frame_limit_) {
-        truth_.trajectory.push_back(
-            pose_of_frame(*commanded_, static_cast<int>(next_pose_), rate_hz_));
-        truth_.steps = commanded_->steps();
-    }
-    return next_pose_ < truth_.trajectory.size();
+    if (!commanded_) return next_pose_ < truth_.trajectory.size();
+    if (next_pose_ == frame_limit_) return false;
+    truth_.trajectory.back() = pose_of_frame(*commanded_, static_cast<int>(next_pose_), rate_hz_);
+    return true;
 }
 
 /// Sets the rig of the truth, that which the frames are told to come from.
@@ -390,7 +388,7 @@ bool SceneSource::use_known_images(KnownImages known) {
 
 Result<std::optional<StereoFrame>> SceneSource::next() {
     while (has_next()) {
-        const StampedPose& now = truth_.trajectory[next_pose_];
+        const StampedPose& now = truth_.trajectory[commanded_ ? 0 : next_pose_];
         const InjectedFault* fault = nullptr;
         if (next_fault_ < faults_.size() &&
             faults_[next_fault_].frame == static_cast<int>(next_pose_)) {

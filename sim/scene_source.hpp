@@ -107,8 +107,8 @@ class SceneSource final : public camera::FrameSource {
     }
     /// Time of the motion from which on nothing was exposed yet.
     [[nodiscard]] double now_s() const noexcept;
-    /// Poses of all frames, also of those that are still to come unless it is commanded, and the
-    /// scene.
+    /// Poses of all frames, also of those that are still to come, and the scene. Of a commanded
+    /// source, which may run for hours, the pose of the last frame alone.
     [[nodiscard]] const SceneTruth& truth() const noexcept { return truth_; }
     /// What was injected into the whole recording. `InjectedFault::frame` counts the poses of
     /// `truth().trajectory`; a dropped one has no StereoFrame, so indices of frames stay behind.
