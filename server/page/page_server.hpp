@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/page/page_feed.hpp"
+#include "server/page/page_map.hpp"
+#include "server/page/page_messages.hpp"
+#include "server/page/playback.hpp"
+#include "server/page/steering.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::page {
+
+struct PageServerConfig {
+    std::string bind_address = "127.0.0.1";  ///< another than loopback needs a token
+    std::uint16_t port = 8080;               ///< 0 = any free one
+    int more_ports = 16;                     ///< tried after it, where others are taken
+    std::string token;                       ///< of the WebSocket's URL, as ?token=
+    std::size_t max_viewers = 16;
+    std::size_t max_connections = 64;  ///< with those that fetch files
+
+    /// The first problem in words, or nullptr.
+    [[nodiscard]] const char* problem() const;
+};
+
+/// What pages may do to the source.
+struct PageControls {
+    Steering steering;  ///< followed where the hello says can_steer
+    Playback playback;
+};
+
+class PageSockets;
+
+/// Serves the embedded page over HTTP and its messages (messages.json) over a WebSocket at /page,
+/// on the thread that calls `run`. A viewer that is slow is sent less often, never what is old: the
+/// next message is made when the last one has left. Who sends what is not understood is told so and
+/// let go.
+class PageServer {
+  public:
+    /// Listens. Errors name the address and what is in the way.
+    [[nodiscard]] static Result<std::unique_ptr<PageServer>> open(const PageServerConfig& config,
+                                                                  PageFeed& feed,
+                                                                  PageControls& controls);
+    PageServer(const PageServer&) = delete;
+    PageServer& operator=(const PageServer&) = delete;
+    ~PageServer();
+
+    /// Before `run`, and from any thread whenever something in it changed. `colours`: what of the
+    /// machine the ground is coloured by.
+    void introduce(PageHello hello, ColourLimits colours);
+    /// Until `stop`.
+    void run();
+    /// From any thread.
+    void stop();
+    [[nodiscard]] std::uint16_t port() const noexcept;
+
+  private:
+    explicit PageServer(std::unique_ptr<PageSockets> sockets);
+    std::unique_ptr<PageSockets> sockets_;
+};
+
+}  // namespace surefoot::page

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+import { byId, make, setText } from "./dom.ts";
+import { kDirections, stateSentence } from "./directions.ts";
+import { LayerView } from "./layer_view.ts";
+import type { ImageMessage } from "./messages.ts";
+import { StagePlot } from "./stage_plot.ts";
+import type { GateVerdict, Store } from "./store.ts";
+import { TrackView } from "./track_view.ts";
+
+const kHealth = ["lost", "degraded", "ok"];
+const kShownVerdicts = 12;
+
+/// For the engineer: pictures, layers, way, times and the last verdicts.
+export class EngineerView {
+  readonly #store: Store;
+  readonly #layer: LayerView;
+  readonly #track: TrackView;
+  readonly #plot: StagePlot;
+  #shown = new Map<number, ImageMessage>();
+  #verdicts = -1;
+  #tables = "";
+
+  constructor(store: Store) {
+    this.#store = store;
+    this.#layer = new LayerView(store);
+    this.#track = new TrackView(byId<HTMLCanvasElement>("track"), store);
+    this.#plot = new StagePlot(byId("stage-plot"), store);
+  }
+
+  /// What this view needs of the service, beyond the map.
+  get wanted(): { layers: string[]; images: string[] } {
+    const { hello } = this.#store;
+    return { layers: this.#layer.wanted ? [this.#layer.wanted] : [], images: hello?.images ?? [] };
+  }
+
+  draw(): void {
+    this.#layer.draw();
+    this.#track.draw();
+    this.#plot.draw();
+    for (const which of [0, 1]) this.#drawImage(which);
+    this.#drawTables();
+    this.#drawVerdicts();
+  }
+
+  #drawImage(which: number): void {
+    const image = this.#store.images.get(which);
+    if (!image || this.#shown.get(which) === image) return;
+    this.#shown.set(which, image);
+    const element = byId<HTMLImageElement>(which === 0 ? "image-left" : "image-disparity");
+    const before = element.src;
+    element.src = URL.createObjectURL(new Blob([image.jpeg], { type: "image/jpeg" }));
+    element.hidden = false;
+    if (before.startsWith("blob:")) URL.revokeObjectURL(before);
+  }
+
+  #drawTables(): void {
+    const { status, health, pose, hello } = this.#store;
+    const key = JSON.stringify([status, health, pose?.health, hello?.program]);
+    if (key === this.#tables) return;
+    this.#tables = key;
+    const facts: [string, string][] = [
+      ["Source", status ? `${status.state}${status.text ? `: ${status.text}` : ""}` : "not heard of"],
+      ["Frames", status ? `${status.frames}, ${status.rate_hz.toFixed(1)} each second` : ""],
+      ["Pose", pose ? (kHealth[pose.health] ?? "?") : ""],
+      ["Health", status ? [status.health, ...status.reasons].join(", ") : ""],
+      ["Gate", stateSentence(health?.state, health?.why)],
+      ["Age of the frame", health?.frame_age_ms == null ? "" : `${health.frame_age_ms.toFixed(0)} ms`],
+      ["Age of the pose", health?.pose_age_ms == null ? "" : `${health.pose_age_ms.toFixed(0)} ms`],
+      ["Questions", health ? `${health.asked} asked, ${health.allowed} allowed` : ""],
+      ["Pages", status ? String(status.viewers) : ""],
+      ["Program", hello?.program ?? ""],
+    ];
+    byId("facts").replaceChildren(
+      ...facts.flatMap(([name, value]) => [make("dt", { text: name }), make("dd", { text: value || "-" })]),
+    );
+    const rows = (status?.stages ?? []).map(({ name, last_ms, median_ms }) =>
+      make(
+        "tr",
+        {},
+        make("th", { scope: "row", text: name }),
+        make("td", { text: last_ms.toFixed(2) }),
+        make("td", { text: median_ms.toFixed(2) }),
+      ),
+    );
+    byId("stage-rows").replaceChildren(...rows);
+  }
+
+  #drawVerdicts(): void {
+    const { verdicts } = this.#store;
+    const newest = verdicts[0]?.received_at.getTime() ?? 0;
+    if (newest === this.#verdicts) return;
+    this.#verdicts = newest;
+    byId("verdict-rows").replaceChildren(
+      ...verdicts.slice(0, kShownVerdicts).map((verdict) => this.#verdictRow(verdict)),
+    );
+    setText(
+      byId("verdict-note"),
+      verdicts.length === 0 ? "Nobody has asked the gate since this page was opened." : "",
+    );
+  }
+
+  #verdictRow({ received_at, command, verdict, text, reasons, evidence }: GateVerdict): HTMLTableRowElement {
+    const name = kDirections.find(({ code }) => code === command)?.words ?? "";
+    const sign = verdict === "OK" ? "allowed" : verdict === "NOT_TRAVERSABLE" ? "not" : "cannot";
+    return make(
+      "tr",
+      {},
+      make("td", { text: received_at.toLocaleTimeString() }),
+      make("td", { text: `${command} ${name}` }),
+      make("td", {}, make("span", { class: "tag", "data-sign": sign, text: verdict })),
+      make("td", { text: text || "-" }),
+      make(
+        "td",
+        {},
+        make(
+          "details",
+          {},
+          make("summary", { text: reasons.join(", ") || "evidence" }),
+          make("pre", { text: JSON.stringify(evidence ?? {}, null, 1) }),
+        ),
+      ),
+    );
+  }
+}

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the service says, as server/page/messages.json writes it down. The tables below are compared with
+/// that file by a test. Nothing here knows a socket, a clock or a picture.
+
+export const kProtocol = 1;
+
+type FieldType = "u8" | "u16" | "u32" | "u64" | "i16" | "i32" | "i64" | "f32" | "f64";
+type Fields = readonly (readonly [string, FieldType])[];
+/// 64-bit whole numbers are bigint: a time in nanoseconds is larger than what a number holds exactly.
+type RecordOf<F extends Fields> = {
+  [E in F[number] as E[0]]: E[1] extends "u64" | "i64" ? bigint : number;
+};
+
+export const kHeaderFields = [
+  ["kind", "u8"],
+  ["protocol", "u8"],
+  ["reserved", "u16"],
+] as const;
+export const kMapFields = [
+  ["map_version", "u64"],
+  ["frame_time_ns", "i64"],
+  ["origin_x_tenth_mm", "i64"],
+  ["origin_y_tenth_mm", "i64"],
+  ["base_z_tenth_mm", "i32"],
+  ["resolution_tenth_mm", "u32"],
+  ["nx", "u16"],
+  ["ny", "u16"],
+  ["whole", "u8"],
+  ["reserved_1", "u8"],
+  ["edge_count", "u16"],
+  ["run_count", "u32"],
+] as const;
+export const kEdgeFields = [
+  ["from_x_tenth_mm", "i32"],
+  ["from_y_tenth_mm", "i32"],
+  ["to_x_tenth_mm", "i32"],
+  ["to_y_tenth_mm", "i32"],
+  ["upper_tenth_mm", "i32"],
+  ["lower_tenth_mm", "i32"],
+] as const;
+export const kRunFields = [
+  ["first", "u32"],
+  ["count", "u32"],
+] as const;
+export const kCellFields = [
+  ["height_mm", "i16"],
+  ["sigma_mm", "u8"],
+  ["state", "u8"],
+] as const;
+export const kPoseFields = [
+  ["time_ns", "i64"],
+  ["x_m", "f64"],
+  ["y_m", "f64"],
+  ["z_m", "f64"],
+  ["qx", "f32"],
+  ["qy", "f32"],
+  ["qz", "f32"],
+  ["qw", "f32"],
+  ["sigma_x_m", "f32"],
+  ["sigma_y_m", "f32"],
+  ["sigma_xy_m2", "f32"],
+  ["sigma_yaw_rad", "f32"],
+  ["health", "u8"],
+  ["camera", "u8"],
+  ["joint_count", "u16"],
+] as const;
+export const kJointFields = [["angle_rad", "f32"]] as const;
+export const kImageFields = [
+  ["time_ns", "i64"],
+  ["which", "u8"],
+  ["reserved_1", "u8"],
+  ["reserved_2", "u16"],
+] as const;
+export const kLayerFields = [
+  ["map_version", "u64"],
+  ["origin_x_tenth_mm", "i64"],
+  ["origin_y_tenth_mm", "i64"],
+  ["resolution_tenth_mm", "u32"],
+  ["nx", "u16"],
+  ["ny", "u16"],
+  ["index", "u16"],
+  ["reserved_1", "u16"],
+] as const;
+
+export const kKind = { map: 1, pose: 2, image: 3, layer: 4 } as const;
+
+/// Bits 0-1 of a cell's state, and the flags above them.
+export const kGround = { unknown: 0, free: 1, unsafe: 2, unsure: 3 } as const;
+export const kGroundMask = 3;
+export const kVouched = 4;
+export const kDropEvidence = 8;
+export const kLowOverhead = 16;
+export const kUnknownHeight = -32768;
+
+/// No map of the service has more cells (40 x 40 m of 25 mm has 2.6 million).
+const kMostCells = 4_000_000;
+
+export type Edge = RecordOf<typeof kEdgeFields>;
+/// Cells of a run lie one behind the other in `cells`, 4 bytes each, from byte `at` on.
+export interface Run {
+  first: number;
+  count: number;
+  at: number;
+}
+export interface MapMessage extends RecordOf<typeof kMapFields> {
+  kind: "map";
+  edges: Edge[];
+  runs: Run[];
+  cells: DataView;
+}
+export interface PoseMessage extends RecordOf<typeof kPoseFields> {
+  kind: "pose";
+  joints_rad: number[];
+}
+export interface ImageMessage extends RecordOf<typeof kImageFields> {
+  kind: "image";
+  jpeg: Uint8Array<ArrayBuffer>;
+}
+export interface LayerMessage extends RecordOf<typeof kLayerFields> {
+  kind: "layer";
+  values: Float32Array;
+}
+export interface Unreadable {
+  kind: "unreadable";
+  why: string;
+}
+export type BinaryMessage = MapMessage | PoseMessage | ImageMessage | LayerMessage | Unreadable;
+
+const kSize: Record<FieldType, number> = {
+  u8: 1,
+  u16: 2,
+  u32: 4,
+  u64: 8,
+  i16: 2,
+  i32: 4,
+  i64: 8,
+  f32: 4,
+  f64: 8,
+};
+
+export function sizeOf(fields: Fields): number {
+  return fields.reduce((sum, [, type]) => sum + kSize[type], 0);
+}
+
+function readField(view: DataView, at: number, type: FieldType): number | bigint {
+  switch (type) {
+    case "u8":
+      return view.getUint8(at);
+    case "u16":
+      return view.getUint16(at, true);
+    case "u32":
+      return view.getUint32(at, true);
+    case "u64":
+      return view.getBigUint64(at, true);
+    case "i16":
+      return view.getInt16(at, true);
+    case "i32":
+      return view.getInt32(at, true);
+    case "i64":
+      return view.getBigInt64(at, true);
+    case "f32":
+      return view.getFloat32(at, true);
+    case "f64":
+      return view.getFloat64(at, true);
+  }
+}
+
+function read<F extends Fields>(view: DataView, at: number, fields: F): RecordOf<F> {
+  const record: Record<string, number | bigint> = {};
+  for (const [name, type] of fields) {
+    record[name] = readField(view, at, type);
+    at += kSize[type];
+  }
+  return record as RecordOf<F>;
+}
+
+function unreadable(why: string): Unreadable {
+  return { kind: "unreadable", why };
+}
+
+function decodeMap(view: DataView, at: number): BinaryMessage {
+  if (view.byteLength < at + sizeOf(kMapFields)) return unreadable("map: it ends within its head");
+  const head = read(view, at, kMapFields);
+  at += sizeOf(kMapFields);
+  const cell_count = head.nx * head.ny;
+  if (cell_count === 0 || cell_count > kMostCells || head.resolution_tenth_mm === 0)
+    return unreadable(`map: ${head.nx} x ${head.ny} cells of ${head.resolution_tenth_mm} tenths of a mm`);
+  if (view.byteLength < at + head.edge_count * sizeOf(kEdgeFields))
+    return unreadable("map: it ends within its edges");
+  const edges: Edge[] = [];
+  for (let i = 0; i < head.edge_count; ++i, at += sizeOf(kEdgeFields))
+    edges.push(read(view, at, kEdgeFields));
+  const runs: Run[] = [];
+  for (let i = 0; i < head.run_count; ++i) {
+    if (view.byteLength < at + sizeOf(kRunFields)) return unreadable(`map: it ends before run ${i}`);
+    const { first, count } = read(view, at, kRunFields);
+    at += sizeOf(kRunFields);
+    if (first + count > cell_count) return unreadable(`map: run ${i} ends outside of the map`);
+    if (view.byteLength < at + count * sizeOf(kCellFields)) return unreadable(`map: it ends within run ${i}`);
+    runs.push({ first, count, at });
+    at += count * sizeOf(kCellFields);
+  }
+  if (at !== view.byteLength) return unreadable(`map: ${view.byteLength - at} bytes too many`);
+  return { kind: "map", ...head, edges, runs, cells: view };
+}
+
+function decodePose(view: DataView, at: number): BinaryMessage {
+  if (view.byteLength < at + sizeOf(kPoseFields)) return unreadable("pose: it ends within its head");
+  const head = read(view, at, kPoseFields);
+  at += sizeOf(kPoseFields);
+  if (view.byteLength !== at + head.joint_count * sizeOf(kJointFields))
+    return unreadable(`pose: ${view.byteLength} bytes for ${head.joint_count} joints`);
+  const joints_rad: number[] = [];
+  for (let i = 0; i < head.joint_count; ++i) joints_rad.push(view.getFloat32(at + 4 * i, true));
+  const numbers = [head.x_m, head.y_m, head.z_m, head.qx, head.qy, head.qz, head.qw];
+  if (!numbers.every(Number.isFinite)) return unreadable("pose: a number of it is none");
+  return { kind: "pose", ...head, joints_rad };
+}
+
+function decodeImage(view: DataView, at: number): BinaryMessage {
+  if (view.byteLength < at + sizeOf(kImageFields)) return unreadable("image: it ends within its head");
+  const head = read(view, at, kImageFields);
+  const start = view.byteOffset + at + sizeOf(kImageFields);
+  const jpeg = new Uint8Array(view.buffer as ArrayBuffer, start, view.byteOffset + view.byteLength - start);
+  return { kind: "image", ...head, jpeg };
+}
+
+function decodeLayer(view: DataView, at: number): BinaryMessage {
+  if (view.byteLength < at + sizeOf(kLayerFields)) return unreadable("layer: it ends within its head");
+  const head = read(view, at, kLayerFields);
+  at += sizeOf(kLayerFields);
+  const count = head.nx * head.ny;
+  if (count === 0 || count > kMostCells || view.byteLength !== at + 4 * count)
+    return unreadable(`layer: ${view.byteLength - at} bytes for ${head.nx} x ${head.ny} values`);
+  const values = new Float32Array(count);
+  for (let i = 0; i < count; ++i) values[i] = view.getFloat32(at + 4 * i, true);
+  return { kind: "layer", ...head, values };
+}
+
+/// One binary message. What cannot be read is said, never guessed.
+export function decode(data: ArrayBuffer): BinaryMessage {
+  const view = new DataView(data);
+  if (view.byteLength < sizeOf(kHeaderFields)) return unreadable("a message without a head");
+  const header = read(view, 0, kHeaderFields);
+  if (header.protocol !== kProtocol)
+    return unreadable(`protocol ${header.protocol}, this page speaks ${kProtocol}`);
+  const at = sizeOf(kHeaderFields);
+  switch (header.kind) {
+    case kKind.map:
+      return decodeMap(view, at);
+    case kKind.pose:
+      return decodePose(view, at);
+    case kKind.image:
+      return decodeImage(view, at);
+    case kKind.layer:
+      return decodeLayer(view, at);
+    default:
+      return unreadable(`a message of kind ${header.kind}`);
+  }
+}
+
+export interface Box {
+  center_x_m: number;
+  center_y_m: number;
+  length_m: number;
+  width_m: number;
+}
+export interface BodyPart extends Box {
+  name: string;
+  low_m: number;
+  high_m: number;
+}
+export interface Movement {
+  code: number;
+  name: string;
+  forward_m: number;
+  left_m: number;
+  turn_rad: number;
+}
+export interface Machine {
+  name: string;
+  sole_depth_m: number;
+  vouch_radius_m: number;
+  feet: { left: Box; right: Box };
+  movements: Movement[];
+  body: BodyPart[];
+  joints: string[];
+}
+export interface Hello {
+  kind: "hello";
+  protocol: number;
+  program: string;
+  source: string;
+  source_kind: "simulated" | "recording" | "live";
+  gate_port: number;
+  layers: string[];
+  images: string[];
+  machine: Machine | null;
+  blind_zone: [number, number][];
+  can_steer: boolean;
+  rate_hz: number;
+}
+export interface Stage {
+  name: string;
+  last_ms: number;
+  median_ms: number;
+}
+export interface Status {
+  kind: "status";
+  time_ns: number | string;
+  frames: number;
+  rate_hz: number;
+  state: "running" | "waiting" | "paused" | "ended";
+  text: string;
+  health: string;
+  reasons: string[];
+  stages: Stage[];
+  viewers: number;
+  playback: Playback | null;
+}
+/// How a recording is played; frames 0 = nobody knows how many.
+export interface Playback {
+  frame: number;
+  frames: number;
+  paused: boolean;
+  speed: number;
+}
+/// Who holds the joystick, and what became of the last movement that was asked for (asked 0: none yet).
+export interface Steer {
+  kind: "steer";
+  yours: boolean;
+  taken: boolean;
+  asked: number;
+  verdict: string;
+  moved: boolean;
+  text: string;
+}
+export type JsonMessage = Hello | Status | Steer;
+
+const kHelloKeys = [
+  "program",
+  "source",
+  "source_kind",
+  "gate_port",
+  "layers",
+  "images",
+  "machine",
+  "blind_zone",
+];
+const kStatusKeys = ["state", "text", "frames", "stages", "playback"];
+const kSteerKeys = ["yours", "taken", "asked", "moved", "text"];
+
+/// A text message; undefined for what this page has no use for or cannot read.
+export function decodeJson(text: string): JsonMessage | undefined {
+  let message: unknown;
+  try {
+    message = JSON.parse(text);
+  } catch {
+    return undefined;
+  }
+  if (typeof message !== "object" || message === null) return undefined;
+  const has = (keys: string[]) => keys.every((key) => key in message);
+  const kind = "kind" in message ? message.kind : "";
+  if (kind === "hello" && has(kHelloKeys)) return message as Hello;
+  if (kind === "status" && has(kStatusKeys)) return message as Status;
+  if (kind === "steer" && has(kSteerKeys)) return message as Steer;
+  return undefined;
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { LinkState } from "./freshness.ts";
+
+const kFirstWait_ms = 250;
+const kLongestWait_ms = 4000;
+
+/// How long to wait before attempt number `attempt` (0 = the first again): doubled up to 4 s.
+export function wait_ms(attempt: number): number {
+  return Math.min(kLongestWait_ms, kFirstWait_ms * 2 ** attempt);
+}
+
+export interface SocketEvents {
+  opened(): void;
+  message(data: ArrayBuffer | string): void;
+  /// Also called when nothing was ever open. `retry_in_ms`: until the next attempt; `reason`: what the other side
+  /// said, often nothing.
+  closed(retry_in_ms: number, reason: string): void;
+}
+
+/// A WebSocket that opens again by itself. `address` is asked before each attempt; undefined = not yet known.
+export class ReconnectingSocket {
+  state: LinkState = "opening";
+  #socket: WebSocket | undefined;
+  #attempt = 0;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  readonly #address: () => string | undefined;
+  readonly #events: SocketEvents;
+
+  constructor(address: () => string | undefined, events: SocketEvents) {
+    this.#address = address;
+    this.#events = events;
+  }
+
+  /// Opens now, and leaves what was open.
+  open(): void {
+    clearTimeout(this.#timer);
+    this.#leave();
+    const address = this.#address();
+    if (address === undefined) return;
+    this.state = this.#attempt === 0 ? "opening" : "away";
+    const socket = new WebSocket(address);
+    socket.binaryType = "arraybuffer";
+    this.#socket = socket;
+    socket.onopen = () => {
+      this.state = "open";
+      this.#events.opened();
+    };
+    socket.onmessage = ({ data }) => {
+      this.#attempt = 0;
+      this.#events.message(data as ArrayBuffer | string);
+    };
+    socket.onclose = ({ reason }) => this.#again(reason);
+  }
+
+  /// Closes a connection that says nothing, and begins anew.
+  restart(): void {
+    this.#leave();
+    this.#again("");
+  }
+
+  /// False when nobody is there to take it.
+  send(message: unknown): boolean {
+    if (this.state !== "open" || !this.#socket) return false;
+    this.#socket.send(JSON.stringify(message));
+    return true;
+  }
+
+  #again(reason: string): void {
+    this.state = "away";
+    this.#socket = undefined;
+    const wait = wait_ms(this.#attempt++);
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.open(), wait);
+    this.#events.closed(wait, reason);
+  }
+
+  #leave(): void {
+    const socket = this.#socket;
+    this.#socket = undefined;
+    if (!socket) return;
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    socket.close();
+  }
+}

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+import {
+  AmbientLight,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CanvasTexture,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  EdgesGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Scene,
+  SRGBColorSpace,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { isDark, make } from "./dom.ts";
+import type { GroundMap } from "./ground_map.ts";
+import { kCell_px, kDarkColors, kLightColors, paintGround, type GroundWindow } from "./ground_picture.ts";
+import { kGround, type BodyPart, type Box, type Machine } from "./messages.ts";
+import type { Place, Store } from "./store.ts";
+
+/// Cells along the side of the mesh: 6 m of 25 mm; of a larger map the part around the machine is shown.
+const kMostCells = 240;
+/// A software renderer draws a few pictures a second: it is not asked for more than it must.
+const kPeriod_ms = 60;
+const kFootHeight_m = 0.08;
+
+/// The ground as a lit mesh, and the machine's boxes. Coordinates are odom from `#zero` on; what is unknown is
+/// a hole. style.css makes the picture grey when it is old.
+export class Scene3d {
+  readonly #store: Store;
+  readonly #element: HTMLElement;
+  readonly #renderer: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #camera = new PerspectiveCamera(45, 1, 0.05, 100);
+  readonly #picture = make("canvas");
+  readonly #texture = new CanvasTexture(this.#picture);
+  readonly #ground = new Mesh(
+    new BufferGeometry(),
+    new MeshLambertMaterial({ map: this.#texture, side: DoubleSide }),
+  );
+  readonly #drops = new Mesh(
+    new BufferGeometry(),
+    new MeshBasicMaterial({ color: 0xd55e00, side: DoubleSide, transparent: true, opacity: 0.75 }),
+  );
+  readonly #rims = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: 0x14171c }));
+  readonly #machine = new Group();
+  #machine_of: Machine | null | undefined;
+  #zero: Place | undefined;
+  #view = { azimuth_rad: Math.PI + 0.85, elevation_rad: 0.72, distance_m: 4.4 };
+  #drawn_at_ms = 0;
+  #painted = "";
+
+  /// Throws where the browser has no WebGL.
+  constructor(element: HTMLElement, store: Store, changed: () => void) {
+    this.#element = element;
+    this.#store = store;
+    this.#renderer = new WebGLRenderer({ antialias: true });
+    const canvas = this.#renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute(
+      "aria-label",
+      "The ground and the machine in three dimensions; arrow keys turn the view",
+    );
+    element.append(canvas);
+    this.#texture.colorSpace = SRGBColorSpace;
+    this.#texture.generateMipmaps = true;
+    this.#texture.anisotropy = 8;
+    this.#camera.up.set(0, 0, 1);
+    const sun = new DirectionalLight(0xffffff, 2.2);
+    sun.position.set(-2, 3, 4);
+    this.#scene.add(
+      new AmbientLight(0xffffff, 1.7),
+      sun,
+      this.#ground,
+      this.#drops,
+      this.#rims,
+      this.#machine,
+    );
+    this.#ground.frustumCulled = this.#drops.frustumCulled = this.#rims.frustumCulled = false;
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons !== 1) return;
+      this.#turn(-event.movementX * 0.008, event.movementY * 0.006);
+      changed();
+    });
+    canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.zoom(event.deltaY > 0 ? 1 : -1);
+        changed();
+      },
+      { passive: false },
+    );
+    canvas.addEventListener("keydown", (event) => {
+      const turn = {
+        ArrowLeft: [-0.15, 0],
+        ArrowRight: [0.15, 0],
+        ArrowUp: [0, 0.1],
+        ArrowDown: [0, -0.1],
+      }[event.key];
+      if (!turn) return;
+      event.preventDefault();
+      this.#turn(turn[0], turn[1]);
+      changed();
+    });
+  }
+
+  zoom(by: -1 | 1): void {
+    this.#view.distance_m = Math.max(1.5, Math.min(12, this.#view.distance_m * 1.25 ** by));
+  }
+
+  draw(): void {
+    const now_ms = performance.now();
+    if (now_ms - this.#drawn_at_ms < kPeriod_ms) return;
+    const { place, pose, map, hello } = this.#store;
+    const width = this.#element.clientWidth;
+    const height = this.#element.clientHeight;
+    if (width === 0 || height === 0) return;
+    this.#drawn_at_ms = now_ms;
+    this.#scene.background = new Color(isDark() ? 0x1e2127 : 0xced3db);
+    if (place && pose) {
+      this.#zero ??= place;
+      const zero = this.#zero;
+      if (map.nx > 0) this.#drawGround(map, place, zero);
+      this.#drawMachine(hello?.machine);
+      this.#machine.position.set(place.x_m - zero.x_m, place.y_m - zero.y_m, pose.z_m);
+      this.#machine.quaternion.set(pose.qx, pose.qy, pose.qz, pose.qw);
+      const floor_m = pose.z_m - (hello?.machine?.sole_depth_m ?? 1);
+      this.#look(new Vector3(place.x_m - zero.x_m, place.y_m - zero.y_m, floor_m + 0.45), place.yaw_rad);
+    }
+    const ratio = Math.min(1.5, devicePixelRatio || 1);
+    if (this.#renderer.getPixelRatio() !== ratio) this.#renderer.setPixelRatio(ratio);
+    const canvas = this.#renderer.domElement;
+    if (
+      canvas.clientWidth !== width ||
+      canvas.clientHeight !== height ||
+      canvas.width !== Math.floor(width * ratio)
+    )
+      this.#renderer.setSize(width, height);
+    this.#camera.aspect = width / height;
+    this.#camera.updateProjectionMatrix();
+    this.#renderer.render(this.#scene, this.#camera);
+  }
+
+  #turn(azimuth_rad: number, elevation_rad: number): void {
+    this.#view.azimuth_rad += azimuth_rad;
+    this.#view.elevation_rad = Math.max(0.08, Math.min(1.5, this.#view.elevation_rad + elevation_rad));
+  }
+
+  /// From behind the machine and to its right, wherever it turns.
+  #look(target: Vector3, yaw_rad: number): void {
+    const { azimuth_rad, elevation_rad, distance_m } = this.#view;
+    const across_m = distance_m * Math.cos(elevation_rad);
+    this.#camera.position.set(
+      target.x + across_m * Math.cos(yaw_rad + azimuth_rad),
+      target.y + across_m * Math.sin(yaw_rad + azimuth_rad),
+      target.z + distance_m * Math.sin(elevation_rad),
+    );
+    // Some ground ahead is worth more than the machine in the middle.
+    this.#camera.lookAt(target.x + 0.5 * Math.cos(yaw_rad), target.y + 0.5 * Math.sin(yaw_rad), target.z);
+  }
+
+  #drawGround(map: GroundMap, place: Place, zero: Place): void {
+    const cells = Math.min(kMostCells, Math.max(map.nx, map.ny));
+    const first = (at_m: number, origin_m: number, count: number) =>
+      Math.max(0, Math.min(count - cells, Math.floor((at_m - origin_m) / map.resolution_m) - (cells >> 1)));
+    const window: GroundWindow = {
+      first_ix: first(place.x_m, map.origin_x_m, map.nx),
+      first_iy: first(place.y_m, map.origin_y_m, map.ny),
+      cells,
+    };
+    const key = [map.version, map.frame_time_ns, ...Object.values(window), isDark()].join();
+    if (key === this.#painted) return;
+    this.#painted = key;
+    const side_px = cells * kCell_px;
+    const resized = this.#picture.width !== side_px;
+    if (resized) this.#picture.width = this.#picture.height = side_px;
+    if (resized) this.#texture.dispose();
+    const image = new ImageData(side_px, side_px);
+    paintGround(map, window, isDark() ? kDarkColors : kLightColors, new Uint32Array(image.data.buffer));
+    this.#picture.getContext("2d")!.putImageData(image, 0, 0);
+    this.#texture.needsUpdate = true;
+    this.#ground.geometry.dispose();
+    this.#ground.geometry = groundMesh(map, window, zero);
+    this.#drawEdges(map, zero);
+  }
+
+  /// A drop stands as a curtain from its upper to its lower ground.
+  #drawEdges(map: GroundMap, zero: Place): void {
+    const corners: number[] = [];
+    const rims: number[] = [];
+    const x0_m = map.origin_x_m - zero.x_m;
+    const y0_m = map.origin_y_m - zero.y_m;
+    for (const edge of map.edges) {
+      const [ax, ay] = [x0_m + edge.from_x_tenth_mm * 1e-4, y0_m + edge.from_y_tenth_mm * 1e-4];
+      const [bx, by] = [x0_m + edge.to_x_tenth_mm * 1e-4, y0_m + edge.to_y_tenth_mm * 1e-4];
+      const [up, down] = [edge.upper_tenth_mm * 1e-4 + 0.005, edge.lower_tenth_mm * 1e-4];
+      corners.push(ax, ay, up, bx, by, up, bx, by, down, ax, ay, up, bx, by, down, ax, ay, down);
+      rims.push(ax, ay, up, bx, by, up);
+    }
+    for (const [object, values] of [
+      [this.#drops, corners],
+      [this.#rims, rims],
+    ] as const) {
+      object.geometry.dispose();
+      object.geometry = new BufferGeometry().setAttribute(
+        "position",
+        new BufferAttribute(new Float32Array(values), 3),
+      );
+    }
+  }
+
+  #drawMachine(machine: Machine | null | undefined): void {
+    if (machine === this.#machine_of) return;
+    this.#machine_of = machine;
+    this.#machine.clear();
+    if (!machine) return;
+    const body = new MeshLambertMaterial({
+      color: 0x8fa3b8,
+      transparent: true,
+      opacity: 0.4,
+      depthWrite: false,
+    });
+    const foot = new MeshLambertMaterial({ color: 0xf5f7fa });
+    const line = new LineBasicMaterial({ color: isDark() ? 0xe9eef4 : 0x14171c });
+    const add = (box: Box, low_m: number, high_m: number, material: MeshLambertMaterial) => {
+      const shape = new BoxGeometry(box.length_m, box.width_m, high_m - low_m);
+      for (const object of [new Mesh(shape, material), new LineSegments(new EdgesGeometry(shape), line)]) {
+        object.position.set(box.center_x_m, box.center_y_m, (low_m + high_m) / 2 - machine.sole_depth_m);
+        this.#machine.add(object);
+      }
+    };
+    for (const part of machine.body as BodyPart[]) add(part, part.low_m, part.high_m, body);
+    for (const one of [machine.feet.left, machine.feet.right]) add(one, 0, kFootHeight_m, foot);
+  }
+}
+
+/// Corners are the middles of cells; a face stands only where all its four cells are known.
+export function groundMesh(map: GroundMap, window: GroundWindow, zero: Place): BufferGeometry {
+  const { first_ix, first_iy, cells } = window;
+  const positions = new Float32Array(3 * cells * cells);
+  const uvs = new Float32Array(2 * cells * cells);
+  const known = new Uint8Array(cells * cells);
+  for (let row = 0, i = 0; row < cells; ++row)
+    for (let column = 0; column < cells; ++column, ++i) {
+      const ix = first_ix + column;
+      const iy = first_iy + row;
+      positions[3 * i] = map.origin_x_m + (ix + 0.5) * map.resolution_m - zero.x_m;
+      positions[3 * i + 1] = map.origin_y_m + (iy + 0.5) * map.resolution_m - zero.y_m;
+      uvs[2 * i] = (column + 0.5) / cells;
+      uvs[2 * i + 1] = (row + 0.5) / cells;
+      if (ix >= map.nx || iy >= map.ny) continue;
+      const cell = iy * map.nx + ix;
+      const height_m = map.height_m(cell);
+      known[i] = map.ground(cell) !== kGround.unknown && !Number.isNaN(height_m) ? 1 : 0;
+      positions[3 * i + 2] = known[i] ? height_m : 0;
+    }
+  const faces: number[] = [];
+  for (let row = 0; row + 1 < cells; ++row)
+    for (let column = 0; column + 1 < cells; ++column) {
+      const a = row * cells + column,
+        b = a + 1,
+        c = a + cells,
+        d = c + 1;
+      if (known[a] && known[b] && known[c] && known[d]) faces.push(a, b, d, a, d, c);
+    }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(positions, 3));
+  geometry.setAttribute("uv", new BufferAttribute(uvs, 2));
+  geometry.setIndex(new BufferAttribute(new Uint32Array(faces), 1));
+  geometry.computeVertexNormals();
+  return geometry;
+}

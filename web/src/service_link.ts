@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+import { decode, decodeJson, kProtocol, type BinaryMessage, type JsonMessage } from "./messages.ts";
+import { ReconnectingSocket } from "./reconnecting_socket.ts";
+import type { Store } from "./store.ts";
+
+/// What a page asks the service for.
+export interface Want {
+  layers: string[];
+  images: string[];
+  map_hz: number;
+  image_hz: number;
+}
+
+/// A connection that says nothing for so long is closed and opened anew.
+const kHopeless_ms = 5000;
+
+/// The page's own socket: hello, status, map, pose, pictures.
+export class ServiceLink {
+  readonly #store: Store;
+  readonly #socket: ReconnectingSocket;
+  #want: Want = { layers: [], images: [], map_hz: 5, image_hz: 2 };
+  #greeted: () => void;
+
+  constructor(store: Store, address: string, greeted: () => void) {
+    this.#store = store;
+    this.#greeted = greeted;
+    this.#socket = new ReconnectingSocket(() => address, {
+      opened: () => {
+        this.#arrivals.service = "open";
+        this.#arrivals.service_word_at_ms = performance.now();
+        this.#socket.send({ op: "want", ...this.#want });
+        store.changed();
+      },
+      message: (data) => this.#take(data),
+      closed: (retry_in_ms, reason) => {
+        if (reason) store.problem = `The service refused this page: ${reason}`;
+        this.#arrivals.service = "away";
+        store.steer = undefined;
+        this.#arrivals.retry_at_ms = performance.now() + retry_in_ms;
+        store.changed();
+      },
+    });
+  }
+
+  open(): void {
+    this.#socket.open();
+  }
+
+  want(want: Want): void {
+    if (JSON.stringify(want) === JSON.stringify(this.#want)) return;
+    this.#want = want;
+    this.#socket.send({ op: "want", ...want });
+  }
+
+  /// False when nobody is there to take it.
+  say(message: object): boolean {
+    return this.#socket.send(message);
+  }
+
+  /// To be called now and then.
+  watch(): void {
+    const word = this.#arrivals.service_word_at_ms;
+    if (this.#socket.state === "open" && word !== undefined && performance.now() - word > kHopeless_ms)
+      this.#socket.restart();
+  }
+
+  get #arrivals() {
+    return this.#store.arrivals;
+  }
+
+  #take(data: ArrayBuffer | string): void {
+    this.#arrivals.service_word_at_ms = performance.now();
+    if (typeof data === "string") this.#takeJson(decodeJson(data));
+    else this.#takeBinary(decode(data));
+    this.#store.changed();
+  }
+
+  #takeJson(message: JsonMessage | undefined): void {
+    const store = this.#store;
+    if (message?.kind === "hello") {
+      if (message.protocol !== kProtocol) {
+        store.problem = `The service speaks version ${message.protocol} and this page ${kProtocol}: load the page anew.`;
+        return;
+      }
+      store.problem = "";
+      store.hello = message;
+      this.#arrivals.has_machine = message.machine !== null;
+      this.#greeted();
+    } else if (message?.kind === "status") {
+      store.status = message;
+      this.#arrivals.source_state = message.state;
+      this.#arrivals.source_text = message.text;
+      const stages_ms = new Map(message.stages.map(({ name, last_ms }) => [name, last_ms]));
+      store.addStageTimes({ at_s: performance.now() / 1000, stages_ms, rate_hz: message.rate_hz });
+    } else if (message?.kind === "steer") {
+      store.steer = message;
+    }
+  }
+
+  #takeBinary(message: BinaryMessage): void {
+    const store = this.#store;
+    switch (message.kind) {
+      case "map":
+        this.#arrivals.map_at_ms = performance.now();
+        if (message.map_version < store.map.version) store.forgetTrack();
+        // All that the service has comes anew after each `want`.
+        if (!store.map.apply(message)) this.#socket.send({ op: "want", ...this.#want });
+        return;
+      case "pose":
+        this.#arrivals.pose_at_ms = performance.now();
+        store.pose = message;
+        if (store.place) store.addPlace(store.place);
+        return;
+      case "image":
+        store.images.set(message.which, message);
+        return;
+      case "layer":
+        store.layer = message;
+        return;
+      case "unreadable":
+        store.problem = `A message could not be read: ${message.why}`;
+    }
+  }
+}

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the signs, the banner and the colours say, without a browser.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { kDirections, ofState, sentence, signOf, spokenDirection, stateSentence } from "../build/unit/directions.js";
+import { judgeFreshness, kStale_ms } from "../build/unit/freshness.js";
+import { GroundMap } from "../build/unit/ground_map.js";
+import {
+  greyed,
+  groundShares,
+  kCell_px,
+  kDarkColors,
+  kLightColors,
+  paintGround,
+} from "../build/unit/ground_picture.js";
+import { cividis, paintLayer, rangeOf, shortNumber } from "../build/unit/layer_picture.js";
+import { joystickWords } from "../build/unit/joystick.js";
+import { frameWords } from "../build/unit/timeline.js";
+import { decode } from "../build/unit/messages.js";
+import { wait_ms } from "../build/unit/reconnecting_socket.js";
+import { arrayBuffer, encodeMap } from "./encode.mjs";
+import { kMachine } from "./fake_service.mjs";
+
+const verdict = (command, say, text = "") => ({ command, verdict: say, primary: "NONE", text });
+const outlookOf = (...verdicts) => ({ map_version: 1, state: "READY", verdicts });
+
+test("only a fresh OK is allowed", () => {
+  const outlook = outlookOf(
+    verdict(9, "OK"),
+    verdict(13, "NOT_TRAVERSABLE", "a drop"),
+    verdict(17, "ERROR", "too old"),
+    verdict(21, "MAYBE"),
+  );
+  const kinds = (fresh) => [9, 13, 17, 21, 23].map((code) => signOf(code, kMachine, outlook, fresh).kind);
+  assert.deepEqual(kinds(true), ["allowed", "not", "cannot", "cannot", "cannot"]);
+  assert.deepEqual(kinds(false), ["stale", "stale", "stale", "stale", "stale"]);
+  assert.equal(signOf(9, kMachine, undefined, true).kind, "cannot");
+  assert.equal(signOf(9, null, outlook, true).reason, "without a machine file no direction is judged");
+  assert.equal(signOf(9, undefined, outlook, false).kind, "stale");
+  assert.equal(signOf(9, { ...kMachine, movements: [] }, outlook, true).kind, "absent");
+});
+
+test("the joystick in words", () => {
+  const steer = { kind: "steer", yours: true, taken: true, asked: 9, verdict: "OK", moved: true, text: "" };
+  assert.match(joystickWords(0, undefined), /^Hold a sign or an arrow key/);
+  assert.match(joystickWords(0, { ...steer, yours: false, taken: false, asked: 0 }), /^Hold a sign/);
+  assert.equal(joystickWords(9, steer), "ahead: moved. Asking for ahead.");
+  const refused = { ...steer, moved: false, asked: 17, text: "ground that was never seen" };
+  assert.match(joystickWords(0, refused), /^back: stands - ground that was never seen\. Hold a sign/);
+  assert.match(joystickWords(0, { ...refused, asked: 10, text: "" }), /^movement 10: stands - the gate cannot/);
+  for (const held of [0, 9])
+    assert.equal(joystickWords(held, { ...steer, yours: false }), "Another page holds the joystick.");
+});
+
+test("frames are counted from one", () => {
+  assert.equal(frameWords({ frame: 0, frames: 600 }), "frame 1 of 600");
+  assert.equal(frameWords({ frame: 599, frames: 600 }), "frame 600 of 600");
+  assert.equal(frameWords({ frame: 12, frames: 0 }), "frame 13");
+});
+
+test("a recording that stands still keeps its last moment", () => {
+  const paused = { ...kFresh, service_word_at_ms: 60_000, source_state: "paused" };
+  const said = judgeFreshness(paused, 60_100);
+  assert.deepEqual([said.ground, said.verdicts], [true, true]);
+  assert.match(said.banner, /^Paused/);
+  assert.equal(judgeFreshness({ ...paused, outlook_at_ms: undefined }, 60_100).verdicts, false);
+  assert.equal(judgeFreshness({ ...paused, map_at_ms: undefined }, 60_100).ground, false);
+  assert.equal(judgeFreshness(paused, 70_000).ground, false, "a service that is silent");
+  assert.equal(judgeFreshness({ ...paused, service: "away" }, 60_100).verdicts, false);
+});
+
+test("an outlook of another state of the gate is none", () => {
+  const outlook = outlookOf(verdict(9, "OK"));
+  assert.equal(ofState(outlook, "READY"), outlook);
+  assert.equal(ofState(outlook, undefined), outlook);
+  assert.equal(ofState(outlook, "FAULT"), undefined);
+  assert.equal(ofState(undefined, "READY"), undefined);
+});
+
+test("the big line speaks of what was chosen, else of what is closed", () => {
+  const signs = (kinds) =>
+    new Map(kDirections.map(({ code }, i) => [code, { kind: kinds[i] ?? "allowed", word: "", reason: "" }]));
+  assert.equal(spokenDirection(17, signs([])).words, "back");
+  assert.equal(spokenDirection(undefined, signs(["not"])).words, "ahead");
+  assert.equal(spokenDirection(undefined, signs(["cannot", "not"])).words, "ahead");
+  assert.equal(spokenDirection(undefined, signs(["allowed", "cannot", "allowed", "not"])).words, "left");
+  assert.equal(spokenDirection(undefined, signs([])).words, "ahead");
+  assert.equal(spokenDirection(99, signs([])).words, "ahead");
+});
+
+test("the big line in words", () => {
+  const drop = outlookOf(verdict(9, "NOT_TRAVERSABLE", "drop of 0.17 m, 0.31 m ahead of the left foot"));
+  const said = (outlook, fresh) => sentence(kDirections[0], signOf(9, kMachine, outlook, fresh));
+  assert.equal(said(drop, true), "ahead: no - drop of 0.17 m, 0.31 m ahead of the left foot");
+  assert.equal(said(outlookOf(verdict(9, "OK")), true), "ahead: allowed");
+  assert.equal(said(drop, false), "no fresh data");
+  assert.equal(
+    stateSentence("FAULT", "MOUNT_MOVED"),
+    "The gate has stopped after a fault: the camera has moved on its mount",
+  );
+  assert.equal(stateSentence("WARMUP", "WARMUP"), "The gate is warming up");
+  assert.equal(stateSentence("READY", "NONE"), "The gate is ready");
+});
+
+const kFresh = {
+  service: "open",
+  gate: "open",
+  has_machine: true,
+  source_state: "running",
+  source_text: "",
+  service_word_at_ms: 1000,
+  pose_at_ms: 1000,
+  map_at_ms: 1000,
+  outlook_at_ms: 1000,
+};
+
+test("nothing is fresh longer than a second, whatever stops coming", () => {
+  assert.deepEqual(judgeFreshness(kFresh, 1000), { ground: true, verdicts: true, banner: "", detail: "" });
+  assert.ok(kStale_ms <= 900, "a period of the page's clock, 100 ms, must fit into the second");
+  const late = 1001 + kStale_ms;
+  const stopped = (name, banner, ground) => {
+    const arrivals = {
+      ...kFresh,
+      service_word_at_ms: late,
+      pose_at_ms: late,
+      map_at_ms: late,
+      outlook_at_ms: late,
+      [name]: 1000,
+    };
+    const { ground: isGround, verdicts, banner: said } = judgeFreshness(arrivals, late);
+    assert.match(said, banner);
+    assert.equal(isGround, ground, name);
+    assert.equal(verdicts, false, name);
+  };
+  stopped("service_word_at_ms", /silent/, false);
+  stopped("pose_at_ms", /Frames are late/, false);
+  stopped("map_at_ms", /map is late/, false);
+  stopped("outlook_at_ms", /gate is silent/, true);
+});
+
+test("each way of being away has its sentence", () => {
+  const said = (changes) => judgeFreshness({ ...kFresh, ...changes }, 1000);
+  const away = said({ service: "away", retry_at_ms: 2000 });
+  assert.match(away.banner, /service is away/);
+  assert.equal(away.detail, "in 1.0 s");
+  assert.equal(away.ground, false);
+  assert.match(said({ gate: "away" }).banner, /gate is away/);
+  assert.equal(said({ gate: "away" }).ground, true);
+  assert.equal(said({ gate: "away" }).verdicts, false);
+  assert.equal(
+    said({ source_state: "ended", source_text: "All was played." }).banner,
+    "The source has ended. All was played.",
+  );
+  assert.equal(said({ source_state: "ended" }).ground, false);
+  assert.equal(
+    said({ source_state: "waiting", source_text: "The camera is busy." }).banner,
+    "The camera is busy.",
+  );
+  assert.equal(said({ map_at_ms: undefined }).banner, "There is no map yet.");
+  assert.equal(said({ map_at_ms: undefined }).ground, false);
+});
+
+test("the page waits longer from attempt to attempt, and never long", () => {
+  assert.deepEqual([0, 1, 2, 3, 4, 5, 40].map(wait_ms), [250, 500, 1000, 2000, 4000, 4000, 4000]);
+});
+
+/// A row of cells with these states, on level ground.
+function mapOf(states) {
+  const map = new GroundMap();
+  const head = { resolution_tenth_mm: 250, nx: states.length, ny: 1, whole: 1 };
+  const cells = states.map((state) => ({ height_mm: 0, sigma_mm: 3, state }));
+  assert.ok(map.apply(decode(arrayBuffer(encodeMap(head, [], [{ first: 0, cells }])))));
+  return map;
+}
+
+/// Colours of cell 0, painted four cells long so that each pattern shows.
+function colorsOf(state, colors) {
+  const map = mapOf([state, state, state, state]);
+  const pixels = new Uint32Array((4 * kCell_px) ** 2);
+  paintGround(map, { first_ix: 0, first_iy: 0, cells: 4 }, colors, pixels);
+  // The lowest row of cells is the last rows of the picture.
+  const row = pixels.slice(3 * kCell_px * 4 * kCell_px);
+  return new Set(Array.from(row, (pixel) => [pixel & 255, (pixel >> 8) & 255, (pixel >> 16) & 255].join()));
+}
+
+test("each ground has its colours, and each but free a pattern", () => {
+  for (const colors of [kDarkColors, kLightColors]) {
+    assert.deepEqual(colorsOf(1, colors), new Set([colors.free.join()]));
+    assert.deepEqual(colorsOf(2, colors), new Set([colors.unsafe.join(), colors.unsafe_bar.join()]));
+    assert.deepEqual(colorsOf(3, colors), new Set([colors.unsure.join(), colors.unsure_dot.join()]));
+    assert.deepEqual(colorsOf(0, colors), new Set([colors.unknown.join(), colors.unknown_thread.join()]));
+  }
+});
+
+test("grey has no colour at all", () => {
+  for (const state of [1, 2, 3])
+    for (const color of colorsOf(state, greyed(kDarkColors)))
+      assert.equal(new Set(color.split(",")).size, 1, color);
+});
+
+test("shares count what is outside of the map as unknown", () => {
+  const map = mapOf([1, 1, 2, 3]);
+  const shares = groundShares(map, 0.05, 0.0125, 0.5);
+  assert.ok(shares.unknown > 0.99);
+  assert.ok(Math.abs(shares.unknown + shares.free + shares.unsafe + shares.unsure - 1) < 1e-12);
+  assert.deepEqual(groundShares(new GroundMap(), 0, 0, 1), { unknown: 1, free: 0, unsafe: 0, unsure: 0 });
+});
+
+test("layers: NaN is transparent, the ends of the range have the ends of the colours", () => {
+  const layer = { nx: 2, ny: 2, values: Float32Array.from([-1, NaN, 0, 3]) };
+  const range = rangeOf(layer.values);
+  assert.deepEqual(range, { low: -1, high: 3 });
+  const pixels = new Uint8ClampedArray(16);
+  paintLayer(layer, range, pixels);
+  // The picture's first row is the map's last.
+  assert.deepEqual([...pixels.slice(8, 12)], [...cividis(0), 255]);
+  assert.deepEqual([...pixels.slice(12, 16)], [0, 0, 0, 0]);
+  assert.deepEqual([...pixels.slice(0, 4)], [...cividis(0.25), 255]);
+  assert.deepEqual([...pixels.slice(4, 8)], [254, 232, 56, 255]);
+  assert.equal(rangeOf(Float32Array.from([NaN, Infinity])), undefined);
+  paintLayer(layer, undefined, pixels);
+  assert.ok(pixels.every((value) => value === 0));
+});
+
+test("numbers are short, and keep their digits", () => {
+  const texts = [0, 0.12345, -0.5, 12.345, 4321, 1.2e-6, 2e7, NaN].map(shortNumber);
+  assert.deepEqual(texts, ["0.0000", "0.1235", "-0.5000", "12.35", "4321", "1.20e-6", "2.00e+7", "unknown"]);
+});
