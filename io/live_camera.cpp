@@ -44,6 +44,7 @@ LiveCamera::LiveCamera(std::unique_ptr<VideoDevice> system,
       config_(config),
       stop_(std::move(stop)) {
     info_.kind = "live";
+    info_.steady_stamps = true;
     info_.path = "v4l2:" + address.device;
 }
 

@@ -20,6 +20,7 @@ namespace surefoot::io {
 struct OpenOptions {
     std::optional<std::string> rig_file;  ///< instead of the recording's own calibration
     std::optional<double> rate_hz;        ///< where the recording has no stamps of its own
+    int first_frame = 0;                  ///< frames before it are passed over
 };
 
 /// TUM RGB-D: a depth code of 5000 is one metre, 0 is no measurement.
@@ -101,7 +102,8 @@ void fit_rig(camera::StereoRig& rig,
 /// with the next frame.
 class RecordingSource final : public camera::FrameSource {
   public:
-    explicit RecordingSource(Recording recording) : recording_(std::move(recording)) {}
+    explicit RecordingSource(Recording recording, int first_frame = 0)
+        : recording_(std::move(recording)), next_frame_(static_cast<std::size_t>(first_frame)) {}
 
     [[nodiscard]] const camera::StereoRig& rig() const override { return recording_.rig; }
     [[nodiscard]] const camera::SourceInfo& info() const override { return recording_.info; }
@@ -111,7 +113,7 @@ class RecordingSource final : public camera::FrameSource {
     Status load_images(const FrameEntry& entry, StereoFrame& frame) const;
 
     Recording recording_;
-    std::size_t next_frame_ = 0;
+    std::size_t next_frame_;
     std::size_t next_imu_ = 0;
     std::optional<std::int64_t> last_time_ns_;
 };

@@ -120,10 +120,26 @@ Result<std::optional<StereoFrame>> RecordingSource::next() {
     return std::optional<StereoFrame>(std::move(frame));
 }
 
+namespace {
+
+/// A video has no index: what comes before is read and dropped, damaged frames too.
+Result<std::unique_ptr<camera::FrameSource>> open_video_at(const std::string& path,
+                                                           const OpenOptions& options) {
+    auto source = open_video(path, options);
+    if (!source) return source;
+    for (int i = 0; i < options.first_frame; ++i) {
+        const auto frame = (*source)->next();
+        if (frame && !frame->has_value()) break;
+    }
+    return source;
+}
+
+}  // namespace
+
 Result<std::unique_ptr<camera::FrameSource>> open_source(const std::string& path,
                                                          const OpenOptions& options) {
     if (is_file(path)) {
-        if (is_video_name(path)) return open_video(path, options);
+        if (is_video_name(path)) return open_video_at(path, options);
         return input_error(
             fmt::format("{}: a single file must be a video (.avi .mp4 .mkv .mov .webm .mpg .m4v "
                         ".mjpeg); for images give "
@@ -134,7 +150,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const std::string& path
     Result<Recording> recording = index_recording(path, options);
     if (!recording) return recording.error();
     return std::unique_ptr<camera::FrameSource>(
-        std::make_unique<RecordingSource>(std::move(recording).value()));
+        std::make_unique<RecordingSource>(std::move(recording).value(), options.first_frame));
 }
 
 }  // namespace surefoot::io

@@ -357,6 +357,29 @@ TEST(EurocSource, BadListsAndCalibrationsAreNamed) {
     EXPECT_TRUE(contains(play(folder / "h", rate).errors, "has stamps of its own"));
 }
 
+TEST(EurocSource, BeginsAtAnyFrame) {
+    const TemporaryFolder folder;
+    record(folder / "r");
+    const Played all = play(folder / "r");
+    ASSERT_EQ(all.frames.size(), 5U);
+    OpenOptions options;
+    options.first_frame = 3;
+    const Played later = play(folder / "r", options);
+    ASSERT_EQ(later.frames.size(), 2U);
+    EXPECT_EQ(later.errors, "");
+    EXPECT_EQ(later.frames[0].index, 3);
+    EXPECT_EQ(later.frames[0].time_ns, all.frames[3].time_ns);
+    EXPECT_EQ(later.frames[0].left, all.frames[3].left);
+    // Like any first frame it brings a stretch of IMU samples from before.
+    ASSERT_GT(later.frames[0].imu.size(), all.frames[3].imu.size());
+    EXPECT_EQ(later.frames[0].imu.back().time_ns, all.frames[3].imu.back().time_ns);
+    EXPECT_EQ(later.frames[1].imu.size(), all.frames[4].imu.size());
+    options.first_frame = 5;
+    EXPECT_TRUE(play(folder / "r", options).frames.empty());
+    options.first_frame = 50;
+    EXPECT_TRUE(play(folder / "r", options).frames.empty());
+}
+
 /// Images that were binned two by two: the calibration follows, and the source says so.
 TEST(EurocSource, ACalibrationOfTwiceTheSizeIsHalved) {
     const TemporaryFolder folder;

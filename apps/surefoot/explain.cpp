@@ -52,6 +52,29 @@ View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
     return view;
 }
 
+/// Cells of the view over which something hangs: a table top that the camera saw from afar is floor
+/// with little room above it.
+eval::Dots hanging(const View& view, const grid::MapSnapshot& map) {
+    eval::Dots dots;
+    dots.label = "something hangs";
+    dots.color = {255, 255, 255};
+    const double resolution_m = view.geometry.resolution_m;
+    for (int iy = 0; iy < map.ny; ++iy) {
+        for (int ix = 0; ix < map.nx; ++ix) {
+            const auto at = static_cast<std::size_t>(iy) * static_cast<std::size_t>(map.nx) +
+                            static_cast<std::size_t>(ix);
+            if (map.clearance_tenth_mm[at] == grid::MapSnapshot::kNoCeiling) continue;
+            const Eigen::Vector2d center_m =
+                kTenthMm_m * Eigen::Vector2d(static_cast<double>(map.origin_x_tenth_mm),
+                                             static_cast<double>(map.origin_y_tenth_mm)) +
+                resolution_m * Eigen::Vector2d(ix + 0.5, iy + 0.5);
+            if (view.geometry.cell_at(center_m.x(), center_m.y()))
+                dots.points_m.push_back(center_m);
+        }
+    }
+    return dots;
+}
+
 Pose planar(double x_m, double y_m, double cos_yaw, double sin_yaw) {
     return {Eigen::Quaterniond(
                 Eigen::AngleAxisd(std::atan2(sin_yaw, cos_yaw), Eigen::Vector3d::UnitZ())),
@@ -83,6 +106,7 @@ Status write_explanation(const std::string& file,
                                     query.cos_yaw,
                                     query.sin_yaw);
     eval::Overlays overlays;
+    overlays.dots = hanging(view, map);
     overlays.T_odom_body = T_odom_body;
     constexpr eval::Rgb8 kPresent{90, 90, 90};
     constexpr eval::Rgb8 kLanding{213, 94, 0};

@@ -11,7 +11,6 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <tuple>
 #include <utility>
 
 namespace surefoot::app {
@@ -92,6 +91,9 @@ Status GateChild::launch(const std::vector<std::string>& arguments) {
     process_ = ::fork();
     if (process_ == 0) {
         ::dup2(pipe_ends[1], STDOUT_FILENO);
+        // Linux shares the processor between sessions before it looks at nice values: what
+        // perception used up shall not make the gate wait. The keyboard's interrupt is for serve.
+        ::setsid();
         ::execv(program_.c_str(), words.data());
         ::_exit(127);
     }
@@ -105,16 +107,16 @@ Status GateChild::launch(const std::vector<std::string>& arguments) {
     return input_error("the gate process did not start (its reason is above): " + program_);
 }
 
-bool GateChild::watch(std::int64_t now_ns) {
+Result<bool> GateChild::watch(std::int64_t now_ns) {
     if (process_ > 0) {
-        if (::waitpid(process_, nullptr, WNOHANG) != process_) return true;
+        if (::waitpid(process_, nullptr, WNOHANG) != process_) return false;
         process_ = -1;
     }
     if (now_ns < next_start_ns_) return false;
     next_start_ns_ = now_ns + kRestartEvery_ns;
+    if (auto launched = launch(arguments_); !launched) return launched.error();  // tried again
     ++restarts_;
-    std::ignore = launch(arguments_);  // what failed is tried again
-    return false;
+    return true;
 }
 
 }  // namespace surefoot::app

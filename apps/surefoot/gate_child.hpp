@@ -13,6 +13,7 @@ namespace surefoot::app {
 
 /// The gate process beside this one: started, watched, started again when it dies. Whatever
 /// becomes of it, no step is allowed meanwhile: its clients hear nothing. Its state begins at INIT.
+/// It has the priority of the thread that starts it.
 class GateChild {
   public:
     /// The program is looked for beside this one. `arguments` for every start, `first_arguments`
@@ -24,8 +25,8 @@ class GateChild {
     /// Ends it.
     ~GateChild();
 
-    /// Starts it anew if it has died, twice a second at most. False in the call that noticed.
-    [[nodiscard]] bool watch(std::int64_t now_ns);
+    /// Starts it anew if it has died, twice a second at most. True in the call that did so.
+    [[nodiscard]] Result<bool> watch(std::int64_t now_ns);
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
     [[nodiscard]] int restarts() const noexcept { return restarts_; }
 

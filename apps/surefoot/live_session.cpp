@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/live_session.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "apps/surefoot/interrupt.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "surefoot/pipeline/start.hpp"
 
 namespace surefoot::app {
@@ -25,24 +26,39 @@ std::int64_t Arrivals::steady_ns(std::int64_t stamp_ns) const noexcept {
 LiveSession::LiveSession(pipeline::Pipeline& pipeline,
                          camera::FrameSource& source,
                          wire::SnapshotWriter& writer,
-                         std::uint64_t config_hash)
+                         std::uint64_t config_hash,
+                         SteadyClock clock)
     : pipeline_(pipeline),
       source_(source),
       writer_(writer),
       config_hash_(config_hash),
+      clock_(std::move(clock)),
+      eyes_(source.info().path),
       snapshot_(std::make_unique<grid::MapSnapshot>()) {}
 
 void LiveSession::wait_for(std::int64_t stamp_ns) {
-    if (speed_ <= 0.0) return;
+    if (speed_ <= 0.0 || source_.info().steady_stamps) return;
     if (first_steady_ns_ == 0) {
         first_stamp_ns_ = stamp_ns;
-        first_steady_ns_ = steady_now_ns();
+        first_steady_ns_ = clock_();
     }
     const auto due_ns =
         first_steady_ns_ +
         static_cast<std::int64_t>(static_cast<double>(stamp_ns - first_stamp_ns_) / speed_);
-    const std::int64_t wait_ns = due_ns - steady_now_ns();
+    const std::int64_t wait_ns = due_ns - clock_();
     if (wait_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(wait_ns));
+}
+
+void LiveSession::pace(double speed) noexcept {
+    speed_ = speed;
+    first_steady_ns_ = 0;
+}
+
+/// When a frame that came now was exposed. What waited in a driver or on the wire is older than its
+/// arrival, and a stamp from the future is none.
+std::int64_t LiveSession::exposed_ns(std::int64_t stamp_ns) const {
+    const std::int64_t now_ns = clock_();
+    return source_.info().steady_stamps ? std::min(stamp_ns, now_ns) : now_ns;
 }
 
 std::optional<StereoFrame> LiveSession::next() {
@@ -65,28 +81,37 @@ std::optional<StereoFrame> LiveSession::next() {
         return std::nullopt;
     }
     wait_for((*frame)->time_ns);
-    arrivals_.note((*frame)->time_ns, steady_now_ns());
+    arrivals_.note((*frame)->time_ns, exposed_ns((*frame)->time_ns));
+    watch_.look(**frame);
     return std::move(frame).value();
 }
 
-Status LiveSession::publish() {
-    if (auto status = pipeline_.snapshot(config_hash_, *snapshot_); !status) return status;
+/// The stamp of the frame that the map took in last.
+Result<std::int64_t> LiveSession::publish() {
+    if (auto status = pipeline_.snapshot(config_hash_, *snapshot_); !status) return status.error();
+    const std::int64_t map_time_ns = snapshot_->frame_time_ns;
     snapshot_->version = ++published_;
     snapshot_->frame_time_ns = arrivals_.steady_ns(snapshot_->frame_time_ns);
     snapshot_->pose_time_ns = arrivals_.steady_ns(snapshot_->pose_time_ns);
     grid::seal(*snapshot_);
     writer_.publish(*snapshot_);
-    return {};
+    return map_time_ns;
 }
 
-Result<LiveSession::End> LiveSession::run(double speed, const BeforeFrame& before_frame) {
-    speed_ = speed;
+Result<LiveSession::End> LiveSession::run(double speed,
+                                          const BeforeFrame& before_frame,
+                                          const AfterFrame& after_frame) {
+    pace(speed);
     before_frame_ = before_frame;
     const pipeline::Start start = pipeline::align_when_ready(
         pipeline_, [this] { return next(); }, source_.info().T_odom_first_body);
-    const auto process = [this](const StereoFrame& frame) {
-        std::ignore = pipeline_.process(frame, Work::full);
-        return publish();
+    const auto process = [&](const StereoFrame& frame) -> Status {
+        const FrameReport report = pipeline_.process(frame, Work::full);
+        if (auto eyes = eyes_.look(pipeline_, report); !eyes) return eyes;
+        const auto map_time_ns = publish();
+        if (!map_time_ns) return map_time_ns.error();
+        if (after_frame) after_frame(report, *map_time_ns);
+        return {};
     };
     for (const StereoFrame& frame : start.frames) {
         if (auto status = process(frame); !status) return status.error();

@@ -392,9 +392,12 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
     verb->add_option("--rate", o.rate_hz, "frames per second of a source without stamps")
         ->type_name("HZ");
     verb->add_option("--max-frames", o.max_frames, "ends after so many")->type_name("N");
-    verb->add_option("--speed", o.speed, "of a recording, times real time; 0 = as it comes")
+    verb->add_option("--speed",
+                     o.speed,
+                     "times real time; 0 = as it comes; unless given 1 for recordings and with "
+                     "--joystick, and 0 for simulated scenes")
         ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+        ->type_name("X");
     verb->add_option("--port", o.port, "of the gate; 0 = any free one")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
@@ -404,6 +407,12 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
         ->type_name("FILE");
     verb->add_option("--audit", o.audit_dir, "folder of the gate's audit log")->type_name("DIR");
     verb->add_flag("--assured", o.assured, "no OK while the audit log cannot be written");
+    verb->add_option("--audit-mb", o.audit_mb, "of that folder; then the oldest logs go")
+        ->check(CLI::PositiveNumber)
+        ->type_name("MB");
+    verb->add_option("--max-rate", o.max_rate_hz, "messages of a client of the gate in a second")
+        ->check(CLI::PositiveNumber)
+        ->type_name("HZ");
     verb->add_option("--vouch",
                      o.vouch_radius_m,
                      "the operator's word for level ground so far around the machine where it "
@@ -415,11 +424,28 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
                      "steers a simulated REX: joystick codes like 9,9,17,25*6, each asked for "
                      "through the gate by a REX link")
         ->type_name("CODES");
+    verb->add_flag("--joystick",
+                   o.joystick,
+                   "whoever looks at the page steers a simulated REX, through the gate by a REX "
+                   "link");
     verb->add_option("--out", o.out_dir, "a picture of every movement that was asked for")
         ->type_name("DIR");
     verb->add_option("--channel", o.channel, "file in shared memory for the maps")
         ->type_name("FILE");
-    verb->add_flag("--once", o.once, "ends with the source or the walk");
+    verb->add_option("--nice",
+                     o.niceness,
+                     "how far perception stands back so that the gate answers in time "
+                     "(setpriority)")
+        ->check(CLI::Range(0, 19))
+        ->capture_default_str()
+        ->type_name("N");
+    verb->add_option("--page-port",
+                     o.page_port,
+                     "of the live page; where it is taken the next free one; 0 = any")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    verb->add_flag("--no-page", o.no_page, "the gate alone, nothing for browsers");
+    verb->add_flag("--once", o.once, "ends with the source or the walk; pages cannot go back");
 }
 
 void add_rex_link(CLI::App& app, RexLinkOptions& o, int& exit_code) {

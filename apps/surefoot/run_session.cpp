@@ -6,8 +6,6 @@
 #include <exception>
 
 #include "apps/surefoot/interrupt.hpp"
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/measured_pair.hpp"
 #include "apps/surefoot/progress.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/start.hpp"
@@ -27,7 +25,12 @@ RunSession::RunSession(pipeline::Pipeline& pipeline,
                        const camera::StereoRig& rig,
                        int depth_every,
                        const eval::EvalMapsConfig& maps)
-    : pipeline_(pipeline), source_(source), depth_every_(depth_every), maps_(maps), truth_(source) {
+    : pipeline_(pipeline),
+      source_(source),
+      depth_every_(depth_every),
+      maps_(maps),
+      eyes_(source.info().path),
+      truth_(source) {
     record_.source = source.info();
     record_.rig = rig;
 }
@@ -92,28 +95,13 @@ std::optional<StereoFrame> RunSession::next_frame() {
 void RunSession::process(const StereoFrame& frame, const AfterFrame& after_frame) {
     const bool full = frame.index % depth_every_ == 0;
     const FrameReport report = pipeline_.process(frame, full ? Work::full : Work::odometry);
-    if (report.work == Work::full) {
-        truth_.compare_depth(frame, pipeline_);
-        check_eyes(report);
-    }
+    if (report.work == Work::full) truth_.compare_depth(frame, pipeline_);
+    if (const Status eyes = eyes_.look(pipeline_, report, quiet_); !eyes && !record_.error)
+        record_.error = eyes.error();
     record_.fusion += report.fusion;
     record_.arrivals += report.arrival;
     record_.frames.push_back(report);
     if (after_frame) after_frame(report);
-}
-
-void RunSession::check_eyes(const FrameReport& report) {
-    const camera::RectifiedPair& pair = pipeline_.pair();
-    if (eye_checks_ == 0 || pair.right.empty()) return;
-    const stereo::PairCheck check = check_rows(pair, pipeline_.config().stereo.disparities);
-    --eye_checks_;
-    if (!check.enough() && eye_checks_ > 0) return;
-    eye_checks_ = 0;
-    const std::string where = fmt::format("{}: frame {}: ", record_.source.path, report.index);
-    if (const Status status = refuse_exchanged(check); !status && !record_.error)
-        record_.error = input_error(where + status.error().message);
-    const std::string rows = row_problem(check, true);
-    if (!rows.empty() && !quiet_) log_warning(where + rows);
 }
 
 }  // namespace surefoot::app

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/surefoot/eyes_check.hpp"
 #include "apps/surefoot/place_session.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/sim_truth.hpp"
@@ -61,15 +62,13 @@ class RunSession {
     [[nodiscard]] std::optional<StereoFrame> next_frame();
     void process_all(const std::string& label, const AfterFrame& after_frame);
     void process(const StereoFrame& frame, const AfterFrame& after_frame);
-    /// Do the eyes belong together, and in this order? Asked until one frame tells.
-    void check_eyes(const FrameReport& report);
 
     pipeline::Pipeline& pipeline_;
     camera::FrameSource& source_;
     int depth_every_;
     eval::EvalMapsConfig maps_;
     io::FrameWatch watch_;
-    int eye_checks_ = 5;  ///< frames that may still be asked
+    EyesCheck eyes_;
     bool quiet_ = false;
     SimTruth truth_;
     RunRecord record_;

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <thread>
 #include <tuple>
 
@@ -15,15 +23,21 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/live_session.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/page_telemetry.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/steered_walk.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/file.hpp"
+#include "io/text.hpp"
+#include "server/page/page_server.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/gate/vouching.hpp"
 
 namespace surefoot::app {
 namespace {
+
+constexpr double kRemembered_s = 10.0;  ///< of a simulated walk: no frame shows what is older
+constexpr auto kLookEvery = std::chrono::milliseconds(20);
 
 /// A name in shared memory that is free again when the program ends.
 class ChannelFile {
@@ -38,9 +52,46 @@ class ChannelFile {
     std::string path_;
 };
 
+/// The gate's answers come first, then who looks after it: the first thread, which starts it again
+/// with the priority that it has itself. Linux knows the priority of threads alone: every other
+/// thread that there is, and what they start.
+void be_nice(int niceness) {
+    if (niceness == 0) return;
+    std::error_code error;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", error)) {
+        const auto thread = static_cast<id_t>(std::stoul(task.path().filename().string()));
+        if (thread != static_cast<id_t>(::getpid())) ::setpriority(PRIO_PROCESS, thread, niceness);
+    }
+}
+
+constexpr const char* kSharedMemory = "/dev/shm";
+constexpr std::string_view kChannelEnd = ".channel";
+
+std::string channel_begin() {
+    return fmt::format("surefoot-{}-", ::getuid());
+}
+
+/// What a killed service of this user left: channels named after processes that are no more.
+void remove_orphaned_channels() {
+    const std::string begin = channel_begin();
+    std::error_code error;
+    for (const auto& file : std::filesystem::directory_iterator(kSharedMemory, error)) {
+        const std::string name = file.path().filename().string();
+        if (!name.starts_with(begin) || !name.ends_with(kChannelEnd)) continue;
+        const std::string_view process = std::string_view(name).substr(
+            begin.size(), name.size() - begin.size() - kChannelEnd.size());
+        ::pid_t number = 0;
+        const auto [end, wrong] =
+            std::from_chars(process.data(), process.data() + process.size(), number);
+        if (wrong != std::errc{} || end != process.data() + process.size() || number <= 0) continue;
+        if (::kill(number, 0) != 0 && errno == ESRCH) ::unlink(file.path().c_str());
+    }
+}
+
 std::string channel_path(const ServeOptions& options) {
     if (!options.channel.empty()) return options.channel;
-    return fmt::format("/dev/shm/surefoot-{}-{}.channel", ::getuid(), ::getpid());
+    remove_orphaned_channels();
+    return fmt::format("{}/{}{}{}", kSharedMemory, channel_begin(), ::getpid(), kChannelEnd);
 }
 
 std::vector<std::string> gate_arguments(const ServeOptions& options, const std::string& channel) {
@@ -61,12 +112,15 @@ std::vector<std::string> gate_arguments(const ServeOptions& options, const std::
     add("--audit", options.audit_dir);
     add("--token-file", options.token_file);
     if (options.assured) words.emplace_back("--assured");
+    if (options.max_rate_hz > 0) add("--max-rate", std::to_string(options.max_rate_hz));
+    if (options.audit_mb > 0) add("--audit-mb", std::to_string(options.audit_mb));
     return words;
 }
 
 Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
                                                   const Settings& settings,
-                                                  Executor& executor) {
+                                                  Executor& executor,
+                                                  int first_frame = 0) {
     SourceRequest request{options.source,
                           options.rig_file,
                           options.rate_hz,
@@ -74,10 +128,60 @@ Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
                           options.common.seed,
                           settings.sim,
                           settings.live,
-                          {}};
-    request.sim.commanded = !options.walk.empty();
+                          {},
+                          first_frame};
+    request.sim.commanded = options.joystick || !options.walk.empty();
     return open_source(request, executor);
 }
+
+/// The live page, on a thread of its own; without one where the user wants none.
+class PageService {
+  public:
+    static Result<std::unique_ptr<PageService>> start(const ServeOptions& options) {
+        std::unique_ptr<PageService> service(new PageService());
+        if (options.no_page) return service;
+        page::PageServerConfig config;
+        config.bind_address = options.bind_address;
+        config.port = static_cast<std::uint16_t>(options.page_port);
+        if (!options.token_file.empty()) {
+            auto token = io::read_file(options.token_file);
+            if (!token) return token.error();
+            config.token = std::string(io::trimmed(*token));
+        }
+        auto server = page::PageServer::open(config, service->feed_, service->controls_);
+        if (!server) return server.error();
+        service->server_ = std::move(server).value();
+        if (options.page_port != 0 && service->server_->port() != options.page_port)
+            log_warning(fmt::format("port {} is taken", options.page_port));
+        return service;
+    }
+    PageService(const PageService&) = delete;
+    PageService& operator=(const PageService&) = delete;
+    ~PageService() {
+        if (!thread_.joinable()) return;
+        server_->stop();
+        thread_.join();
+    }
+
+    /// Whoever looks sees this from now on; again when the gate listens elsewhere.
+    void introduce(const page::PageHello& hello, const std::optional<io::MachineFile>& machine) {
+        if (!server_) return;
+        server_->introduce(hello,
+                           machine ? page::colour_limits(machine->machine) : page::ColourLimits{});
+        if (!thread_.joinable()) thread_ = std::thread([this] { server_->run(); });
+    }
+    [[nodiscard]] page::PageFeed* feed() noexcept { return server_ ? &feed_ : nullptr; }
+    [[nodiscard]] page::PageControls& controls() noexcept { return controls_; }
+    [[nodiscard]] std::uint16_t port() const noexcept { return server_ ? server_->port() : 0; }
+
+  private:
+    PageService() = default;
+
+    page::PageFeed feed_;
+    page::PageControls controls_;
+    std::unique_ptr<page::PageServer> server_;
+    std::thread thread_;
+};
 
 void print_news(const std::vector<AskedStep>& news, std::FILE* out) {
     for (const AskedStep& step : news) {
@@ -90,7 +194,9 @@ void print_news(const std::vector<AskedStep>& news, std::FILE* out) {
     std::fflush(out);
 }
 
-/// Perception, the gate process beside it, and perhaps somebody who walks.
+/// Perception on a thread of its own, the gate process beside it, and perhaps somebody who walks.
+/// The first thread looks after the gate, whatever perception does: a frame that hangs shall not
+/// keep a gate that died from being started again.
 class Service {
   public:
     Service(const ServeOptions& options,
@@ -103,8 +209,18 @@ class Service {
     [[nodiscard]] const std::vector<AskedStep>& steps() const noexcept { return steps_; }
 
   private:
-    Status perceive(camera::FrameSource& source, wire::SnapshotWriter& writer, GateChild& gate);
-    void tell_where(const GateChild& gate) const;
+    Status perceive(std::unique_ptr<camera::FrameSource> source, wire::SnapshotWriter& writer);
+    Result<LiveSession::End> perceive_anew(camera::FrameSource& source,
+                                           wire::SnapshotWriter& writer);
+    Status perceive_beside(GateChild& gate,
+                           std::unique_ptr<camera::FrameSource> source,
+                           wire::SnapshotWriter& writer);
+    Status introduce(const camera::FrameSource& source, std::uint16_t gate_port);
+    Status steer(camera::FrameSource& source, std::uint16_t gate_port);
+    void follow_walk(sim::SceneSource& scene, const LiveSession& session);
+    bool follow_pages(LiveSession& session, const wire::SnapshotWriter& writer);
+    std::optional<int> next_jump(LiveSession::End end);
+    void tell_where(const GateChild& gate);
     void look_after(GateChild& gate);
     void remember_word(const LiveSession& session);
     void draw(const AskedStep& step, const grid::MapSnapshot& map);
@@ -113,6 +229,9 @@ class Service {
     const Settings& settings_;
     const std::optional<io::MachineFile>& machine_;
     Executor& executor_;
+    std::unique_ptr<PageService> page_;
+    page::PageHello hello_;
+    double speed_ = 1.0;  ///< times real time, 0 = as it comes
     std::unique_ptr<SteeredWalk> walk_;
     std::vector<AskedStep> steps_;
     gate::Vouching word_;
@@ -120,15 +239,18 @@ class Service {
 };
 
 /// With --json the answer has stdout for itself.
-void Service::tell_where(const GateChild& gate) const {
-    if (gate.port() == 0) return;
+void Service::tell_where(const GateChild& gate) {
     std::FILE* const out = options_.common.json ? stderr : stdout;
     fmt::print(out, "the gate listens on ws://{}:{}\n", options_.bind_address, gate.port());
     std::fflush(out);
+    hello_.gate_port = gate.port();
+    page_->introduce(hello_, machine_);
 }
 
 void Service::look_after(GateChild& gate) {
-    if (gate.watch(steady_now_ns())) return;
+    const auto started = gate.watch(steady_now_ns());
+    if (!started) log_error(started.error().message);
+    if (!started || !*started) return;
     log_warning(fmt::format(
         "the gate process ended and was started again ({} times now); nothing is allowed until it "
         "is ready",
@@ -162,34 +284,143 @@ void Service::draw(const AskedStep& step, const grid::MapSnapshot& map) {
     if (!drawn) log_error(drawn.error().message);
 }
 
-Status Service::perceive(camera::FrameSource& source,
-                         wire::SnapshotWriter& writer,
-                         GateChild& gate) {
+void Service::follow_walk(sim::SceneSource& scene, const LiveSession& session) {
+    remember_word(session);
+    walk_->next_frame_begins(scene.now_s() + 1.0 / settings_.sim.rate_hz);
+    scene.commanded()->forget_before(scene.now_s() - kRemembered_s);
+    const auto news = walk_->news();
+    print_news(news, options_.common.json ? stderr : stdout);
+    for (const AskedStep& step : news) {
+        steps_.push_back(step);
+        draw(step, session.last());
+    }
+}
+
+/// Waits while the pages want a recording to stand; false when somebody jumps.
+bool Service::follow_pages(LiveSession& session, const wire::SnapshotWriter& writer) {
+    page::Playback& playback = page_->controls().playback;
+    auto state = playback.state();
+    if (!state) return true;
+    const bool stood = state->paused;
+    while (state->paused && !playback.jump_wanted() && !interrupted() && !writer.restart_wanted()) {
+        std::this_thread::sleep_for(kLookEvery);
+        state = playback.state();
+    }
+    if (stood || state->speed != speed_) session.pace(state->speed);
+    speed_ = state->speed;
+    return !playback.jump_wanted();
+}
+
+/// One map and one odom, from the next frame of the source on.
+Result<LiveSession::End> Service::perceive_anew(camera::FrameSource& source,
+                                                wire::SnapshotWriter& writer) {
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
-    const camera::StereoRig rig = mounted_rig(source.rig(), machine_);
+    auto pipeline = pipeline::Pipeline::make(
+        settings_.pipeline, mounted_rig(source.rig(), machine_), executor_, steady_now_ns);
+    if (!pipeline) return pipeline.error();
+    LiveSession session(*pipeline, source, writer, hash_of(settings_));
+    std::optional<PageTelemetry> page;
+    if (page_->feed() != nullptr) page.emplace(*page_->feed(), source.info().path);
+    const auto before_frame = [&] {
+        if (walk_) follow_walk(*scene, session);
+        return !(walk_ && walk_->is_over()) && follow_pages(session, writer);
+    };
+    const auto after_frame = [&](const FrameReport& report, std::int64_t map_time_ns) {
+        if (page) page->tell(*pipeline, report, session.last(), map_time_ns, steady_now_ns());
+        page_->controls().playback.at(report.index);
+    };
+    auto end = session.run(speed_, before_frame, after_frame);
+    const bool goes_on = end && (*end == LiveSession::End::restart_wanted ||
+                                 page_->controls().playback.jump_wanted());
+    if (page && goes_on) page->tell_new_beginning();
+    if (page && !goes_on) page->tell_the_end();
+    return end;
+}
+
+/// The frame to go on from; at the end of a recording somebody may still jump back.
+std::optional<int> Service::next_jump(LiveSession::End end) {
+    page::Playback& playback = page_->controls().playback;
+    if (end == LiveSession::End::source_ended && playback.state() && !options_.once) {
+        while (!playback.jump_wanted() && !interrupted()) std::this_thread::sleep_for(kLookEvery);
+    }
+    return playback.take_jump();
+}
+
+Status Service::perceive(std::unique_ptr<camera::FrameSource> source,
+                         wire::SnapshotWriter& writer) {
     while (true) {
-        auto pipeline = pipeline::Pipeline::make(settings_.pipeline, rig, executor_, steady_now_ns);
-        if (!pipeline) return pipeline.error();
-        LiveSession session(*pipeline, source, writer, hash_of(settings_));
-        const double speed = scene != nullptr ? 0.0 : options_.speed;
-        const auto end = session.run(speed, [&] {
-            look_after(gate);
-            if (!walk_) return true;
-            remember_word(session);
-            walk_->next_frame_begins(scene->now_s() + 1.0 / settings_.sim.rate_hz);
-            const auto news = walk_->news();
-            print_news(news, options_.common.json ? stderr : stdout);
-            for (const AskedStep& step : news) {
-                steps_.push_back(step);
-                draw(step, session.last());
-            }
-            return !walk_->is_over();
-        });
+        const auto end = perceive_anew(*source, writer);
         if (!end) return end.error();
-        if (*end != LiveSession::End::restart_wanted) return {};
-        log_warning("the gate was re-armed: map and odom begin anew");
+        if (*end == LiveSession::End::restart_wanted) {
+            log_warning("the gate was re-armed: map and odom begin anew");
+        } else {
+            const auto frame = next_jump(*end);
+            if (!frame) return {};
+            auto again = open(options_, settings_, executor_, *frame);
+            if (!again) return again.error();
+            source = std::move(again).value();
+        }
         writer.begin_anew();
     }
+}
+
+Status Service::perceive_beside(GateChild& gate,
+                                std::unique_ptr<camera::FrameSource> source,
+                                wire::SnapshotWriter& writer) {
+    Status perceived;
+    std::atomic<bool> ended{false};
+    std::thread perception([&] {
+        be_nice(options_.niceness);
+        perceived = perceive(std::move(source), writer);
+        ended = true;
+    });
+    while (!ended) {
+        look_after(gate);
+        std::this_thread::sleep_for(kLookEvery);
+    }
+    perception.join();
+    return perceived;
+}
+
+/// What pages are told of the source, and may do with it.
+Status Service::introduce(const camera::FrameSource& source, std::uint16_t gate_port) {
+    auto page = PageService::start(options_);
+    if (!page) return page.error();
+    page_ = std::move(page).value();
+    const bool is_scene = dynamic_cast<const sim::SceneSource*>(&source) != nullptr;
+    hello_ = hello_of(source,
+                      mounted_rig(source.rig(), machine_),
+                      machine_,
+                      gate_port,
+                      is_scene ? settings_.sim.rate_hz : 0.0);
+    hello_.can_steer = options_.joystick;
+    speed_ = options_.speed.value_or(is_scene && !options_.joystick ? 0.0 : 1.0);
+    if (!is_scene && !source.info().steady_stamps)
+        page_->controls().playback.offer({0, source.info().frames.value_or(0), false, speed_});
+    return {};
+}
+
+/// Somebody steers, where the user wants it.
+Status Service::steer(camera::FrameSource& source, std::uint16_t gate_port) {
+    if (options_.walk.empty() && !options_.joystick) return {};
+    if (!options_.walk.empty() && options_.joystick)
+        return usage_error("either --walk or --joystick steers, not both");
+    if (options_.joystick && options_.no_page)
+        return usage_error("--joystick: without the page there is nobody to steer");
+    auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
+    if (scene == nullptr || !scene->commanded())
+        return usage_error(
+            "--walk and --joystick steer a simulated scene (sim:SCENE), no other source");
+    std::unique_ptr<Walker> walker;
+    if (options_.joystick) {
+        walker = page_walker(page_->controls().steering);
+    } else {
+        auto codes = parse_walk(options_.walk);
+        if (!codes) return codes.error();
+        walker = scripted_walker(std::move(codes).value());
+    }
+    walk_ = std::make_unique<SteeredWalk>(std::move(walker), gate_port, scene->commanded());
+    return {};
 }
 
 Status Service::run() {
@@ -203,19 +434,16 @@ Status Service::run() {
         first = {"--vouch", fmt::format("{}", options_.vouch_radius_m)};
     auto gate = GateChild::start(gate_arguments(options_, channel.path()), first);
     if (!gate) return gate.error();
+    if (auto introduced = introduce(**source, gate->port()); !introduced) return introduced;
     tell_where(*gate);
-    ::setpriority(PRIO_PROCESS, 0, 10);  // the gate's answers come first
-    watch_for_interrupts();
-    if (!options_.walk.empty()) {
-        auto* const scene = dynamic_cast<sim::SceneSource*>(source->get());
-        if (scene == nullptr || !scene->commanded())
-            return usage_error("--walk steers a simulated scene (sim:SCENE), no other source");
-        auto codes = parse_walk(options_.walk);
-        if (!codes) return codes.error();
-        walk_ = std::make_unique<SteeredWalk>(
-            std::move(codes).value(), gate->port(), scene->commanded());
+    if (page_->port() != 0) {
+        std::FILE* const out = options_.common.json ? stderr : stdout;
+        fmt::print(out, "the page is at http://{}:{}/\n", options_.bind_address, page_->port());
+        std::fflush(out);
     }
-    Status perceived = perceive(**source, *writer, *gate);
+    watch_for_interrupts();
+    if (auto steered = steer(**source, gate->port()); !steered) return steered;
+    Status perceived = perceive_beside(*gate, std::move(source).value(), *writer);
     walk_.reset();
     if (!perceived) return perceived;
     while (!options_.once && !interrupted()) {  // whoever asks now hears that the frames are old

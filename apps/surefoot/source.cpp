@@ -21,8 +21,8 @@ constexpr std::string_view kSimPrefix = "sim:";
 /// Ends a source after a number of frames.
 class LimitedSource final : public camera::FrameSource {
   public:
-    LimitedSource(std::unique_ptr<camera::FrameSource> source, int max_frames)
-        : source_(std::move(source)), info_(source_->info()), left_(max_frames) {
+    LimitedSource(std::unique_ptr<camera::FrameSource> source, int max_frames, int first_frame)
+        : source_(std::move(source)), info_(source_->info()), left_(max_frames - first_frame) {
         if (!info_.frames || *info_.frames > max_frames) info_.frames = max_frames;
     }
     [[nodiscard]] const camera::StereoRig& rig() const override { return source_->rig(); }
@@ -65,6 +65,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_recording(const SourceRequest&
     io::OpenOptions options;
     if (!request.rig_file.empty()) options.rig_file = request.rig_file;
     if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
+    options.first_frame = request.first_frame;
     return io::open_source(request.source, options);
 }
 
@@ -105,8 +106,8 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& re
     if (!request.imu_file.empty())
         source = io::with_imu(std::move(source).value(), request.imu_file);
     if (!source || request.max_frames <= 0) return source;
-    return std::unique_ptr<camera::FrameSource>(
-        std::make_unique<LimitedSource>(std::move(source).value(), request.max_frames));
+    return std::unique_ptr<camera::FrameSource>(std::make_unique<LimitedSource>(
+        std::move(source).value(), request.max_frames, request.first_frame));
 }
 
 Result<camera::StereoRig> load_rig(const std::string& path_or_name) {

@@ -25,6 +25,7 @@ struct SourceRequest {
     sim::SceneOptions sim = {};  ///< the rest of what a simulated scene wants to know
     io::CameraConfig live = {};  ///< and a live camera
     std::string imu_file = {};   ///< samples of another device, see io::with_imu
+    int first_frame = 0;         ///< of a recording; those before it are passed over
 };
 
 /// What begins the name of a live camera.

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <utility>
 
+#include "apps/surefoot/settings.hpp"
+
 namespace surefoot::app {
 namespace {
 
@@ -15,7 +17,54 @@ constexpr std::int64_t kRetry_ns = 500'000'000;  ///< where the gate cannot judg
 /// frame rings after a step.
 constexpr double kSettled_s = 1.0;
 
+class ScriptedWalker final : public Walker {
+  public:
+    explicit ScriptedWalker(std::vector<std::uint8_t> codes) : codes_(std::move(codes)) {}
+
+    [[nodiscard]] std::optional<std::uint8_t> joystick(std::int64_t elapsed_ns) override {
+        if (elapsed_ns < rest_until_ns_) return std::uint8_t{0};
+        if (next_ == codes_.size()) return std::nullopt;
+        return codes_[next_];
+    }
+    bool answered(const AskedStep& step, bool judged, std::int64_t elapsed_ns) override {
+        const bool is_over = step.moved || judged;
+        if (is_over) ++next_;
+        rest_until_ns_ = elapsed_ns + (is_over ? kRest_ns : kRetry_ns);
+        return is_over;
+    }
+
+  private:
+    std::vector<std::uint8_t> codes_;
+    std::size_t next_ = 0;
+    std::int64_t rest_until_ns_ = 0;
+};
+
+/// Asking again is up to whoever holds the joystick.
+class PageWalker final : public Walker {
+  public:
+    explicit PageWalker(page::Steering& steering) : steering_(steering) {}
+
+    [[nodiscard]] std::optional<std::uint8_t> joystick(std::int64_t /*elapsed_ns*/) override {
+        return steering_.command(steady_now_ns());
+    }
+    bool answered(const AskedStep& step, bool /*judged*/, std::int64_t /*elapsed_ns*/) override {
+        steering_.tell({0, step.command, step.verdict, step.moved, step.text});
+        return true;
+    }
+
+  private:
+    page::Steering& steering_;
+};
+
 }  // namespace
+
+std::unique_ptr<Walker> scripted_walker(std::vector<std::uint8_t> codes) {
+    return std::make_unique<ScriptedWalker>(std::move(codes));
+}
+
+std::unique_ptr<Walker> page_walker(page::Steering& steering) {
+    return std::make_unique<PageWalker>(steering);
+}
 
 Result<std::vector<std::uint8_t>> parse_walk(const std::string& text) {
     std::vector<std::uint8_t> codes;
@@ -43,10 +92,10 @@ Result<std::vector<std::uint8_t>> parse_walk(const std::string& text) {
     return codes;
 }
 
-SteeredWalk::SteeredWalk(std::vector<std::uint8_t> codes,
+SteeredWalk::SteeredWalk(std::unique_ptr<Walker> walker,
                          std::uint16_t gate_port,
                          std::shared_ptr<sim::CommandedMotion> motion)
-    : codes_(std::move(codes)), motion_(std::move(motion)) {
+    : walker_(std::move(walker)), motion_(std::move(motion)) {
     rex_link::LinkClientConfig config;
     config.gate.address = "127.0.0.1";
     config.gate.port = gate_port;
@@ -79,13 +128,10 @@ bool SteeredWalk::is_walking() const {
 std::optional<std::uint8_t> SteeredWalk::joystick(std::int64_t elapsed_ns) {
     elapsed_ns_ = elapsed_ns;
     if (stopped_) return std::nullopt;
-    if (elapsed_ns < rest_until_ns_ || is_walking()) return std::uint8_t{0};
-    if (next_ == codes_.size()) return std::nullopt;
-    if (!asking_) {
-        asking_ = true;
-        asked_ = {codes_[next_], false, "-", ""};
-    }
-    return codes_[next_];
+    const auto code = is_walking() ? std::uint8_t{0} : walker_->joystick(elapsed_ns);
+    if (!code) return std::nullopt;
+    if (*code != asked_.command) asked_ = {*code, false, "-", ""};
+    return code;
 }
 
 void SteeredWalk::on_event(const rex_link::LinkEvent& event) {
@@ -95,31 +141,25 @@ void SteeredWalk::on_event(const rex_link::LinkEvent& event) {
             asked_.text = event.text;
             break;
         case rex_link::LinkEventKind::inhibited:
-            if (!asking_) break;
-            if (event.inhibit == rex_link::Inhibit::not_traversable) {
-                finish(false);
-            } else {  // nothing was decided about the ground: ask again
-                asking_ = false;
-                rest_until_ns_ = elapsed_ns_ + kRetry_ns;
-            }
+            finish(false, event.inhibit == rex_link::Inhibit::not_traversable);
             break;
         case rex_link::LinkEventKind::motion: {
             const auto step = motion_->step(event.command, steer_from_s_);
             if (!step) asked_.text = step.error().message;
-            finish(step.ok());
+            finish(step.ok(), true);
             break;
         }
         default: break;
     }
 }
 
-void SteeredWalk::finish(bool moved) {
+void SteeredWalk::finish(bool moved, bool judged) {
+    if (asked_.command == 0) return;
     asked_.moved = moved;
-    asking_ = false;
-    ++next_;
-    rest_until_ns_ = elapsed_ns_ + kRest_ns;
-    const std::lock_guard lock(mutex_);
-    news_.push_back(asked_);
+    if (walker_->answered(asked_, judged, elapsed_ns_)) {
+        const std::lock_guard lock(mutex_);
+        news_.push_back(asked_);
+    }
 }
 
 }  // namespace surefoot::app

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/page/steering.hpp"
 #include "server/rex_link/link_client.hpp"
 #include "sim/commanded_motion.hpp"
 #include "surefoot/core/result.hpp"
@@ -23,16 +24,32 @@ struct AskedStep {
     std::string text;
 };
 
+/// Who asks for movements. Called by the walk's thread alone.
+class Walker {
+  public:
+    virtual ~Walker() = default;
+    /// What the joystick says, 0 = at rest; nothing when no more will be asked. Asked while the
+    /// machine stands. `elapsed_ns`: since the walk began.
+    [[nodiscard]] virtual std::optional<std::uint8_t> joystick(std::int64_t elapsed_ns) = 0;
+    /// The movement was made or not; `judged`: the gate said yes or no to the ground. True where
+    /// that is news to tell.
+    virtual bool answered(const AskedStep& step, bool judged, std::int64_t elapsed_ns) = 0;
+};
+
+/// One movement after the other: where the gate cannot judge (it warms up), waits and asks again;
+/// where it says no, goes on with the next.
+[[nodiscard]] std::unique_ptr<Walker> scripted_walker(std::vector<std::uint8_t> codes);
+/// Whoever holds the joystick on a page.
+[[nodiscard]] std::unique_ptr<Walker> page_walker(page::Steering& steering);
+
 /// "9,9,17,25*12" -> joystick codes in turn, x*n = n times.
 [[nodiscard]] Result<std::vector<std::uint8_t>> parse_walk(const std::string& text);
 
-/// A user who asks for one movement after the other, a REX link that asks the gate, and the
-/// simulated REX that moves when the link says so. Where the gate cannot judge (it warms up), the
-/// user waits and asks again; where it says no, the user goes on with the next movement. Runs on a
-/// thread of its own.
+/// A user who asks for movements, a REX link that asks the gate, and the simulated REX that moves
+/// when the link says so. Runs on a thread of its own.
 class SteeredWalk {
   public:
-    SteeredWalk(std::vector<std::uint8_t> codes,
+    SteeredWalk(std::unique_ptr<Walker> walker,
                 std::uint16_t gate_port,
                 std::shared_ptr<sim::CommandedMotion> motion);
     SteeredWalk(const SteeredWalk&) = delete;
@@ -50,21 +67,18 @@ class SteeredWalk {
   private:
     [[nodiscard]] std::optional<std::uint8_t> joystick(std::int64_t elapsed_ns);
     void on_event(const rex_link::LinkEvent& event);
-    void finish(bool moved);
+    void finish(bool moved, bool judged);
     [[nodiscard]] bool is_walking() const;
 
-    std::vector<std::uint8_t> codes_;
+    std::unique_ptr<Walker> walker_;
     std::shared_ptr<sim::CommandedMotion> motion_;
     std::atomic<double> steer_from_s_{0.0};
     std::atomic<bool> stopped_{false};
     std::atomic<bool> over_{false};
 
     // Of the thread.
-    std::size_t next_ = 0;
     std::int64_t elapsed_ns_ = 0;
-    std::int64_t rest_until_ns_ = 0;
-    bool asking_ = false;
-    AskedStep asked_;
+    AskedStep asked_;  ///< command 0: nothing is asked for
 
     std::mutex mutex_;
     std::vector<AskedStep> news_;

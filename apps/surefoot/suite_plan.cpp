@@ -17,7 +17,7 @@ namespace {
 
 /// Few, short, and of every kind: for every change of the code.
 constexpr double kQuickTime_s = 2.0;
-constexpr double kQuickWalk_s = 22.0;   ///< two steps and the moment before the third
+constexpr double kQuickWalk_s = 21.0;   ///< two steps, to the stance before the third
 constexpr double kQuickDrive_s = 10.0;  ///< of a trolley: to the end of its way
 /// What the trolley sees in the first seconds lies ahead, and the gate refuses each movement there
 /// for want of knowledge. A floor and a platform are driven to the end, so that there is something

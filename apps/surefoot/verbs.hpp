@@ -102,16 +102,23 @@ struct ServeOptions {
     std::string machine = "rex";
     double rate_hz = 0.0;
     int max_frames = 0;
-    double speed = 1.0;  ///< of a recording; simulated scenes come as fast as they are made
-    int port = 9090;     ///< of the gate; 0 = any free one
+    /// Times real time, 0 = as it comes. None: 1 for recordings and where pages steer, else 0.
+    std::optional<double> speed;
+    int port = 9090;  ///< of the gate; 0 = any free one
     std::string bind_address = "127.0.0.1";
     std::string token_file;
     std::string audit_dir;
     bool assured = false;
+    int max_rate_hz = 0;          ///< of messages of a client of the gate; 0 = the gate's own limit
+    int audit_mb = 0;             ///< of the audit folder; 0 = the gate's own limit
     double vouch_radius_m = 0.0;  ///< an operator's word for the start area; 0 = none
-    std::string walk;             ///< joystick codes for a simulated REX; empty = nobody steers
+    std::string walk;             ///< joystick codes for a simulated REX; empty = none
+    bool joystick = false;        ///< pages steer a simulated REX
     std::string out_dir;          ///< pictures of each movement that was asked for
     std::string channel;          ///< file in shared memory; empty = one of its own
+    int niceness = 10;            ///< of perception beside the gate
+    int page_port = 8080;         ///< 0 = any free one
+    bool no_page = false;
     bool once = false;
 };
 /// Perception over a source, with the gate process beside it.

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/page_telemetry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "surefoot/core/time.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr std::int64_t kImagesEvery_ns = 200'000'000;  // PageWish::kMaxImage_hz
+constexpr std::int64_t kLayersEvery_ns = 500'000'000;
+constexpr std::size_t kRateFrames = 30;
+constexpr std::size_t kMedianFrames = 64;
+
+/// Layers that cost nothing but a copy.
+struct Layer {
+    const char* name;
+    const grid::Layer& values;
+};
+std::vector<Layer> layers_of(const pipeline::Pipeline& pipeline) {
+    const auto& map = pipeline.map().layers();
+    const auto& rating = pipeline.rating();
+    return {{"elevation", map.height_m},
+            {"variance", map.height_var_m2},
+            {"traversability", rating.traversability},
+            {"slope", rating.slope},
+            {"step", rating.step},
+            {"roughness", rating.roughness}};
+}
+constexpr std::array kLayerNames{
+    "elevation", "variance", "traversability", "slope", "step", "roughness"};
+
+std::int64_t tenth_mm(double metres) {
+    return std::llround(1e4 * metres);
+}
+
+const char* kind_of(const camera::SourceInfo& info) {
+    if (info.kind == "sim") return "simulated";
+    return info.steady_stamps ? "live" : "recording";
+}
+
+double median(std::deque<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+void copy_layers(const pipeline::Pipeline& pipeline,
+                 std::uint64_t version,
+                 std::vector<page::PageLayer>& out) {
+    const grid::GridGeometry& geometry = pipeline.map().geometry();
+    std::uint16_t index = 0;
+    for (const Layer& layer : layers_of(pipeline)) {
+        if (layer.values.width() == geometry.nx && layer.values.height() == geometry.ny) {
+            out.push_back({version,
+                           tenth_mm(geometry.origin_m.x()),
+                           tenth_mm(geometry.origin_m.y()),
+                           static_cast<std::int32_t>(tenth_mm(geometry.resolution_m)),
+                           index,
+                           layer.values});
+        }
+        ++index;
+    }
+}
+
+}  // namespace
+
+std::vector<page::PageHello::GroundPoint> blind_zone_of(const camera::RectifiedRig& rig,
+                                                        double sole_depth_m) {
+    const Eigen::Vector3d& camera = rig.T_body_camera.translation_m;
+    std::vector<page::PageHello::GroundPoint> zone;
+    for (const double column_px : {rig.width - 1.0, 0.0}) {
+        const Eigen::Vector3d ray =
+            rig.T_body_camera.rotation * Eigen::Vector3d((column_px - rig.cx_px) / rig.fx_px,
+                                                         (rig.height - 1.0 - rig.cy_px) / rig.fy_px,
+                                                         1.0);
+        if (ray.z() >= 0.0) return {};
+        const Eigen::Vector3d floor = camera - (sole_depth_m + camera.z()) / ray.z() * ray;
+        zone.push_back({floor.x(), floor.y()});
+    }
+    if (!(zone[0].x_m > 0.0 && zone[1].x_m > 0.0)) return {};
+    zone.push_back({0.0, zone[1].y_m});
+    zone.push_back({0.0, zone[0].y_m});
+    return zone;
+}
+
+page::PageHello hello_of(const camera::FrameSource& source,
+                         const camera::StereoRig& rig,
+                         const std::optional<io::MachineFile>& machine,
+                         std::uint16_t gate_port,
+                         double rate_hz) {
+    page::PageHello hello;
+    hello.program = fmt::format("surefoot {}", SUREFOOT_VERSION);
+    hello.source = source.info().path;
+    hello.source_kind = kind_of(source.info());
+    hello.gate_port = gate_port;
+    hello.layers.assign(kLayerNames.begin(), kLayerNames.end());
+    hello.rate_hz = rate_hz;
+    if (!machine) return hello;
+    hello.machine.emplace();
+    hello.machine->name = machine->name;
+    hello.machine->limits = machine->machine;
+    for (const io::JointRange& joint : machine->joints) hello.machine->joints.push_back(joint.name);
+    if (const auto rectifier = camera::Rectifier::make(rig)) {
+        hello.blind_zone =
+            blind_zone_of(rectifier->rig(), 1e-4 * machine->machine.sole_depth_tenth_mm);
+    }
+    return hello;
+}
+
+void PageTelemetry::fill_status(const FrameReport& report, page::PageStatus& status) {
+    status.time_ns = report.time_ns;
+    status.frames = static_cast<std::int64_t>(serial_);
+    status.state = page::SourceState::running;
+    status.health = report.motion.health;
+    status.reasons.clear();
+    if (report.motion.health != Health::ok)
+        status.reasons.emplace_back(to_string(report.motion.reason));
+    if (report.camera != CameraState::ok) status.reasons.emplace_back(to_string(report.camera));
+    status.text = report.known_cells == 0 ? "no ground is mapped yet" : source_;
+    const double span_s = seconds_from_ns(lately_ns_.back() - lately_ns_.front());
+    status.rate_hz = span_s > 0.0 ? static_cast<double>(lately_ns_.size() - 1) / span_s : 0.0;
+    status.stages.clear();
+    for (std::size_t i = 0; i < kStageCount; ++i) {
+        std::deque<double>& last_ms = stages_ms_[i];
+        last_ms.push_back(report.stage_ms[i]);
+        if (last_ms.size() > kMedianFrames) last_ms.pop_front();
+        status.stages.push_back(
+            {to_string(static_cast<Stage>(i)), report.stage_ms[i], median(last_ms)});
+    }
+}
+
+void PageTelemetry::tell(const pipeline::Pipeline& pipeline,
+                         const FrameReport& report,
+                         const grid::MapSnapshot& map,
+                         std::int64_t map_time_ns,
+                         std::int64_t now_steady_ns) {
+    page::PageFrame& frame = feed_.blank();
+    frame.serial = ++serial_;
+    lately_ns_.push_back(now_steady_ns);
+    if (lately_ns_.size() > kRateFrames) lately_ns_.pop_front();
+    fill_status(report, status_);
+    frame.status = status_;
+    frame.has_map = grid::is_sealed(map);
+    if (frame.has_map) frame.map = map;
+    frame.map_time_ns = map_time_ns;
+    drift_.add(report.motion.relative_covariance,
+               report.motion.T_odom_body.rotation.toRotationMatrix());
+    pose_.time_ns = report.time_ns;
+    pose_.T_odom_body = report.motion.T_odom_body;
+    pose_.variance_x_m2 = pose_.variance_y_m2 = drift_.horizontal_var_m2;
+    pose_.variance_yaw_rad2 = drift_.yaw_var_rad2;
+    pose_.health = report.motion.health;
+    pose_.camera = report.camera;
+    frame.pose = pose_;
+    frame.images_time_ns = 0;
+    if (feed_.wants_images() && now_steady_ns >= images_due_ns_) {
+        images_due_ns_ = now_steady_ns + kImagesEvery_ns;
+        frame.images_time_ns = report.time_ns;
+        frame.left = pipeline.pair().left;
+        frame.disparity_px = pipeline.depth().disparity_px;
+    }
+    frame.layers.clear();
+    if (feed_.wants_layers() && now_steady_ns >= layers_due_ns_) {
+        layers_due_ns_ = now_steady_ns + kLayersEvery_ns;
+        copy_layers(pipeline, map.version, frame.layers);
+    }
+    feed_.hand_over();
+}
+
+void PageTelemetry::tell_the_end() {
+    tell_state(page::SourceState::ended, source_ + " has ended");
+}
+
+void PageTelemetry::tell_new_beginning() {
+    tell_state(page::SourceState::waiting, "map and position begin anew");
+}
+
+void PageTelemetry::tell_state(page::SourceState state, std::string text) {
+    page::PageFrame& frame = feed_.blank();
+    frame.serial = ++serial_;
+    frame.status = status_;
+    frame.status.state = state;
+    frame.status.text = std::move(text);
+    frame.pose = pose_;
+    frame.has_map = false;
+    frame.images_time_ns = 0;
+    frame.layers.clear();
+    feed_.hand_over();
+}
+
+}  // namespace surefoot::app
