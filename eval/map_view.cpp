@@ -216,11 +216,28 @@ void draw_path(Picture& picture,
     draw_polyline(picture, to_px(view, points_m), width_px, color);
 }
 
+namespace {
+
+void draw_dots(Picture& picture, const MapView& view, const Dots& dots) {
+    constexpr int kSide_px = 3;
+    for (const Eigen::Vector2d& point_m : dots.points_m) {
+        const PointPx p = view.to_px(point_m);
+        const RectPx dot{static_cast<int>(std::lround(p.u)) - kSide_px / 2,
+                         static_cast<int>(std::lround(p.v)) - kSide_px / 2,
+                         kSide_px,
+                         kSide_px};
+        fill_rect(picture, dot, dots.color);
+    }
+}
+
+}  // namespace
+
 void draw_overlays(Picture& picture, const MapView& view, const Overlays& overlays) {
     Picture part = cut_out(picture, view.plot);
     MapView inside = view;
     inside.plot.left = 0;
     inside.plot.top = 0;
+    draw_dots(part, inside, overlays.dots);
     if (overlays.scale_bar) draw_scale_bar(part, inside);
     draw_path(part, inside, overlays.trajectory_m, palette::kPaper, 7);
     draw_path(part, inside, overlays.trajectory_m, palette::kInk, 3);
@@ -252,6 +269,9 @@ std::vector<KeyEntry> key_of(const Overlays& overlays) {
         add_label(
             stroke.label, stroke.ticks ? Symbol::ticked_line : Symbol::line, stroke.color, entries);
     }
+    if (!overlays.dots.points_m.empty())
+        entries.push_back(
+            {Symbol::square, palette::kFaint, overlays.dots.label, overlays.dots.color});
     for (const Mark& mark : overlays.marks)
         entries.push_back({Symbol::mark, palette::kInk, mark.label, {}});
     return entries;

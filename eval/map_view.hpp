@@ -54,6 +54,12 @@ struct Badge {
     std::string text;
     Rgb8 color = palette::kInk;
 };
+/// Small squares at places, under all lines.
+struct Dots {
+    std::vector<Eigen::Vector2d> points_m;
+    Rgb8 color = palette::kInk;
+    std::string label;  ///< in the key, where there are points
+};
 struct Mark {
     Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
     std::string label;  ///< in the key: words over the map hide what they are about
@@ -65,6 +71,7 @@ struct Overlays {
     std::vector<Stroke> strokes;
     std::vector<Badge> badges;
     std::vector<Mark> marks;
+    Dots dots;
     bool scale_bar = true;
     /// Length of the arrow for the body; nothing: 0.35 m, but not too small to be seen.
     std::optional<double> body_px = {};

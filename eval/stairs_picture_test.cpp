@@ -248,6 +248,26 @@ TEST(StairsPicture, OddInputDrawsWithoutHarm) {
     EXPECT_FALSE(render_features(none, grid::Layer(), features, {}, {"", ""}).empty());
 }
 
+TEST(MapView, DotsLieAtTheirPlacesAndInTheKeyOnlyWhereThereAreSome) {
+    MapView view;
+    view.plot = {10, 20, 200, 100};
+    view.x_max_m = 1.0;
+    view.y_max_m = 2.0;
+    view.px_per_m = 100.0;
+    Picture picture(300, 200, palette::kPaper);
+    Overlays overlays;
+    overlays.scale_bar = false;
+    overlays.dots.label = "something hangs";
+    overlays.dots.color = {1, 2, 3};
+    EXPECT_TRUE(key_of(overlays).empty());
+    overlays.dots.points_m = {{0.5, 1.0}, {9.0, 9.0}};  // the second is beyond the plot
+    draw_overlays(picture, view, overlays);
+    EXPECT_EQ(picture.at(110, 70), overlays.dots.color);
+    EXPECT_EQ(picture.at(112, 70), palette::kPaper);
+    ASSERT_EQ(key_of(overlays).size(), 1U);
+    EXPECT_EQ(key_of(overlays).front().label, "something hangs");
+}
+
 TEST(MapView, ABadgeThatWouldCoverAnEarlierOneIsLeftOut) {
     Overlays overlays = without_scale_bar();
     overlays.badges = {{{2.0, 0.0}, "1", palette::kSafe}};

@@ -12,10 +12,10 @@
 // gate_scenes again SCRATCH KIND SCENE_SEED: one hazard of `maps` again, by the seed in its line;
 // what the gate says, and again.csv with the cells of each map.
 //
-// SCENES hazards and as many safe scenes (maps: a tenth) of each kind (KINDS: names with commas
-// between), from the number FROM on. Each has one movement that the oracle (sim::judge) calls
-// clearly dangerous or clearly safe; scenes that are neither are drawn again. Every hundredth scene
-// (of runs: every one) is asked all 26 movements too.
+// SCENES hazards and as many safe scenes (maps: a tenth, depth: a fifth) of each kind (KINDS: names
+// with commas between), from the number FROM on. Each has one movement that the oracle (sim::judge)
+// calls clearly dangerous or clearly safe; scenes that are neither are drawn again. Every hundredth
+// scene (of runs: every one) is asked all 26 movements too.
 //
 // Results are files of SCRATCH/TIER: one a chunk of scenes, made whole or not at all, so that the
 // same call goes on where it was stopped.
@@ -64,7 +64,8 @@ namespace {
 
 constexpr int kMostDraws = 40;
 constexpr int kAllEvery = 100;
-constexpr int kSafeEvery = 10;
+constexpr int kSafeEvery = 10;        ///< on maps
+constexpr int kSafeEveryOfDepth = 5;  ///< a run lasts seconds
 
 /// A gate to be asked, and the errors of the map that it is asked about.
 struct Variant {
@@ -97,7 +98,9 @@ Question draw(Hazard kind,
               Placing placing) {
     Question question;
     for (int k = 0; k < kMostDraws; ++k) {
-        question.scene_seed = mix_seed(mix_seed(seed, index), static_cast<std::uint64_t>(k)) >> 16U;
+        const auto stream =
+            static_cast<std::uint64_t>(kind) * kMostDraws + static_cast<std::uint64_t>(k);
+        question.scene_seed = mix_seed(mix_seed(seed, index), stream) >> 16U;
         question.scene =
             make_hazard_scene(kind, relief_only, question.scene_seed, machine, placing);
         question.truth = sim::judge(
@@ -306,6 +309,8 @@ void ask_all(const Question& question,
 
 MapNoise overconfident(MapNoise noise) {
     noise.overconfident = true;
+    noise.outlier_share = 1e-4;
+    noise.outlier_most_m = 0.060;
     return noise;
 }
 
@@ -373,7 +378,7 @@ class Campaign {
         Tally tally;
         for (std::uint64_t index = from; index < from + count; ++index) {
             for (const bool relief_only : {false, true}) {
-                if (relief_only && tier_ == "maps" && index % kSafeEvery != 0) continue;
+                if (relief_only && index % safe_every() != 0) continue;
                 Status done = tier_ == "maps" || tier_ == "curve" || tier_ == "drift"
                                   ? ask_on_map(kind, relief_only, seed, index, tally)
                                   : ask_after_run(kind, relief_only, seed, index, tally);
@@ -389,6 +394,10 @@ class Campaign {
     }
 
   private:
+    [[nodiscard]] std::uint64_t safe_every() const {
+        if (tier_ == "maps") return kSafeEvery;
+        return tier_ == "depth" ? kSafeEveryOfDepth : 1;
+    }
     [[nodiscard]] Status ask_on_map(
         Hazard kind, bool relief_only, std::uint64_t seed, std::uint64_t index, Tally& tally) {
         const Question question = draw(kind, relief_only, seed, index, machine_, Placing::anywhere);

@@ -7,11 +7,11 @@ import struct
 
 
 class RosbridgeClient:
-    def __init__(self, port, timeout_s=5.0):
+    def __init__(self, port, timeout_s=5.0, path="/"):
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=timeout_s)
         self.stream = self.socket.makefile("rb")
         key = base64.b64encode(os.urandom(16)).decode()
-        self.socket.sendall(f"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        self.socket.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode())
         if b"101" not in self.stream.readline():
             raise ConnectionError("the service did not take the connection")
@@ -34,8 +34,8 @@ class RosbridgeClient:
         if len(head) < 2:
             raise ConnectionError("the service closed the connection")
         length = head[1] & 127
-        if length == 126:
-            length = struct.unpack(">H", self.stream.read(2))[0]
+        if length >= 126:
+            length = struct.unpack(*((">H", self.stream.read(2)) if length == 126 else (">Q", self.stream.read(8))))[0]
         return head[0] & 15, self.stream.read(length)
 
     def call(self, service, **args):

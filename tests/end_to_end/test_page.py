@@ -1,0 +1,349 @@
+"""`surefoot serve` as a browser meets it: files, the WebSocket at /page, its messages (server/page/messages.json)."""
+import gzip
+import http.client
+import json
+import socket
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+
+from surefoot_cli import BINARY, CliTest
+from websocket_client import RosbridgeClient
+
+# A trolley that rolls over level ground; slowly, so that it rolls as long as the tests last.
+SCENE = ("sim:floor", "--speed", "0.2", "--set", "sim.sensor=analytic")
+MAP, POSE, IMAGE, LAYER = 1, 2, 3, 4
+MAP_HEAD = struct.Struct("<QqqqiIHHBBHI")
+POSE_HEAD = struct.Struct("<q3d4f4fBBH")
+
+
+class Page(RosbridgeClient):
+    """A page that looks. The ground as it has been told: cell of odom -> (height [mm], sigma [mm], state)."""
+
+    def __init__(self, port):
+        super().__init__(port, path="/page")
+        self.ground, self.wholes, self.map_bytes, self.versions = {}, 0, [], {}
+        self.poses, self.layers, self.images, self.texts, self.goodbye = [], [], [], [], None
+
+    def want(self, **keys):
+        self.send(1, json.dumps({"op": "want", **keys}).encode())
+
+    def listen(self, seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and self.goodbye is None:
+            self.take(*self.read())
+        return self
+
+    def take(self, opcode, payload):
+        if opcode == 9:
+            self.send(10, payload)
+        if opcode == 8:
+            self.goodbye = (struct.unpack(">H", payload[:2])[0], payload[2:].decode())
+        if opcode == 1:
+            self.texts.append(json.loads(payload))
+        if opcode != 2:
+            return
+        kind, protocol, _ = struct.unpack_from("<BBH", payload)
+        assert protocol == 1
+        {MAP: self.take_map, POSE: self.take_pose, IMAGE: lambda body: self.images.append(body),
+         LAYER: lambda body: self.layers.append(struct.unpack_from("<QqqIHHHH", body))}[kind](payload[4:])
+
+    def take_pose(self, body):
+        self.poses.append(POSE_HEAD.unpack_from(body))
+
+    def take_map(self, body):
+        (version, _, x, y, base, side, nx, ny, whole, _, edges, runs) = MAP_HEAD.unpack_from(body)
+        self.map_bytes.append(len(body))
+        origin = (x // side, y // side)
+        if whole:
+            self.wholes += 1
+            self.ground = {}
+        inside = {}
+        for cell, what in self.ground.items():
+            if origin[0] <= cell[0] < origin[0] + nx and origin[1] <= cell[1] < origin[1] + ny:
+                inside[cell] = what
+        self.ground, at = inside, MAP_HEAD.size + 24 * edges
+        for _ in range(runs):
+            first, count = struct.unpack_from("<II", body, at)
+            at += 8
+            for element, (height, sigma, state) in enumerate(struct.iter_unpack("<hBB", body[at:at + 4 * count]), first):
+                cell = (origin[0] + element % nx, origin[1] + element // nx)
+                if height == -32768 and state == 0:
+                    self.ground.pop(cell, None)
+                else:
+                    self.ground[cell] = (height + base / 10, sigma, state)
+            at += 4 * count
+        assert at == len(body)
+        self.versions[version] = dict(self.ground)
+
+    def told(self, kind):
+        return [text for text in self.texts if text["kind"] == kind]
+
+
+class PageTest(CliTest):
+    """A service, and pages that look at it. Classes say what it shows."""
+
+    @classmethod
+    def serve(cls, *words):
+        cls.service = subprocess.Popen([BINARY, "serve", *words, "--port", "0", "--page-port", "0", "--nice", "0"],
+                                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        cls.gate_port = int(cls.service.stdout.readline().rsplit(":", 1)[1])
+        told = cls.service.stdout.readline()
+        assert told.startswith("the page is at http://127.0.0.1:"), told
+        cls.port = int(told.rstrip("/\n").rsplit(":", 1)[1])
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.service.kill()
+        cls.service.wait()
+        cls.service.stdout.close()
+
+    def page(self):
+        page = Page(self.port)
+        self.addCleanup(page.close)
+        return page
+
+
+class LivePage(PageTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.serve(*SCENE)
+
+    def get(self, path, method="GET"):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=5)
+        self.addCleanup(connection.close)
+        connection.putrequest(method, path, skip_accept_encoding=True)
+        connection.endheaders()
+        answer = connection.getresponse()
+        return answer, answer.read()
+
+    def test_files_come_packed_and_nothing_else_comes(self):
+        for path in ("/", "/index.html"):
+            answer, body = self.get(path)
+            self.assertEqual((answer.status, answer.headers["Content-Encoding"]), (200, "gzip"))
+            self.assertEqual(answer.headers["Content-Type"], "text/html; charset=utf-8")
+            self.assertIn(b"<title>Surefoot", gzip.decompress(body))
+        answer, body = self.get("/", "HEAD")
+        self.assertEqual((answer.status, body), (200, b""))
+        for path in ("/../etc/passwd", "/etc/passwd", "/index.html/", "/%2e%2e/x", "//", "/page", "/index.htm"):
+            self.assertEqual(self.get(path)[0].status, 404, path)
+        self.assertEqual(self.get("/", "POST")[0].status, 405)
+
+    def test_pages_of_other_sites_see_nothing(self):
+        for origin, status in (("http://evil.example", b"403"), ("http://127.0.0.1:1", b"101")):
+            with socket.create_connection(("127.0.0.1", self.port), timeout=5) as plain:
+                plain.sendall(f"GET /page HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nOrigin: {origin}\r\n"
+                              "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode())
+                self.assertIn(status, plain.recv(64))
+
+    def test_a_page_hears_who_is_there_and_how_it_goes(self):
+        page = self.page().listen(1.5)
+        end = time.monotonic() + 20.0
+        while page.told("status")[-1]["state"] == "waiting" and time.monotonic() < end:
+            page.listen(0.5)
+        hello = page.told("hello")[0]
+        self.assertEqual(page.texts[0], hello)
+        self.assertEqual((hello["protocol"], hello["source_kind"], hello["gate_port"]), (1, "simulated", self.gate_port))
+        self.assertEqual(hello["machine"]["name"], "rex")
+        self.assertEqual(len(hello["machine"]["movements"]), 26)
+        self.assertEqual(len(hello["blind_zone"]), 4)
+        self.assertGreater(max(x for x, _ in hello["blind_zone"]), 0.3)
+        states = page.told("status")
+        self.assertGreaterEqual(len(states), 2)
+        self.assertEqual(states[-1]["state"], "running")
+        self.assertEqual([stage["name"] for stage in states[-1]["stages"]],
+                         ["rectify", "odometry", "stereo", "ground", "fuse", "traversability", "stairs"])
+        self.assertTrue(page.poses)
+
+    def test_what_changes_is_the_whole_ground_in_the_end(self):
+        first = self.page()
+        first.want(map_hz=10)
+        first.listen(1.0)
+        second = self.page()
+        second.want(map_hz=10)
+        end = time.monotonic() + 20.0
+        common = set()
+        while len(common) < 3 and time.monotonic() < end:
+            first.listen(0.2)
+            second.listen(0.2)
+            common = set(first.versions) & set(second.versions)
+        self.assertGreaterEqual(len(common), 3)
+        for version in common:
+            self.assertEqual(first.versions[version], second.versions[version])
+        self.assertGreater(len(first.ground), 1000)
+        self.assertLess(sum(first.map_bytes) / len(first.map_bytes), 200e3, "2 MB/s at 10 maps a second")
+        states = [state & 3 for _, _, state in first.ground.values()]
+        self.assertGreater(states.count(1), 0.5 * len(states), "a level floor is free")
+
+    def test_layers_and_images_come_to_who_wants_them(self):
+        page = self.page()
+        page.want(layers=["elevation", "traversability"], images=["left", "disparity"], image_hz=5)
+        end = time.monotonic() + 20.0
+        while (len(page.layers) < 2 or not page.images) and time.monotonic() < end:
+            page.listen(0.3)
+        self.assertEqual({layer[6] for layer in page.layers}, {0, 2})
+        self.assertTrue(page.images)
+        plain = self.page().listen(1.0)
+        self.assertEqual((plain.layers, plain.images), ([], []))
+
+    def test_who_sends_nonsense_is_told_and_let_go(self):
+        for text, words in ((b"{", "JSON"), (b"[]", "object"), (b'{"op":"fly"}', "no operation 'fly'"),
+                            (b'{"op":"want","layers":["gold"]}', "there is no 'gold'"), (b'{"op":"want","map_hz":"fast"}', "map_hz")):
+            page = self.page()
+            page.send(1, text)
+            page.listen(3.0)
+            self.assertEqual(page.goodbye[0], 1008, text)
+            self.assertIn(words, page.goodbye[1])
+        page = self.page()
+        with self.assertRaises((ConnectionError, OSError, AssertionError, struct.error, TypeError)):
+            page.send(1, b" " * 5000)  # no more than 4096 bytes are read
+            page.listen(3.0)
+            self.assertIsNone(page.goodbye)
+        self.assertTrue(self.page().listen(1.0).texts, "others go on")
+
+
+class JoystickOnPages(PageTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.serve("sim:walk_floor", "--joystick", "--vouch", "1", "--speed", "4", "--set", "sim.sensor=analytic")
+
+    def hold(self, page, command, until, others=(), seconds=40.0):
+        """Holds the joystick until `until(last steer message)`."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            page.send(1, json.dumps({"op": "joystick", "command": command}).encode())
+            page.listen(0.3)
+            for other in others:
+                other.listen(0.05)
+            if page.told("steer") and until(page.told("steer")[-1]):
+                return page.told("steer")[-1]
+        self.fail(f"still {page.told('steer')[-1:]} after {seconds} s")
+
+    def test_one_page_steers_and_the_others_are_told(self):
+        first, second = self.page().listen(1.0), self.page().listen(1.0)
+        self.assertTrue(first.told("hello")[0]["can_steer"])
+        self.assertEqual((first.told("steer")[0]["yours"], first.told("steer")[0]["taken"]), (False, False))
+        gate = RosbridgeClient(self.gate_port)
+        self.addCleanup(gate.close)
+        gate.send(1, b'{"op":"subscribe","topic":"/surefoot/verdict","type":"surefoot/Verdict"}')
+        # Until the gate is ready each grip ends in "cannot judge"; the hand has to let go in between.
+        end = time.monotonic() + 60.0
+        steered = {"moved": False}
+        while not steered["moved"] and time.monotonic() < end:
+            before = len(first.told("steer"))
+            steered = self.hold(first, 9, lambda said: said["asked"] == 9 and len(first.told("steer")) > before + 1, (second,))
+            first.send(1, b'{"op":"joystick","command":0}')
+            first.listen(0.6)
+            steered = first.told("steer")[-1]
+        self.assertEqual((steered["asked"], steered["moved"], steered["verdict"], steered["yours"]), (9, True, "OK", True))
+        second.listen(0.5)
+        self.assertEqual([second.told("steer")[-1][key] for key in ("yours", "taken", "asked", "moved")], [False, True, 9, True])
+        # What the page was told is what the gate said.
+        said = None
+        while said is None or said["verdict"] != "OK":
+            opcode, payload = gate.read()
+            said = json.loads(payload)["msg"] if opcode == 1 and b"/surefoot/verdict" in payload else said
+        self.assertEqual(said["command"], 9)
+        # The machine walks, and the other cannot stop or steer it.
+        second.send(1, b'{"op":"joystick","command":17}')
+        end = time.monotonic() + 30.0
+        while first.poses[-1][1] < 0.2 and time.monotonic() < end:
+            first.listen(0.5)
+        self.assertGreater(first.poses[-1][1], 0.2)
+        self.assertEqual([said["asked"] for said in second.listen(0.5).told("steer")][-1], 9)
+        # Who goes leaves it to others.
+        first.close()
+        second.listen(1.0)
+        self.assertFalse(second.told("steer")[-1]["taken"])
+        self.hold(second, 17, lambda said: said["yours"])
+
+    def test_a_movement_that_is_none_moves_nothing(self):
+        page = self.page()
+        page.send(1, b'{"op":"joystick","command":300}')
+        self.assertIn("0 to 255", page.listen(3.0).goodbye[1])
+        page = self.page()
+        page.send(1, b'{"op":"playback","paused":true}')
+        self.assertIn("no recording", page.listen(3.0).goodbye[1])
+
+
+class Recordings(PageTest):
+    FRAMES = 90
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        recording = cls.folder.name + "/floor"
+        subprocess.run([BINARY, "sim", "floor", "--frames", str(cls.FRAMES), "--out", recording], check=True, capture_output=True)
+        cls.serve(recording)
+
+    @classmethod
+    def tearDownClass(cls):
+        super().tearDownClass()
+        cls.folder.cleanup()
+
+    def ask(self, page, until, seconds=20.0, **wish):
+        if wish:
+            page.send(1, json.dumps({"op": "playback", **wish}).encode())
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            page.listen(0.1)
+            if page.told("status") and until(page.told("status")[-1]):
+                return page.told("status")[-1]
+        self.fail(page.told("status")[-1])
+
+    def test_pause_jump_and_speed(self):
+        page, other = self.page(), self.page()
+        said = self.ask(page, lambda said: said["playback"]["frame"] > 40)
+        self.assertEqual((said["playback"]["frames"], said["playback"]["speed"], said["state"]), (self.FRAMES, 1, "running"))
+        self.ask(page, lambda said: said["state"] == "paused", paused=True)
+        page.listen(0.5)
+        stands, poses = page.poses[-1], len(page.poses)
+        page.listen(1.0)
+        self.assertEqual(len(page.poses), poses)
+        self.assertTrue(other.listen(0.3).told("status")[-1]["playback"]["paused"], "everybody sees it")
+        # A jump back, and on from there.
+        self.ask(page, lambda said: said["state"] == "running" and 10 < said["playback"]["frame"] < 60, frame=10, paused=False)
+        self.assertEqual(page.poses[poses], stands, "nothing else before the first new frame")
+        self.assertLess(page.poses[poses + 1][0], stands[0] - 2e9)
+        self.ask(page, lambda said: said["state"] == "ended" and said["playback"]["frame"] == self.FRAMES - 1, frame=75, speed=8)
+        self.assertGreater(page.poses[-1][0], stands[0])
+        # And back from the end.
+        self.ask(page, lambda said: said["state"] == "running" and 5 < said["playback"]["frame"] < 60, frame=5, speed=1)
+        page.send(1, b'{"op":"joystick","command":9}')
+        self.assertIn("nobody steers", page.listen(3.0).goodbye[1])
+
+
+class Ports(CliTest):
+    def test_a_taken_port_is_said_and_the_next_one_is_used(self):
+        with socket.socket() as other:
+            other.bind(("127.0.0.1", 0))
+            other.listen()
+            port = other.getsockname()[1]
+            process = self.run_ok("serve", *SCENE, "--max-frames", 1, "--once", "--port", 0, "--page-port", port)
+        self.assertIn(f"port {port} is taken", process.stderr)
+        self.assertRegex(process.stdout, r"the page is at http://127\.0\.0\.1:\d+/")
+        self.assertNotIn(f"127.0.0.1:{port}/", process.stdout)
+
+    def test_only_a_simulated_machine_is_steered_and_by_one(self):
+        for words, said in (((*SCENE, "--joystick", "--no-page"), "without the page"),
+                            (("sim:walk_floor", "--joystick", "--walk", "9"), "not both")):
+            process = subprocess.run([BINARY, "serve", *words, "--once", "--port", "0", "--page-port", "0"],
+                                     capture_output=True, text=True, timeout=60)
+            self.assertNotEqual(process.returncode, 0)
+            self.assertIn(said, process.stderr)
+
+    def test_without_a_page_nothing_is_said_of_one(self):
+        process = self.run_ok("serve", *SCENE, "--max-frames", 1, "--once", "--port", 0, "--no-page")
+        self.assertNotIn("the page", process.stdout + process.stderr)
+
+    def test_beyond_this_machine_it_needs_a_token(self):
+        process = subprocess.run([BINARY, "serve", *SCENE, "--once", "--bind", "0.0.0.0", "--port", "0"],
+                                 capture_output=True, text=True, timeout=60)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("token", process.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
