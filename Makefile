@@ -14,6 +14,7 @@ setup:
 	@tools/setup
 
 build: setup
+	@tools/build_page
 	@test -f $(BUILD)/build.ninja || cmake --preset release > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
 

@@ -1,0 +1,323 @@
+"""What the files of a soak say: growth, missed deadlines, faults. Used by tools/soak."""
+import collections
+import csv
+import json
+import math
+import statistics
+import subprocess
+
+MS = 1_000_000
+ANSWER_MS = 250.0  # an answer comes within this time, or after a stop of the gate within this time from its end
+FRESH_MS = 250.0  # no OK later than this after the last frame: hazard table, ERROR-class faults
+AUDIT_MS = 1500.0  # no OK later than this after the log took nothing any more: "behind" is 1 s
+WARM_S = 1800.0  # of a process, before its memory counts: until then it meets sizes and faults that it had not yet
+MOST_MB_PER_H = 1.0
+MOST_HANDLES_PER_H = 1.0
+BLOCK_S = 300.0  # handles: the fewest in such a time, so that passing crowds do not count
+PERCEPTION_GONE = ("perception_pause", "perception_hang", "perception_kill")
+ASKED_AGAIN_S = 0.3  # the first question over a connection that is dead comes so late at most
+ORPHAN_S = 6.0  # a gate whose parent was killed ends after 5 s
+Sample = collections.namedtuple("Sample", "elapsed_s name pid rss_kb anon_kb threads handles ticks shm_files shm_kb "
+                                          "audit_kb load")
+Query = collections.namedtuple("Query", "sent received verdict reason decided valid_until port")  # times: steady ns
+Fault = collections.namedtuple("Fault", "kind begin end perception gate port")
+
+
+def rows(path, row):
+    """Lines as named tuples, numbers as numbers."""
+    def value(text):
+        try:
+            return int(text)
+        except ValueError:
+            try:
+                return float(text)
+            except ValueError:
+                return text
+    if not path.exists():
+        return []
+    with open(path, newline="") as file:
+        return [row(*map(value, line)) for line in csv.reader(file) if len(line) == len(row._fields)]
+
+
+def slope(points):
+    """Least squares over groups of (x, y) that each have a level of their own; None for too few."""
+    over = under = 0.0
+    for group in points:
+        if len(group) < 2:
+            continue
+        mean_x = statistics.fmean(x for x, _ in group)
+        mean_y = statistics.fmean(y for _, y in group)
+        over += sum((x - mean_x) * (y - mean_y) for x, y in group)
+        under += sum((x - mean_x) ** 2 for x, _ in group)
+    return over / under if under > 0 else None
+
+
+def lives(samples, name):
+    """Samples of each process of that name that lived long enough, warm ones alone."""
+    by_pid = collections.defaultdict(list)
+    for sample in samples:
+        if sample.name == name:
+            by_pid[sample.pid].append(sample)
+    return [[s for s in life if s.elapsed_s - life[0].elapsed_s >= WARM_S] for life in by_pid.values()]
+
+
+def fewest(life, field):
+    """(time [h], fewest in a block) of a life."""
+    blocks = collections.defaultdict(list)
+    for s in life:
+        blocks[int((s.elapsed_s - life[0].elapsed_s) // BLOCK_S)].append(s)
+    return [(b[0].elapsed_s / 3600.0, min(getattr(s, field) for s in b)) for b in blocks.values()]
+
+
+def growth(samples, name):
+    warm = [life for life in lives(samples, name) if life]
+    longest = max(warm, key=len, default=[])
+    its = [s for s in samples if s.name == name]
+
+    def per_hour(field, groups):
+        return slope([[(s.elapsed_s / 3600.0, getattr(s, field) / 1024.0) for s in life] for life in groups])
+    return {
+        "processes": len({s.pid for s in its}),
+        "warm_hours_of_the_longest": (longest[-1].elapsed_s - longest[0].elapsed_s) / 3600.0 if longest else 0.0,
+        "mb_first": longest[0].rss_kb / 1024.0 if longest else None,
+        "mb_last": longest[-1].rss_kb / 1024.0 if longest else None,
+        "mb_most": max((s.rss_kb for s in its), default=0) / 1024.0,
+        "mb_per_h": per_hour("rss_kb", [longest]),
+        "own_mb_per_h": per_hour("anon_kb", [longest]),
+        "own_mb_per_h_of_all": per_hour("anon_kb", warm),
+        "handles_per_h": slope([fewest(longest, "handles")] if longest else []),
+        "handles_least": min((s.handles for s in longest), default=None),
+        "handles_most": max((s.handles for s in its), default=0),
+        "threads_per_h": slope([fewest(longest, "threads")] if longest else []),
+        "threads_most": max((s.threads for s in its), default=0),
+    }
+
+
+def overlaps(query, fault, before_s=0.0, after_s=0.0):
+    return query.sent <= fault.end + after_s * 1e9 and query.received >= fault.begin - before_s * 1e9
+
+
+def is_lost_rightly(query, faults):
+    """The gate was killed, or was the orphan of a killed perception, or stood."""
+    for fault in faults:
+        if fault.kind in ("gate_kill", "gate_pause") and overlaps(query, fault, 0.1, ASKED_AGAIN_S):
+            return True
+        if fault.kind == "audit_unwritable" and overlaps(query, fault, 3.0, ASKED_AGAIN_S):
+            return True  # it begins when the new gate is there
+        if fault.kind == "perception_kill" and overlaps(query, fault, 0.1, ORPHAN_S):
+            return True
+    return False
+
+
+def latency_ms(query, faults):
+    """From the question, or from the end of a stop of the gate."""
+    begin = query.sent
+    for fault in faults:
+        if fault.kind == "gate_pause" and overlaps(query, fault, 0.05):
+            begin = max(begin, fault.end)
+    return (query.received - begin) / MS
+
+
+def near(faults, query):
+    """Those that may matter for a query: within a minute."""
+    return [f for f in faults if f.begin - 60e9 < query.sent < f.end + 60e9]
+
+
+def judge_queries(queries, faults):
+    missed = []  # (what, query)
+    latencies_ms, parts = [], []
+    for query in queries:
+        around = near(faults, query)
+        if query.verdict in ("LOST", "TIMEOUT"):
+            if not is_lost_rightly(query, around):
+                missed.append(("no answer" if query.verdict == "LOST" else "late answer", query))
+            continue
+        took_ms = latency_ms(query, around)
+        latencies_ms.append(took_ms)
+        parts.append(((query.decided - query.sent) / MS, (query.received - query.decided) / MS))
+        if took_ms > ANSWER_MS:
+            missed.append(("late answer", query))
+        if query.verdict != "OK":
+            continue
+        for fault in around:
+            after_ms = (query.decided - fault.begin) / MS
+            if query.decided > fault.end:
+                continue
+            if fault.kind in PERCEPTION_GONE and after_ms > FRESH_MS:
+                missed.append(("OK on old frames", query))
+            if fault.kind in ("audit_full", "audit_unwritable") and after_ms > AUDIT_MS and query.port == fault.port:
+                missed.append(("OK without a log", query))
+    return missed, sorted(latencies_ms), parts
+
+
+def first_inhibits_ms(queries, faults):
+    """From the stop of perception to the first answer that is no OK, where the one before it was one."""
+    found = []
+    answers = [q for q in queries if q.verdict not in ("LOST", "TIMEOUT")]
+    for fault in faults:
+        if fault.kind not in PERCEPTION_GONE:
+            continue
+        before = [q for q in answers if fault.begin - 1e9 < q.decided <= fault.begin]
+        after = [q for q in answers if fault.begin < q.decided <= fault.end]
+        first = next((q for q in after if q.verdict != "OK"), None)
+        if before and before[-1].verdict == "OK" and first:
+            found.append((first.decided - fault.begin) / MS)
+    return found
+
+
+def silences_s(queries, faults):
+    """After each killed gate: from the last answer to the next one."""
+    found = []
+    answers = [q for q in queries if q.verdict not in ("LOST", "TIMEOUT")]
+    for fault in faults:
+        if fault.kind == "gate_kill":
+            last = [q.received for q in answers if q.received <= fault.begin][-1:]
+            following = [q.received for q in answers if q.sent > fault.begin][:1]
+            if last and following:
+                found.append((following[0] - last[0]) / 1e9)
+    return found
+
+
+def share(ordered, part):
+    return ordered[min(len(ordered) - 1, math.ceil(part * len(ordered)) - 1)] if ordered else None
+
+
+def audit_of(folder):
+    process = subprocess.run([folder / "bin" / "surefoot", "audit", "replay", folder / "audit", "--json"],
+                             capture_output=True, text=True)
+    try:
+        return json.loads(process.stdout)
+    except ValueError:
+        return {"damage": {"what": process.stderr.strip()[-300:]}}
+
+
+def processor_share(samples):
+    """Of one core, perception and gate together."""
+    ticks = 0
+    for name in ("perception", "gate"):
+        for pid in {s.pid for s in samples if s.name == name}:
+            its = [s for s in samples if s.pid == pid and s.name == name]
+            ticks += its[-1].ticks
+    return ticks / 100.0 / max(samples[-1].elapsed_s, 1.0)
+
+
+def evaluate(folder):
+    samples = rows(folder / "samples.csv", Sample)
+    queries = rows(folder / "queries.csv", Query)
+    faults = rows(folder / "faults.csv", Fault)
+    about = json.loads((folder / "about.json").read_text())
+    state = json.loads((folder / "state.json").read_text())
+    restarts = (folder / "serve.log").read_text().count("was started again")
+    wanted = sum(f.kind in ("gate_kill", "audit_unwritable") for f in faults)
+    missed, latencies_ms, parts = judge_queries(queries, faults)
+    inhibits_ms = first_inhibits_ms(queries, faults)
+    found = {
+        **about,
+        "hours": state["elapsed_s"] / 3600.0,
+        "surprises": state["surprises"],
+        "gate_surprises": max(0, restarts - wanted),
+        "faults": dict(sorted(collections.Counter(f.kind for f in faults).items())),
+        "clients": json.loads((folder / "crowd.json").read_text()) if (folder / "crowd.json").exists() else {},
+        "queries": len(queries),
+        "verdicts": dict(sorted(collections.Counter(q.verdict for q in queries).items())),
+        "latency_ms": {name: share(latencies_ms, part) for name, part in
+                       (("p50", 0.5), ("p99", 0.99), ("p99.9", 0.999), ("max", 1.0))},
+        "to_gate_ms_most": max((a for a, _ in parts), default=None),
+        "from_gate_ms_most": max((b for _, b in parts), default=None),
+        "missed": dict(sorted(collections.Counter(what for what, _ in missed).items())),
+        "missed_queries": [[what, *query] for what, query in missed[:50]],
+        "first_inhibit_ms": {"n": len(inhibits_ms), "max": max(inhibits_ms, default=None)},
+        "silence_after_gate_kill_s": {"max": max(silences_s(queries, faults), default=None)},
+        "perception": growth(samples, "perception"),
+        "gate": growth(samples, "gate"),
+        "shm_files_most": max(s.shm_files for s in samples),
+        "shm_kb_most": max(s.shm_kb for s in samples),
+        "audit_mb_most": max(s.audit_kb for s in samples) / 1024.0,
+        "processor_share": processor_share(samples),
+        "load_average": {"mean": statistics.fmean(s.load for s in samples), "max": max(s.load for s in samples)},
+        "audit": audit_of(folder),
+    }
+    found["failures"] = failures(found)
+    found["passed"] = not found["failures"]
+    return found
+
+
+def failures(found):
+    """What is not as it must be, in words."""
+    said = [f"{times} times {what}" for what, times in found["missed"].items()]
+    if found["surprises"]:
+        said.append(f"perception ended {found['surprises']} times by itself")
+    if found["gate_surprises"]:
+        said.append(f"the gate ended {found['gate_surprises']} times by itself")
+    for name in ("perception", "gate"):
+        for field, most, unit in (("mb_per_h", MOST_MB_PER_H, "MB"), ("handles_per_h", MOST_HANDLES_PER_H, "handles"),
+                                  ("threads_per_h", MOST_HANDLES_PER_H, "threads")):
+            per_h = found[name][field]
+            if per_h is not None and per_h > most:
+                said.append(f"{name} grows by {per_h:.2f} {unit} an hour")
+    if found["shm_files_most"] > 1:
+        said.append(f"{found['shm_files_most']} files in shared memory")
+    if found["audit"].get("damage") or found["audit"].get("different"):
+        said.append("the audit log is damaged or does not give its verdicts again")
+    if not found["verdicts"].get("OK"):
+        said.append("nothing was allowed")
+    return said
+
+
+def sentence(found):
+    return (f"soak: {found['hours']:.2f} h, {sum(found['faults'].values())} faults, {found['queries']} questions, "
+            f"missed deadlines {sum(found['missed'].values())}, " +
+            ("; ".join(found["failures"]) if found["failures"] else "all flat"))
+
+
+def number(value, digits=1):
+    return "-" if value is None else f"{value:.{digits}f}"
+
+
+def lines_of(found):
+    latency = found["latency_ms"]
+    audit = found["audit"]
+    lines = [
+        f"Seed {found['seed']}, {found['hours']:.2f} h at commit {found['commit']}, load average "
+        f"{found['load_average']['mean']:.1f} (at most {found['load_average']['max']:.1f}) on a machine that others used "
+        f"too, gate and well-behaved client {found['urgent']} nice values more urgent than other sessions; perception and gate took {100 * found['processor_share']:.0f} % of one core. "
+        f"{'Passed.' if found['passed'] else 'NOT passed: ' + '; '.join(found['failures']) + '.'}",
+        "", "| | perception | gate |", "|---|---|---|"]
+    for text, field, digits in (
+            ("processes, one after the other", "processes", 0),
+            ("longest one without its first 30 minutes [h]", "warm_hours_of_the_longest", 2),
+            ("its resident memory at the begin [MB]", "mb_first", 1), ("at the end [MB]", "mb_last", 1),
+            ("**slope [MB per hour]**", "mb_per_h", 2), ("of that not shared", "own_mb_per_h", 2),
+            ("slope of all lives beyond 30 minutes, not shared", "own_mb_per_h_of_all", 2),
+            ("most resident memory of any [MB]", "mb_most", 1),
+            ("**slope of handles [per hour]** (fewest in each 5 minutes)", "handles_per_h", 2),
+            ("fewest and most handles", None, 0), ("slope of threads [per hour]", "threads_per_h", 2)):
+        cells = [f"{number(found[name]['handles_least'], 0)}, {number(found[name]['handles_most'], 0)}" if field is None
+                 else number(found[name][field], digits) for name in ("perception", "gate")]
+        lines.append(f"| {text} | {cells[0]} | {cells[1]} |")
+    lines += ["", "| | |", "|---|---|",
+              f"| questions of the well-behaved client | {found['queries']} |",
+              "| answers | " + ", ".join(f"{k} {v}" for k, v in found["verdicts"].items()) + " |",
+              f"| latency p50, p99, p99.9, most [ms] | " + ", ".join(number(latency[k]) for k in latency) + " |",
+              f"| **missed deadlines** | {sum(found['missed'].values())}" +
+              "".join(f", {what}: {times}" for what, times in found["missed"].items()) + " |",
+              f"| perception stopped or killed while OK was said: first inhibit at most [ms] | "
+              f"{number(found['first_inhibit_ms']['max'])} ({found['first_inhibit_ms']['n']} times) |",
+              f"| killed gate: longest silence [s] | {number(found['silence_after_gate_kill_s']['max'], 2)} |",
+              f"| files in shared memory at most | {found['shm_files_most']} ({found['shm_kb_most'] / 1024:.1f} MB) |",
+              f"| audit folder at most (64 MB allowed) [MB] | {number(found['audit_mb_most'])} |",
+              f"| verdicts of the log given again, different | {audit.get('equal', '-')}, {audit.get('different', '-')} |",
+              f"| gaps in the log, verdicts in them | {audit.get('gaps', '-')}, {audit.get('lost', '-')} |",
+              "", "| fault | times |", "|---|---|"]
+    lines += [f"| {kind} | {times} |" for kind, times in found["faults"].items()]
+    lines += ["", "| clients | times |", "|---|---|"]
+    lines += [f"| {what} | {times} |" for what, times in sorted(found["clients"].items())]
+    return lines
+
+
+def fill(page, found):
+    """Puts the figures between the markers of a page."""
+    begin, end = "<!-- soak: begin -->", "<!-- soak: end -->"
+    text = page.read_text()
+    head, rest = text.split(begin)
+    page.write_text(head + begin + "\n" + "\n".join(lines_of(found)) + "\n" + end + rest.split(end)[1])
