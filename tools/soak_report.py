@@ -62,11 +62,12 @@ def lives(samples, name):
 
 
 def fewest(life, field):
-    """(time [h], fewest in a block) of a life."""
+    """(time [h], fewest in a block) of a life. Whole blocks alone: the fewest of a short one are more."""
     blocks = collections.defaultdict(list)
     for s in life:
         blocks[int((s.elapsed_s - life[0].elapsed_s) // BLOCK_S)].append(s)
-    return [(b[0].elapsed_s / 3600.0, min(getattr(s, field) for s in b)) for b in blocks.values()]
+    whole = [b for b in blocks.values() if b[0].elapsed_s + 0.9 * BLOCK_S <= b[-1].elapsed_s]
+    return [(b[0].elapsed_s / 3600.0, min(getattr(s, field) for s in b)) for b in whole]
 
 
 def growth(samples, name):
@@ -228,6 +229,7 @@ def evaluate(folder):
         "missed_queries": [[what, *query] for what, query in missed[:50]],
         "first_inhibit_ms": {"n": len(inhibits_ms), "max": max(inhibits_ms, default=None)},
         "silence_after_gate_kill_s": {"max": max(silences_s(queries, faults), default=None)},
+        "handles_alone": [state.get("handles_alone_first"), state.get("handles_alone_last")],
         "perception": growth(samples, "perception"),
         "gate": growth(samples, "gate"),
         "shm_files_most": max(s.shm_files for s in samples),
@@ -255,6 +257,9 @@ def failures(found):
             per_h = found[name][field]
             if per_h is not None and per_h > most:
                 said.append(f"{name} grows by {per_h:.2f} {unit} an hour")
+    first, last = found["handles_alone"]
+    if first is None or last is None or last > first:
+        said.append(f"the gate alone has {last} handles at the end, {first} at the begin")
     if found["shm_files_most"] > 1:
         said.append(f"{found['shm_files_most']} files in shared memory")
     if found["audit"].get("damage") or found["audit"].get("different"):
@@ -304,6 +309,8 @@ def lines_of(found):
               f"| perception stopped or killed while OK was said: first inhibit at most [ms] | "
               f"{number(found['first_inhibit_ms']['max'])} ({found['first_inhibit_ms']['n']} times) |",
               f"| killed gate: longest silence [s] | {number(found['silence_after_gate_kill_s']['max'], 2)} |",
+              "| handles of the gate with no client, at the begin and at the end | "
+              f"{found['handles_alone'][0]}, {found['handles_alone'][1]} |",
               f"| files in shared memory at most | {found['shm_files_most']} ({found['shm_kb_most'] / 1024:.1f} MB) |",
               f"| audit folder at most (64 MB allowed) [MB] | {number(found['audit_mb_most'])} |",
               f"| verdicts of the log given again, different | {audit.get('equal', '-')}, {audit.get('different', '-')} |",

@@ -53,6 +53,13 @@ class Judgement(unittest.TestCase):
         self.assertEqual(self.missed(question(100, 0.1, "LOST"), fault("gate_kill", 100.05, 100.3)), [])
         self.assertEqual(self.missed(question(100, 0.1, "LOST"), fault("audit_full", 100.05, 100.3)), ["no answer"])
 
+    def test_a_block_that_is_not_whole_says_nothing_of_handles(self):
+        def sample(elapsed_s, handles):
+            return soak_report.Sample(elapsed_s, "gate", 1, 0, 0, 1, handles, 0, 1, 0, 0, 0)
+        life = [sample(10.0 * i, 17 if i % 30 == 7 else 25) for i in range(63)]
+        self.assertEqual(soak_report.fewest(life, "handles"), [(0.0, 17), (300 / 3600, 17)])
+        self.assertEqual(len(soak_report.fewest(life[:20], "handles")), 0)
+
     def test_slopes_are_within_groups(self):
         self.assertAlmostEqual(soak_report.slope([[(0, 5), (1, 7)], [(10, 0), (12, 4)]]), 2.0)
         self.assertIsNone(soak_report.slope([[(0, 5)]]))
@@ -68,6 +75,8 @@ class Soak(CliTest):
         for what in ("OK on old frames", "OK without a log", "no answer"):
             self.assertEqual(found["missed"].get(what, 0), 0, found["missed_queries"])
         self.assertEqual((found["surprises"], found["gate_surprises"]), (0, 0))
+        first, last = found["handles_alone"]
+        self.assertLessEqual(last, first)
         self.assertEqual(found["shm_files_most"], 1)
         self.assertIsNone(found["audit"]["damage"])
         self.assertEqual(found["audit"]["different"], 0)
