@@ -22,6 +22,7 @@ demo: build
 	@tools/demo $(BUILD)/apps/surefoot/surefoot $(OUT)/demo
 
 test: build
+	@tools/setup page
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
 	@echo "$$(grep -cE 'skipped 1 check' $(BUILD)/Testing/Temporary/LastTest.log) checks skipped for want of data"
 
