@@ -30,36 +30,12 @@ std::span<const grid::SnapshotEdge> Ground::edges() const noexcept {
 }
 
 bool Ground::is_vouched(std::int64_t ix, std::int64_t iy) const noexcept {
-    if (!vouching_) return false;
     const std::int64_t x = grid_.origin_x + ix * grid_.side - vouched_.center_x_tenth_mm;
     const std::int64_t y = grid_.origin_y + iy * grid_.side - vouched_.center_y_tenth_mm;
     const std::int64_t far_x = std::max(magnitude(x), magnitude(x + grid_.side));
     const std::int64_t far_y = std::max(magnitude(y), magnitude(y + grid_.side));
     const std::int64_t radius = vouched_.radius_tenth_mm;
     return far_x * far_x + far_y * far_y <= radius * radius;
-}
-
-GroundCell Ground::cell(std::int64_t ix, std::int64_t iy) const noexcept {
-    GroundCell cell;
-    if (ix < 0 || iy < 0 || ix >= map_.nx || iy >= map_.ny) {
-        cell.knowledge = Knowledge::outside;
-        return cell;
-    }
-    const auto at = static_cast<std::size_t>(iy * map_.nx + ix);
-    cell.drop_evidence = map_.drop_evidence[at];
-    if (map_.source[at] == grid::EvidenceSource::measured &&
-        map_.height_tenth_mm[at] != grid::MapSnapshot::kUnknownHeight) {
-        cell.knowledge = Knowledge::measured;
-        cell.component = map_.component[at];
-        cell.sigma_tenth_mm = map_.sigma_tenth_mm[at];
-        cell.drift_tenth_mm = map_.drift_tenth_mm[at];
-        cell.clearance_tenth_mm = map_.clearance_tenth_mm[at];
-        cell.height_tenth_mm = map_.height_tenth_mm[at];
-    } else if (is_vouched(ix, iy)) {
-        cell.knowledge = Knowledge::vouched;
-        cell.height_tenth_mm = vouched_.height_tenth_mm;
-    }
-    return cell;
 }
 
 Extent Ground::zone_of(const Sweep& sweep) const noexcept {

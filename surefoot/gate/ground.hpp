@@ -39,7 +39,29 @@ class Ground {
 
     [[nodiscard]] const grid::FixedGrid& grid() const noexcept { return grid_; }
     [[nodiscard]] std::span<const grid::SnapshotEdge> edges() const noexcept;
-    [[nodiscard]] GroundCell cell(std::int64_t ix, std::int64_t iy) const noexcept;
+    /// In the header: a verdict asks for thousands.
+    [[nodiscard]] GroundCell cell(std::int64_t ix, std::int64_t iy) const noexcept {
+        GroundCell cell;
+        if (ix < 0 || iy < 0 || ix >= map_.nx || iy >= map_.ny) {
+            cell.knowledge = Knowledge::outside;
+            return cell;
+        }
+        const auto at = static_cast<std::size_t>(iy * map_.nx + ix);
+        cell.drop_evidence = map_.drop_evidence[at];
+        if (map_.source[at] == grid::EvidenceSource::measured &&
+            map_.height_tenth_mm[at] != grid::MapSnapshot::kUnknownHeight) {
+            cell.knowledge = Knowledge::measured;
+            cell.component = map_.component[at];
+            cell.sigma_tenth_mm = map_.sigma_tenth_mm[at];
+            cell.drift_tenth_mm = map_.drift_tenth_mm[at];
+            cell.clearance_tenth_mm = map_.clearance_tenth_mm[at];
+            cell.height_tenth_mm = map_.height_tenth_mm[at];
+        } else if (vouching_ && is_vouched(ix, iy)) {
+            cell.knowledge = Knowledge::vouched;
+            cell.height_tenth_mm = vouched_.height_tenth_mm;
+        }
+        return cell;
+    }
     /// The eight cells around one are known, and each passes `test(cell)`.
     template <typename Test>
     [[nodiscard]] bool all_around(std::int64_t ix, std::int64_t iy, Test&& test) const noexcept {
@@ -66,6 +88,7 @@ class Ground {
     [[nodiscard]] const VouchedArea& vouched() const noexcept { return vouched_; }
 
   private:
+    /// Whole, in the area.
     [[nodiscard]] bool is_vouched(std::int64_t ix, std::int64_t iy) const noexcept;
 
     const grid::MapSnapshot& map_;

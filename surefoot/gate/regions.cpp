@@ -8,6 +8,9 @@
 namespace surefoot::gate {
 namespace {
 
+// What is asked of each of the thousands of cells of a verdict is always_inline: it is asked from
+// five places, and by itself the compiler would call it (0.055 ms a verdict instead of 0.043).
+
 /// A cell with its place.
 struct Place {
     GroundCell cell;
@@ -47,12 +50,10 @@ bool is_sure(const Scene& scene, const Place& place) noexcept {
            });
 }
 
-/// Knowledge, sureness and drift: what every region asks of every cell. False when the cell says
-/// nothing about the height of the ground.
-bool check_knowledge(const Scene& scene, const Place& place, Findings& findings) noexcept {
+/// What check_knowledge() says of a cell that is not known, sure and where it was seen.
+bool check_doubtful(const Scene& scene, const Place& place, Findings& findings) noexcept {
     const GateLimits& limits = scene.machine.limits;
     const GroundCell& cell = place.cell;
-    count(cell, findings.evidence);
     if (cell.knowledge == Knowledge::outside) {
         deny(findings, Reason::outside_map, place, 0, 0);
         return false;
@@ -70,6 +71,20 @@ bool check_knowledge(const Scene& scene, const Place& place, Findings& findings)
     if (cell.drift_tenth_mm > limits.drift_tenth_mm)
         deny(findings, Reason::memory_uncertain, place, cell.drift_tenth_mm, limits.drift_tenth_mm);
     return true;
+}
+
+/// Knowledge, sureness and drift: what every region asks of every cell. False when the cell says
+/// nothing about the height of the ground. Nearly every cell is in order, and costs a few compares.
+[[gnu::always_inline]] inline bool check_knowledge(const Scene& scene,
+                                                   const Place& place,
+                                                   Findings& findings) noexcept {
+    const GateLimits& limits = scene.machine.limits;
+    const GroundCell& cell = place.cell;
+    count(cell, findings.evidence);
+    if (cell.known() && cell.sigma_tenth_mm <= limits.cell_sigma_tenth_mm &&
+        cell.drift_tenth_mm <= limits.drift_tenth_mm)
+        return true;
+    return check_doubtful(scene, place, findings);
 }
 
 /// Height over the stance.
@@ -90,24 +105,19 @@ bool is_below(const Scene& scene,
     return factor * static_cast<double>(cell.sigma_tenth_mm) <= static_cast<double>(slack);
 }
 
-/// Wanted: the ground of the place below `limit` on this side of the stance by `sigma_factor`
-/// sigma. One cell alone, among eight that are, need only be so by one sigma: it has just refused
-/// measurements, and what stands or gapes on the ground is seldom smaller than a cell. What is
-/// measured beyond the limit is refused for `reason`; what is only not sure to be below is not
-/// resolvable.
-void check_below(const Scene& scene,
-                 const Place& place,
-                 Side side,
-                 std::int64_t limit,
-                 Reason reason,
-                 Findings& findings) noexcept {
+/// What check_below() says of a cell that is not surely below.
+void check_unsure(const Scene& scene,
+                  const Place& place,
+                  Side side,
+                  std::int64_t limit,
+                  Reason reason,
+                  Findings& findings) noexcept {
     const std::int64_t value = static_cast<std::int64_t>(side) * rise_of(scene, place.cell);
     if (value > limit) {
         deny(findings, reason, place, value, limit);
         return;
     }
     const double factor = scene.machine.limits.sigma_factor;
-    if (is_below(scene, place.cell, side, limit, factor)) return;
     if (is_below(scene, place.cell, side, limit, 1.0) &&
         scene.ground.all_around(place.ix, place.iy, [&](const GroundCell& beside) {
             return is_below(scene, beside, side, limit, factor);
@@ -120,12 +130,27 @@ void check_below(const Scene& scene,
          static_cast<std::int64_t>(static_cast<double>(limit - value) / factor));
 }
 
+/// Wanted: the ground of the place below `limit` on this side of the stance by `sigma_factor`
+/// sigma. One cell alone, among eight that are, need only be so by one sigma: it has just refused
+/// measurements, and what stands or gapes on the ground is seldom smaller than a cell. What is
+/// measured beyond the limit is refused for `reason`; what is only not sure to be below is not
+/// resolvable.
+[[gnu::always_inline]] inline void check_below(const Scene& scene,
+                                               const Place& place,
+                                               Side side,
+                                               std::int64_t limit,
+                                               Reason reason,
+                                               Findings& findings) noexcept {
+    if (!is_below(scene, place.cell, side, limit, scene.machine.limits.sigma_factor))
+        check_unsure(scene, place, side, limit, reason, findings);
+}
+
 /// Wanted: nothing hangs lower over the stance than `height`.
-void check_overhead(const Scene& scene,
-                    const Place& place,
-                    std::int64_t height,
-                    Reason reason,
-                    Findings& findings) noexcept {
+[[gnu::always_inline]] inline void check_overhead(const Scene& scene,
+                                                  const Place& place,
+                                                  std::int64_t height,
+                                                  Reason reason,
+                                                  Findings& findings) noexcept {
     if (place.cell.clearance_tenth_mm == grid::MapSnapshot::kNoCeiling) return;
     const std::int64_t ceiling = rise_of(scene, place.cell) + place.cell.clearance_tenth_mm;
     if (!(ceiling < height)) return;
