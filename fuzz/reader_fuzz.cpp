@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <vector>
 
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
 #include "io/machine_file.hpp"
+#include "io/model_file.hpp"
 #include "io/pfm.hpp"
 #include "io/point_cloud.hpp"
 #include "io/rig_file.hpp"
@@ -112,6 +114,15 @@ void must_be_sound(const Result<io::RigFile>& file) {
     const auto machine = io::parse_machine(bytes, "f");
     must_explain(machine);
     if (machine && machine->machine.problem() != nullptr) std::abort();  // accepted but not usable
+}
+[[maybe_unused]] void fuzz_model(std::string_view bytes) {
+    const auto model = io::parse_model(bytes, "f");
+    must_explain(model);
+    if (!model) return;
+    const std::vector<double> zero(model->moving_joints().size(), 0.0);
+    for (const io::ModelLink& link : model->links) {  // one tree: every link has its place
+        if (!model->T_base_link(link.name, zero).all_finite()) std::abort();
+    }
 }
 [[maybe_unused]] void fuzz_snapshot(std::string_view bytes) {
     const auto snapshot = io::parse_snapshot(bytes, "f");

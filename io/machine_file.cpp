@@ -11,6 +11,7 @@
 
 #include "io/file.hpp"
 #include "io/text.hpp"
+#include "io/yaml_group.hpp"
 #include "io/yaml_tree.hpp"
 #include "surefoot/core/fnv1a.hpp"
 
@@ -18,102 +19,12 @@ namespace surefoot::io {
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
-constexpr std::int64_t kNanosecondsPerMs = 1'000'000;
 
 double radians(double deg) {
     return deg * std::numbers::pi / 180.0;
 }
-std::int32_t tenth_mm(double length_m) {
-    return static_cast<std::int32_t>(std::lround(length_m * 1e4));
-}
 
-/// A group of keys that must all be there, and no others. The reader keeps the first error; after
-/// it everything returns defaults.
-class Group {
-  public:
-    Group(YamlReader& reader, const YamlNode& node, std::string prefix)
-        : reader_(reader), node_(node), prefix_(std::move(prefix)) {
-        if (!node.is_mapping())
-            reader_.fail(node,
-                         prefix_.empty() ? "machine file" : prefix_,
-                         fmt::format("expected a group of keys, found {}", node.kind_name()));
-    }
-
-    double number(const char* key, double min, double max) {
-        const YamlNode* node = take(key);
-        return node != nullptr ? reader_.number(*node, path(key), min, max) : 0.0;
-    }
-    std::int32_t length(const char* key, double min_m, double max_m) {
-        return tenth_mm(number(key, min_m, max_m));
-    }
-    std::int64_t duration_ns(const char* key, int min_ms, int max_ms) {
-        return kNanosecondsPerMs * integer(key, min_ms, max_ms);
-    }
-    int integer(const char* key, int min, int max) {
-        const YamlNode* node = take(key);
-        return node != nullptr ? reader_.integer(*node, path(key), min, max) : 0;
-    }
-    bool boolean(const char* key) {
-        const YamlNode* node = take(key);
-        return node != nullptr && reader_.boolean(*node, path(key));
-    }
-    std::string text(const char* key, std::size_t max_size) {
-        const YamlNode* node = take(key);
-        std::string value = node != nullptr ? reader_.text(*node, path(key)) : std::string();
-        if (node != nullptr && (value.empty() || value.size() > max_size))
-            reader_.fail(*node, path(key), fmt::format("must have 1 to {} characters", max_size));
-        return value;
-    }
-    /// Calls `read` with the group below a key.
-    template <typename Read>
-    void group(const char* key, Read&& read) {
-        if (const YamlNode* node = take(key)) {
-            Group below(reader_, *node, path(key));
-            read(below);
-            below.finish();
-        }
-    }
-    /// Calls `read` with each group of a list.
-    template <typename Read>
-    void list(const char* key, std::size_t max_count, Read&& read) {
-        const YamlNode* node = take(key);
-        if (node == nullptr) return;
-        if (node->kind != YamlNode::Kind::sequence || node->items.size() > max_count)
-            return reader_.fail(
-                *node, path(key), fmt::format("expected a list of at most {} groups", max_count));
-        for (std::size_t i = 0; i < node->items.size(); ++i) {
-            Group item(reader_, node->items[i], fmt::format("{}[{}]", path(key), i));
-            read(item);
-            item.finish();
-        }
-    }
-    void fail(const char* key, const std::string& what) {
-        const YamlNode* node = node_.find(key);
-        reader_.fail(node != nullptr ? *node : node_, path(key), what);
-    }
-    /// To be called last: what was not asked for does not belong here. A misspelt key says more
-    /// than the missing one that it leaves behind, so it comes first.
-    void finish() {
-        reader_.only_keys(node_, prefix_.empty() ? "" : prefix_ + ".", known_);
-        for (const std::string& key : known_) {
-            if (node_.find(key) == nullptr) fail(key.c_str(), "this key is missing");
-        }
-    }
-
-  private:
-    [[nodiscard]] std::string path(const char* key) const {
-        return prefix_.empty() ? key : prefix_ + "." + key;
-    }
-    const YamlNode* take(const char* key) {
-        known_.emplace_back(key);
-        return node_.find(key);
-    }
-
-    YamlReader& reader_;
-    const YamlNode& node_;
-    std::string prefix_;
-    std::vector<std::string> known_;
-};
+using Group = YamlGroup;
 
 GroundBox read_box(Group& group) {
     GroundBox box;
@@ -253,7 +164,7 @@ Result<MachineFile> parse_machine(std::string_view yaml, const std::string& file
     if (!document) return usage_error(document.error().message);
     YamlReader reader(file, *document);
     MachineFile out;
-    Group root(reader, *document, "");
+    Group root(reader, *document, "", "machine file");
     read_document(root, out);
     if (reader.error()) return usage_error(reader.error()->message);
     if (const char* why = out.machine.problem()) return usage_error(file + ": " + why);

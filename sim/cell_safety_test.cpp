@@ -22,7 +22,7 @@ Image<CellSafety> ask(const World& world, double yaw_rad = 0.0) {
     Serial serial;
     CellQuestion question;
     question.yaw_rad = yaw_rad;
-    return cell_safety(world.scene, rex(), kLattice, question, serial);
+    return cell_safety(world.scene, testing::rex(), kLattice, question, serial);
 }
 
 int count(const Image<CellSafety>& cells, Danger danger) {
@@ -111,7 +111,7 @@ TEST(CellSafetyTest, VoidsAndUnreachedFloorsAreNotSafe) {
     EXPECT_EQ(at(ask(half), 0.4, 0.0).danger, Danger::no_ground);
     EXPECT_EQ(at(ask(half), 0.2, 0.0).danger, Danger::edge_too_near);
     Serial serial;
-    EXPECT_TRUE(cell_safety(half.scene, rex(), Lattice{}, {}, serial).empty());
+    EXPECT_TRUE(cell_safety(half.scene, testing::rex(), Lattice{}, {}, serial).empty());
 }
 
 TEST(CellSafetyTest, OpenRisersCarryTheFootAndDemoStairsHaveTooShortTreads) {

@@ -35,14 +35,24 @@ Result<RexMotion> CommandedMotion::walk(const RexPlan& plan) {
     return motion;
 }
 
-MotionState CommandedMotion::at(double time_s) const {
-    const std::lock_guard lock(mutex_);
+const CommandedMotion::Piece& CommandedMotion::piece_at(double time_s) const {
     const auto next = std::upper_bound(
         pieces_.begin() + 1, pieces_.end(), time_s, [](double time, const Piece& piece) {
             return time < piece.start_s;
         });
-    const Piece& piece = *(next - 1);
+    return *(next - 1);
+}
+
+MotionState CommandedMotion::at(double time_s) const {
+    const std::lock_guard lock(mutex_);
+    const Piece& piece = piece_at(time_s);
     return piece.motion.at(time_s - piece.start_s);
+}
+
+std::optional<RexJoints> CommandedMotion::rex_joints(double time_s) const {
+    const std::lock_guard lock(mutex_);
+    const Piece& piece = piece_at(time_s);
+    return piece.motion.rex_joints(time_s - piece.start_s);
 }
 
 double CommandedMotion::duration_s() const {

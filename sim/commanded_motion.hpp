@@ -27,6 +27,7 @@ class CommandedMotion final : public Motion {
     [[nodiscard]] MotionState at(double time_s) const override;
     /// Until the last step that was commanded has ended.
     [[nodiscard]] double duration_s() const override;
+    [[nodiscard]] std::optional<RexJoints> rex_joints(double time_s) const override;
 
     /// The machine begins the movement of a joystick code at `time_s`. An error, and nothing
     /// changes, where it has no such movement, the step before has not ended by then, or the legs
@@ -44,6 +45,8 @@ class CommandedMotion final : public Motion {
     };
     CommandedMotion(GroundHeight ground_z_m, const RexGaitConfig& gait, std::uint64_t seed);
     [[nodiscard]] Result<RexMotion> walk(const RexPlan& plan);
+    /// With the mutex held.
+    [[nodiscard]] const Piece& piece_at(double time_s) const;
 
     GroundHeight ground_z_m_;
     RexGaitConfig gait_;

@@ -101,6 +101,24 @@ TEST(CommandedMotionTest, WhatIsForgottenChangesNothingAfterIt) {
         << "before what is left it is where that begins";
 }
 
+TEST(CommandedMotionTest, ItsJointsAreThoseOfTheStepThatItMakes) {
+    const auto motion = on_level_ground();
+    const auto knees = [&](double time_s) {
+        const auto joints = motion->rex_joints(time_s);
+        EXPECT_TRUE(joints.has_value()) << "at " << time_s;
+        return joints ? std::max(joints->left.knee_rad, joints->right.knee_rad) : 0.0;
+    };
+    const double standing_rad = knees(0.0);
+    const auto step = motion->step(kForward, 3.0);
+    ASSERT_TRUE(step.ok()) << step.error().message;
+    double most_rad = 0.0;
+    for (double t = step->start_s; t < step->end_s; t += 0.1)
+        most_rad = std::max(most_rad, knees(t));
+    EXPECT_NEAR(knees(2.9), standing_rad, 1e-9);
+    EXPECT_GT(most_rad, standing_rad + 0.2);
+    EXPECT_NEAR(knees(step->end_s + 0.5), standing_rad, 1e-6);
+}
+
 TEST(CommandedMotionTest, ASceneIsWalkedAsTheCommandsComeAndNothingOfItPiles) {
     SceneOptions options;
     options.scene = "walk_floor";

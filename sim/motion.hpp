@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
+#include "sim/rex_joints.hpp"
 #include "surefoot/core/pose.hpp"
 
 namespace surefoot::sim {
@@ -24,6 +26,10 @@ class Motion {
     virtual ~Motion() = default;
     [[nodiscard]] virtual MotionState at(double time_s) const = 0;
     [[nodiscard]] virtual double duration_s() const = 0;
+    /// Of a walking REX; what only carries a camera has no joints.
+    [[nodiscard]] virtual std::optional<RexJoints> rex_joints(double /*time_s*/) const {
+        return std::nullopt;
+    }
 };
 
 }  // namespace surefoot::sim

@@ -134,11 +134,29 @@ FootState RexMotion::foot(Side side, double time_s) const {
     return state;
 }
 
+std::optional<LegAngles> RexMotion::leg(Side side, double time_s) const {
+    return leg_angles(side, pelvis(time_s).inverse() * foot(side, time_s).T_world_sole);
+}
+
 LegAngles RexMotion::joints(Side side, double time_s) const {
-    const auto angles =
-        leg_angles(side, pelvis(time_s).inverse() * foot(side, time_s).T_world_sole);
+    const auto angles = leg(side, time_s);
     SUREFOOT_ASSERT(angles.has_value());  // `make` has tried every sample, with a degree to spare
     return *angles;
+}
+
+std::optional<RexJoints> RexMotion::rex_joints(double time_s) const {
+    const auto left = leg(Side::left, time_s);
+    const auto right = leg(Side::right, time_s);
+    if (!left || !right) return std::nullopt;
+    const Eigen::Matrix3d R_body_pelvis =
+        (at(time_s).T_world_body.rotation.conjugate() * pelvis(time_s).rotation).toRotationMatrix();
+    RexJoints joints;
+    joints.frame_yaw_rad = std::atan2(R_body_pelvis(1, 0), R_body_pelvis(0, 0));
+    joints.frame_pitch_rad = std::asin(std::clamp(-R_body_pelvis(2, 0), -1.0, 1.0));
+    joints.frame_roll_rad = std::atan2(R_body_pelvis(2, 1), R_body_pelvis(2, 2));
+    joints.left = *left;
+    joints.right = *right;
+    return joints;
 }
 
 }  // namespace surefoot::sim

@@ -66,6 +66,9 @@ class RexMotion final : public Motion {
 
     [[nodiscard]] MotionState at(double time_s) const override;
     [[nodiscard]] double duration_s() const override { return duration_s_; }
+    /// The legs as in `joints`; the frame as it sways, with which the feet of a REX that is drawn
+    /// at base_link stay where they stand (but for what rings up and down, a few millimetres).
+    [[nodiscard]] std::optional<RexJoints> rex_joints(double time_s) const override;
 
     /// What the legs carry: base_link without sway, ringing and strike pulses.
     [[nodiscard]] Pose pelvis(double time_s) const;
@@ -113,6 +116,7 @@ class RexMotion final : public Motion {
     RexMotion() = default;
     [[nodiscard]] static double lifted(const Swing& swing, double time_s, double share);
     [[nodiscard]] const Body& body(double time_s) const;
+    [[nodiscard]] std::optional<LegAngles> leg(Side side, double time_s) const;
 
     std::vector<Body> bodies_;                  ///< by time; the first one stands
     std::array<std::vector<Swing>, 2> swings_;  ///< per side, by time; the first one is the start

@@ -71,6 +71,48 @@ TEST(RexGaitTest, ACarryingFootNeverMovesAndTheLegsReachIt) {
     }
 }
 
+/// A REX drawn at its base_link, which sways: do its feet stand where they stand?
+TEST(RexGaitTest, TheJointsOfTheFrameTakeTheSwayOutOfTheFeet) {
+    const RexMotion motion = walk({9, 13, 25, 17});
+    double largest_sway_rad = 0.0;
+    for (double t_s = 0.0; t_s < motion.duration_s(); t_s += 0.03) {
+        const auto joints = motion.rex_joints(t_s);
+        ASSERT_TRUE(joints.has_value()) << "at " << t_s;
+        Pose T_body_pelvis;
+        T_body_pelvis.rotation = Eigen::AngleAxisd(joints->frame_yaw_rad, Vector3d::UnitZ()) *
+                                 Eigen::AngleAxisd(joints->frame_pitch_rad, Vector3d::UnitY()) *
+                                 Eigen::AngleAxisd(joints->frame_roll_rad, Vector3d::UnitX());
+        largest_sway_rad = std::max(largest_sway_rad, std::abs(joints->frame_roll_rad));
+        for (const Side side : {Side::left, Side::right}) {
+            const LegAngles& leg = side == Side::left ? joints->left : joints->right;
+            const Pose T_world_sole =
+                motion.at(t_s).T_world_body * T_body_pelvis * pelvis_to_sole(side, leg);
+            // What rings, 3 mm at most in each direction, and the dip of a strike: 1 mm.
+            ASSERT_LT(
+                (T_world_sole.translation_m - motion.foot(side, t_s).T_world_sole.translation_m)
+                    .norm(),
+                6e-3)
+                << "at " << t_s;
+        }
+    }
+    EXPECT_GT(largest_sway_rad, 2.5 * 0.0175) << "it does sway";
+}
+
+TEST(RexGaitTest, JointsInOrderAreThoseOfTheNames) {
+    RexJoints joints{0.1, 0.2, 0.3, {1.1, 1.2, 1.3, 1.4, 1.5, 1.6}, {2.1, 2.2, 2.3, 2.4, 2.5, 2.6}};
+    const auto of = [&](std::string_view name) {
+        const auto found = std::find(kRexJointNames.begin(), kRexJointNames.end(), name);
+        EXPECT_NE(found, kRexJointNames.end()) << name;
+        return joints.in_order()[static_cast<std::size_t>(found - kRexJointNames.begin())];
+    };
+    EXPECT_EQ(of("frame_roll"), 0.3);
+    EXPECT_EQ(of("left_hip_rotation"), 1.1);
+    EXPECT_EQ(of("pelvis_to_left_upperleg"), 1.3);
+    EXPECT_EQ(of("left_upperleg_to_left_lowerleg"), 1.4);
+    EXPECT_EQ(of("right_lowerleg_to_right_foot"), 2.5);
+    EXPECT_EQ(of("right_ankle_inversion"), 2.6);
+}
+
 TEST(RexGaitTest, OneFootAlwaysCarriesOnLevelGround) {
     const RexMotion motion = walk({9, 17, 13, 25, 11});
     for (double t_s = 0.0; t_s < motion.duration_s(); t_s += 0.01) {

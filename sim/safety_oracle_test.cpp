@@ -19,7 +19,7 @@ constexpr double deg(double angle_deg) {
 }
 
 SafetyAnswer ask(const World& world, int command, const Pose& T = standing(0.0, 0.0, 0.0)) {
-    return judge(world.scene, rex(), T, command);
+    return judge(world.scene, testing::rex(), T, command);
 }
 
 Finding first(const SafetyAnswer& answer) {
@@ -41,7 +41,7 @@ TEST(SafetyOracleTest, EveryMovementOnAWideFlatFloorIsSafeAndClearCut) {
 
 TEST(SafetyOracleTest, CodesThatTheMachineDoesNotHaveAreRefused) {
     const World world = World().floor();
-    Machine machine = rex();
+    Machine machine = testing::rex();
     machine.movements[1].movement_class = MovementClass::stair;  // which is switched off
     for (const int command : {-1, 0, 1, 2, 24, 27, 255}) {
         const auto answer = judge(world.scene, machine, standing(0.0, 0.0, 0.0), command);
@@ -234,7 +234,7 @@ TEST(SafetyOracleTest, AShallowStepDownIsNamedAsSuch) {
 }
 
 TEST(SafetyOracleTest, RoughGroundIsJudgedByPatchesWhereStepsAreAllowed) {
-    Machine machine = rex();
+    Machine machine = testing::rex();
     machine.movements[kForward].movement_class = MovementClass::stair;
     machine.limits.step[1].enabled = true;
     // A block under the middle of each foot, 50 mm wide and as high as stairs may be.
@@ -282,7 +282,7 @@ TEST(SafetyOracleTest, TurningBesideAWallSweepsTheCorners) {
 }
 
 TEST(SafetyOracleTest, AnIslandOfGoodGroundIsCutOff) {
-    Machine machine = rex();
+    Machine machine = testing::rex();
     machine.movements[kForward].forward_tenth_mm = 7'000;
     // A trench across the whole way, farther than the band from the feet after a long step.
     const Pit trench{{{0.30, -3.0}, {0.45, 3.0}}, 0.3};
@@ -316,8 +316,8 @@ TEST(SafetyOracleTest, ManyAnswersAreTheSameOnTwoThreadsAndInOrder) {
     const std::vector<Pose> poses{standing(0.0, 0.0, 0.0), standing(0.4, 0.1, 0.3)};
     Serial serial;
     Threads two(2);
-    const auto a = judge_all(world.scene, rex(), poses, kCommands, serial);
-    const auto b = judge_all(world.scene, rex(), poses, kCommands, two);
+    const auto a = judge_all(world.scene, testing::rex(), poses, kCommands, serial);
+    const auto b = judge_all(world.scene, testing::rex(), poses, kCommands, two);
     ASSERT_EQ(a.size(), poses.size() * kCommands.size());
     std::vector<SafetyLabel> from_a;
     std::vector<SafetyLabel> from_b;

@@ -81,8 +81,8 @@ TEST(SafetyPropertyTest, AMirroredWorldHasTheMirroredAnswer) {
         World mirror(PlanarPose{}, true);
         build(mirror, hazard);
         const Pose T = standing(0.0, 0.0, 0.0);
-        const auto a = judge(world.scene, rex(), T, command);
-        const auto b = judge(mirror.scene, rex(), T, mirrored(command));
+        const auto a = judge(world.scene, testing::rex(), T, command);
+        const auto b = judge(mirror.scene, testing::rex(), T, mirrored(command));
         EXPECT_EQ(bits(a), bits(b)) << "world " << k << " command " << command << "\n"
                                     << a.sentence() << "\n"
                                     << b.sentence();
@@ -105,8 +105,8 @@ TEST(SafetyPropertyTest, TurningTheWorldAndTheMachineTogetherChangesNothing) {
         build(world, hazard);
         World turned(PlanarPose::of(x_m, y_m, yaw));
         build(turned, hazard);
-        const auto a = judge(world.scene, rex(), standing(0.0, 0.0, 0.0), command);
-        const auto b = judge(turned.scene, rex(), standing(x_m, y_m, yaw), command);
+        const auto a = judge(world.scene, testing::rex(), standing(0.0, 0.0, 0.0), command);
+        const auto b = judge(turned.scene, testing::rex(), standing(x_m, y_m, yaw), command);
         EXPECT_EQ(bits(a), bits(b)) << "world " << k << " command " << command << "\n"
                                     << a.sentence() << "\n"
                                     << b.sentence();
@@ -127,8 +127,8 @@ TEST(SafetyPropertyTest, ALargerHazardIsNeverSafer) {
         World large;
         build(large, hazard, 1.0 + rng.uniform(0.05, 4.0));
         const int command = kCommands[rng.below(kCommands.size())];
-        const auto a = judge(small.scene, rex(), standing(0.0, 0.0, 0.0), command);
-        const auto b = judge(large.scene, rex(), standing(0.0, 0.0, 0.0), command);
+        const auto a = judge(small.scene, testing::rex(), standing(0.0, 0.0, 0.0), command);
+        const auto b = judge(large.scene, testing::rex(), standing(0.0, 0.0, 0.0), command);
         EXPECT_TRUE(a.safe || !b.safe) << "world " << k << " command " << command << "\n"
                                        << a.sentence() << "\n"
                                        << b.sentence();
@@ -145,12 +145,12 @@ TEST(SafetyPropertyTest, AClearCutAnswerHoldsAroundThePose) {
         World world;
         build(world, draw(rng));
         const int command = kCommands[rng.below(kCommands.size())];
-        const auto a = judge(world.scene, rex(), standing(0.0, 0.0, 0.0), command);
+        const auto a = judge(world.scene, testing::rex(), standing(0.0, 0.0, 0.0), command);
         if (!a.clear_cut) continue;
         ++asked;
         const Pose near = standing(
             rng.uniform(-0.004, 0.004), rng.uniform(-0.004, 0.004), rng.uniform(-0.004, 0.004));
-        const auto b = judge(world.scene, rex(), near, command);
+        const auto b = judge(world.scene, testing::rex(), near, command);
         EXPECT_EQ(a.safe, b.safe) << "world " << k << "\n" << a.sentence() << "\n" << b.sentence();
     }
     EXPECT_GT(asked, 30);

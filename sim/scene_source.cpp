@@ -183,6 +183,7 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
     } else {
         source->truth_.trajectory = sampled(*script->motion, options.frames, options.rate_hz);
     }
+    source->walker_ = source->motion_;
     if (!options.knock.none()) {
         source->motion_ = std::make_shared<KnockedMotion>(
             source->motion_, options.knock, rig->body_from_left().translation_m);
@@ -256,6 +257,10 @@ double SceneSource::now_s() const noexcept {
     // Half a frame behind the last stamp: exposures and rolling shutters are shorter.
     const double frames = next_pose_ == 0 ? 0.0 : static_cast<double>(next_pose_) - 0.5;
     return frames / rate_hz_;
+}
+
+std::optional<RexJoints> SceneSource::rex_joints(std::int64_t time_ns) const {
+    return walker_->rex_joints(seconds_from_ns(time_ns - kStart_ns));
 }
 
 /// A commanded source learns where the next frame is when it is asked for.

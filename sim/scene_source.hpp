@@ -107,6 +107,9 @@ class SceneSource final : public camera::FrameSource {
     }
     /// Time of the motion from which on nothing was exposed yet.
     [[nodiscard]] double now_s() const noexcept;
+    /// Of a REX at the time of a frame; nothing where something else carries the camera. A
+    /// commanded motion has forgotten what it was told to forget.
+    [[nodiscard]] std::optional<RexJoints> rex_joints(std::int64_t time_ns) const;
     /// Poses of all frames, also of those that are still to come, and the scene. Of a commanded
     /// source, which may run for hours, the pose of the last frame alone.
     [[nodiscard]] const SceneTruth& truth() const noexcept { return truth_; }
@@ -140,6 +143,7 @@ class SceneSource final : public camera::FrameSource {
     camera::SourceInfo info_;
     SceneTruth truth_;
     std::shared_ptr<const Motion> motion_;  ///< of the camera
+    std::shared_ptr<const Motion> walker_;  ///< of the machine: no blow on the camera moves it
     std::shared_ptr<CommandedMotion> commanded_;
     double rate_hz_ = 0.0;
     std::size_t frame_limit_ = 0;

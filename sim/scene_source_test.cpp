@@ -68,6 +68,25 @@ TEST(SceneSourceTest, TheWholePathIsTheDefault) {
     EXPECT_EQ(*source->info().frames, static_cast<int>(poses.size()));
 }
 
+TEST(SceneSourceTest, KnowsTheJointsOfAWalkingMachineWhoeverKnocksItsCamera) {
+    SceneOptions options = small("walk_floor");
+    options.sensor = Sensor::analytic;
+    const auto walk = open_scene(options).value();
+    options.knock.at_s = 1.0;
+    options.knock.roll_deg = 5.0;
+    const auto knocked = open_scene(options).value();
+    double most_rad = 0.0;
+    for (const StampedPose& now : walk->truth().trajectory) {
+        const auto joints = walk->rex_joints(now.time_ns);
+        ASSERT_TRUE(joints.has_value());
+        most_rad = std::max(most_rad, joints->left.knee_rad);
+        EXPECT_EQ(joints->in_order(), knocked->rex_joints(now.time_ns)->in_order());
+    }
+    EXPECT_GT(most_rad, 0.3);
+    const auto trolley = open_scene(small("floor")).value();
+    EXPECT_FALSE(trolley->rex_joints(trolley->truth().start_ns).has_value());
+}
+
 TEST(SceneSourceTest, ImuCoversTheTimeBetweenFramesAndShowsGravity) {
     SceneOptions options = small("floor");
     options.frames = 12;

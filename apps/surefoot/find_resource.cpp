@@ -10,9 +10,15 @@
 namespace surefoot::app {
 
 Result<std::string> find_resource(std::string_view folder, std::string_view name) {
+    return find_resource(resources(), folder, name);
+}
+
+Result<std::string> find_resource(const std::vector<Resource>& among,
+                                  std::string_view folder,
+                                  std::string_view name) {
     const std::string wanted = fmt::format("{}/{}.yaml", folder, name);
     std::vector<std::string> known;
-    for (const Resource& resource : resources()) {
+    for (const Resource& resource : among) {
         if (resource.name == wanted) return std::string(resource.text);
         if (resource.name.starts_with(fmt::format("{}/", folder))) {
             known.emplace_back(

@@ -20,6 +20,11 @@ struct Resource {
 /// Text of `folder/name.yaml`; an unknown name is a usage error that lists the known ones.
 [[nodiscard]] Result<std::string> find_resource(std::string_view folder, std::string_view name);
 
+/// The same among other files than these.
+[[nodiscard]] Result<std::string> find_resource(const std::vector<Resource>& among,
+                                                std::string_view folder,
+                                                std::string_view name);
+
 /// A machine file by path or by built-in name; whatever is wrong with it is a usage error.
 [[nodiscard]] Result<io::MachineFile> find_machine(const std::string& path_or_name);
 
