@@ -70,8 +70,13 @@ class ListVisitor final : public PathVisitor {
 /// A value found in a file or on the command line.
 struct Given {
     std::string text;
-    std::string where;  ///< "file.yaml:12", "--set"
+    std::string where;  ///< "file.yaml:12", "--set"; empty = nowhere to look for it
 };
+
+std::string begin_of_sentence(const std::string& where) {
+    return where.empty() ? "" : where + ": ";
+}
+
 using GivenValues = std::map<std::string, Given, std::less<>>;
 
 /// Checks all given values, and assigns them when asked to.
@@ -129,8 +134,8 @@ class AssignVisitor final : public PathVisitor {
     }
     void fail(const Given& given, const char* key, const std::string& what) {
         if (error_) return;
-        error_ = usage_error(
-            fmt::format("{}: {}: {} {}", given.where, path(key), quoted(given.text), what));
+        error_ = usage_error(fmt::format(
+            "{}{}: {} {}", begin_of_sentence(given.where), path(key), quoted(given.text), what));
     }
 
     const GivenValues& given_;
@@ -141,7 +146,8 @@ class AssignVisitor final : public PathVisitor {
 Error unknown_key(const std::string& where,
                   const std::string& key,
                   const std::vector<std::string>& keys) {
-    return usage_error(fmt::format("{}: unknown key '{}'{}", where, key, did_you_mean(key, keys)));
+    return usage_error(fmt::format(
+        "{}unknown key '{}'{}", begin_of_sentence(where), key, did_you_mean(key, keys)));
 }
 
 std::vector<std::string> keys_of(const DescribeConfig& describe) {
@@ -158,6 +164,13 @@ Status assign(const GivenValues& given, const DescribeConfig& describe) {
         if (visitor.error()) return *visitor.error();
     }
     return {};
+}
+
+Status assign_one(const std::string& key, const Given& given, const DescribeConfig& describe) {
+    const std::vector<std::string> keys = keys_of(describe);
+    if (std::find(keys.begin(), keys.end(), key) == keys.end())
+        return unknown_key(given.where, key, keys);
+    return assign({{key, given}}, describe);
 }
 
 /// Flattens the tree into "group.key" -> text, and finds what does not belong.
@@ -253,11 +266,13 @@ Status override_config(std::string_view key_and_value, const DescribeConfig& des
     }
     const std::string key(trimmed(key_and_value.substr(0, equals)));
     const std::string value(trimmed(key_and_value.substr(equals + 1)));
-    const std::vector<std::string> keys = keys_of(describe);
-    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-        return unknown_key("--set", key, keys);
-    }
-    return assign({{key, Given{value, "--set"}}}, describe);
+    return assign_one(key, {value, "--set"}, describe);
+}
+
+Status change_config(const std::string& key,
+                     const std::string& value,
+                     const DescribeConfig& describe) {
+    return assign_one(key, {value, ""}, describe);
 }
 
 Status read_config(const std::string& path, const DescribeConfig& describe) {

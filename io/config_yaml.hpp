@@ -36,6 +36,10 @@ struct ConfigEntry {
 /// One override "key=value" with the same checks.
 [[nodiscard]] Status override_config(std::string_view key_and_value,
                                      const DescribeConfig& describe);
+/// The same for a key and a value that came from elsewhere; an error begins with the key.
+[[nodiscard]] Status change_config(const std::string& key,
+                                   const std::string& value,
+                                   const DescribeConfig& describe);
 [[nodiscard]] Status read_config(const std::string& path, const DescribeConfig& describe);
 [[nodiscard]] Status write_config(const std::string& path, const DescribeConfig& describe);
 

@@ -125,6 +125,17 @@ TEST(ConfigYaml, OverridesFollowTheSameRules) {
     EXPECT_TRUE(contains(message("elevation=3"), "unknown key 'elevation'"));
 }
 
+TEST(ConfigYaml, AChangeFromElsewhereIsNoOptionOfACall) {
+    TopConfig config;
+    ASSERT_TRUE(change_config("elevation.length_m", "40", describe_config(config)).ok());
+    EXPECT_EQ(config.elevation.length_m, 40.0);
+    EXPECT_EQ(change_config("elevation.length_m", "0", describe_config(config)).error().message,
+              "elevation.length_m: '0' is outside 0.5 .. 100");
+    EXPECT_EQ(config.elevation.length_m, 40.0);
+    EXPECT_EQ(change_config("elevation.lenght_m", "3", describe_config(config)).error().message,
+              "unknown key 'elevation.lenght_m'; did you mean 'elevation.length_m'?");
+}
+
 TEST(ConfigYaml, WritingAndReadingKeepsEveryBit) {
     Rng rng(7);
     for (int round = 0; round < 500; ++round) {

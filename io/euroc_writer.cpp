@@ -67,10 +67,11 @@ class EurocWriter final : public RecordingWriter {
 
     [[nodiscard]] Status add(const StereoFrame& frame) override {
         const std::string name = fmt::format("{}.png", frame.time_ns);
-        if (Status s = write_png(join_path(folder_, "mav0/cam0/data/" + name), frame.left); !s)
-            return s;
-        if (Status s = write_png(join_path(folder_, "mav0/cam1/data/" + name), frame.right); !s)
-            return s;
+        const std::string left = join_path(folder_, "mav0/cam0/data/" + name);
+        const std::string right = join_path(folder_, "mav0/cam1/data/" + name);
+        if (Status s = write_png(left, frame.left); !s) return s;
+        if (Status s = write_png(right, frame.right); !s) return s;
+        bytes_ += written_bytes(left) + written_bytes(right);
         if (Status s = add_imu(frame.imu); !s) return s;
         const std::string line = fmt::format("{},{}\n", frame.time_ns, name);
         // The left list decides what a reader looks for, so it comes last.
@@ -87,6 +88,8 @@ class EurocWriter final : public RecordingWriter {
         frame.right = std::move(right).value();
         return true;
     }
+
+    [[nodiscard]] std::int64_t bytes() const noexcept override { return bytes_; }
 
     [[nodiscard]] Status close() override {
         Status first;
@@ -115,6 +118,7 @@ class EurocWriter final : public RecordingWriter {
     camera::StereoRig rig_;
     std::optional<AppendFile> left_list_, right_list_, imu_list_;
     std::optional<std::int64_t> last_imu_ns_;
+    std::int64_t bytes_ = 0;
 };
 
 }  // namespace

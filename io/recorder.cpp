@@ -3,12 +3,21 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 #include "io/file.hpp"
 #include "io/recording_writer.hpp"
 #include "io/text.hpp"
 #include "io/trajectory_file.hpp"
 
 namespace surefoot::io {
+
+std::int64_t written_bytes(const std::string& path) noexcept {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+    return error ? 0 : static_cast<std::int64_t>(bytes);
+}
 
 struct Recorder::Impl {
     std::string folder;
@@ -126,6 +135,10 @@ Status Recorder::finish() {
 
 int Recorder::frames() const noexcept {
     return impl_->frames;
+}
+
+std::int64_t Recorder::bytes() const noexcept {
+    return impl_->writer->bytes();
 }
 
 }  // namespace surefoot::io

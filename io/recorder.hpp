@@ -47,6 +47,8 @@ class Recorder {
     /// Closes all files and reports what the system found only then.
     [[nodiscard]] Status finish();
     [[nodiscard]] int frames() const noexcept;
+    /// Of the images that were written.
+    [[nodiscard]] std::int64_t bytes() const noexcept;
 
   private:
     struct Impl;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -21,7 +22,12 @@ class RecordingWriter {
     [[nodiscard]] virtual Status close() = 0;
     /// Reads the images that were written for the stamp of `frame`; false unless all are whole.
     [[nodiscard]] virtual bool read_back(StereoFrame& frame) const = 0;
+    /// Of the images that were written.
+    [[nodiscard]] virtual std::int64_t bytes() const noexcept = 0;
 };
+
+/// Size of a file that was written; 0 where there is none.
+[[nodiscard]] std::int64_t written_bytes(const std::string& path) noexcept;
 
 [[nodiscard]] std::unique_ptr<RecordingWriter> make_euroc_writer(const std::string& folder,
                                                                  const camera::StereoRig& rig);

@@ -62,6 +62,8 @@ class TumWriter final : public RecordingWriter {
         const std::string depth = fmt::format("depth/{}.png", stamp);
         if (Status s = write_png(join_path(folder_, colour), frame.left); !s) return s;
         if (Status s = write_png(join_path(folder_, depth), codes_of(frame.depth_m)); !s) return s;
+        bytes_ +=
+            written_bytes(join_path(folder_, colour)) + written_bytes(join_path(folder_, depth));
         if (Status s = depth_list_->append(fmt::format("{} {}\n", stamp, depth)); !s) return s;
         return colour_list_->append(fmt::format("{} {}\n", stamp, colour));
     }
@@ -75,6 +77,8 @@ class TumWriter final : public RecordingWriter {
         frame.depth_m = depths_of(*codes);
         return true;
     }
+
+    [[nodiscard]] std::int64_t bytes() const noexcept override { return bytes_; }
 
     [[nodiscard]] Status close() override {
         Status first;
@@ -90,6 +94,7 @@ class TumWriter final : public RecordingWriter {
     std::string folder_;
     camera::StereoRig rig_;
     std::optional<AppendFile> colour_list_, depth_list_;
+    std::int64_t bytes_ = 0;
 };
 
 }  // namespace
