@@ -620,6 +620,20 @@ std::string recording_json(const io::RecordingInfo& info) {
     return object.dump(kIndent);
 }
 
+std::string urdf_json(const io::MachineModel& model, const std::string& file) {
+    Json joints = Json::array();
+    for (const io::ModelJoint* joint : model.moving_joints())
+        joints.push_back({{"name", joint->name},
+                          {"min_rad", joint->min_rad},
+                          {"max_rad", joint->max_rad},
+                          {"stand_rad", joint->stand_rad}});
+    const Json object = {{"name", model.name},
+                         {"links", model.links.size()},
+                         {"joints", std::move(joints)},
+                         {"file", file.empty() ? Json(nullptr) : Json(file)}};
+    return object.dump(kIndent);
+}
+
 std::string rig_json(const io::RigFile& file, const std::vector<std::string>& written) {
     const camera::StereoRig& rig = file.rig;
     const auto focal_px = [](const camera::Camera& camera) {

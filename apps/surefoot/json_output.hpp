@@ -27,6 +27,7 @@
 #include "eval/trajectory.hpp"
 #include "io/config_yaml.hpp"
 #include "io/map_file.hpp"
+#include "io/model_file.hpp"
 #include "io/recorder.hpp"
 #include "io/rig_formats.hpp"
 #include "server/rex_link/link_client.hpp"
@@ -87,6 +88,8 @@ struct TruthScale {
 [[nodiscard]] std::string settings_json(const std::vector<io::ConfigEntry>& entries);
 [[nodiscard]] std::string scenes_json(const std::vector<sim::SceneInfo>& scenes);
 [[nodiscard]] std::string recording_json(const io::RecordingInfo& info);
+/// `file`: where the URDF was written; empty = nowhere.
+[[nodiscard]] std::string urdf_json(const io::MachineModel& model, const std::string& file);
 [[nodiscard]] std::string rig_json(const io::RigFile& file,
                                    const std::vector<std::string>& written);
 [[nodiscard]] std::string copied_json(const Copied& copied, const std::string& folder);

@@ -120,6 +120,7 @@ struct AllOptions {
     MapMergeOptions map_merge;
     MapExportOptions map_export;
     RigOptions rig;
+    UrdfOptions urdf;
 };
 
 void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
@@ -389,6 +390,11 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
         ->type_name("FILE");
     verb->add_option("--machine", o.machine, "machine file, or a built-in name")
         ->capture_default_str();
+    verb->add_option("--model",
+                     o.model,
+                     "what the machine looks like on the page: a model file or a built-in name; "
+                     "unless given the built-in one of the machine's name")
+        ->type_name("FILE|NAME");
     verb->add_option("--rate", o.rate_hz, "frames per second of a source without stamps")
         ->type_name("HZ");
     verb->add_option("--max-frames", o.max_frames, "ends after so many")->type_name("N");
@@ -444,7 +450,16 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
                      "of the live page; where it is taken the next free one; 0 = any")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
+    verb->add_option("--foxglove-origin",
+                     o.foxglove_origins,
+                     "Foxglove may look from there, too, as https://app.foxglove.dev or file://; "
+                     "nobody steers from there")
+        ->type_name("URL");
     verb->add_flag("--no-page", o.no_page, "the gate alone, nothing for browsers");
+    verb->add_option("--record-dir",
+                     o.record_dir,
+                     "pages may record what the source delivers, each time into a new folder of it")
+        ->type_name("DIR");
     verb->add_flag("--once", o.once, "ends with the source or the walk; pages cannot go back");
 }
 
@@ -764,6 +779,21 @@ void add_calibration(CLI::App* verb, CalibrateOptions& o) {
         ->type_name("DIR");
 }
 
+void add_urdf(CLI::App& app, UrdfOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(app,
+                                   "urdf",
+                                   "what a machine looks like, as a URDF, from its model file",
+                                   "surefoot urdf rex --out out/rex.urdf"),
+                          o,
+                          urdf,
+                          exit_code,
+                          Reads::no_settings);
+    verb->add_option("model", o.model, "model file (docs/model_file.md), or a built-in name")
+        ->required()
+        ->type_name("FILE|NAME");
+    verb->add_option("--out", o.out_file, "the URDF; without it stdout has it")->type_name("FILE");
+}
+
 void add_calibrate(CLI::App& app, AllOptions& all, int& exit_code) {
     CLI::App* verb = app.add_subcommand("calibrate", "lenses and rigs from images of a board");
     verb->require_subcommand(1);
@@ -1053,6 +1083,7 @@ int main_with_arguments(int argc, char** argv) {
     add_eval(app, all, exit_code);
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);
     add_rig(app, all.rig, exit_code);
+    add_urdf(app, all.urdf, exit_code);
     add_calibrate(app, all, exit_code);
     add_map(app, all, exit_code);
     add_rest(app, all, exit_code);

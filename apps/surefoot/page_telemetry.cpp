@@ -8,13 +8,13 @@
 #include <tuple>
 #include <utility>
 
+#include "io/urdf_file.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
 namespace {
 
-constexpr std::int64_t kImagesEvery_ns = 200'000'000;  // PageWish::kMaxImage_hz
-constexpr std::int64_t kLayersEvery_ns = 500'000'000;
+constexpr double kStairs_hz = 3.0;
 constexpr std::size_t kRateFrames = 30;
 constexpr std::size_t kMedianFrames = 64;
 
@@ -43,6 +43,13 @@ std::int64_t tenth_mm(double metres) {
 const char* kind_of(const camera::SourceInfo& info) {
     if (info.kind == "sim") return "simulated";
     return info.steady_stamps ? "live" : "recording";
+}
+
+/// True when it is time again, and then not before a period has passed.
+bool is_due(std::int64_t now_ns, double rate_hz, std::int64_t& due_ns) {
+    if (now_ns < due_ns) return false;
+    due_ns = now_ns + static_cast<std::int64_t>(1e9 / rate_hz);
+    return true;
 }
 
 double median(std::deque<double> values) {
@@ -93,6 +100,7 @@ std::vector<page::PageHello::GroundPoint> blind_zone_of(const camera::RectifiedR
 page::PageHello hello_of(const camera::FrameSource& source,
                          const camera::StereoRig& rig,
                          const std::optional<io::MachineFile>& machine,
+                         const std::optional<io::MachineModel>& model,
                          std::uint16_t gate_port,
                          double rate_hz) {
     page::PageHello hello;
@@ -102,12 +110,18 @@ page::PageHello hello_of(const camera::FrameSource& source,
     hello.gate_port = gate_port;
     hello.layers.assign(kLayerNames.begin(), kLayerNames.end());
     hello.rate_hz = rate_hz;
+    const auto rectifier = camera::Rectifier::make(rig);
+    if (rectifier) hello.T_body_camera = rectifier->rig().T_body_camera;
     if (!machine) return hello;
     hello.machine.emplace();
     hello.machine->name = machine->name;
     hello.machine->limits = machine->machine;
-    for (const io::JointRange& joint : machine->joints) hello.machine->joints.push_back(joint.name);
-    if (const auto rectifier = camera::Rectifier::make(rig)) {
+    if (model) {
+        hello.machine->urdf = io::urdf_text(*model);
+        for (const io::ModelJoint* joint : model->moving_joints())
+            hello.machine->joints.push_back({joint->name, joint->stand_rad});
+    }
+    if (rectifier) {
         hello.blind_zone =
             blind_zone_of(rectifier->rig(), 1e-4 * machine->machine.sole_depth_tenth_mm);
     }
@@ -136,6 +150,25 @@ void PageTelemetry::fill_status(const FrameReport& report, page::PageStatus& sta
     }
 }
 
+/// What costs a copy: only while somebody wants it, and no more often than anybody is sent it.
+void PageTelemetry::fill_extras(const pipeline::Pipeline& pipeline,
+                                const FrameReport& report,
+                                std::uint64_t map_version,
+                                std::int64_t now_steady_ns,
+                                page::PageFrame& frame) {
+    frame.images_time_ns = 0;
+    if (feed_.wants_images() && is_due(now_steady_ns, feed_.rates.image_hz, images_due_ns_)) {
+        frame.images_time_ns = report.time_ns;
+        frame.left = pipeline.pair().left;
+        frame.disparity_px = pipeline.depth().disparity_px;
+    }
+    frame.layers.clear();
+    if (feed_.wants_layers() && is_due(now_steady_ns, feed_.rates.layer_hz, layers_due_ns_))
+        copy_layers(pipeline, map_version, frame.layers);
+    frame.has_stairs = feed_.wants_stairs() && is_due(now_steady_ns, kStairs_hz, stairs_due_ns_);
+    if (frame.has_stairs) frame.stairs = pipeline.features();
+}
+
 void PageTelemetry::tell(const pipeline::Pipeline& pipeline,
                          const FrameReport& report,
                          const grid::MapSnapshot& map,
@@ -158,31 +191,24 @@ void PageTelemetry::tell(const pipeline::Pipeline& pipeline,
     pose_.variance_yaw_rad2 = drift_.yaw_var_rad2;
     pose_.health = report.motion.health;
     pose_.camera = report.camera;
+    if (joints_at_) joints_at_(report.time_ns, pose_.joints_rad);
     frame.pose = pose_;
-    frame.images_time_ns = 0;
-    if (feed_.wants_images() && now_steady_ns >= images_due_ns_) {
-        images_due_ns_ = now_steady_ns + kImagesEvery_ns;
-        frame.images_time_ns = report.time_ns;
-        frame.left = pipeline.pair().left;
-        frame.disparity_px = pipeline.depth().disparity_px;
-    }
-    frame.layers.clear();
-    if (feed_.wants_layers() && now_steady_ns >= layers_due_ns_) {
-        layers_due_ns_ = now_steady_ns + kLayersEvery_ns;
-        copy_layers(pipeline, map.version, frame.layers);
-    }
+    fill_extras(pipeline, report, map.version, now_steady_ns, frame);
     feed_.hand_over();
 }
 
-void PageTelemetry::tell_the_end() {
-    tell_state(page::SourceState::ended, source_ + " has ended");
+void PageTelemetry::tell_the_end(const pipeline::Pipeline& pipeline) {
+    tell_state(page::SourceState::ended, source_ + " has ended", pipeline.features());
 }
 
 void PageTelemetry::tell_new_beginning() {
-    tell_state(page::SourceState::waiting, "map and position begin anew");
+    // What there was lay in another odom.
+    tell_state(page::SourceState::waiting, "map and position begin anew", {});
 }
 
-void PageTelemetry::tell_state(page::SourceState state, std::string text) {
+void PageTelemetry::tell_state(page::SourceState state,
+                               std::string text,
+                               stairs::TerrainFeatures stairs) {
     page::PageFrame& frame = feed_.blank();
     frame.serial = ++serial_;
     frame.status = status_;
@@ -192,6 +218,8 @@ void PageTelemetry::tell_state(page::SourceState state, std::string text) {
     frame.has_map = false;
     frame.images_time_ns = 0;
     frame.layers.clear();
+    frame.has_stairs = true;
+    frame.stairs = std::move(stairs);
     feed_.hand_over();
 }
 

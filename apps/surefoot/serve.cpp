@@ -9,6 +9,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -17,13 +18,17 @@
 #include <tuple>
 
 #include "apps/surefoot/explain.hpp"
+#include "apps/surefoot/find_model.hpp"
 #include "apps/surefoot/fit_settings.hpp"
+#include "apps/surefoot/frame_recorder.hpp"
 #include "apps/surefoot/gate_child.hpp"
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/live_session.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/machine_joints.hpp"
 #include "apps/surefoot/page_telemetry.hpp"
+#include "apps/surefoot/service_settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/steered_walk.hpp"
 #include "apps/surefoot/verbs.hpp"
@@ -54,14 +59,23 @@ class ChannelFile {
 
 /// The gate's answers come first, then who looks after it: the first thread, which starts it again
 /// with the priority that it has itself. Linux knows the priority of threads alone: every other
-/// thread that there is, and what they start.
-void be_nice(int niceness) {
-    if (niceness == 0) return;
+/// thread that there is, and what they start. An error says what the system said, of one thread at
+/// least; one that has ended is none.
+Status be_nice(int niceness) {
+    int refusal = 0;
     std::error_code error;
     for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", error)) {
         const auto thread = static_cast<id_t>(std::stoul(task.path().filename().string()));
-        if (thread != static_cast<id_t>(::getpid())) ::setpriority(PRIO_PROCESS, thread, niceness);
+        if (thread == static_cast<id_t>(::getpid())) continue;
+        if (::setpriority(PRIO_PROCESS, thread, niceness) != 0 && errno != ESRCH) refusal = errno;
     }
+    if (refusal == 0) return {};
+    return usage_error(
+        fmt::format("service.niceness: {} is refused by the system: {}; end serve and start it "
+                    "with --nice {}",
+                    niceness,
+                    std::strerror(refusal),
+                    niceness));
 }
 
 constexpr const char* kSharedMemory = "/dev/shm";
@@ -143,6 +157,7 @@ class PageService {
         page::PageServerConfig config;
         config.bind_address = options.bind_address;
         config.port = static_cast<std::uint16_t>(options.page_port);
+        config.foxglove_origins = options.foxglove_origins;
         if (!options.token_file.empty()) {
             auto token = io::read_file(options.token_file);
             if (!token) return token.error();
@@ -202,8 +217,13 @@ class Service {
     Service(const ServeOptions& options,
             const Settings& settings,
             const std::optional<io::MachineFile>& machine,
+            const std::optional<io::MachineModel>& model,
             Executor& executor)
-        : options_(options), settings_(settings), machine_(machine), executor_(executor) {}
+        : options_(options),
+          settings_(settings),
+          machine_(machine),
+          model_(model),
+          executor_(executor) {}
 
     Status run();
     [[nodiscard]] const std::vector<AskedStep>& steps() const noexcept { return steps_; }
@@ -216,6 +236,10 @@ class Service {
                            std::unique_ptr<camera::FrameSource> source,
                            wire::SnapshotWriter& writer);
     Status introduce(const camera::FrameSource& source, std::uint16_t gate_port);
+    void offer_settings(bool is_scene);
+    void offer_recording(const camera::FrameSource& source);
+    Status apply(const ServiceConfig& wanted);
+    Result<std::string> change(const page::SettingWish& wish);
     Status steer(camera::FrameSource& source, std::uint16_t gate_port);
     void follow_walk(sim::SceneSource& scene, const LiveSession& session);
     bool follow_pages(LiveSession& session, const wire::SnapshotWriter& writer);
@@ -228,8 +252,13 @@ class Service {
     const ServeOptions& options_;
     const Settings& settings_;
     const std::optional<io::MachineFile>& machine_;
+    const std::optional<io::MachineModel>& model_;
     Executor& executor_;
+    std::optional<ServiceSettings> service_settings_;  ///< pages change it until they are gone
+    std::atomic<int> niceness_{0};
+    std::atomic<double> scene_speed_{0.0};
     std::unique_ptr<PageService> page_;
+    std::optional<FrameRecorder> recorder_;  ///< goes before the page that it tells
     page::PageHello hello_;
     double speed_ = 1.0;  ///< times real time, 0 = as it comes
     std::unique_ptr<SteeredWalk> walk_;
@@ -300,7 +329,12 @@ void Service::follow_walk(sim::SceneSource& scene, const LiveSession& session) {
 bool Service::follow_pages(LiveSession& session, const wire::SnapshotWriter& writer) {
     page::Playback& playback = page_->controls().playback;
     auto state = playback.state();
-    if (!state) return true;
+    if (!state) {
+        const double wanted = scene_speed_;
+        if (wanted != speed_) session.pace(wanted);
+        speed_ = wanted;
+        return true;
+    }
     const bool stood = state->paused;
     while (state->paused && !playback.jump_wanted() && !interrupted() && !writer.restart_wanted()) {
         std::this_thread::sleep_for(kLookEvery);
@@ -318,9 +352,14 @@ Result<LiveSession::End> Service::perceive_anew(camera::FrameSource& source,
     auto pipeline = pipeline::Pipeline::make(
         settings_.pipeline, mounted_rig(source.rig(), machine_), executor_, steady_now_ns);
     if (!pipeline) return pipeline.error();
-    LiveSession session(*pipeline, source, writer, hash_of(settings_));
+    camera::FrameSource* frames = &source;
+    std::optional<RecordedSource> recorded;
+    if (recorder_) frames = &recorded.emplace(source, *recorder_);
+    LiveSession session(*pipeline, *frames, writer, hash_of(settings_));
     std::optional<PageTelemetry> page;
-    if (page_->feed() != nullptr) page.emplace(*page_->feed(), source.info().path);
+    if (page_->feed() != nullptr)
+        page.emplace(
+            *page_->feed(), source.info().path, model_ ? joints_of(source, *model_) : JointsAt{});
     const auto before_frame = [&] {
         if (walk_) follow_walk(*scene, session);
         return !(walk_ && walk_->is_over()) && follow_pages(session, writer);
@@ -333,7 +372,7 @@ Result<LiveSession::End> Service::perceive_anew(camera::FrameSource& source,
     const bool goes_on = end && (*end == LiveSession::End::restart_wanted ||
                                  page_->controls().playback.jump_wanted());
     if (page && goes_on) page->tell_new_beginning();
-    if (page && !goes_on) page->tell_the_end();
+    if (page && !goes_on) page->tell_the_end(*pipeline);
     return end;
 }
 
@@ -370,7 +409,7 @@ Status Service::perceive_beside(GateChild& gate,
     Status perceived;
     std::atomic<bool> ended{false};
     std::thread perception([&] {
-        be_nice(options_.niceness);
+        if (options_.niceness != 0) std::ignore = be_nice(options_.niceness);
         perceived = perceive(std::move(source), writer);
         ended = true;
     });
@@ -391,13 +430,60 @@ Status Service::introduce(const camera::FrameSource& source, std::uint16_t gate_
     hello_ = hello_of(source,
                       mounted_rig(source.rig(), machine_),
                       machine_,
+                      model_,
                       gate_port,
                       is_scene ? settings_.sim.rate_hz : 0.0);
     hello_.can_steer = options_.joystick;
     speed_ = options_.speed.value_or(is_scene && !options_.joystick ? 0.0 : 1.0);
     if (!is_scene && !source.info().steady_stamps)
         page_->controls().playback.offer({0, source.info().frames.value_or(0), false, speed_});
+    if (page_->feed() == nullptr) return {};
+    offer_settings(is_scene);
+    offer_recording(source);
     return {};
+}
+
+/// Pages see every setting of the run, and change those of the service.
+void Service::offer_settings(bool is_scene) {
+    ServiceConfig first;
+    first.speed = speed_;
+    first.niceness = options_.niceness;
+    scene_speed_ = speed_;
+    niceness_ = options_.niceness;
+    service_settings_.emplace(
+        first, is_scene, [this](const ServiceConfig& wanted) { return apply(wanted); });
+    page_->controls().settings.offer(
+        service_settings_->for_pages(settings_),
+        [this](const page::SettingWish& wish) { return change(wish); });
+}
+
+void Service::offer_recording(const camera::FrameSource& source) {
+    FrameRecorderConfig config;
+    config.record_dir = options_.record_dir;
+    recorder_.emplace(config, source.rig(), source.info(), page_->controls().recording);
+}
+
+Status Service::apply(const ServiceConfig& wanted) {
+    if (wanted.niceness != niceness_) {
+        if (auto nice = be_nice(wanted.niceness); !nice) return nice;
+        niceness_ = wanted.niceness;
+    }
+    page::PageRates& rates = page_->feed()->rates;
+    rates.map_hz = wanted.map_hz;
+    rates.image_hz = wanted.image_hz;
+    rates.layer_hz = wanted.layer_hz;
+    scene_speed_ = wanted.speed;
+    return {};
+}
+
+Result<std::string> Service::change(const page::SettingWish& wish) {
+    auto changed = service_settings_->change(wish);
+    if (changed) {
+        log_info(fmt::format("{} is {} now (a page asked)", wish.key, *changed));
+    } else {
+        log_warning(fmt::format("{} (a page asked)", changed.error().message));
+    }
+    return changed;
 }
 
 /// Somebody steers, where the user wants it.
@@ -439,6 +525,7 @@ Status Service::run() {
     if (page_->port() != 0) {
         std::FILE* const out = options_.common.json ? stderr : stdout;
         fmt::print(out, "the page is at http://{}:{}/\n", options_.bind_address, page_->port());
+        fmt::print(out, "Foxglove connects to ws://{}:{}/\n", options_.bind_address, page_->port());
         std::fflush(out);
     }
     watch_for_interrupts();
@@ -453,6 +540,16 @@ Status Service::run() {
     return {};
 }
 
+/// What pages show; a machine of whose looks nothing is known is shown as the space that it takes.
+Result<std::optional<io::MachineModel>> load_model(const ServeOptions& options,
+                                                   const std::optional<io::MachineFile>& machine) {
+    if (options.model.empty())
+        return machine ? built_in_model(machine->name) : std::optional<io::MachineModel>{};
+    auto model = find_model(options.model);
+    if (!model) return model.error();
+    return std::optional<io::MachineModel>(std::move(model).value());
+}
+
 }  // namespace
 
 int serve(const ServeOptions& options) {
@@ -460,12 +557,18 @@ int serve(const ServeOptions& options) {
     if (!settings) return report(settings.error());
     const auto machine = load_machine(options.machine);
     if (!machine) return report(machine.error());
+    const auto model = load_model(options, *machine);
+    if (!model) return report(model.error());
+    if (options.no_page && !options.record_dir.empty()) {
+        return report(
+            usage_error("--record-dir: without the page there is nobody to begin a recording"));
+    }
     if (!options.out_dir.empty()) {
         if (auto made = io::make_folder(options.out_dir); !made) return report(made.error());
     }
     const auto executor = make_executor(options.common);
     fit_settings({}, *machine, *settings);
-    Service service(options, *settings, *machine, *executor);
+    Service service(options, *settings, *machine, *model, *executor);
     const Status served = service.run();
     if (options.common.json) print_answer(serve_json(service.steps()));
     return served ? kExitOk : report(served.error());

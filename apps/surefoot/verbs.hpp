@@ -100,6 +100,7 @@ struct ServeOptions {
     std::string source;
     std::string rig_file;
     std::string machine = "rex";
+    std::string model;  ///< file or built-in name; empty = the built-in one of the machine's name
     double rate_hz = 0.0;
     int max_frames = 0;
     /// Times real time, 0 = as it comes. None: 1 for recordings and where pages steer, else 0.
@@ -118,7 +119,9 @@ struct ServeOptions {
     std::string channel;          ///< file in shared memory; empty = one of its own
     int niceness = 10;            ///< of perception beside the gate
     int page_port = 8080;         ///< 0 = any free one
+    std::vector<std::string> foxglove_origins;  ///< of other machines, that may look
     bool no_page = false;
+    std::string record_dir;  ///< pages may record into new folders of it; empty = they may not
     bool once = false;
 };
 /// Perception over a source, with the gate process beside it.
@@ -303,6 +306,14 @@ struct RigOptions {
     std::string out;                  ///< empty = only look
 };
 int rig(const RigOptions& options);
+
+struct UrdfOptions {
+    CommonOptions common;
+    std::string model;
+    std::string out_file;  ///< empty = stdout
+};
+/// What a machine looks like, for programs that read URDF.
+int urdf(const UrdfOptions& options);
 
 struct MapInfoOptions {
     CommonOptions common;

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "server/page/feature_lists.hpp"
 #include "server/page/page_decoder_for_test.hpp"
 #include "server/page/page_messages.hpp"
 
@@ -111,7 +112,8 @@ PageHello hello() {
     machine.limits.body.parts[0] = {{-100, 0, 7200, 9400}, 6200, 13300};
     machine.limits.body.count = 1;
     machine.part_names = {"frame"};
-    machine.joints = {"hip_flexion"};
+    machine.joints = {{"knee", 0.0625}, {"ankle", -0.125}};
+    machine.urdf = "<robot name=\"rex\"/>";
     hello.machine = machine;
     return hello;
 }
@@ -127,6 +129,62 @@ PageStatus status() {
             {{"stereo", 10.5, 11.0}},
             2};
 }
+
+/// One of each, a flight of three steps first.
+stairs::TerrainFeatures features() {
+    stairs::TerrainFeatures features;
+    features.time_ns = 2'000'000'000;
+    const stairs::Followed followed{7, 4, 1'750'000'000, false};
+    stairs::Flight flight;
+    flight.pose = {{1.5, -0.25, 0.0}, 0.125};
+    flight.steps = 3;
+    flight.riser_m = 0.18;
+    flight.riser_sigma_m = 0.002;
+    flight.riser_spread_m = 0.004;
+    flight.going_m = 0.31;
+    flight.going_sigma_m = 0.005;
+    flight.going_spread_m = 0.008;
+    flight.width_m = 1.5;
+    flight.landing_m = 0.75;
+    flight.followed = followed;
+    features.flights.push_back(flight);
+    stairs::Flight step = flight;  // of one step: no going
+    step.kind = stairs::FlightKind::down;
+    step.steps = 1;
+    step.going_m = step.going_sigma_m = step.going_spread_m = kNan;
+    step.cut = true;
+    step.followed.id = 8;
+    features.flights.push_back(step);
+    stairs::LineFeature line;
+    line.pose = {{2.0, 0.5, 0.0}, -0.5};
+    line.height_m = -0.175;
+    line.length_m = 1.25;
+    line.sigma_m = 0.0625;
+    line.bottom_seen = false;
+    line.followed = followed;
+    features.drops.push_back(line);
+    line.bottom_seen = true;
+    features.kerbs.push_back(line);
+    line.height_m = 0.03125;
+    features.sills.push_back(line);
+    features.doors.push_back({line.pose, 0.875, 0.015625, 0.03125, 0.0078125, kNan, followed});
+    stairs::Edge edge;
+    edge.from_m = {1.5, -1.0};
+    edge.to_m = {1.5, 0.5};
+    edge.upper_m = 0.18;
+    edge.lower_seen = true;
+    edge.height_sigma_m = 0.003;
+    edge.followed = followed;
+    features.edges.push_back(edge);
+    return features;
+}
+
+const std::vector<PageSetting> kSettings{
+    {"elevation.length_m", "6", "m", "0.1 .. 100", "side of the map", false},
+    {"page.map_hz", "10", "Hz", "0.5 .. 10", "maps that a page is sent in a second at most", true}};
+const SettingAnswer kRefused{"page.map_hz", false, "10", "page.map_hz: '50' is outside 0.5 .. 10"};
+const RecordingState kRecording{
+    RecordingStage::recording, "rec/20261124T134838Z", 150, 2, 61'000'000, 10.0, "a sentence"};
 
 const PlaybackState kPlayed{29, 600, true, 0.5};
 const SteerOutcome kSteered{3, 9, "NOT_TRAVERSABLE", false, "drop of 0.17 m"};
@@ -159,6 +217,9 @@ Json request_examples() {
          R"({"op":"want","layers":["no_such_layer"]})",
          R"({"op":"want","images":["right"]})",
          R"({"op":"want","map_hz":0})",
+         R"({"op":"want","stairs":true,"settings":true})",
+         R"({"op":"want","stairs":1})",
+         R"({"op":"want","settings":"all"})",
          R"({"op":"joystick","command":9})",
          R"({"op":"joystick","command":0})",
          R"({"op":"joystick","command":256})",
@@ -172,6 +233,14 @@ Json request_examples() {
          R"({"op":"playback","frame":3000000000})",
          R"({"op":"playback","paused":1})",
          R"({"op":"playback","backwards":true})",
+         R"({"op":"set","key":"page.map_hz","value":"5"})",
+         R"({"op":"set","key":"page.map_hz","value":5})",
+         R"({"op":"set","key":"page.map_hz"})",
+         R"({"op":"set","key":"page.map_hz","value":"5","now":true})",
+         R"({"op":"record","on":true})",
+         R"({"op":"record","on":false})",
+         R"({"op":"record","on":1})",
+         R"({"op":"record"})",
          R"({"op":"dance"})",
          R"({"op":"want","op":"want"})",
          R"({"op":"want")"}) {
@@ -181,12 +250,19 @@ Json request_examples() {
             one["problem"] = request.error().message;
         } else if (const auto* wish = std::get_if<PageWish>(&*request)) {
             one["map_hz"] = wish->map_hz;
+            one["stairs"] = wish->stairs;
+            one["settings"] = wish->settings;
         } else if (const auto* word = std::get_if<JoystickWord>(&*request)) {
             one["command"] = word->command;
         } else if (const auto* play = std::get_if<PlaybackWish>(&*request)) {
             if (play->paused) one["paused"] = *play->paused;
             if (play->speed) one["speed"] = *play->speed;
             if (play->frame) one["frame"] = *play->frame;
+        } else if (const auto* setting = std::get_if<SettingWish>(&*request)) {
+            one["key"] = setting->key;
+            one["value"] = setting->value;
+        } else if (const auto* record = std::get_if<RecordWish>(&*request)) {
+            one["on"] = record->on;
         }
         out.push_back(std::move(one));
     }
@@ -197,6 +273,9 @@ Json all_vectors(const Json& contract) {
     PageHello stranger = hello();
     stranger.machine.reset();
     stranger.blind_zone.clear();
+    PageHello shapeless = hello();  // nobody knows what it looks like
+    shapeless.machine->urdf.clear();
+    shapeless.machine->joints.clear();
     PagePose walking = pose();
     walking.joints_rad = {0.5F, -0.25F};
     return {
@@ -217,9 +296,14 @@ Json all_vectors(const Json& contract) {
         {"json_to_page",
          Json::array({Json::parse(hello_text(hello())),
                       Json::parse(hello_text(stranger)),
+                      Json::parse(hello_text(shapeless)),
                       Json::parse(status_text(status(), std::nullopt)),
                       Json::parse(status_text(status(), kPlayed)),
-                      Json::parse(steer_text(true, true, kSteered))})},
+                      Json::parse(steer_text(true, true, kSteered)),
+                      Json::parse(stairs_text(features())),
+                      Json::parse(settings_text(kSettings)),
+                      Json::parse(setting_text(kRefused)),
+                      Json::parse(recording_text(kRecording))})},
         {"json_to_service", request_examples()}};
 }
 
@@ -265,14 +349,41 @@ TEST(MessageVectors, SayWhatWentIn) {
 /// Every key of the contract is sent, and no other.
 TEST(MessageVectors, JsonHasTheKeysOfTheContract) {
     const Json contract = testing::read_json(kContract)["json_to_page"];
-    for (const std::string& text :
-         {hello_text(hello()), status_text(status(), kPlayed), steer_text(false, true, kSteered)}) {
+    for (const std::string& text : {hello_text(hello()),
+                                    status_text(status(), kPlayed),
+                                    steer_text(false, true, kSteered),
+                                    stairs_text(features()),
+                                    settings_text(kSettings),
+                                    setting_text(kRefused),
+                                    recording_text(kRecording)}) {
         const Json message = Json::parse(text);
         std::vector<std::string> keys;
         for (const auto& [key, value] : message.items()) keys.push_back(key);
         const std::string kind = message["kind"].get<std::string>();
         EXPECT_EQ(Json(keys), contract[kind]["keys"]) << kind;
     }
+}
+
+std::vector<std::string> keys_of(const Json& json) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : json.items()) keys.push_back(key);
+    return keys;
+}
+
+TEST(MessageVectors, ListsHaveTheKeysOfTheContract) {
+    const Json contract = testing::read_json(kContract)["json_to_page"];
+    const Json said = Json::parse(stairs_text(features()));
+    EXPECT_EQ(Json(keys_of(said["flights"][0])), contract["stairs"]["flight"]);
+    EXPECT_EQ(Json(keys_of(said["drops"][0])), contract["stairs"]["line"]);
+    EXPECT_EQ(Json(keys_of(said["sills"][0])), contract["stairs"]["line"]);
+    EXPECT_EQ(Json(keys_of(said["doors"][0])), contract["stairs"]["door"]);
+    EXPECT_EQ(Json(keys_of(said["edges"][0])), contract["stairs"]["edge"]);
+    std::vector<std::string> kerb = keys_of(said["kerbs"][0]);
+    ASSERT_EQ(kerb.front(), "kind");
+    kerb.erase(kerb.begin());
+    EXPECT_EQ(Json(kerb), contract["stairs"]["line"]);
+    const Json settings = Json::parse(settings_text(kSettings));
+    EXPECT_EQ(Json(keys_of(settings["settings"][0])), contract["settings"]["setting"]);
 }
 
 }  // namespace

@@ -19,9 +19,10 @@ bool PageFeed::fetch(std::unique_ptr<PageFrame>& frame) {
     return true;
 }
 
-void PageFeed::want(bool images, bool layers) noexcept {
+void PageFeed::want(bool images, bool layers, bool stairs) noexcept {
     wants_images_ = images;
     wants_layers_ = layers;
+    wants_stairs_ = stairs;
 }
 
 }  // namespace surefoot::page

@@ -34,12 +34,17 @@ TEST(PageFeed, TellsPerceptionWhatIsWanted) {
     PageFeed feed;
     EXPECT_FALSE(feed.wants_images());
     EXPECT_FALSE(feed.wants_layers());
-    feed.want(true, false);
+    EXPECT_FALSE(feed.wants_stairs());
+    feed.want(true, false, false);
     EXPECT_TRUE(feed.wants_images());
     EXPECT_FALSE(feed.wants_layers());
-    feed.want(false, true);
+    EXPECT_FALSE(feed.wants_stairs());
+    feed.want(false, true, false);
     EXPECT_FALSE(feed.wants_images());
     EXPECT_TRUE(feed.wants_layers());
+    feed.want(false, false, true);
+    EXPECT_FALSE(feed.wants_layers());
+    EXPECT_TRUE(feed.wants_stairs());
 }
 
 TEST(PageFeed, FramesAreWholeWhileBothSidesAreBusy) {

@@ -70,6 +70,13 @@ Json body_json(const PageHello::Machine& machine) {
     return parts;
 }
 
+Json joints_json(const PageHello::Machine& machine) {
+    Json joints = Json::array();
+    for (const auto& joint : machine.joints)
+        joints.push_back({{"name", joint.name}, {"stand_rad", joint.stand_rad}});
+    return joints;
+}
+
 Json machine_json(const std::optional<PageHello::Machine>& machine) {
     if (!machine) return nullptr;
     const Machine& limits = machine->limits;
@@ -80,26 +87,8 @@ Json machine_json(const std::optional<PageHello::Machine>& machine) {
         {"feet", {{"left", box_json(limits.left_foot)}, {"right", box_json(limits.right_foot)}}},
         {"movements", movements_json(limits)},
         {"body", body_json(*machine)},
-        {"joints", machine->joints}};
-}
-
-const char* name_of(SourceState state) noexcept {
-    switch (state) {
-        case SourceState::waiting: return "waiting";
-        case SourceState::running: return "running";
-        case SourceState::paused: return "paused";
-        case SourceState::ended: break;
-    }
-    return "ended";
-}
-
-const char* name_of(Health health) noexcept {
-    switch (health) {
-        case Health::ok: return "OK";
-        case Health::degraded: return "DEGRADED";
-        case Health::lost: break;
-    }
-    return "LOST";
+        {"joints", joints_json(*machine)},
+        {"model", machine->urdf.empty() ? Json(nullptr) : Json(kModelPath)}};
 }
 
 Status read_layers(const Json& names, std::span<const std::string> layers, PageWish& wish) {
@@ -136,11 +125,19 @@ Status read_rate(const Json& value, const std::string& key, double highest_hz, d
     return {};
 }
 
+Status read_flag(const Json& value, const std::string& key, bool& flag) {
+    if (!value.is_boolean()) return input_error(key + ": true or false is wanted");
+    flag = value.get<bool>();
+    return {};
+}
+
 Result<PageRequest> read_wish(const Json& json, std::span<const std::string> layers) {
     PageWish wish;
     const auto read = [&](const std::string& key, const Json& value) -> Status {
         if (key == "layers") return read_layers(value, layers, wish);
         if (key == "images") return read_images(value, wish);
+        if (key == "stairs") return read_flag(value, key, wish.stairs);
+        if (key == "settings") return read_flag(value, key, wish.settings);
         if (key == "map_hz") return read_rate(value, key, PageWish::kMaxMap_hz, wish.map_hz);
         if (key == "image_hz") return read_rate(value, key, PageWish::kMaxImage_hz, wish.image_hz);
         return input_error("want has no key '" + key + "'");
@@ -150,6 +147,22 @@ Result<PageRequest> read_wish(const Json& json, std::span<const std::string> lay
         if (const auto status = read(key, value); !status) return status.error();
     }
     return PageRequest(wish);
+}
+
+Result<PageRequest> read_setting(const Json& json) {
+    const auto is_text = [&](const char* key) {
+        return json.contains(key) && json[key].is_string();
+    };
+    if (json.size() != 3 || !is_text("key") || !is_text("value"))
+        return input_error("set: {\"key\": name, \"value\": text} is wanted");
+    return PageRequest(
+        SettingWish{json.at("key").get<std::string>(), json.at("value").get<std::string>()});
+}
+
+Result<PageRequest> read_record(const Json& json) {
+    if (json.size() != 2 || !json.contains("on") || !json.at("on").is_boolean())
+        return input_error("record: {\"on\": true or false} is wanted");
+    return PageRequest(RecordWish{json.at("on").get<bool>()});
 }
 
 /// A whole number from 0 to `most`.
@@ -201,6 +214,16 @@ Json playback_json(const std::optional<PlaybackState>& playback) {
 }
 
 }  // namespace
+
+const char* to_string(SourceState state) noexcept {
+    switch (state) {
+        case SourceState::waiting: return "waiting";
+        case SourceState::running: return "running";
+        case SourceState::paused: return "paused";
+        case SourceState::ended: break;
+    }
+    return "ended";
+}
 
 void write_header(MessageWriter& write, MessageKind kind) {
     write << static_cast<std::uint8_t>(kind) << kProtocol << std::uint16_t{0};
@@ -270,9 +293,9 @@ std::string status_text(const PageStatus& status, const std::optional<PlaybackSt
                        {"time_ns", status.time_ns},
                        {"frames", status.frames},
                        {"rate_hz", status.rate_hz},
-                       {"state", name_of(status.state)},
+                       {"state", to_string(status.state)},
                        {"text", status.text},
-                       {"health", name_of(status.health)},
+                       {"health", to_string(status.health)},
                        {"reasons", status.reasons},
                        {"stages", std::move(stages)},
                        {"viewers", status.viewers},
@@ -299,6 +322,8 @@ Result<PageRequest> parse_request(std::string_view text, std::span<const std::st
     if (op == "want") return read_wish(*json, layers);
     if (op == "joystick") return read_joystick(*json);
     if (op == "playback") return read_playback(*json);
+    if (op == "set") return read_setting(*json);
+    if (op == "record") return read_record(*json);
     return input_error(fmt::format("no operation '{}'", op));
 }
 

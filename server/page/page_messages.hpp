@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "server/page/little_endian.hpp"
+#include "server/page/page_settings.hpp"
+#include "server/page/recording_desk.hpp"
 #include "server/page/steering.hpp"
 #include "surefoot/core/camera_state.hpp"
 #include "surefoot/core/frame.hpp"
@@ -22,6 +24,7 @@
 namespace surefoot::page {
 
 inline constexpr std::uint8_t kProtocol = 1;
+inline constexpr const char* kModelPath = "/machine.urdf";
 enum class MessageKind : std::uint8_t { map = 1, pose = 2, image = 3, layer = 4 };
 enum class PageImage : std::uint8_t { left = 0, disparity = 1 };
 inline constexpr std::size_t kImageCount = 2;
@@ -41,7 +44,7 @@ struct PagePose {
     double variance_yaw_rad2 = 0.0;
     Health health = Health::lost;
     CameraState camera = CameraState::unknown;
-    std::vector<float> joints_rad;  ///< in the order of PageHello::joints, or none
+    std::vector<float> joints_rad;  ///< in the order of PageHello::Machine::joints, or none
 };
 [[nodiscard]] std::string pose_message(const PagePose& pose);
 
@@ -66,7 +69,12 @@ struct PageHello {
         std::string name;
         surefoot::Machine limits;
         std::vector<std::string> part_names;  ///< of limits.body
-        std::vector<std::string> joints;
+        struct Joint {
+            std::string name;
+            double stand_rad = 0.0;  ///< shown where a pose brings no angles
+        };
+        std::vector<Joint> joints;  ///< those of the model that move
+        std::string urdf;           ///< the model, served at kModelPath; empty = there is none
     };
     struct GroundPoint {
         double x_m = 0.0;
@@ -80,7 +88,8 @@ struct PageHello {
     std::optional<Machine> machine;
     std::vector<GroundPoint> blind_zone;  ///< in base_link, see messages.json
     bool can_steer = false;
-    double rate_hz = 0.0;  ///< of the source; 0 = not known
+    double rate_hz = 0.0;                 ///< of the source; 0 = not known
+    std::optional<Pose> T_body_camera{};  ///< rectified left camera in base_link, where it is known
 };
 [[nodiscard]] std::string hello_text(const PageHello& hello);
 
@@ -88,6 +97,8 @@ struct PageHello {
 [[nodiscard]] std::string steer_text(bool yours, bool taken, const SteerOutcome& last);
 
 enum class SourceState : std::uint8_t { waiting, running, paused, ended };
+/// "waiting".
+[[nodiscard]] const char* to_string(SourceState state) noexcept;
 struct PageStage {
     const char* name = "";
     double last_ms = 0.0;
@@ -123,6 +134,8 @@ struct PageWish {
 
     std::vector<std::uint16_t> layers;  ///< places in PageHello::layers, each once
     std::array<bool, kImageCount> images{};
+    bool stairs = false;    ///< and what else the ground is
+    bool settings = false;  ///< of the run
     double map_hz = 5.0;
     double image_hz = 2.0;
 };
@@ -142,7 +155,7 @@ struct PlaybackWish {
     std::optional<int> frame;  ///< to go on from; map and odom begin anew there
 };
 
-using PageRequest = std::variant<PageWish, JoystickWord, PlaybackWish>;
+using PageRequest = std::variant<PageWish, JoystickWord, PlaybackWish, SettingWish, RecordWish>;
 /// One message of a page (messages.json): keys of "want" that are missing keep their defaults,
 /// rates and speeds beyond their limits are cut. An unknown operation, key, layer or image, or a
 /// wrong type is an error in words.

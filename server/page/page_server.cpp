@@ -13,12 +13,16 @@
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <deque>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <variant>
 
+#include "server/page/feature_lists.hpp"
+#include "server/page/foxglove_client.hpp"
+#include "server/page/gate_listener.hpp"
 #include "server/page/page_files.hpp"
-#include "server/page/page_pictures.hpp"
+#include "server/page/show.hpp"
 #include "server/wire/admission.hpp"
 #include "server/wire/server_config.hpp"
 #include "server/wire/steady_clock.hpp"
@@ -41,8 +45,8 @@ constexpr auto kHandshake = std::chrono::seconds(5);
 constexpr auto kIdle = std::chrono::seconds(10);
 constexpr std::size_t kMaxMessageBytes = 4096;
 constexpr std::int64_t kStatusEvery_ns = 500'000'000;
-constexpr std::int64_t kLate_ns = kSecond_ns;  ///< no frame for so long is said in words
-// Of a page, before it is let go. A wish costs a whole map, a hand on the joystick nothing.
+constexpr std::int64_t kCountEvery_ns = 500'000'000;  ///< how far a recording is
+// Of a viewer, before it is let go. A wish costs a whole map, a hand on the joystick nothing.
 constexpr wire::RateLimit kWishes{5, 20};
 constexpr wire::RateLimit kMessages{40, 80};
 
@@ -56,86 +60,21 @@ std::int64_t period_ns(double rate_hz) {
 
 }  // namespace
 
-/// What all viewers are shown: the newest frame, and each message of it that is alike for all, made
-/// once.
-class Show {
-  public:
-    void introduce(PageHello its_hello, ColourLimits colours) {
-        hello = std::move(its_hello);
-        colours_ = colours;
-        ++hello_serial;
-    }
-    void look(PageFeed& feed, std::int64_t now_ns) {
-        if (!feed.fetch(frame_)) return;
-        fetched_ns_ = now_ns;
-        pose_.clear();
-        if (frame_->has_map) {
-            fill_page_map(frame_->map, frame_->map_time_ns, colours_, map);
-            ++map_serial;
-        }
-        if (!frame_->layers.empty()) {
-            layers_.swap(frame_->layers);
-            ++layers_serial;
-        }
-        if (frame_->images_time_ns != 0) {
-            for (std::string& picture : pictures_) picture.clear();
-            ++images_serial;
-        }
-    }
-    [[nodiscard]] std::uint64_t serial() const { return frame_->serial; }
-    [[nodiscard]] const std::string& pose() {
-        if (pose_.empty()) pose_ = pose_message(frame_->pose);
-        return pose_;
-    }
-    [[nodiscard]] const std::string& picture(PageImage which) {
-        std::string& picture = pictures_[static_cast<std::size_t>(which)];
-        if (picture.empty()) {
-            const std::string jpeg = which == PageImage::left
-                                         ? jpeg_of(frame_->left)
-                                         : jpeg_of_disparity(frame_->disparity_px);
-            picture = image_message(frame_->images_time_ns, which, jpeg);
-        }
-        return picture;
-    }
-    [[nodiscard]] std::optional<std::string> layer(std::uint16_t index) const {
-        for (const PageLayer& layer : layers_) {
-            if (layer.index == index) return layer_message(layer);
-        }
-        return std::nullopt;
-    }
-    [[nodiscard]] std::string status(std::int64_t now_ns,
-                                     int viewers,
-                                     const std::optional<PlaybackState>& playback) const {
-        PageStatus status = frame_->status;
-        status.viewers = viewers;
-        if (playback && playback->paused && status.state == SourceState::running) {
-            status.state = SourceState::paused;
-            status.text = "paused";
-        } else if (serial() == 0) {
-            status.state = SourceState::waiting;
-            status.text = "no frame has come yet";
-        } else if (status.state == SourceState::running && now_ns - fetched_ns_ > kLate_ns) {
-            status.state = SourceState::waiting;
-            status.text = fmt::format("no frame has come for {:.0f} s",
-                                      static_cast<double>(now_ns - fetched_ns_) / kSecond_ns);
-        }
-        return status_text(status, playback);
-    }
+/// What of perception and of the gate somebody looks at.
+struct Demand {
+    bool images = false;
+    bool layers = false;
+    bool stairs = false;
+    GateTopics gate;
 
-    PageHello hello;
-    PageMap map;
-    std::uint64_t hello_serial = 0;
-    std::uint64_t map_serial = 0;
-    std::uint64_t layers_serial = 0;
-    std::uint64_t images_serial = 0;
-
-  private:
-    std::unique_ptr<PageFrame> frame_ = std::make_unique<PageFrame>();
-    ColourLimits colours_;
-    std::int64_t fetched_ns_ = 0;
-    std::string pose_;
-    std::array<std::string, kImageCount> pictures_;
-    std::vector<PageLayer> layers_;
+    Demand& operator|=(const Demand& other) {
+        images |= other.images;
+        layers |= other.layers;
+        stairs |= other.stairs;
+        gate.verdict |= other.gate.verdict;
+        gate.outlook |= other.gate.outlook;
+        return *this;
+    }
 };
 
 class Viewer;
@@ -144,7 +83,7 @@ class Viewer;
 class PageSockets {
   public:
     PageSockets(PageServerConfig its_config, PageFeed& feed, PageControls& its_controls)
-        : config(std::move(its_config)), controls(its_controls), feed_(feed) {}
+        : config(std::move(its_config)), controls(its_controls), rates(feed.rates), feed_(feed) {}
 
     Status listen();
     void run();
@@ -161,7 +100,10 @@ class PageSockets {
 
     const PageServerConfig config;
     PageControls& controls;
+    const PageRates& rates;
     Show show;
+    FoxgloveShow foxglove{show};
+    const std::string session = fmt::format("{:x}", steady_ns());  ///< of this service
 
   private:
     error_code listen_at(const net::ip::address& address, std::uint16_t port);
@@ -173,6 +115,7 @@ class PageSockets {
     net::io_context io_{1};  // destroyed last, with all waiting handlers
     tcp::acceptor acceptor_{io_};
     net::steady_timer timer_{io_};
+    GateListener gate_{io_, [this](GateNews news) { foxglove.hear(std::move(news)); }};
     std::vector<std::shared_ptr<Viewer>> connections_;  // shared with their waiting handlers
     std::uint64_t names_ = 0;
     std::uint64_t status_serial_ = 0;
@@ -180,7 +123,7 @@ class PageSockets {
     bool accepting_ = false;
 };
 
-/// One connection: a request for a file, or a page that looks.
+/// One connection: a request for a file, a page that looks, or a client of Foxglove.
 class Viewer : public std::enable_shared_from_this<Viewer> {
   public:
     Viewer(PageSockets& sockets, tcp::socket socket)
@@ -194,14 +137,10 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     void on_tick(std::int64_t now_ns);
     void end();
     [[nodiscard]] bool looks() const { return looks_; }
-    [[nodiscard]] const PageWish& wish() const { return wish_; }
+    [[nodiscard]] Demand demand() const;
     [[nodiscard]] std::uint64_t name() const { return name_; }
 
   private:
-    struct Message {
-        bool text = false;
-        std::string bytes;
-    };
     /// Who has the joystick, and the outcome that was told.
     struct Hold {
         bool yours = false;
@@ -213,17 +152,25 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     void on_request(error_code error);
     void answer(http::status status, std::string_view type, std::string body);
     void send_file(std::string_view path, bool head);
-    void upgrade();
+    void send_model(bool head);
+    /// `protocol`: the subprotocol of Foxglove that the client speaks.
+    void upgrade(std::optional<std::string_view> protocol);
     void read();
     void on_message();
     void take(const PageWish& wish);
     void take(const JoystickWord& word);
     void take(const PlaybackWish& wish);
+    void take(const SettingWish& wish);
+    void take(const RecordWish& wish);
     void say_goodbye(const std::string& sentence);
+    [[nodiscard]] Status hear(std::string_view bytes);
     void say(std::string text) { waiting_.push_back({true, std::move(text)}); }
     void push(std::string bytes) { waiting_.push_back({false, std::move(bytes)}); }
     void say_steering(std::int64_t now_ns);
     void say_status(std::int64_t now_ns);
+    void say_stairs();
+    void say_settings();
+    void say_recording(std::int64_t now_ns);
     void push_map(std::int64_t now_ns);
     void push_images(std::int64_t now_ns);
     void write();
@@ -237,10 +184,11 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     wire::TokenBucket messages_;
     wire::TokenBucket wishes_;
     PageWish wish_;
-    std::deque<Message> waiting_;
-    Message writing_;
+    std::optional<FoxgloveClient> foxglove_;
+    std::deque<SocketMessage> waiting_;
+    SocketMessage writing_;
     bool is_writing_ = false;
-    bool looks_ = false;  ///< a page, not a request for a file
+    bool looks_ = false;  ///< over a WebSocket, no request for a file
     bool open_ = false;   ///< its WebSocket
     bool ended_ = false;
 
@@ -255,6 +203,11 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::int64_t images_due_ns_ = 0;
     std::int64_t status_due_ns_ = 0;
     std::uint64_t status_serial_ = 0;
+    std::uint64_t stairs_serial_ = 0;
+    std::uint64_t settings_serial_ = 0;
+    std::uint64_t recording_serial_ = 0;
+    std::int64_t recording_due_ns_ = 0;
+    RecordingStage recording_stage_ = RecordingStage::off;
     std::optional<Hold> hold_;
 };
 
@@ -283,12 +236,21 @@ void Viewer::on_request(error_code error) {
         if (!head && request.method() != http::verb::get)
             return answer(
                 http::status::method_not_allowed, "text/plain", "GET and HEAD are served\n");
+        if (wire::path_of(target) == kModelPath) return send_model(head);
         return send_file(wire::path_of(target), head);
     }
-    if (wire::path_of(target) != "/page")
-        return answer(http::status::not_found, "text/plain", "the page's WebSocket is at /page\n");
+    const bool is_page = wire::path_of(target) == "/page";
+    const auto offered = request.find(http::field::sec_websocket_protocol);
+    const auto foxglove = is_page || offered == request.end()
+                              ? std::nullopt
+                              : foxglove_protocol_of(view(offered->value()));
+    if (!is_page && !foxglove)
+        return answer(http::status::not_found,
+                      "text/plain",
+                      "the page's WebSocket is at /page, Foxglove's wants its subprotocol\n");
     const auto origin = request.find(http::field::origin);
     std::vector<std::string> own;
+    if (foxglove) own = sockets_.config.foxglove_origins;
     if (!wire::is_loopback_address(sockets_.config.bind_address))
         own.push_back(fmt::format("http://{}:{}", sockets_.config.bind_address, sockets_.port()));
     const auto admission =
@@ -304,7 +266,7 @@ void Viewer::on_request(error_code error) {
     if (sockets_.viewers() >= sockets_.config.max_viewers)
         return answer(
             http::status::service_unavailable, "text/plain", "too many pages look already\n");
-    upgrade();
+    upgrade(foxglove);
 }
 
 void Viewer::answer(http::status status, std::string_view type, std::string body) {
@@ -341,11 +303,27 @@ void Viewer::send_file(std::string_view path, bool head) {
                       [self = shared_from_this()](error_code, std::size_t) { self->end(); });
 }
 
-void Viewer::upgrade() {
+/// What the machine looks like, as the hello of this moment has it.
+void Viewer::send_model(bool head) {
+    const auto& machine = sockets_.show.hello.machine;
+    if (!machine || machine->urdf.empty())
+        return answer(http::status::not_found, "text/plain", "nobody knows the machine's model\n");
+    answer(http::status::ok, "application/xml", head ? std::string() : machine->urdf);
+}
+
+void Viewer::upgrade(std::optional<std::string_view> protocol) {
     beast::get_lowest_layer(ws_).expires_never();  // the WebSocket has a clock of its own
     ws_.set_option(websocket::stream_base::timeout{kHandshake, kIdle, true});
     ws_.read_message_max(kMaxMessageBytes);
     ws_.auto_fragment(false);  // one frame a message
+    if (protocol) {
+        foxglove_.emplace(sockets_.foxglove.name(), sockets_.session);
+        ws_.read_message_max(kMaxFoxgloveText_bytes);
+        ws_.set_option(websocket::stream_base::decorator(
+            [name = std::string(*protocol)](websocket::response_type& response) {
+                response.set(http::field::sec_websocket_protocol, name);
+            }));
+    }
     looks_ = true;
     ws_.async_accept(parser_->get(), [self = shared_from_this()](error_code error) {
         if (self->ended_) return;
@@ -369,12 +347,27 @@ void Viewer::read() {
 void Viewer::on_message() {
     if (!messages_.take(steady_ns())) return say_goodbye("too many messages");
     const auto bytes = buffer_.cdata();
-    auto request = parse_request({static_cast<const char*>(bytes.data()), bytes.size()},
-                                 sockets_.show.hello.layers);
+    const Status heard = hear({static_cast<const char*>(bytes.data()), bytes.size()});
     buffer_.clear();
-    if (!request) return say_goodbye(request.error().message);
-    std::visit([this](const auto& what) { take(what); }, *request);
+    if (!heard) return say_goodbye(heard.error().message);
     if (!ended_) read();
+}
+
+Status Viewer::hear(std::string_view bytes) {
+    if (foxglove_) return foxglove_->take(ws_.got_text(), bytes, steady_ns());
+    const auto request = parse_request(bytes, sockets_.show.hello.layers);
+    if (!request) return request.error();
+    std::visit([this](const auto& what) { take(what); }, *request);
+    return {};
+}
+
+Demand Viewer::demand() const {
+    if (foxglove_)
+        return {
+            foxglove_->listens_to(FoxgloveChannel::camera), false, false, foxglove_->gate_topics()};
+    const bool images =
+        std::any_of(wish_.images.begin(), wish_.images.end(), [](bool wanted) { return wanted; });
+    return {images, !wish_.layers.empty(), wish_.stairs, {}};
 }
 
 void Viewer::take(const PageWish& wish) {
@@ -382,7 +375,7 @@ void Viewer::take(const PageWish& wish) {
     wish_ = wish;
     // All it has is sent anew.
     map_.reset();
-    frame_serial_ = map_serial_ = layers_serial_ = images_serial_ = 0;
+    frame_serial_ = map_serial_ = layers_serial_ = images_serial_ = stairs_serial_ = 0;
     map_due_ns_ = images_due_ns_ = 0;
 }
 
@@ -400,6 +393,18 @@ void Viewer::take(const PlaybackWish& wish) {
     sockets_.tell_status();
 }
 
+void Viewer::take(const SettingWish& wish) {
+    if (!wishes_.take(steady_ns())) return say_goodbye("too many wishes");
+    say(setting_text(sockets_.controls.settings.ask(wish)));
+    write();
+}
+
+void Viewer::take(const RecordWish& wish) {
+    if (!wishes_.take(steady_ns())) return say_goodbye("too many wishes");
+    if (!sockets_.controls.recording.ask(wish))
+        say_goodbye("record: " + sockets_.controls.recording.state().text);
+}
+
 void Viewer::say_goodbye(const std::string& sentence) {
     ended_ = true;
     websocket::close_reason reason(websocket::close_code::policy_error);
@@ -415,7 +420,7 @@ void Viewer::push_map(std::int64_t now_ns) {
     const Show& show = sockets_.show;
     if (show.map_serial == map_serial_ || now_ns < map_due_ns_) return;
     map_serial_ = show.map_serial;
-    map_due_ns_ = now_ns + period_ns(wish_.map_hz);
+    map_due_ns_ = now_ns + period_ns(std::min(wish_.map_hz, sockets_.rates.map_hz.load()));
     push(map_message(show.map, map_ ? &*map_ : nullptr));
     map_ = show.map;
     if (show.layers_serial == layers_serial_) return;
@@ -429,7 +434,7 @@ void Viewer::push_images(std::int64_t now_ns) {
     Show& show = sockets_.show;
     if (show.images_serial == images_serial_ || now_ns < images_due_ns_) return;
     images_serial_ = show.images_serial;
-    images_due_ns_ = now_ns + period_ns(wish_.image_hz);
+    images_due_ns_ = now_ns + period_ns(std::min(wish_.image_hz, sockets_.rates.image_hz.load()));
     for (std::size_t which = 0; which < kImageCount; ++which) {
         if (wish_.images[which]) push(show.picture(static_cast<PageImage>(which)));
     }
@@ -450,13 +455,48 @@ void Viewer::say_status(std::int64_t now_ns) {
     if (now_ns < status_due_ns_ && status_serial_ == sockets_.status_serial()) return;
     status_due_ns_ = now_ns + kStatusEvery_ns;
     status_serial_ = sockets_.status_serial();
-    say(sockets_.show.status(
-        now_ns, static_cast<int>(sockets_.viewers()), sockets_.controls.playback.state()));
+    const auto playback = sockets_.controls.playback.state();
+    say(status_text(sockets_.show.status(now_ns, static_cast<int>(sockets_.viewers()), playback),
+                    playback));
+}
+
+void Viewer::say_stairs() {
+    const Show& show = sockets_.show;
+    if (!wish_.stairs || stairs_serial_ == show.stairs_serial) return;
+    stairs_serial_ = show.stairs_serial;
+    say(show.stairs());
+}
+
+/// They are many and seldom change: a new wish alone does not bring them again.
+void Viewer::say_settings() {
+    const PageSettings& settings = sockets_.controls.settings;
+    const std::uint64_t serial = settings.serial();
+    if (!wish_.settings || settings_serial_ == serial) return;
+    settings_serial_ = serial;
+    say(settings_text(settings.all()));
+}
+
+/// What begins and ends at once, the counts now and then.
+void Viewer::say_recording(std::int64_t now_ns) {
+    const RecordingDesk& desk = sockets_.controls.recording;
+    const std::uint64_t serial = desk.serial();
+    if (recording_serial_ == serial) return;
+    const RecordingState state = desk.state();
+    if (now_ns < recording_due_ns_ && recording_stage_ == state.stage) return;
+    recording_serial_ = serial;
+    recording_stage_ = state.stage;
+    recording_due_ns_ = now_ns + kCountEvery_ns;
+    say(recording_text(state));
 }
 
 void Viewer::on_tick(std::int64_t now_ns) {
     // What it has not taken yet is followed by the newest, not by all between.
     if (ended_ || !open_ || is_writing_ || !waiting_.empty()) return;
+    if (foxglove_) {
+        auto messages = foxglove_->next(sockets_.foxglove, now_ns);
+        std::move(messages.begin(), messages.end(), std::back_inserter(waiting_));
+        return write();
+    }
     Show& show = sockets_.show;
     if (hello_serial_ != show.hello_serial) {
         hello_serial_ = show.hello_serial;
@@ -464,12 +504,15 @@ void Viewer::on_tick(std::int64_t now_ns) {
     }
     if (frame_serial_ != show.serial()) {
         frame_serial_ = show.serial();
-        push(show.pose());
+        push(show.pose_bytes());
     }
     push_map(now_ns);
     push_images(now_ns);
     say_steering(now_ns);
     say_status(now_ns);
+    say_stairs();
+    say_settings();
+    say_recording(now_ns);
     write();
 }
 
@@ -478,7 +521,7 @@ void Viewer::write() {
     writing_ = std::move(waiting_.front());
     waiting_.pop_front();
     is_writing_ = true;
-    ws_.text(writing_.text);
+    ws_.text(writing_.is_text);
     ws_.async_write(net::buffer(writing_.bytes),
                     [self = shared_from_this()](error_code error, std::size_t) {
                         if (self->ended_) return;
@@ -536,6 +579,7 @@ void PageSockets::stop() {
         error_code ignored;
         acceptor_.close(ignored);
         for (const auto& connection : std::vector(connections_)) connection->end();
+        gate_.want({}, {}, steady_ns());
         io_.stop();
     });
 }
@@ -572,16 +616,14 @@ void PageSockets::wait_for_tick() {
 void PageSockets::on_tick() {
     const std::int64_t now_ns = steady_ns();
     show.look(feed_, now_ns);
-    bool images = false;
-    bool layers = false;
+    foxglove.look(now_ns, controls.playback.state());
+    Demand demand;
     for (const auto& viewer : std::vector(connections_)) {
         viewer->on_tick(now_ns);
-        if (!viewer->looks()) continue;
-        const auto& wanted = viewer->wish().images;
-        images = images || std::any_of(wanted.begin(), wanted.end(), [](bool w) { return w; });
-        layers = layers || !viewer->wish().layers.empty();
+        demand |= viewer->demand();
     }
-    feed_.want(images, layers);
+    feed_.want(demand.images, demand.layers, demand.stairs);
+    gate_.want({config.bind_address, show.hello.gate_port, config.token}, demand.gate, now_ns);
     accept();
 }
 

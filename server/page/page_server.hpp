@@ -10,7 +10,9 @@
 #include "server/page/page_feed.hpp"
 #include "server/page/page_map.hpp"
 #include "server/page/page_messages.hpp"
+#include "server/page/page_settings.hpp"
 #include "server/page/playback.hpp"
+#include "server/page/recording_desk.hpp"
 #include "server/page/steering.hpp"
 #include "surefoot/core/result.hpp"
 
@@ -21,6 +23,8 @@ struct PageServerConfig {
     std::uint16_t port = 8080;               ///< 0 = any free one
     int more_ports = 16;                     ///< tried after it, where others are taken
     std::string token;                       ///< of the WebSocket's URL, as ?token=
+    /// Of Foxglove, where it is a web page of another machine, or a file (file://).
+    std::vector<std::string> foxglove_origins;
     std::size_t max_viewers = 16;
     std::size_t max_connections = 64;  ///< with those that fetch files
 
@@ -28,16 +32,19 @@ struct PageServerConfig {
     [[nodiscard]] const char* problem() const;
 };
 
-/// What pages may do to the source.
+/// What pages may do to the source and to the service; never to the gate.
 struct PageControls {
     Steering steering;  ///< followed where the hello says can_steer
     Playback playback;
+    PageSettings settings;
+    RecordingDesk recording;
 };
 
 class PageSockets;
 
-/// Serves the embedded page over HTTP and its messages (messages.json) over a WebSocket at /page,
-/// on the thread that calls `run`. A viewer that is slow is sent less often, never what is old: the
+/// Serves the embedded page over HTTP, its messages (messages.json) over a WebSocket at /page, and
+/// at every other path the WebSocket protocol of Foxglove to whoever offers its subprotocol; all on
+/// the thread that calls `run`. A viewer that is slow is sent less often, never what is old: the
 /// next message is made when the last one has left. Who sends what is not understood is told so and
 /// let go.
 class PageServer {

@@ -16,7 +16,7 @@ VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["stairs"], 
          ["serve"], ["rex-link"], ["audit"], ["audit", "verify"], ["audit", "replay"], ["eval"], ["eval", "trajectory"],
          ["eval", "maps"], ["eval", "depth"], ["eval", "suite"], ["calibrate"],
          ["calibrate", "render"], ["calibrate", "mono"], ["calibrate", "stereo"], ["config"], ["doctor"], ["bench"],
-         ["record"], ["replay"], ["info"], ["rig"], ["map"], ["map", "info"], ["map", "merge"], ["map", "export"]]
+         ["record"], ["replay"], ["info"], ["rig"], ["urdf"], ["map"], ["map", "info"], ["map", "merge"], ["map", "export"]]
 GATE_EXIT_CODES = (0, 3, 4)
 NO_GATE_EXIT_CODES = (0, 1)  # rex-link: whether a gate listens at the usual port is not ours to say
 
@@ -119,6 +119,7 @@ class Verbs(CliTest):
             (["audit", "replay", self.dir / "log"], "verdicts equal different first_difference"),
             (["replay", recording, "--speed", 1000], "frames late speed per_frame"),
             (["info", recording], "kind frames rate_hz gaps imu_samples has_truth"),
+            (["urdf", "rex", "--out", self.dir / "rex.urdf"], "name links joints file"),
             (["rig", recording], "format width height focal_left_px focal_right_px baseline_m rectified notes written"),
         )
         self.assertEqual({tuple(v) for v in VERBS} - {("gate",), ("eval",), ("calibrate",), ("map",), ("audit",)},

@@ -2,6 +2,7 @@
 import gzip
 import http.client
 import json
+import re
 import socket
 import struct
 import subprocess
@@ -9,7 +10,7 @@ import tempfile
 import time
 import unittest
 
-from surefoot_cli import BINARY, CliTest
+from surefoot_cli import BINARY, ROOT, CliTest
 from websocket_client import RosbridgeClient
 
 # A trolley that rolls over level ground; slowly, so that it rolls as long as the tests last.
@@ -25,6 +26,7 @@ class Page(RosbridgeClient):
     def __init__(self, port):
         super().__init__(port, path="/page")
         self.ground, self.wholes, self.map_bytes, self.versions = {}, 0, [], {}
+        self.joints = []
         self.poses, self.layers, self.images, self.texts, self.goodbye = [], [], [], [], None
 
     def want(self, **keys):
@@ -51,7 +53,9 @@ class Page(RosbridgeClient):
          LAYER: lambda body: self.layers.append(struct.unpack_from("<QqqIHHHH", body))}[kind](payload[4:])
 
     def take_pose(self, body):
-        self.poses.append(POSE_HEAD.unpack_from(body))
+        pose = POSE_HEAD.unpack_from(body)
+        self.poses.append(pose)
+        self.joints.append(struct.unpack_from(f"<{pose[-1]}f", body, POSE_HEAD.size))
 
     def take_map(self, body):
         (version, _, x, y, base, side, nx, ny, whole, _, edges, runs) = MAP_HEAD.unpack_from(body)
@@ -78,6 +82,18 @@ class Page(RosbridgeClient):
         assert at == len(body)
         self.versions[version] = dict(self.ground)
 
+    def ask(self, **message):
+        self.send(1, json.dumps(message).encode())
+
+    def wait_for(self, kind, until=lambda said: True, seconds=30.0):
+        """The newest message of a kind, once it is so."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and self.goodbye is None:
+            if self.told(kind) and until(self.told(kind)[-1]):
+                return self.told(kind)[-1]
+            self.listen(0.05)
+        raise AssertionError(f"{kind}: {self.told(kind)[-1:]} after {seconds} s; goodbye: {self.goodbye}")
+
     def told(self, kind):
         return [text for text in self.texts if text["kind"] == kind]
 
@@ -86,9 +102,9 @@ class PageTest(CliTest):
     """A service, and pages that look at it. Classes say what it shows."""
 
     @classmethod
-    def serve(cls, *words):
+    def serve(cls, *words, stderr=subprocess.DEVNULL):
         cls.service = subprocess.Popen([BINARY, "serve", *words, "--port", "0", "--page-port", "0", "--nice", "0"],
-                                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+                                       stdout=subprocess.PIPE, stderr=stderr, text=True)
         cls.gate_port = int(cls.service.stdout.readline().rsplit(":", 1)[1])
         told = cls.service.stdout.readline()
         assert told.startswith("the page is at http://127.0.0.1:"), told
@@ -130,6 +146,24 @@ class LivePage(PageTest):
         for path in ("/../etc/passwd", "/etc/passwd", "/index.html/", "/%2e%2e/x", "//", "/page", "/index.htm"):
             self.assertEqual(self.get(path)[0].status, 404, path)
         self.assertEqual(self.get("/", "POST")[0].status, 405)
+
+    def test_what_the_machine_looks_like_is_a_file_too(self):
+        hello = self.page().listen(1.0).told("hello")[0]
+        self.assertEqual(hello["machine"]["model"], "/machine.urdf")
+        answer, body = self.get(hello["machine"]["model"])
+        self.assertEqual((answer.status, answer.headers["Content-Type"]), (200, "application/xml"))
+        self.assertEqual(body, (ROOT / "models" / "rex.urdf").read_bytes())
+        moving = re.findall(rb'<joint name="(\w+)" type="revolute">', body)
+        self.assertEqual([joint["name"].encode() for joint in hello["machine"]["joints"]], moving)
+        answer, body = self.get("/machine.urdf", "HEAD")
+        self.assertEqual((answer.status, body), (200, b""))
+
+    def test_who_rolls_has_no_joints(self):
+        page = self.page()
+        end = time.monotonic() + 20.0
+        while not page.joints and time.monotonic() < end:
+            page.listen(0.5)
+        self.assertEqual(page.joints[-1], ())
 
     def test_pages_of_other_sites_see_nothing(self):
         for origin, status in (("http://evil.example", b"403"), ("http://127.0.0.1:1", b"101")):
@@ -246,12 +280,17 @@ class JoystickOnPages(PageTest):
             opcode, payload = gate.read()
             said = json.loads(payload)["msg"] if opcode == 1 and b"/surefoot/verdict" in payload else said
         self.assertEqual(said["command"], 9)
+        self.assertTrue(all(len(joints) == len(first.told("hello")[0]["machine"]["joints"]) for joints in first.joints))
         # The machine walks, and the other cannot stop or steer it.
         second.send(1, b'{"op":"joystick","command":17}')
         end = time.monotonic() + 30.0
         while first.poses[-1][1] < 0.2 and time.monotonic() < end:
             first.listen(0.5)
         self.assertGreater(first.poses[-1][1], 0.2)
+        names = [joint["name"] for joint in first.told("hello")[0]["machine"]["joints"]]
+        for knee in ("left_upperleg_to_left_lowerleg", "right_upperleg_to_right_lowerleg"):
+            angles = [joints[names.index(knee)] for joints in first.joints]
+            self.assertGreater(max(angles) - min(angles), 0.2, knee)
         self.assertEqual([said["asked"] for said in second.listen(0.5).told("steer")][-1], 9)
         # Who goes leaves it to others.
         first.close()
@@ -302,7 +341,7 @@ class Recordings(PageTest):
         stands, poses = page.poses[-1], len(page.poses)
         page.listen(1.0)
         self.assertEqual(len(page.poses), poses)
-        self.assertTrue(other.listen(0.3).told("status")[-1]["playback"]["paused"], "everybody sees it")
+        self.ask(other, lambda said: said["playback"]["paused"])  # everybody sees it
         # A jump back, and on from there.
         self.ask(page, lambda said: said["state"] == "running" and 10 < said["playback"]["frame"] < 60, frame=10, paused=False)
         self.assertEqual(page.poses[poses], stands, "nothing else before the first new frame")
@@ -313,6 +352,32 @@ class Recordings(PageTest):
         self.ask(page, lambda said: said["state"] == "running" and 5 < said["playback"]["frame"] < 60, frame=5, speed=1)
         page.send(1, b'{"op":"joystick","command":9}')
         self.assertIn("nobody steers", page.listen(3.0).goodbye[1])
+
+
+class OtherMachine(PageTest):
+    """A machine that nobody has drawn yet."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        machine = cls.folder.name + "/other.yaml"
+        text = (ROOT / "machines" / "rex.yaml").read_text().replace("name: rex\n", "name: other\n", 1)
+        with open(machine, "w", encoding="utf-8") as file:
+            file.write(text)
+        cls.serve(*SCENE, "--machine", machine)
+
+    @classmethod
+    def tearDownClass(cls):
+        super().tearDownClass()
+        cls.folder.cleanup()
+
+    def test_has_no_model_and_says_so(self):
+        hello = self.page().listen(1.0).told("hello")[0]
+        self.assertEqual((hello["machine"]["name"], hello["machine"]["model"], hello["machine"]["joints"]), ("other", None, []))
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=5)
+        self.addCleanup(connection.close)
+        connection.request("GET", "/machine.urdf")
+        self.assertEqual(connection.getresponse().status, 404)
 
 
 class Ports(CliTest):

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import { byId, make, setText } from "./dom.ts";
 import { kDirections, stateSentence } from "./directions.ts";
+import { FeatureTable } from "./feature_table.ts";
 import { LayerView } from "./layer_view.ts";
 import type { ImageMessage } from "./messages.ts";
+import { SettingsView } from "./settings_view.ts";
 import { StagePlot } from "./stage_plot.ts";
 import type { GateVerdict, Store } from "./store.ts";
 import { TrackView } from "./track_view.ts";
@@ -10,33 +12,40 @@ import { TrackView } from "./track_view.ts";
 const kHealth = ["lost", "degraded", "ok"];
 const kShownVerdicts = 12;
 
-/// For the engineer: pictures, layers, way, times and the last verdicts.
+/// For the engineer: pictures, layers, stairs with their measures, way, times, verdicts and settings.
 export class EngineerView {
   readonly #store: Store;
   readonly #layer: LayerView;
   readonly #track: TrackView;
   readonly #plot: StagePlot;
+  readonly #features: FeatureTable;
+  readonly #settings: SettingsView;
   #shown = new Map<number, ImageMessage>();
   #verdicts = -1;
   #tables = "";
 
-  constructor(store: Store) {
+  constructor(store: Store, send: (message: object) => boolean) {
     this.#store = store;
     this.#layer = new LayerView(store);
+    this.#features = new FeatureTable(store);
+    this.#settings = new SettingsView(store, send);
     this.#track = new TrackView(byId<HTMLCanvasElement>("track"), store);
     this.#plot = new StagePlot(byId("stage-plot"), store);
   }
 
   /// What this view needs of the service, beyond the map.
-  get wanted(): { layers: string[]; images: string[] } {
+  get wanted(): { layers: string[]; images: string[]; settings: boolean } {
     const { hello } = this.#store;
-    return { layers: this.#layer.wanted ? [this.#layer.wanted] : [], images: hello?.images ?? [] };
+    const layers = this.#layer.wanted ? [this.#layer.wanted] : [];
+    return { layers, images: hello?.images ?? [], settings: true };
   }
 
   draw(): void {
     this.#layer.draw();
     this.#track.draw();
     this.#plot.draw();
+    this.#features.draw();
+    this.#settings.draw();
     for (const which of [0, 1]) this.#drawImage(which);
     this.#drawTables();
     this.#drawVerdicts();

@@ -11,6 +11,7 @@ import {
   paintUnknownTile,
 } from "./ground_picture.ts";
 import { isDark, setAttribute } from "./dom.ts";
+import { featureLabels, isOnFlight } from "./feature_words.ts";
 import type { Box, Edge } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
@@ -24,6 +25,9 @@ const kSpoken: Record<SignKind, string> = {
   stale: "#8b919b",
   absent: "#8b919b",
 };
+
+/// Edges say how deep it goes by themselves.
+const kFlightsAlone = { drops: [], kerbs: [], sills: [], doors: [] };
 
 /// The ground from above, heading up.
 export class GroundView {
@@ -204,16 +208,20 @@ export class GroundView {
     context.fill(teeth);
     context.lineWidth = 4.5 / scale;
     context.stroke(path);
+    const flights = this.#store.stairs?.flights ?? [];
     const nearest = map.edges
       .map((edge) => ({ ...ends(edge), drop_m: (edge.upper_tenth_mm - edge.lower_tenth_mm) * 1e-4 }))
       .filter(({ ax, ay, bx, by }) => Math.hypot(bx - ax, by - ay) > 0.25)
       .map((edge) => ({ ...edge, x_m: (edge.ax + edge.bx) / 2, y_m: (edge.ay + edge.by) / 2 }))
+      .filter(({ x_m, y_m }) => !flights.some((flight) => isOnFlight(flight, x_m, y_m)))
       .sort(
         (a, b) =>
           Math.hypot(a.x_m - place.x_m, a.y_m - place.y_m) - Math.hypot(b.x_m - place.x_m, b.y_m - place.y_m),
       )
       .slice(0, 3);
     for (const { x_m, y_m, drop_m } of nearest) this.#label(`${drop_m.toFixed(2)} m down`, x_m, y_m, 16);
+    const labels = this.#store.stairs ? featureLabels({ ...this.#store.stairs, ...kFlightsAlone }) : [];
+    for (const { lines, x_m, y_m } of labels) this.#label(lines.join(", "), x_m, y_m, 16);
   }
 
   /// Words at a place of the present drawing units, upright.

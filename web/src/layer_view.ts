@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 import { byId, make, setAttribute, setText } from "./dom.ts";
+import { drawFeatures } from "./feature_overlay.ts";
 import { cividis, paintLayer, rangeOf, shortNumber } from "./layer_picture.ts";
-import type { LayerMessage } from "./messages.ts";
+import type { LayerMessage, Stairs } from "./messages.ts";
 import type { Store } from "./store.ts";
 
-/// One layer of the map to choose, its legend, and the value under the cursor (mouse, finger or arrow keys).
+/// One layer of the map to choose, its legend, the value under the cursor (mouse, finger or arrow keys), and over it
+/// the edges and stairs that were found.
 export class LayerView {
   readonly #store: Store;
   readonly #select = byId<HTMLSelectElement>("layer-name");
   readonly #canvas = byId<HTMLCanvasElement>("layer");
   readonly #cells = document.createElement("canvas");
   #drawn: LayerMessage | undefined;
+  #drawn_stairs: Stairs | undefined;
   #names = "";
   #cursor: { ix: number; iy: number } | undefined;
 
@@ -19,6 +22,7 @@ export class LayerView {
     this.#canvas.addEventListener("pointermove", (event) => this.#point(event));
     this.#canvas.addEventListener("pointerdown", (event) => this.#point(event));
     this.#canvas.addEventListener("keydown", (event) => this.#walk(event));
+    byId("layer-features").addEventListener("change", () => this.#drawCanvas());
     this.#drawLegend();
   }
 
@@ -36,9 +40,11 @@ export class LayerView {
       );
     }
     const layer = this.#layer;
-    if (layer === this.#drawn) return;
+    const { stairs } = this.#store;
+    if (layer === this.#drawn && stairs === this.#drawn_stairs) return;
+    if (layer && layer !== this.#drawn) this.#paint(layer);
     this.#drawn = layer;
-    if (layer) this.#paint(layer);
+    this.#drawn_stairs = stairs;
     this.#drawCanvas();
   }
 
@@ -70,6 +76,7 @@ export class LayerView {
     const context = this.#canvas.getContext("2d")!;
     context.imageSmoothingEnabled = false;
     if (layer) context.drawImage(this.#cells, 0, 0, nx * scale, ny * scale);
+    if (layer) this.#drawFeatures(context, layer, scale);
     if (layer) this.#drawMachine(context, layer, scale);
     if (layer && this.#cursor) {
       const { ix, iy } = this.#cursor;
@@ -83,6 +90,20 @@ export class LayerView {
       }
     }
     this.#say(layer);
+  }
+
+  #drawFeatures(context: CanvasRenderingContext2D, layer: LayerMessage, scale: number): void {
+    const { stairs } = this.#store;
+    if (!stairs || !byId<HTMLInputElement>("layer-features").checked) return;
+    const { width, height } = this.#canvas;
+    const frame = {
+      origin_x_m: Number(layer.origin_x_tenth_mm) * 1e-4,
+      origin_y_m: Number(layer.origin_y_tenth_mm) * 1e-4,
+      pixel_m: (layer.resolution_tenth_mm * 1e-4) / scale,
+      width,
+      height,
+    };
+    drawFeatures(context, stairs, frame, width / (this.#canvas.clientWidth || width));
   }
 
   #drawMachine(context: CanvasRenderingContext2D, layer: LayerMessage, scale: number): void {

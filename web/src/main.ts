@@ -4,6 +4,7 @@ import type { EngineerView } from "./engineer_view.ts";
 import { byId, isDark, setAttribute, setText } from "./dom.ts";
 import { GateLink } from "./gate_link.ts";
 import { Joystick } from "./joystick.ts";
+import { RecordButton } from "./record_button.ts";
 import { ServiceLink } from "./service_link.ts";
 import { Store } from "./store.ts";
 import { Timeline } from "./timeline.ts";
@@ -41,12 +42,21 @@ function changed(): void {
 const walk = new WalkView(store, gate, tones, changed);
 const joystick = new Joystick(store, (message) => service.say(message), changed);
 const timeline = new Timeline(store, (message) => service.say(message), changed);
+const record = new RecordButton(store, (message) => service.say(message));
 /// Loaded when it is first looked at: the walk view comes first.
 let engineer: EngineerView | undefined;
 
 function want(): void {
   const shown = byId("view-engineer").hidden ? undefined : engineer;
-  service.want({ layers: [], images: [], map_hz: 5, image_hz: 2, ...shown?.wanted });
+  service.want({
+    layers: [],
+    images: [],
+    stairs: true,
+    settings: false,
+    map_hz: 5,
+    image_hz: 2,
+    ...shown?.wanted,
+  });
 }
 
 const kTabs = ["walk", "engineer"];
@@ -61,7 +71,7 @@ async function show(name: string, focus: boolean): Promise<void> {
   }
   if (name === "engineer" && !engineer) {
     const { EngineerView } = await import("./engineer_view.ts");
-    engineer ??= new EngineerView(store);
+    engineer ??= new EngineerView(store, (message) => service.say(message));
   }
   changed();
 }
@@ -85,6 +95,7 @@ function draw(): void {
   drawBar();
   timeline.draw();
   joystick.draw();
+  record.draw();
   walk.draw(!byId("view-walk").hidden);
   if (!byId("view-engineer").hidden) engineer?.draw();
   want();

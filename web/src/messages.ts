@@ -284,7 +284,12 @@ export interface Machine {
   feet: { left: Box; right: Box };
   movements: Movement[];
   body: BodyPart[];
-  joints: string[];
+  joints: Joint[]; ///< of the model, those that move
+  model: string | null; ///< path of its URDF
+}
+export interface Joint {
+  name: string;
+  stand_rad: number; ///< shown where a pose brings no angles
 }
 export interface Hello {
   kind: "hello";
@@ -335,7 +340,95 @@ export interface Steer {
   moved: boolean;
   text: string;
 }
-export type JsonMessage = Hello | Status | Steer;
+/// x [m], y [m], z [m], yaw [rad] in odom; null = no number.
+type PoseNumbers = [number | null, number | null, number | null, number | null];
+type Point = [number | null, number | null];
+/// What is known of a thing of the ground over several looks.
+export interface Feature {
+  pose: PoseNumbers;
+  id?: number;
+  looks?: number;
+  last_seen_s?: number;
+}
+export interface Flight extends Feature {
+  kind: "up" | "down";
+  steps: number;
+  riser_m: number | null;
+  riser_std_m: number | null;
+  riser_spread_m: number | null;
+  going_m: number | null;
+  going_std_m: number | null;
+  going_spread_m: number | null;
+  width_m: number | null;
+  landing_m: number | null;
+  turn_rad: number | null;
+  cut: boolean;
+  open: boolean;
+}
+export interface LineFeature extends Feature {
+  height_m: number | null;
+  length_m: number | null;
+  sigma_m: number | null;
+  bottom_seen: boolean;
+}
+export interface Kerb extends LineFeature {
+  kind: "up" | "down";
+}
+export interface Door extends Feature {
+  width_m: number | null;
+  width_std_m: number | null;
+  sill_m: number | null;
+  clearance_m: number | null;
+}
+/// Lower ground on the right hand from the first end to the second.
+export interface StairsEdge {
+  from: Point;
+  to: Point;
+  upper_m: number | null;
+  lower_m: number | null;
+  lower_seen: boolean;
+  sigma_m: number | null;
+}
+export interface Stairs {
+  kind: "stairs";
+  time_ns: number;
+  flights: Flight[];
+  drops: LineFeature[];
+  kerbs: Kerb[];
+  sills: LineFeature[];
+  doors: Door[];
+  edges: StairsEdge[];
+}
+export interface Setting {
+  key: string;
+  value: string;
+  unit: string;
+  range: string;
+  comment: string;
+  changeable: boolean;
+}
+export interface Settings {
+  kind: "settings";
+  settings: Setting[];
+}
+export interface SettingAnswer {
+  kind: "setting";
+  key: string;
+  accepted: boolean;
+  value: string;
+  text: string;
+}
+export interface Recording {
+  kind: "recording";
+  state: "off" | "ready" | "recording" | "finishing" | "failed";
+  folder: string;
+  frames: number;
+  left_out: number;
+  bytes: number;
+  duration_s: number;
+  text: string;
+}
+export type JsonMessage = Hello | Status | Steer | Stairs | Settings | SettingAnswer | Recording;
 
 const kHelloKeys = [
   "program",
@@ -349,6 +442,9 @@ const kHelloKeys = [
 ];
 const kStatusKeys = ["state", "text", "frames", "stages", "playback"];
 const kSteerKeys = ["yours", "taken", "asked", "moved", "text"];
+const kStairsKeys = ["time_ns", "flights", "drops", "kerbs", "sills", "doors", "edges"];
+const kSettingKeys = ["key", "accepted", "value", "text"];
+const kRecordingKeys = ["state", "folder", "frames", "left_out", "bytes", "duration_s", "text"];
 
 /// A text message; undefined for what this page has no use for or cannot read.
 export function decodeJson(text: string): JsonMessage | undefined {
@@ -364,5 +460,9 @@ export function decodeJson(text: string): JsonMessage | undefined {
   if (kind === "hello" && has(kHelloKeys)) return message as Hello;
   if (kind === "status" && has(kStatusKeys)) return message as Status;
   if (kind === "steer" && has(kSteerKeys)) return message as Steer;
+  if (kind === "stairs" && has(kStairsKeys)) return message as Stairs;
+  if (kind === "settings" && has(["settings"])) return message as Settings;
+  if (kind === "setting" && has(kSettingKeys)) return message as SettingAnswer;
+  if (kind === "recording" && has(kRecordingKeys)) return message as Recording;
   return undefined;
 }

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import {
   AmbientLight,
-  BoxGeometry,
   BufferAttribute,
   BufferGeometry,
   CanvasTexture,
   Color,
   DirectionalLight,
   DoubleSide,
-  EdgesGeometry,
-  Group,
   LineBasicMaterial,
   LineSegments,
   Mesh,
@@ -24,17 +21,17 @@ import {
 import { isDark, make } from "./dom.ts";
 import type { GroundMap } from "./ground_map.ts";
 import { kCell_px, kDarkColors, kLightColors, paintGround, type GroundWindow } from "./ground_picture.ts";
-import { kGround, type BodyPart, type Box, type Machine } from "./messages.ts";
+import { MachineView } from "./machine_view.ts";
+import { kGround } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
 /// Cells along the side of the mesh: 6 m of 25 mm; of a larger map the part around the machine is shown.
 const kMostCells = 240;
 /// A software renderer draws a few pictures a second: it is not asked for more than it must.
 const kPeriod_ms = 60;
-const kFootHeight_m = 0.08;
 
-/// The ground as a lit mesh, and the machine's boxes. Coordinates are odom from `#zero` on; what is unknown is
-/// a hole. style.css makes the picture grey when it is old.
+/// The ground as a lit mesh, and the machine on it. Coordinates are odom from `#zero` on; what is unknown is a
+/// hole. style.css makes the picture grey when it is old.
 export class Scene3d {
   readonly #store: Store;
   readonly #element: HTMLElement;
@@ -52,10 +49,9 @@ export class Scene3d {
     new MeshBasicMaterial({ color: 0xd55e00, side: DoubleSide, transparent: true, opacity: 0.75 }),
   );
   readonly #rims = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: 0x14171c }));
-  readonly #machine = new Group();
-  #machine_of: Machine | null | undefined;
+  readonly #machine: MachineView;
   #zero: Place | undefined;
-  #view = { azimuth_rad: Math.PI + 0.85, elevation_rad: 0.72, distance_m: 4.4 };
+  #view = { azimuth_rad: Math.PI + 0.85, elevation_rad: 0.72, distance_m: 3.9 };
   #drawn_at_ms = 0;
   #painted = "";
 
@@ -63,6 +59,7 @@ export class Scene3d {
   constructor(element: HTMLElement, store: Store, changed: () => void) {
     this.#element = element;
     this.#store = store;
+    this.#machine = new MachineView(element, changed);
     this.#renderer = new WebGLRenderer({ antialias: true });
     const canvas = this.#renderer.domElement;
     canvas.tabIndex = 0;
@@ -84,7 +81,7 @@ export class Scene3d {
       this.#ground,
       this.#drops,
       this.#rims,
-      this.#machine,
+      this.#machine.object,
     );
     this.#ground.frustumCulled = this.#drops.frustumCulled = this.#rims.frustumCulled = false;
     canvas.addEventListener("pointermove", (event) => {
@@ -132,9 +129,7 @@ export class Scene3d {
       this.#zero ??= place;
       const zero = this.#zero;
       if (map.nx > 0) this.#drawGround(map, place, zero);
-      this.#drawMachine(hello?.machine);
-      this.#machine.position.set(place.x_m - zero.x_m, place.y_m - zero.y_m, pose.z_m);
-      this.#machine.quaternion.set(pose.qx, pose.qy, pose.qz, pose.qw);
+      this.#machine.draw(hello?.machine ?? null, pose, place, zero, map);
       const floor_m = pose.z_m - (hello?.machine?.sole_depth_m ?? 1);
       this.#look(new Vector3(place.x_m - zero.x_m, place.y_m - zero.y_m, floor_m + 0.45), place.yaw_rad);
     }
@@ -218,30 +213,6 @@ export class Scene3d {
         new BufferAttribute(new Float32Array(values), 3),
       );
     }
-  }
-
-  #drawMachine(machine: Machine | null | undefined): void {
-    if (machine === this.#machine_of) return;
-    this.#machine_of = machine;
-    this.#machine.clear();
-    if (!machine) return;
-    const body = new MeshLambertMaterial({
-      color: 0x8fa3b8,
-      transparent: true,
-      opacity: 0.4,
-      depthWrite: false,
-    });
-    const foot = new MeshLambertMaterial({ color: 0xf5f7fa });
-    const line = new LineBasicMaterial({ color: isDark() ? 0xe9eef4 : 0x14171c });
-    const add = (box: Box, low_m: number, high_m: number, material: MeshLambertMaterial) => {
-      const shape = new BoxGeometry(box.length_m, box.width_m, high_m - low_m);
-      for (const object of [new Mesh(shape, material), new LineSegments(new EdgesGeometry(shape), line)]) {
-        object.position.set(box.center_x_m, box.center_y_m, (low_m + high_m) / 2 - machine.sole_depth_m);
-        this.#machine.add(object);
-      }
-    };
-    for (const part of machine.body as BodyPart[]) add(part, part.low_m, part.high_m, body);
-    for (const one of [machine.feet.left, machine.feet.right]) add(one, 0, kFootHeight_m, foot);
   }
 }
 

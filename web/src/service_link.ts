@@ -7,6 +7,8 @@ import type { Store } from "./store.ts";
 export interface Want {
   layers: string[];
   images: string[];
+  stairs: boolean;
+  settings: boolean;
   map_hz: number;
   image_hz: number;
 }
@@ -18,7 +20,7 @@ const kHopeless_ms = 5000;
 export class ServiceLink {
   readonly #store: Store;
   readonly #socket: ReconnectingSocket;
-  #want: Want = { layers: [], images: [], map_hz: 5, image_hz: 2 };
+  #want: Want = { layers: [], images: [], stairs: false, settings: false, map_hz: 5, image_hz: 2 };
   #greeted: () => void;
 
   constructor(store: Store, address: string, greeted: () => void) {
@@ -35,7 +37,7 @@ export class ServiceLink {
       closed: (retry_in_ms, reason) => {
         if (reason) store.problem = `The service refused this page: ${reason}`;
         this.#arrivals.service = "away";
-        store.steer = undefined;
+        store.steer = store.recording = undefined;
         this.#arrivals.retry_at_ms = performance.now() + retry_in_ms;
         store.changed();
       },
@@ -94,6 +96,14 @@ export class ServiceLink {
       store.addStageTimes({ at_s: performance.now() / 1000, stages_ms, rate_hz: message.rate_hz });
     } else if (message?.kind === "steer") {
       store.steer = message;
+    } else if (message?.kind === "stairs") {
+      store.stairs = message;
+    } else if (message?.kind === "settings") {
+      store.settings = message;
+    } else if (message?.kind === "setting") {
+      store.setting_answers.set(message.key, message);
+    } else if (message?.kind === "recording") {
+      store.recording = message;
     }
   }
 

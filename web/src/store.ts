@@ -2,7 +2,18 @@
 import type { Outlook } from "./directions.ts";
 import { judgeFreshness, type Arrivals, type Freshness } from "./freshness.ts";
 import { GroundMap } from "./ground_map.ts";
-import type { Hello, ImageMessage, LayerMessage, PoseMessage, Status, Steer } from "./messages.ts";
+import type {
+  Hello,
+  ImageMessage,
+  LayerMessage,
+  PoseMessage,
+  Recording,
+  SettingAnswer,
+  Settings,
+  Stairs,
+  Status,
+  Steer,
+} from "./messages.ts";
 
 export interface GateHealth {
   state: string;
@@ -47,6 +58,10 @@ export class Store {
   status: Status | undefined;
   steer: Steer | undefined;
   joystick_on = false;
+  stairs: Stairs | undefined;
+  settings: Settings | undefined;
+  setting_answers = new Map<string, SettingAnswer>(); ///< by key, to the last wish of this page
+  recording: Recording | undefined;
   pose: PoseMessage | undefined;
   map = new GroundMap();
   layer: LayerMessage | undefined;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { byId, setAttribute, setText } from "./dom.ts";
+import { aheadWords } from "./feature_words.ts";
 import type { GateLink } from "./gate_link.ts";
 import type { Scene3d } from "./scene_3d.ts";
 import { GroundView } from "./ground_view.ts";
@@ -47,6 +48,9 @@ export class WalkView {
     if (!shown) return;
     this.#acts.draw();
     byId("stale").hidden = this.#store.freshness.ground;
+    const ahead = this.#store.freshness.ground ? aheadWords(this.#store.stairs, this.#store.place) : "";
+    byId("ahead").hidden = ahead === "";
+    setText(byId("ahead"), ahead);
     byId<HTMLButtonElement>("zoom-in").disabled = !this.#shows3d && !this.#ground.canZoomIn;
     byId<HTMLButtonElement>("zoom-out").disabled = !this.#shows3d && !this.#ground.canZoomOut;
     this.#ground.spoken = { code: direction.code, kind: sign.kind };

@@ -5,7 +5,7 @@ import { readFileSync, readdirSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { gzipSync } from "node:zlib";
 import { chromium } from "playwright-core";
-import { FakeService } from "./fake_service.mjs";
+import { FakeService, kMachine, stairs } from "./fake_service.mjs";
 
 const kAxe = readFileSync(new URL("../node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
 /// Of Chromium: its software renderer, so that pictures are the same everywhere. CI has no user namespaces.
@@ -29,6 +29,7 @@ async function withPage({ fake = {}, ...options }, use) {
     ...options,
   });
   await page.addInitScript(kPixelsOf);
+  await page.addInitScript(kMachineOf);
   page.complaints = [];
   page.on("console", (message) => message.type() === "error" && page.complaints.push(message.text()));
   page.on("pageerror", (error) => page.complaints.push(String(error)));
@@ -54,6 +55,29 @@ const kPixelsOf = `window.pixelsOf = async (base64) => {
   const context = new OffscreenCanvas(picture.width, picture.height).getContext("2d");
   context.drawImage(picture, 0, 0);
   return context.getImageData(0, 0, picture.width, picture.height).data;
+}`;
+
+/// Gives the page machineOf(): what its 3D scene has of the machine. three.js tells whoever listens, as its
+/// developer tools do, of every scene that it makes.
+const kMachineOf = `
+window.scenes = [];
+window.__THREE_DEVTOOLS__ = new EventTarget();
+window.__THREE_DEVTOOLS__.addEventListener("observe", ({ detail }) => detail.isScene && window.scenes.push(detail));
+window.machineOf = () => {
+  const boxes = [];
+  const joints = {};
+  let footprints = 0;
+  window.scenes[0].updateMatrixWorld(true);
+  window.scenes[0].traverse((one) => {
+    if (one.isURDFJoint && one.jointType === "revolute") joints[one.name] = one.angle;
+    if (one.name === "footprint") footprints = one.children.length;
+    if (!one.isMesh || !one.parent.isURDFVisual) return;
+    const { x, y, z } = one.scale;
+    const lowest_m = Math.min(...[-0.5, 0.5].flatMap((i) => [-0.5, 0.5].flatMap((j) => [-0.5, 0.5].map(
+      (k) => one.localToWorld(one.position.clone().set(i, j, k)).z))));
+    boxes.push({ link: one.parent.parent.name, color: one.material.color.getHexString(), size: [x, y, z], lowest_m });
+  });
+  return { boxes, joints, footprints };
 }`;
 
 const pngOf = async (page, selector) => (await page.locator(selector).screenshot()).toString("base64");
@@ -409,6 +433,81 @@ test("the ground and the machine in three dimensions", () =>
     await page.waitForSelector("#ground:not([hidden])");
   }));
 
+const kYellow = [240, 228, 66];
+const kSkyBlue = [86, 180, 233];
+
+async function in3d(page, machine) {
+  await page.click("#mode-3d");
+  await page.waitForSelector(`#scene[data-machine=${machine}]`);
+  await page.waitForTimeout(1000);
+  return page.evaluate(() => window.machineOf());
+}
+
+test("the machine's model stands on the ground in its colours", () =>
+  withPage({ viewport: { width: 1000, height: 600 } }, async (page) => {
+    const { boxes, joints, footprints } = await in3d(page, "model");
+    assert.deepEqual(boxes.map(({ link, color }) => `${link} ${color}`).sort(), [
+      "camera e69f00",
+      "left_foot f0e442",
+      "left_lowerleg 0072b2",
+      "left_upperleg 56b4e9",
+      "pelvis 999999",
+      "pelvis 999999",
+      "pelvis 999999",
+      "right_foot f0e442",
+      "right_lowerleg 0072b2",
+      "right_upperleg 56b4e9",
+    ]);
+    const feet = boxes.filter(({ link }) => link.endsWith("_foot"));
+    // The fake service says 0.990 m over the floor; standing legs are a little bent: 0.9877 m.
+    for (const { link, size, lowest_m } of feet) {
+      assert.deepEqual(size, [0.366, 0.19, 0.144]);
+      assert.ok(Math.abs(lowest_m) < 0.004, `${link} at ${lowest_m} m`);
+    }
+    assert.equal(joints.left_upperleg_to_left_lowerleg, 0.0633, "nothing is told: it stands");
+    assert.equal(footprints, 2);
+    // And on the screen, in light and shade.
+    for (const color of [kYellow, kSkyBlue]) {
+      const share = await colorShare(page, color, "#scene");
+      assert.ok(share > 0.002, `${color}: ${share}`);
+    }
+  }));
+
+test("a joint that moves moves what is drawn", () =>
+  withPage({ fake: { stands: true }, viewport: { width: 1000, height: 600 } }, async (page, service) => {
+    const stands = await in3d(page, "model");
+    const first = await pngOf(page, "#scene");
+    await page.waitForTimeout(500);
+    const second = await pngOf(page, "#scene");
+    service.joints_rad = {
+      pelvis_to_right_upperleg: -0.6,
+      right_upperleg_to_right_lowerleg: 0.9,
+      right_lowerleg_to_right_foot: -0.3, // the sole stays level
+    };
+    await page.waitForTimeout(1000);
+    const third = await pngOf(page, "#scene");
+    const steps = await page.evaluate(() => window.machineOf());
+    assert.ok(Math.abs(steps.joints.right_upperleg_to_right_lowerleg - 0.9) < 1e-6);
+    assert.ok(Math.abs(steps.joints.left_upperleg_to_left_lowerleg - 0.0633) < 1e-6);
+    const height_m = (of, link) => of.boxes.find((box) => box.link === link).lowest_m;
+    assert.ok(height_m(steps, "right_foot") > height_m(stands, "right_foot") + 0.05);
+    assert.ok(Math.abs(height_m(steps, "left_foot") - height_m(stands, "left_foot")) < 1e-6);
+    const still = await differingShare(page, first, second);
+    const moved = await differingShare(page, second, third);
+    assert.ok(still < 0.001 && moved > 0.01, `${still} of the picture change while it stands, ${moved} with the leg`);
+  }));
+
+for (const [name, model] of [
+  ["without a model", null],
+  ["of which the model cannot be read", "/icon.svg"],
+])
+  test(`a machine ${name} is shown as the space that it takes`, () =>
+    withPage({ fake: { machine: { ...kMachine, model, joints: [] } } }, async (page) => {
+      const { boxes, footprints } = await in3d(page, "boxes");
+      assert.deepEqual([boxes.length, footprints], [0, 2]);
+      assert.equal(await page.evaluate(() => document.getElementById("scene").dataset.machine), "boxes");
+    }));
+
 test("the engineer's view: pictures, layers, times, verdicts", () =>
   withPage({}, async (page, service) => {
     assert.ok(
@@ -450,6 +549,128 @@ test("the engineer's view: pictures, layers, times, verdicts", () =>
     await page.waitForFunction(() => document.getElementById("view-engineer").hidden);
     await page.waitForTimeout(300);
     assert.deepEqual(service.wants.at(-1).layers, [], "what nobody looks at is not sent");
+  }));
+
+const rowTexts = (page, id) =>
+  page.$$eval(`#${id} tr`, (rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
+
+test("stairs: their measures in the table, over the layer and in words", () =>
+  withPage({}, async (page, service) => {
+    await page.waitForSelector("#ahead:has-text('Ahead: a drop of 0.17 m or more, 1.')");
+    await page.click("#tab-engineer");
+    await page.waitForSelector("#feature-rows tr");
+    const [flight, remark, drop] = await rowTexts(page, "feature-rows");
+    assert.match(remark[0], /^landing 0.80 m; .* may go on beyond what is known$/);
+    assert.deepEqual(flight.slice(0, 4), ["flight, 3 steps up", "180 ± 2 mm", "310 ± 5 mm", "1.20 m"]);
+    assert.deepEqual(drop.slice(0, 2), ["drop", "170 ± 6 mm or more"]);
+    service.tellStairs(stairs(0.175));
+    await page.waitForSelector("#feature-rows td:has-text('175 ± 2 mm')");
+    await page.waitForSelector("#layer-value:has-text('Point at a cell')");
+    service.frames_paused = true;
+    await page.waitForTimeout(300);
+    const picture = () => page.$eval("#layer", (canvas) => canvas.toDataURL());
+    const over = await picture();
+    await page.uncheck("#layer-features");
+    const bare = await picture();
+    assert.notEqual(bare, over);
+    service.tellStairs({ ...stairs(), flights: [], drops: [], kerbs: [], sills: [], doors: [], edges: [] });
+    await page.waitForSelector("#feature-note:has-text('No flight')");
+    await page.check("#layer-features");
+    assert.equal(await picture(), bare, "nothing is drawn where nothing was found");
+  }));
+
+test("settings: one is changed, one is refused in words, the others are found", () =>
+  withPage({}, async (page, service) => {
+    await page.click("#tab-engineer");
+    await page.waitForSelector("#setting-rows tr");
+    assert.equal(await page.textContent("#setting-found"), "35 settings");
+    assert.equal(await page.$$eval("#setting-rows input", (all) => all.length), 0, "they need a restart");
+    await page.fill("#setting-search", "reach");
+    await page.waitForSelector("#setting-found:has-text('1 of 35 settings')");
+    assert.deepEqual((await rowTexts(page, "setting-rows"))[1].slice(0, 4), [
+      "reach_px",
+      "5",
+      "px",
+      "0 .. 50",
+    ]);
+    // By the keyboard alone.
+    await page.focus("#setting-page-map_hz");
+    await page.keyboard.press("Control+A");
+    await page.keyboard.type("2.5");
+    await page.keyboard.press("Enter");
+    await page.waitForSelector(
+      "#setting-page-map_hz-said[data-accepted=true]:has-text('is 2.5 now, 10 before')",
+    );
+    await page.fill("#setting-page-map_hz", "50");
+    await page.click("[aria-label='Set page.map_hz']");
+    await page.waitForSelector(
+      "#setting-page-map_hz-said[data-accepted=false]:has-text(\"Not changed: page.map_hz: '50' is outside\")",
+    );
+    assert.deepEqual(service.set, [
+      ["page.map_hz", "2.5"],
+      ["page.map_hz", "50"],
+    ]);
+    assert.deepEqual(await violations(page), []);
+    assert.equal(service.wants.filter(({ settings }) => settings).length > 0, true);
+  }));
+
+test("a value that another page set is shown, and one that is being typed stays", () =>
+  withPage({}, async (page, service) => {
+    await page.click("#tab-engineer");
+    await page.waitForSelector("#setting-service-niceness");
+    await page.fill("#setting-page-map_hz", "3");
+    await page.focus("#setting-page-map_hz");
+    const other = await browser.newPage();
+    try {
+      await other.goto(`http://127.0.0.1:${service.port}/`);
+      await other.click("#tab-engineer");
+      await other.fill("#setting-service-niceness", "15");
+      await other.keyboard.press("Enter");
+      await page.waitForFunction(() => document.getElementById("setting-service-niceness").value === "15");
+      assert.equal(await page.inputValue("#setting-page-map_hz"), "3");
+    } finally {
+      await other.close();
+    }
+  }));
+
+test("the record button: every state, and a mark on every page", () =>
+  withPage({}, async (page, service) => {
+    assert.ok(await page.isHidden("#recording-mark"));
+    await tabTo(page, "#tab-walk");
+    await page.keyboard.press("ArrowRight");
+    await page.waitForSelector("#record-state:has-text('Nothing is recorded.')");
+    await tabTo(page, "#record");
+    await page.keyboard.press("Space");
+    await page.waitForFunction(() => document.activeElement.id === "record");
+    const folder = "rec/20261124T134838Z";
+    service.tellRecording({ state: "recording", folder, frames: 150, bytes: 61e6, duration_s: 10 });
+    await page.waitForSelector("#record:has-text('Stop recording')");
+    assert.equal(await page.textContent("#record-counts"), "150 frames, 61.0 MB, 10.0 s");
+    assert.equal(await page.textContent("#record-state"), `Recording to ${folder}`);
+    assert.deepEqual(await violations(page), []);
+    service.tellRecording({ left_out: 3 });
+    await page.waitForSelector("#record-counts:has-text('3 left out: the disk is too slow')");
+    await page.keyboard.press("Enter");
+    service.tellRecording({ state: "finishing" });
+    await page.waitForSelector("#record:disabled");
+    assert.deepEqual(service.record, [true, false]);
+    await page.click("#tab-walk");
+    assert.equal(await page.textContent("#recording-mark"), "Recording 10 s");
+    service.tellRecording({ state: "failed", text: "rec: the disk has 3.0 MB left, and 500.0 MB stay free" });
+    await page.waitForSelector("#recording-mark", { state: "hidden" });
+    await page.click("#tab-engineer");
+    await page.waitForSelector(
+      "#record-state:has-text('The recording failed: rec: the disk has 3.0 MB left')",
+    );
+    assert.ok(await page.isEnabled("#record"));
+    assert.deepEqual(await violations(page), []);
+    service.tellRecording({ state: "off", text: "serve was started without --record-dir DIR" });
+    await page.waitForSelector("#record:disabled");
+    assert.equal(
+      await page.textContent("#record-state"),
+      "Recording is off: serve was started without --record-dir DIR.",
+    );
+    assert.deepEqual(await violations(page), []);
   }));
 
 /// What axe finds, as sentences.
@@ -519,5 +740,6 @@ test("the page weighs at most 1 MB compressed", () => {
       (sum, entry) => sum + gzipSync(readFileSync(`${entry.parentPath ?? entry.path}/${entry.name}`)).length,
       0,
     );
+  console.log(`the page: ${Math.round(bytes / 1000)} kB compressed`);
   assert.ok(bytes <= 1e6, `${bytes} bytes`);
 });

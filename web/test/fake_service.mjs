@@ -49,6 +49,22 @@ const part = (name, center_x_m, center_y_m, length_m, width_m, low_m, high_m) =>
 });
 const foot = (center_y_m) => ({ center_x_m: 0.057, center_y_m, length_m: 0.366, width_m: 0.19 });
 
+/// As `surefoot serve` tells them of models/rex.yaml; angles of a stand.
+const kJoints = [
+  ["frame_yaw", 0],
+  ["frame_pitch", 0],
+  ["frame_roll", 0],
+  ...["left", "right"].flatMap((side) => [
+    [`${side}_hip_rotation`, 0],
+    [`${side}_hip_abduction`, 0],
+    [`pelvis_to_${side}_upperleg`, 0.0355],
+    [`${side}_upperleg_to_${side}_lowerleg`, 0.0633],
+    [`${side}_lowerleg_to_${side}_foot`, -0.0988],
+    [`${side}_ankle_inversion`, 0],
+  ]),
+];
+const kUrdf = new URL("../../models/rex.urdf", import.meta.url);
+
 export const kMachine = {
   name: "rex",
   sole_depth_m: 0.99,
@@ -63,10 +79,11 @@ export const kMachine = {
     part("frame", -0.01, 0, 0.72, 0.94, 0.62, 1.33),
     part("user", -0.035, 0, 0.51, 0.94, 1.24, 2.07),
   ],
-  joints: ["hip_flexion"],
+  joints: kJoints.map(([name, stand_rad]) => ({ name, stand_rad })),
+  model: "/machine.urdf",
 };
 
-export function hello(gate_port, can_steer = false) {
+export function hello(gate_port, { can_steer = false, machine = kMachine } = {}) {
   return {
     kind: "hello",
     protocol: contract.protocol,
@@ -76,7 +93,7 @@ export function hello(gate_port, can_steer = false) {
     gate_port,
     layers: ["drop_evidence", "drift_m"],
     images: ["left", "disparity"],
-    machine: kMachine,
+    machine,
     blind_zone: [
       [0.62, 0.75],
       [0.62, -0.75],
@@ -207,8 +224,109 @@ function outlook(frame, state) {
   return { map_version: frame + 1, state, verdicts };
 }
 
+/// As `surefoot serve` tells it: the drop ahead, the kerb to the left, and a flight to the right.
+export function stairs(riser_m = 0.18) {
+  const seen = { id: 1, looks: 12, last_seen_s: 0 };
+  return {
+    kind: "stairs",
+    time_ns: 0,
+    flights: [
+      {
+        kind: "up",
+        steps: 3,
+        riser_m,
+        riser_std_m: 0.002,
+        riser_spread_m: 0.004,
+        going_m: 0.31,
+        going_std_m: 0.005,
+        going_spread_m: 0.007,
+        width_m: 1.2,
+        landing_m: 0.8,
+        turn_rad: 0,
+        cut: true,
+        open: false,
+        pose: [-0.4, -1.15, 0, -1.5708],
+        ...seen,
+      },
+    ],
+    drops: [
+      {
+        pose: [kDrop_x_m, 0.05, 0, 0],
+        height_m: 0.17,
+        length_m: 3.9,
+        sigma_m: 0.006,
+        bottom_seen: false,
+        ...seen,
+      },
+    ],
+    kerbs: [
+      {
+        kind: "up",
+        pose: [0.75, 1, 0, 1.5708],
+        height_m: 0.08,
+        length_m: 1.1,
+        sigma_m: 0.0004,
+        bottom_seen: true,
+        ...seen,
+      },
+    ],
+    sills: [],
+    doors: [
+      {
+        width_m: 0.92,
+        width_std_m: 0.012,
+        sill_m: 0.015,
+        clearance_m: null,
+        pose: [2, 1.6, 0, 0.1],
+        ...seen,
+      },
+    ],
+    edges: [
+      {
+        from: [kDrop_x_m, -1.9],
+        to: [kDrop_x_m, 2],
+        upper_m: 0,
+        lower_m: -0.17,
+        lower_seen: false,
+        sigma_m: 0.006,
+      },
+      { from: [0.2, 1], to: [1.3, 1], upper_m: 0.08, lower_m: 0, lower_seen: true, sigma_m: 0.0004 },
+      ...[0, 1, 2].map((i) => ({
+        from: [0.2, -1.15 - 0.31 * i],
+        to: [-1, -1.15 - 0.31 * i],
+        upper_m: 0.18 * (i + 1),
+        lower_m: 0.18 * i,
+        lower_seen: true,
+        sigma_m: 0.003,
+      })),
+    ],
+  };
+}
+
+const setting = (key, value, unit, range, comment, changeable = false) => ({
+  key,
+  value,
+  unit,
+  range,
+  comment,
+  changeable,
+});
+export const kSettings = [
+  setting("page.map_hz", "10", "Hz", "0.2 .. 10", "maps that a page is sent in a second at most", true),
+  setting("service.niceness", "10", "", "0 .. 19", "how far perception stands back behind the gate", true),
+  setting("mount.pitch_deg", "32", "deg", "-90 .. 90", "of the camera, where nothing else says it"),
+  setting("stereo.algorithm", "census", "", "census | sgbm | bm", "which matcher"),
+  setting("stereo.disparities", "64", "", "16 .. 256", "range of the search"),
+  setting("elevation.length_m", "6", "m", "0.1 .. 100", "side of the map"),
+  setting("elevation.pixels.reach_px", "5", "px", "0 .. 50", "from a jump of the depth"),
+  ...Array.from({ length: 30 }, (_, i) =>
+    setting(`stairs.classes.limit_${i}_m`, String(i / 10), "m", "0 .. 10", "one of many"),
+  ),
+];
+
 /// Only files of the built page: no way leads out of its folder.
 function serveFile(request, response) {
+  if (request.url === kMachine.model) return void response.end(readFileSync(kUrdf));
   const path = normalize(new URL(request.url, "http://page").pathname).replace(/^\/$/, "/index.html");
   try {
     const bytes = readFileSync(join(kDist, path));
@@ -228,10 +346,27 @@ export class FakeService {
   calls = []; ///< what was asked of the gate: [service, args]
   wants = [];
   can_steer = false;
+  machine = kMachine;
+  stands = false; ///< the machine goes nowhere
+  joints_rad; ///< what poses bring, by name; undefined = nothing
   joystick = []; ///< commands that came
   steer = { kind: "steer", yours: false, taken: false, asked: 0, verdict: "-", moved: false, text: "" };
   playback = null; ///< or how a recording is played: {frame, frames, paused, speed}
   asked = []; ///< of the playback
+  stairs = stairs();
+  settings = kSettings.map((one) => ({ ...one }));
+  set = []; ///< wishes: [key, value]
+  record = []; ///< wishes: true or false
+  recording = {
+    kind: "recording",
+    state: "ready",
+    folder: "",
+    frames: 0,
+    left_out: 0,
+    bytes: 0,
+    duration_s: 0,
+    text: "",
+  };
   #frame = 0;
   #timers = [];
   #pages = new Map(); ///< socket -> {want, whole}
@@ -293,19 +428,24 @@ export class FakeService {
   }
 
   get #place_x_m() {
-    return Math.min(0.4, 0.002 * this.#frame);
+    return this.stands ? 0 : Math.min(0.4, 0.002 * this.#frame);
   }
 
   #greet(socket) {
-    this.#pages.set(socket, { want: { layers: [], images: [] }, whole: true });
-    socket.send(JSON.stringify(hello(this.gate_port, this.can_steer)));
+    this.#pages.set(socket, { want: { layers: [], images: [], settings: false }, whole: true });
+    socket.send(JSON.stringify(hello(this.gate_port, this)));
     if (this.can_steer) socket.send(JSON.stringify(this.steer));
+    socket.send(JSON.stringify(this.recording));
     socket.send(this.#status());
     socket.on("close", () => this.#pages.delete(socket));
     socket.on("message", (data) => {
       const { op, ...rest } = JSON.parse(data);
       if (op === "joystick") return this.#joystick(rest.command);
       if (op === "playback") return this.#play(rest);
+      if (op === "set") return this.#set(socket, rest);
+      if (op === "record") return this.record.push(rest.on);
+      if (rest.stairs) socket.send(JSON.stringify(this.stairs));
+      if (rest.settings && !this.#pages.get(socket).want.settings) socket.send(this.#settings());
       const want = { op, ...rest };
       this.wants.push(want);
       this.#pages.set(socket, { want, whole: true });
@@ -315,6 +455,35 @@ export class FakeService {
   #joystick(command) {
     this.joystick.push(command);
     if (command !== 0) this.tellSteer({ yours: true, taken: true });
+  }
+
+  tellStairs(stairs) {
+    this.stairs = stairs;
+    this.#say(JSON.stringify(stairs));
+  }
+
+  tellRecording(what) {
+    this.recording = { ...this.recording, ...what };
+    this.#say(JSON.stringify(this.recording));
+  }
+
+  #settings() {
+    return JSON.stringify({ kind: "settings", settings: this.settings });
+  }
+
+  /// The real service checks ranges; this one knows what two wishes would come to.
+  #set(socket, { key, value }) {
+    this.set.push([key, value]);
+    const found = this.settings.find((one) => one.key === key);
+    const number = Number(value);
+    const accepted = number >= 0.2 && number <= (key === "page.map_hz" ? 10 : 19);
+    const before = found.value;
+    if (accepted) found.value = value;
+    const text = accepted
+      ? `${key} is ${value} now, ${before} before`
+      : `${key}: '${value}' is outside ${found.range}`;
+    socket.send(JSON.stringify({ kind: "setting", key, accepted, value: found.value, text }));
+    if (accepted) this.#say(this.#settings());
   }
 
   tellSteer(what) {
@@ -367,7 +536,7 @@ export class FakeService {
     if (this.paused || this.frames_paused || this.source_state !== "running") return;
     const frame = ++this.#frame;
     const x_m = this.#place_x_m;
-    const yaw = 0.02 * Math.sin(0.02 * frame);
+    const yaw = this.stands ? 0 : 0.02 * Math.sin(0.02 * frame);
     const sigma_m = 0.002 + 0.05 * x_m;
     this.#say(
       encodePose(
@@ -384,7 +553,7 @@ export class FakeService {
           sigma_yaw_rad: 0.004,
           health: 2,
         },
-        [0.1],
+        this.joints_rad && kJoints.map(([name, stand_rad]) => this.joints_rad[name] ?? stand_rad),
       ),
     );
     for (const [socket, page] of this.#pages) {

@@ -130,11 +130,29 @@ test("poses, images and layers of the vectors", () => {
 
 test("texts of the vectors", () => {
   for (const message of vectors.json_to_page) {
-    const expected = ["hello", "status", "steer"].includes(message.kind) ? message : undefined;
+    const expected = Object.keys(contract.json_to_page).includes(message.kind) ? message : undefined;
     assert.deepEqual(messages.decodeJson(JSON.stringify(message)), expected);
   }
   for (const text of ["", "{", "null", "[]", "7", '{"kind":"hello"}', '{"kind":"status","state":"running"}'])
     assert.equal(messages.decodeJson(text), undefined, text);
+});
+
+test("a hello says what the machine looks like, or that nobody knows", () => {
+  const machines = vectors.json_to_page
+    .map((message) => messages.decodeJson(JSON.stringify(message)))
+    .filter((message) => message?.kind === "hello")
+    .map(({ machine }) => machine && [machine.model, machine.joints]);
+  assert.deepEqual(machines, [
+    [
+      "/machine.urdf",
+      [
+        { name: "knee", stand_rad: 0.0625 },
+        { name: "ankle", stand_rad: -0.125 },
+      ],
+    ],
+    null,
+    [null, []],
+  ]);
 });
 
 test("whatever is cut off or longer than it says is unreadable", () => {

@@ -2,7 +2,14 @@
 // What the signs, the banner and the colours say, without a browser.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { kDirections, ofState, sentence, signOf, spokenDirection, stateSentence } from "../build/unit/directions.js";
+import {
+  kDirections,
+  ofState,
+  sentence,
+  signOf,
+  spokenDirection,
+  stateSentence,
+} from "../build/unit/directions.js";
 import { judgeFreshness, kStale_ms } from "../build/unit/freshness.js";
 import { GroundMap } from "../build/unit/ground_map.js";
 import {
@@ -16,10 +23,21 @@ import {
 import { cividis, paintLayer, rangeOf, shortNumber } from "../build/unit/layer_picture.js";
 import { joystickWords } from "../build/unit/joystick.js";
 import { frameWords } from "../build/unit/timeline.js";
+import {
+  aheadWords,
+  featureLabels,
+  featureRows,
+  flightLabel,
+  isOnFlight,
+  millimetres,
+  spreadLabels,
+} from "../build/unit/feature_words.js";
 import { decode } from "../build/unit/messages.js";
+import { countWords, recordingWords } from "../build/unit/recording_words.js";
+import { findSettings, foundWords, splitKey } from "../build/unit/setting_words.js";
 import { wait_ms } from "../build/unit/reconnecting_socket.js";
 import { arrayBuffer, encodeMap } from "./encode.mjs";
-import { kMachine } from "./fake_service.mjs";
+import { kMachine, kSettings, stairs } from "./fake_service.mjs";
 
 const verdict = (command, say, text = "") => ({ command, verdict: say, primary: "NONE", text });
 const outlookOf = (...verdicts) => ({ map_version: 1, state: "READY", verdicts });
@@ -47,7 +65,10 @@ test("the joystick in words", () => {
   assert.equal(joystickWords(9, steer), "ahead: moved. Asking for ahead.");
   const refused = { ...steer, moved: false, asked: 17, text: "ground that was never seen" };
   assert.match(joystickWords(0, refused), /^back: stands - ground that was never seen\. Hold a sign/);
-  assert.match(joystickWords(0, { ...refused, asked: 10, text: "" }), /^movement 10: stands - the gate cannot/);
+  assert.match(
+    joystickWords(0, { ...refused, asked: 10, text: "" }),
+    /^movement 10: stands - the gate cannot/,
+  );
   for (const held of [0, 9])
     assert.equal(joystickWords(held, { ...steer, yours: false }), "Another page holds the joystick.");
 });
@@ -225,4 +246,157 @@ test("layers: NaN is transparent, the ends of the range have the ends of the col
 test("numbers are short, and keep their digits", () => {
   const texts = [0, 0.12345, -0.5, 12.345, 4321, 1.2e-6, 2e7, NaN].map(shortNumber);
   assert.deepEqual(texts, ["0.0000", "0.1235", "-0.5000", "12.35", "4321", "1.20e-6", "2.00e+7", "unknown"]);
+});
+
+test("lengths of steps in millimetres, with what is not known of them", () => {
+  assert.equal(millimetres(0.18, 0.002), "180 ± 2 mm");
+  assert.equal(millimetres(0.0804, 0.0004), "80.4 ± 0.4 mm");
+  assert.equal(millimetres(0.015), "15 mm");
+  assert.equal(millimetres(0.2, null), "200 mm");
+  assert.equal(millimetres(null, 0.1), "-");
+});
+
+test("each thing on the ground is a row with its measures", () => {
+  const rows = featureRows(stairs());
+  assert.deepEqual(
+    rows.map(({ what }) => what),
+    ["flight, 3 steps up", "drop", "kerb up", "door"],
+  );
+  assert.deepEqual(rows[0], {
+    what: "flight, 3 steps up",
+    height: "180 ± 2 mm",
+    going: "310 ± 5 mm",
+    width: "1.20 m",
+    place: "-0.40, -1.15 m; -90°",
+    seen: "now, 12 looks",
+    remarks: "landing 0.80 m; single ones scatter by 4 and 7 mm; may go on beyond what is known",
+  });
+  assert.equal(rows[1].height, "170 ± 6 mm or more");
+  assert.match(rows[1].remarks, /bottom was not seen/);
+  assert.equal(rows[2].height, "80.0 ± 0.4 mm");
+  assert.deepEqual([rows[3].height, rows[3].width], ["15 mm", "920 ± 12 mm"]);
+  assert.match(rows[3].remarks, /sill; nothing seen above it/);
+  assert.equal(featureRows(stairs(), 7e9)[0].seen, "7 s ago, 12 looks");
+  const [flight] = stairs().flights;
+  const once = {
+    ...flight,
+    steps: 1,
+    going_m: null,
+    turn_rad: 0.5,
+    open: true,
+    id: undefined,
+    looks: undefined,
+  };
+  const [row] = featureRows({ ...stairs(), flights: [once] });
+  assert.deepEqual([row.what, row.going, row.seen], ["flight, one step up", "-", "-"]);
+  assert.match(row.remarks, /turns by 29°; boards without risers/);
+});
+
+test("labels say riser by going, and lie on the thing", () => {
+  const [flight] = stairs().flights;
+  assert.equal(flightLabel(flight), "3 steps up, 180 × 310 mm");
+  assert.equal(flightLabel({ ...flight, steps: 1, going_m: null }), "one step up, 180 mm");
+  const labels = featureLabels(stairs());
+  assert.deepEqual(
+    labels.map(({ lines }) => lines.join("|")),
+    ["3 steps up|180 × 310 mm", "drop 0.17 m or more", "kerb up 0.08 m", "door 0.92 m"],
+  );
+  assert.ok(Math.abs(labels[0].y_m - (-1.15 - 0.62)) < 1e-3, "at its last edge");
+  const nowhere = { ...stairs(), flights: [{ ...flight, pose: [null, null, null, null] }] };
+  assert.equal(featureLabels(nowhere).length, 3);
+});
+
+test("edges of a flight are the flight's", () => {
+  const [flight] = stairs().flights;
+  assert.ok(isOnFlight(flight, -0.4, -1.15));
+  assert.ok(isOnFlight(flight, -0.4, -1.15 - 0.62));
+  assert.ok(!isOnFlight(flight, -0.4, -1.15 - 1.2), "behind it");
+  assert.ok(!isOnFlight(flight, -0.4, -0.7), "before it");
+  assert.ok(!isOnFlight(flight, 1.2, -1.3), "beside it");
+});
+
+test("what lies ahead in words: the nearest, and nothing beside or behind", () => {
+  const at = (x_m, y_m, yaw_rad) => aheadWords(stairs(), { x_m, y_m, yaw_rad });
+  assert.equal(at(0, 0, 0), "Ahead: a drop of 0.17 m or more, 1.4 m away");
+  assert.equal(at(-0.2, 0.05, -Math.PI / 2), "Ahead: stairs up, 3 steps of 180 mm, 1.2 m away");
+  assert.equal(at(0, 0, Math.PI), "", "behind");
+  assert.equal(at(-2, 0, 0), "", "too far");
+  assert.equal(at(0, 3.5, 0), "", "the drop's line ends beside: 2 m to the right, 1.35 m ahead");
+  const [drop] = stairs().drops;
+  const two = {
+    ...stairs(),
+    drops: [drop, { ...drop, pose: [0.5, 0, 0, 0], height_m: 0.1, bottom_seen: true }, drop],
+  };
+  assert.equal(aheadWords(two, { x_m: 0, y_m: 0, yaw_rad: 0 }), "Ahead: a drop of 0.10 m, 0.5 m away");
+  const [flight] = stairs().flights;
+  const step = { ...stairs(), drops: [], flights: [{ ...flight, steps: 1 }] };
+  assert.match(
+    aheadWords(step, { x_m: -0.4, y_m: 0, yaw_rad: -1.5 }),
+    /^Ahead: a step up of 180 mm, 1.[12] m away/,
+  );
+  assert.equal(aheadWords(undefined, { x_m: 0, y_m: 0, yaw_rad: 0 }), "");
+  assert.equal(aheadWords(stairs(), undefined), "");
+});
+
+test("labels do not lie on each other, and none leaves the picture", () => {
+  const box = (x, y) => ({ x, y, width: 40, height: 10 });
+  const placed = spreadLabels([box(50, 50), box(60, 52), box(50, 55), box(-30, 200)], 100, 100);
+  assert.deepEqual(placed[0], box(50, 50));
+  for (const [i, a] of placed.entries())
+    for (const b of placed.slice(0, i))
+      assert.ok(Math.abs(a.x - b.x) >= 40 || Math.abs(a.y - b.y) >= 10, JSON.stringify([a, b]));
+  assert.deepEqual([placed[3].x, placed[3].y], [20, 95]);
+});
+
+test("settings: group and name, and a search for all words", () => {
+  assert.deepEqual(splitKey("elevation.pixels.reach_px"), { group: "elevation.pixels", name: "reach_px" });
+  assert.deepEqual(splitKey("threads"), { group: "", name: "threads" });
+  const keys = (typed) => findSettings(kSettings, typed).map(({ key }) => key);
+  assert.deepEqual(keys("  Reach   JUMP "), ["elevation.pixels.reach_px"]);
+  assert.equal(keys("").length, kSettings.length);
+  assert.deepEqual(keys("reach matcher"), []);
+  assert.equal(foundWords(0, 0), "The settings have not come yet.");
+  assert.equal(foundWords(37, 37), "37 settings");
+  assert.equal(foundWords(2, 37), "2 of 37 settings");
+  assert.equal(foundWords(0, 37), "None of 37 settings");
+});
+
+test("the recording in words, whatever its state", () => {
+  const recording = {
+    state: "recording",
+    folder: "rec/a",
+    frames: 150,
+    left_out: 0,
+    bytes: 61e6,
+    duration_s: 10,
+    text: "",
+  };
+  assert.equal(countWords(recording), "150 frames, 61.0 MB, 10.0 s");
+  assert.equal(
+    countWords({ ...recording, frames: 1, left_out: 2 }),
+    "1 frame, 61.0 MB, 10.0 s; 2 left out: the disk is too slow",
+  );
+  const said = (changes) => recordingWords({ ...recording, ...changes });
+  assert.deepEqual(said({}), {
+    button: "Stop recording",
+    possible: true,
+    state: "Recording to rec/a",
+    counts: "150 frames, 61.0 MB, 10.0 s",
+    mark: "Recording 10 s",
+  });
+  assert.deepEqual(
+    [said({ state: "finishing" }).possible, said({ state: "finishing" }).mark],
+    [false, "Recording 10 s"],
+  );
+  const off = said({ state: "off", text: "serve was started without --record-dir DIR" });
+  assert.deepEqual([off.possible, off.mark], [false, ""]);
+  assert.equal(off.state, "Recording is off: serve was started without --record-dir DIR.");
+  const failed = said({ state: "failed", text: "no space left" });
+  assert.deepEqual(
+    [failed.possible, failed.button, failed.state],
+    [true, "Start recording", "The recording failed: no space left."],
+  );
+  assert.equal(said({ state: "ready", text: "" }).state, "Nothing is recorded.");
+  assert.equal(said({ state: "ready", text: "10 frames" }).state, "Recorded: 10 frames.");
+  assert.equal(recordingWords(undefined).possible, false);
 });

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Setting } from "./messages.ts";
+
+/// "elevation.pixels.reach_px" -> group "elevation.pixels", name "reach_px".
+export function splitKey(key: string): { group: string; name: string } {
+  const at = key.lastIndexOf(".");
+  return { group: key.slice(0, Math.max(0, at)), name: key.slice(at + 1) };
+}
+
+/// Those that hold every word that was typed, in their name or what is said of them.
+export function findSettings(settings: readonly Setting[], typed: string): Setting[] {
+  const words = typed.toLowerCase().split(/\s+/).filter(Boolean);
+  return settings.filter(({ key, comment }) => {
+    const text = `${key} ${comment}`.toLowerCase();
+    return words.every((word) => text.includes(word));
+  });
+}
+
+export function foundWords(found: number, all: number): string {
+  if (all === 0) return "The settings have not come yet.";
+  if (found === all) return `${all} settings`;
+  return found === 0 ? `None of ${all} settings` : `${found} of ${all} settings`;
+}
