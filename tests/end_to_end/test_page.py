@@ -267,7 +267,7 @@ class JoystickOnPages(PageTest):
         steered = {"moved": False}
         while not steered["moved"] and time.monotonic() < end:
             before = len(first.told("steer"))
-            steered = self.hold(first, 9, lambda said: said["asked"] == 9 and len(first.told("steer")) > before + 1, (second,))
+            steered = self.hold(first, 9, lambda said: said["asked"] == 9 and len(first.told("steer")) > before, (second,))
             first.send(1, b'{"op":"joystick","command":0}')
             first.listen(0.6)
             steered = first.told("steer")[-1]
