@@ -90,7 +90,7 @@ TEST_F(RexModel, RangesAreThoseOfTheMachineFile) {
         EXPECT_EQ(range.name, all[i].machine);
         for (const auto& [name, sign] : {std::pair(all[i].left, all[i].left_sign),
                                          std::pair(all[i].right, all[i].right_sign)}) {
-            const auto [low, high] = std::minmax(sign * range.min_deg, sign * range.max_deg);
+            const auto [low, high] = std::minmax({sign * range.min_deg, sign * range.max_deg});
             EXPECT_NEAR(joint(name).min_rad * kDeg, low, 1e-9) << name;
             EXPECT_NEAR(joint(name).max_rad * kDeg, high, 1e-9) << name;
         }
