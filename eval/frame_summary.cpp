@@ -89,6 +89,7 @@ void add_counts(ReportContent& content, std::span<const FrameReport> frames) {
                                  bar_of("too high or too low", sum.gated_height, n),
                                  bar_of("jump, grazing or outlier", sum.gated_confidence, n),
                                  bar_of("too few neighbours", sum.gated_density, n),
+                                 bar_of("cell beyond the image", sum.gated_border, n),
                                  bar_of("beyond the map", sum.outside, n)}});
     }
     const std::int64_t m = sum.cells_measured;

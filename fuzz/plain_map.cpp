@@ -195,6 +195,11 @@ void PlainMap::fuse(const Samples& samples,
         if (expected != nullptr) {
             const auto points = static_cast<float>(heights.z_m.size());
             const float level = expected->at(ix, iy, measured->z_m);
+            if (points < static_cast<float>(config_.reduction.border_share) * level &&
+                !expected->is_whole_in_view(ix, iy, measured->z_m)) {
+                counts.gated_border += static_cast<std::int64_t>(heights.z_m.size());
+                continue;
+            }
             if (level > 0.0F) seen.density_ratio = points / level;
             if (points > kFaceDensity * expected->at(ix, iy, measured->lowest_m))
                 seen.bottom_m = std::min(measured->lowest_m, measured->z_m);

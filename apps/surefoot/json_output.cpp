@@ -41,6 +41,7 @@ Json counts_json(const FusionCounts& f) {
             {"gated_height", f.gated_height},
             {"gated_confidence", f.gated_confidence},
             {"gated_density", f.gated_density},
+            {"gated_border", f.gated_border},
             {"outside", f.outside},
             {"cells_measured", f.cells_measured},
             {"cells_new", f.cells_new},

@@ -215,12 +215,12 @@ void print_news(const std::vector<AskedStep>& news, std::FILE* out) {
 class Service {
   public:
     Service(const ServeOptions& options,
-            const Settings& settings,
+            Settings settings,
             const std::optional<io::MachineFile>& machine,
             const std::optional<io::MachineModel>& model,
             Executor& executor)
         : options_(options),
-          settings_(settings),
+          settings_(std::move(settings)),
           machine_(machine),
           model_(model),
           executor_(executor) {}
@@ -250,7 +250,7 @@ class Service {
     void draw(const AskedStep& step, const grid::MapSnapshot& map);
 
     const ServeOptions& options_;
-    const Settings& settings_;
+    Settings settings_;  ///< fitted to the source once it is open
     const std::optional<io::MachineFile>& machine_;
     const std::optional<io::MachineModel>& model_;
     Executor& executor_;
@@ -512,6 +512,7 @@ Status Service::steer(camera::FrameSource& source, std::uint16_t gate_port) {
 Status Service::run() {
     auto source = open(options_, settings_, executor_);
     if (!source) return source.error();
+    fit_settings((*source)->rig(), machine_, settings_);
     const ChannelFile channel(channel_path(options_));
     auto writer = wire::SnapshotWriter::create(channel.path());
     if (!writer) return writer.error();
@@ -567,8 +568,7 @@ int serve(const ServeOptions& options) {
         if (auto made = io::make_folder(options.out_dir); !made) return report(made.error());
     }
     const auto executor = make_executor(options.common);
-    fit_settings({}, *machine, *settings);
-    Service service(options, *settings, *machine, *model, *executor);
+    Service service(options, std::move(*settings), *machine, *model, *executor);
     const Status served = service.run();
     if (options.common.json) print_answer(serve_json(service.steps()));
     return served ? kExitOk : report(served.error());

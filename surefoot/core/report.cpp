@@ -68,6 +68,7 @@ FusionCounts& FusionCounts::operator+=(const FusionCounts& other) noexcept {
     gated_height += other.gated_height;
     gated_confidence += other.gated_confidence;
     gated_density += other.gated_density;
+    gated_border += other.gated_border;
     outside += other.outside;
     cells_measured += other.cells_measured;
     cells_new += other.cells_new;

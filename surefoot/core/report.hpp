@@ -23,6 +23,7 @@ struct FusionCounts {
     std::int64_t gated_height = 0;      ///< above or below the height cut
     std::int64_t gated_confidence = 0;  ///< disparity jump, grazing incidence or likely outlier
     std::int64_t gated_density = 0;     ///< radius outlier removal
+    std::int64_t gated_border = 0;      ///< in cells that reach beyond the image
     std::int64_t outside = 0;           ///< beyond the map
     std::int64_t cells_measured = 0;    ///< cells that received a measurement
     std::int64_t cells_new = 0;         ///< of these, unknown before

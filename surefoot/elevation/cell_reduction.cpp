@@ -118,6 +118,12 @@ void ReductionConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    1.0,
                    "calibration and lattice errors in every measurement of a cell");
+    visitor.number("border_share",
+                   border_share,
+                   0.0,
+                   1.0,
+                   "a cell that reaches beyond the image needs this share of the points of level "
+                   "ground; 0 = min_points do");
 }
 
 std::optional<CellMeasurement> reduce_cell(const ReductionConfig& config,

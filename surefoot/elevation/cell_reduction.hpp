@@ -23,6 +23,10 @@ struct ReductionConfig {
     /// So many points without a common height are a vertical face, seen from the side.
     int min_face_points = 60;
     double systematic_sigma_m = 0.002;  ///< calibration and lattice errors, in every measurement
+    /// A cell that reaches beyond the image needs this share of the points that level ground in it
+    /// would show. What lies outside is met by those points alone that err towards it: a standing
+    /// camera waits until some do, and the ground looks 15 mm too high there (ZED, 1.2 m).
+    double border_share = 0.75;
 
     void describe(ConfigVisitor& visitor);
 };

@@ -176,6 +176,72 @@ TEST(DepthFusion, SharedErrorsOfAMatcherAreNotTakenForIndependent) {
     EXPECT_GT(nees, 0.5) << "needlessly modest";
 }
 
+struct Border {
+    int cells = 0;
+    double mean_m = 0.0;
+    double nees = 0.0;
+};
+
+/// The nearest cells of a floor that a standing camera sees for a while: the lower border of the
+/// image.
+Border lower_border(double border_share) {
+    const StepScene floor;
+    // The lower border meets the floor 0.559 m before the camera, and so 1 mm beyond a cell.
+    const Pose T_odom_body = body_at(0.017);
+    Border border;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        Rng rng(mix_seed(51, seed));
+        ElevationConfig config;
+        config.reduction.border_share = border_share;
+        ElevationMap map(config);
+        for (int view = 0; view < 10; ++view) {
+            camera::DepthImage depth = render(floor, zed(), T_odom_body);
+            add_noise(depth, rng, 12);
+            map.add(zed(), T_odom_body, depth, view);
+        }
+        for (int iy = 108; iy < 132; ++iy) {  // 0.3 m to both sides
+            const float* row_m = &map.layers().height_m.at(0, iy);
+            const auto at = std::find_if_not(
+                row_m, row_m + map.geometry().nx, [](float z_m) { return std::isnan(z_m); });
+            if (at == row_m + map.geometry().nx) continue;
+            const int ix = static_cast<int>(at - row_m);
+            const double z_m = static_cast<double>(*at);
+            ++border.cells;
+            border.mean_m += z_m;
+            border.nees += z_m * z_m / static_cast<double>(map.layers().height_var_m2.at(ix, iy));
+        }
+    }
+    border.mean_m /= border.cells;
+    border.nees /= border.cells;
+    return border;
+}
+
+TEST(DepthFusion, GroundBeyondTheImageIsNotMeasuredByPointsThatErrTowardsIt) {
+    const Border trusted = lower_border(0.0);
+    EXPECT_EQ(trusted.cells, 96);
+    EXPECT_GT(trusted.mean_m, 0.007) << "what this is about";
+    EXPECT_GT(trusted.nees, 1.7);
+    const Border wanted = lower_border(ReductionConfig{}.border_share);
+    EXPECT_EQ(wanted.cells, 96);
+    EXPECT_LT(std::abs(wanted.mean_m), 0.004);
+    EXPECT_LT(wanted.nees, 1.5);
+}
+
+/// A wall fills the image from its lower to its upper border: no cell of it is wholly in view.
+TEST(DepthFusion, AWallThatReachesBeyondTheImageIsSeen) {
+    StepScene wall;
+    wall.edge_m = 0.45;
+    wall.height_m = 3.0;
+    ElevationMap map({});
+    const FusionCounts counts = map.add(zed(), body_at(0), render(wall, zed(), body_at(0)), 0);
+    int high = 0;
+    for (int iy = 110; iy < 130; ++iy) {
+        for (int ix = 120; ix < 150; ++ix) high += map.layers().height_m.at(ix, iy) > 0.3F;
+    }
+    EXPECT_GE(high, 20);
+    EXPECT_GT(counts.cells_new, 20);
+}
+
 TEST(DepthFusion, ManyViewsImproveHeightsAndStayHonest) {
     const StepScene floor;
     Rng rng(41);

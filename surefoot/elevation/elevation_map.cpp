@@ -256,6 +256,7 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
     const int nx = geometry().nx;
     const RowBlocks rows(geometry());
     FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
+    const auto border_share = static_cast<float>(config_.reduction.border_share);
     for (int iy = rows.first(block); iy < rows.last(block); ++iy) {
         const std::uint32_t* begin = groups_.begin() + static_cast<std::ptrdiff_t>(iy) * nx;
         CellMeasurement* measured = measurements_of_row(iy);
@@ -275,6 +276,11 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
             if (expected != nullptr) {
                 const auto points = static_cast<float>(begin[ix + 1] - begin[ix]);
                 const float level = expected->at(ix, iy, measured[ix].z_m);
+                if (points < border_share * level &&
+                    !expected->is_whole_in_view(ix, iy, measured[ix].z_m)) {
+                    counts.gated_border += begin[ix + 1] - begin[ix];
+                    continue;
+                }
                 if (level > 0.0F) seen.density_ratio = points / level;
                 const float lowest_m = measured[ix].lowest_m;
                 if (points > kFaceDensity * expected->at(ix, iy, lowest_m))

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/elevation/expected_points.hpp"
 
+#include <cmath>
+
 namespace surefoot::elevation {
 
 ExpectedPoints::ExpectedPoints(const camera::RectifiedRig& rig,
@@ -19,6 +21,27 @@ ExpectedPoints::ExpectedPoints(const camera::RectifiedRig& rig,
     axis_x_ = static_cast<float>(axis.x());
     axis_y_ = static_cast<float>(axis.y());
     axis_z_ = static_cast<float>(axis.z());
+
+    // Pixels reach half a pixel beyond their centres. The right eye sees no more than the left one
+    // but to its own left.
+    const double left = rig.cx_px + 0.5;
+    const double top = rig.cy_px + 0.5;
+    const std::array<Eigen::Vector3d, 4> inwards = {
+        Eigen::Vector3d(rig.fx_px, 0.0, left),
+        Eigen::Vector3d(-rig.fx_px, 0.0, rig.width - left),
+        Eigen::Vector3d(0.0, rig.fy_px, top),
+        Eigen::Vector3d(0.0, -rig.fy_px, rig.height - top)};
+    const double radius_m = std::sqrt(0.5) * geometry.resolution_m;
+    const auto side = [&](const Eigen::Vector3d& inwards_camera, double eye_x_m) {
+        const Eigen::Vector3d n = inwards_camera / std::sqrt(inwards_camera.squaredNorm());
+        const Eigen::Vector3d n_odom = T_odom_camera.R() * n;
+        return Side{static_cast<float>(n_odom.x()),
+                    static_cast<float>(n_odom.y()),
+                    static_cast<float>(n_odom.z()),
+                    static_cast<float>(-n.x() * eye_x_m - radius_m)};
+    };
+    for (std::size_t i = 0; i < inwards.size(); ++i) sides_[i] = side(inwards[i], 0.0);
+    sides_[4] = side(inwards[0], rig.baseline_m);
 }
 
 }  // namespace surefoot::elevation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
@@ -27,6 +29,17 @@ class ExpectedPoints {
         if (!(below_m > 0.0F && depth_m > 0.0F)) return 0.0F;
         return scale_m2_ * below_m / (depth_m * depth_m * depth_m);
     }
+    /// All of the cell, with its middle at `z_m` in odom, lies in the images of both eyes (the ball
+    /// around it does).
+    [[nodiscard]] bool is_whole_in_view(int ix, int iy, float z_m) const noexcept {
+        const float x = x_m_ + resolution_m_ * static_cast<float>(ix);
+        const float y = y_m_ + resolution_m_ * static_cast<float>(iy);
+        const float z = z_m - camera_z_m_;
+        bool whole = true;
+        for (const Side& side : sides_)
+            whole &= side.x * x + side.y * y + side.z * z + side.offset_m >= 0.0F;
+        return whole;
+    }
 
   private:
     float scale_m2_;  ///< A fx fy
@@ -37,6 +50,15 @@ class ExpectedPoints {
     float axis_x_;  ///< optical axis in odom
     float axis_y_;
     float axis_z_;
+    /// A side of what both eyes see, moved inwards by the radius of a cell: inside is
+    /// x x + y y + z z + offset >= 0, in odom from the camera.
+    struct Side {
+        float x;
+        float y;
+        float z;
+        float offset_m;
+    };
+    std::array<Side, 5> sides_;
 };
 
 }  // namespace surefoot::elevation

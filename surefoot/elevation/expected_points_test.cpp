@@ -56,6 +56,65 @@ TEST(ExpectedPoints, AreThePixelsWhoseRaysMeetTheCell) {
     EXPECT_GE(compared, 3);
 }
 
+TEST(ExpectedPoints, TellsWhichCellsBothEyesSeeWhole) {
+    camera::RectifiedRig rig;
+    rig.width = 672;
+    rig.height = 376;
+    rig.fx_px = 340.0;
+    rig.fy_px = 330.0;
+    rig.cx_px = 330.0;
+    rig.cy_px = 190.0;
+    rig.baseline_m = 0.12;
+    const Eigen::Quaterniond turned =
+        exp_so3({0.03, 0.0, 0.4}) * exp_so3({0.0, 32.0 * std::numbers::pi / 180.0, 0.0});
+    rig.T_body_camera = Pose{turned, {0.1, 0.0, 0.0}} * T_body_optical();
+    const Pose T_odom_body{Eigen::Quaterniond::Identity(), {2.0, 1.0, 1.1}};
+    grid::GridGeometry geometry;
+    geometry.resolution_m = 0.05;
+    geometry.nx = 160;
+    geometry.ny = 160;
+    geometry.origin_m = {-1.0, -3.0};
+    constexpr float kGround_m = 0.05F;
+    const ExpectedPoints expected(rig, T_odom_body, geometry);
+    const Pose T_camera_odom = (T_odom_body * rig.T_body_camera).inverse();
+    // The middle and twelve points around it.
+    const auto seen_around = [&](const Eigen::Vector2d& middle_m, double radius_m) {
+        int seen = 0;
+        for (int i = 0; i < 13; ++i) {
+            const double angle = std::numbers::pi / 6.0 * i;
+            const double reach_m = i == 12 ? 0.0 : radius_m;
+            const Eigen::Vector3d p_m =
+                T_camera_odom * Eigen::Vector3d(middle_m.x() + reach_m * std::cos(angle),
+                                                middle_m.y() + reach_m * std::sin(angle),
+                                                static_cast<double>(kGround_m));
+            const double u_px = rig.fx_px * p_m.x() / p_m.z() + rig.cx_px;
+            const double v_px = rig.fy_px * p_m.y() / p_m.z() + rig.cy_px;
+            const double u_right_px = u_px - rig.fx_px * rig.baseline_m / p_m.z();
+            seen += p_m.z() > 0.0 && u_right_px >= -0.5 && u_px <= rig.width - 0.5 &&
+                    v_px >= -0.5 && v_px <= rig.height - 0.5;
+        }
+        return seen;
+    };
+    int whole = 0;
+    int partial = 0;
+    for (int iy = 0; iy < geometry.ny; ++iy) {
+        for (int ix = 0; ix < geometry.nx; ++ix) {
+            const Eigen::Vector2d middle_m = geometry.center_m({ix, iy});
+            if (expected.is_whole_in_view(ix, iy, kGround_m)) {
+                ++whole;
+                ASSERT_EQ(seen_around(middle_m, 0.0353), 13) << ix << ", " << iy;
+            } else {
+                // The ball is larger than the cell, seen at a slant.
+                const int seen = seen_around(middle_m, 0.11);
+                ASSERT_LT(seen, 13) << ix << ", " << iy;
+                partial += seen > 0;
+            }
+        }
+    }
+    EXPECT_GT(whole, 1000);
+    EXPECT_GT(partial, 100);
+}
+
 TEST(ExpectedPoints, NoneBehindOrAboveTheCamera) {
     camera::RectifiedRig rig;
     rig.fx_px = 300.0;
