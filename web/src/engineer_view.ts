@@ -55,10 +55,13 @@ export class EngineerView {
     const image = this.#store.images.get(which);
     if (!image || this.#shown.get(which) === image) return;
     this.#shown.set(which, image);
-    const element = byId<HTMLImageElement>(which === 0 ? "image-left" : "image-disparity");
+    const id = which === 0 ? "image-left" : "image-disparity";
+    const element = byId<HTMLImageElement>(id);
+    element.hidden = image.jpeg.byteLength === 0;
+    byId(`no-${id}`).hidden = !element.hidden;
+    if (element.hidden) return;
     const before = element.src;
     element.src = URL.createObjectURL(new Blob([image.jpeg], { type: "image/jpeg" }));
-    element.hidden = false;
     if (before.startsWith("blob:")) URL.revokeObjectURL(before);
   }
 

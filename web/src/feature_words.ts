@@ -219,6 +219,16 @@ export interface LabelBox {
   height: number;
 }
 
+/// Without those that repeat one before them within a label's width: the sides of a pit are one drop.
+export function withoutRepeats<T extends LabelBox & { text: string }>(boxes: T[]): T[] {
+  const kept: T[] = [];
+  for (const box of boxes) {
+    const repeats = (other: T) => other.text === box.text && Math.hypot(other.x - box.x, other.y - box.y) < box.width;
+    if (!kept.some(repeats)) kept.push(box);
+  }
+  return kept;
+}
+
 /// Labels that would lie on one that comes before are moved down, and all into the picture.
 export function spreadLabels<T extends LabelBox>(boxes: T[], width: number, height: number): T[] {
   const placed: T[] = [];

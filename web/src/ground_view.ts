@@ -11,7 +11,7 @@ import {
   paintUnknownTile,
 } from "./ground_picture.ts";
 import { isDark, setAttribute } from "./dom.ts";
-import { featureLabels, isOnFlight } from "./feature_words.ts";
+import { featureLabels, isOnFlight, spreadLabels, withoutRepeats } from "./feature_words.ts";
 import type { Box, Edge } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
@@ -219,9 +219,28 @@ export class GroundView {
           Math.hypot(a.x_m - place.x_m, a.y_m - place.y_m) - Math.hypot(b.x_m - place.x_m, b.y_m - place.y_m),
       )
       .slice(0, 3);
-    for (const { x_m, y_m, drop_m } of nearest) this.#label(`${drop_m.toFixed(2)} m down`, x_m, y_m, 16);
-    const labels = this.#store.stairs ? featureLabels({ ...this.#store.stairs, ...kFlightsAlone }) : [];
-    for (const { lines, x_m, y_m } of labels) this.#label(lines.join(", "), x_m, y_m, 16);
+    const drops = nearest.map(({ x_m, y_m, drop_m }) => ({ lines: [`${drop_m.toFixed(2)} m down`], x_m, y_m }));
+    const stairs = this.#store.stairs ? featureLabels({ ...this.#store.stairs, ...kFlightsAlone }) : [];
+    this.#labels([...drops, ...stairs], 16);
+  }
+
+  /// Labels that make room for each other.
+  #labels(labels: { lines: string[]; x_m: number; y_m: number }[], size_px: number): void {
+    const context = this.#context;
+    const ratio = Math.min(2, devicePixelRatio || 1);
+    context.save();
+    context.font = `600 ${size_px * ratio}px system-ui, sans-serif`;
+    const boxes = labels.map(({ lines, x_m, y_m }) => {
+      const text = lines.join(", ");
+      const { x, y } = context.getTransform().transformPoint({ x: x_m, y: y_m });
+      return { text, x, y, width: context.measureText(text).width + 14 * ratio, height: 1.56 * size_px * ratio };
+    });
+    context.restore();
+    const back = context.getTransform().inverse();
+    for (const { text, x, y } of spreadLabels(withoutRepeats(boxes), this.#canvas.width, this.#canvas.height)) {
+      const at = back.transformPoint({ x, y });
+      this.#label(text, at.x, at.y, size_px);
+    }
   }
 
   /// Words at a place of the present drawing units, upright.

@@ -519,6 +519,13 @@ test("the engineer's view: pictures, layers, times, verdicts", () =>
     await page.waitForSelector("#layer-value:has-text('Point at a cell')");
     for (const id of ["image-left", "image-disparity"])
       await page.waitForFunction((one) => document.getElementById(one).naturalWidth === 168, id);
+    const jpeg = service.jpeg;
+    service.jpeg = new Uint8Array(0);
+    await page.waitForSelector("#no-image-left:has-text('no camera images'):visible");
+    assert.equal(await page.isVisible("#image-left"), false, "a broken picture");
+    service.jpeg = jpeg;
+    await page.waitForSelector("#image-left:visible");
+    assert.equal(await page.isVisible("#no-image-left"), false);
     await page.focus("#layer");
     await page.keyboard.press("ArrowUp");
     // Beside the machine, far from the drop, that evidence is nothing; drift grows with the distance.

@@ -340,6 +340,7 @@ function serveFile(request, response) {
 export class FakeService {
   paused = false; ///< nothing is said any more, though every connection stays
   frames_paused = false; ///< status goes on, frames do not
+  jpeg = kJpeg; ///< of every picture; nothing = the source has none
   gate_state = "READY";
   outlook_state; ///< of the outlook alone; undefined = that of the gate
   source_state = "running";
@@ -565,7 +566,7 @@ export class FakeService {
       }
       if (frame % 5 === 0)
         for (const name of page.want.images)
-          socket.send(encodeImage({ time_ns: frame * 1e8, which: hello(0).images.indexOf(name) }, kJpeg));
+          socket.send(encodeImage({ time_ns: frame * 1e8, which: hello(0).images.indexOf(name) }, this.jpeg));
     }
   }
 

@@ -31,6 +31,7 @@ import {
   isOnFlight,
   millimetres,
   spreadLabels,
+  withoutRepeats,
 } from "../build/unit/feature_words.js";
 import { decode } from "../build/unit/messages.js";
 import { countWords, recordingWords } from "../build/unit/recording_words.js";
@@ -346,6 +347,19 @@ test("labels do not lie on each other, and none leaves the picture", () => {
     for (const b of placed.slice(0, i))
       assert.ok(Math.abs(a.x - b.x) >= 40 || Math.abs(a.y - b.y) >= 10, JSON.stringify([a, b]));
   assert.deepEqual([placed[3].x, placed[3].y], [20, 95]);
+});
+
+test("labels: the sides of a pit are said once, another pit again", () => {
+  const box = (text, x, y) => ({ text, x, y, width: 40, height: 10 });
+  const kept = withoutRepeats([box("a", 0, 0), box("a", 20, 30), box("b", 5, 5), box("a", 39, 12), box("a", 0, -39)]);
+  assert.deepEqual(
+    kept.map(({ text, x, y }) => [text, x, y]),
+    [
+      ["a", 0, 0],
+      ["b", 5, 5],
+      ["a", 39, 12],
+    ],
+  );
 });
 
 test("settings: group and name, and a search for all words", () => {
