@@ -452,7 +452,7 @@ class Campaign {
         }
         if (auto taken = run->pipeline->snapshot(1, *snapshot_); !taken) return taken;
         const auto& geometry = run->pipeline->map().geometry();
-        const Image<float> heights = run->pipeline->map().layers().height_m;
+        const Image<float> heights = run->pipeline->map().layers().height_m.copy();
         rater_.rate(heights.view(), geometry.resolution_m, serial_, rating_);
         const AskedMap asked{
             *snapshot_, geometry, rating_.traversability.view(), run->pipeline->T_odom_body()};

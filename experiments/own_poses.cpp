@@ -86,7 +86,7 @@ class Maps {
 std::string floor_figures(const sim::Scene& scene, const elevation::ElevationMap& map) {
     eval::MapPair maps;
     maps.geometry = map.geometry();
-    maps.live_m = map.layers().height_m;
+    maps.live_m = map.layers().height_m.copy();
     maps.truth_m = sim::dem(
         scene,
         {maps.geometry.origin_m, maps.geometry.nx, maps.geometry.ny, maps.geometry.resolution_m});

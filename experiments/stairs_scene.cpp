@@ -249,12 +249,12 @@ class Run {
             to_go_m.dot(Eigen::Vector2d(std::cos(world_.yaw_rad), std::sin(world_.yaw_rad)));
         const elevation::ElevationLayers& layers = pipeline.map().layers();
         look.geometry = pipeline.map().geometry();
-        look.height_m = layers.height_m;
-        look.height_var_m2 = layers.height_var_m2;
-        look.free_above_m = layers.free_above_m;
-        look.clearance_m = layers.clearance_m;
-        look.density_ratio = layers.density_ratio;
-        look.looks = layers.count;
+        look.height_m = layers.height_m.copy();
+        look.height_var_m2 = layers.height_var_m2.copy();
+        look.free_above_m = layers.free_above_m.copy();
+        look.clearance_m = layers.clearance_m.copy();
+        look.density_ratio = layers.density_ratio.copy();
+        look.looks = layers.count.copy();
         look.stance_m = pipeline.T_odom_body().translation_m.head<2>();
         look.view = pipeline.view();
         look.disparity_px = pipeline.depth().disparity_px;

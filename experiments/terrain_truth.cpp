@@ -130,8 +130,8 @@ eval::SigmaCoverage sigma_of_heights(const sim::SceneTruth& truth,
     const eval::CellMask asked = eval::both(
         away_from_all_edges(truth.scene, lattice, sim::dem(truth.scene, lattice), config),
         sim::visibility_mask(truth, lattice, {.range_m = kAnyRange_m}, executor));
-    const grid::Layer height_m = layers.height_m;
-    const grid::Layer var_m2 = layers.height_var_m2;
+    const grid::Layer height_m = layers.height_m.copy();
+    const grid::Layer var_m2 = layers.height_var_m2.copy();
     std::vector<float> error_m;
     std::vector<float> sigma_m;
     error_m.reserve(asked.size());
@@ -334,7 +334,7 @@ Status measure(const SceneCase& now,
                                                            layers.height_m.view(),
                                                            layers.clearance_m.view());
     const auto heights =
-        eval::elevation_errors(layers.height_m, compared_m, visible, settings->maps);
+        eval::elevation_errors(layers.height_m.copy(), compared_m, visible, settings->maps);
     const auto found = pipeline->footholds();
     const TrulySafe truly_safe{
         safe_at_all_yaws(truth, machine.machine, lattice, executor),

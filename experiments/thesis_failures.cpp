@@ -303,7 +303,7 @@ void report_map(const Walk& walk,
                 const camera::RectifiedRig& rig,
                 const Trajectory& bodies,
                 Tables& out) {
-    const HeightMap map{mapper.map().geometry(), mapper.map().elevation_m()};
+    const HeightMap map{mapper.map().geometry(), mapper.map().elevation_m().copy()};
     const std::string who = fmt::format("{},{},{},{:g},{},{:g},{:g}",
                                         walk.scene,
                                         sim::kCarrierNames[static_cast<int>(walk.carrier)],

@@ -49,10 +49,10 @@ bool same_cells(const grid::SlidingLayer<T>& a, const Image<T>& b) {
 bool same(const FusionCounts& a, const FusionCounts& b) {
     return a.points == b.points && a.gated_range == b.gated_range &&
            a.gated_height == b.gated_height && a.gated_confidence == b.gated_confidence &&
-           a.gated_density == b.gated_density && a.outside == b.outside &&
-           a.cells_measured == b.cells_measured && a.cells_new == b.cells_new &&
-           a.cells_fused == b.cells_fused && a.cells_inflated == b.cells_inflated &&
-           a.cells_cleared == b.cells_cleared;
+           a.gated_density == b.gated_density && a.gated_border == b.gated_border &&
+           a.outside == b.outside && a.cells_measured == b.cells_measured &&
+           a.cells_new == b.cells_new && a.cells_fused == b.cells_fused &&
+           a.cells_inflated == b.cells_inflated && a.cells_cleared == b.cells_cleared;
 }
 
 ElevationConfig config_of(Choices& choices) {
@@ -327,18 +327,18 @@ class Play {
         must(std::isfinite(a.offset_m) && a.sigma_m >= 0.0, "a height drift is no number");
         grid::MapRegion twin = plain_.layers();  // of the same size
         const ElevationLayers& layers = twin_.layers();
-        twin.height_m = layers.height_m;
-        twin.height_var_m2 = layers.height_var_m2;
-        twin.count = layers.count;
-        twin.seen_ns = layers.seen_ns;
-        twin.horizontal_drift_m = layers.horizontal_drift_m;
-        twin.highest_m = layers.highest_m;
-        twin.lowest_m = layers.lowest_m;
-        twin.clearance_m = layers.clearance_m;
-        twin.confidence = layers.confidence;
-        twin.density_ratio = layers.density_ratio;
+        twin.height_m = layers.height_m.copy();
+        twin.height_var_m2 = layers.height_var_m2.copy();
+        twin.count = layers.count.copy();
+        twin.seen_ns = layers.seen_ns.copy();
+        twin.horizontal_drift_m = layers.horizontal_drift_m.copy();
+        twin.highest_m = layers.highest_m.copy();
+        twin.lowest_m = layers.lowest_m.copy();
+        twin.clearance_m = layers.clearance_m.copy();
+        twin.confidence = layers.confidence.copy();
+        twin.density_ratio = layers.density_ratio.copy();
         must(same_layers(map_.layers(), twin), "executor or target change the map");
-        const Image<float> free_above_m = layers.free_above_m;
+        const Image<float> free_above_m = layers.free_above_m.copy();
         must(same_cells(map_.layers().free_above_m, free_above_m),
              "executor or target change the lines of sight");
         for (std::size_t i = 0; i < twin.height_m.size(); ++i) must_be_whole(twin, i);

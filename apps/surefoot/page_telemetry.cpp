@@ -19,22 +19,25 @@ constexpr std::size_t kRateFrames = 30;
 constexpr std::size_t kMedianFrames = 64;
 
 /// Layers that cost nothing but a copy.
-struct Layer {
-    const char* name;
-    const grid::Layer& values;
-};
-std::vector<Layer> layers_of(const pipeline::Pipeline& pipeline) {
-    const auto& map = pipeline.map().layers();
-    const auto& rating = pipeline.rating();
-    return {{"elevation", map.height_m},
-            {"variance", map.height_var_m2},
-            {"traversability", rating.traversability},
-            {"slope", rating.slope},
-            {"step", rating.step},
-            {"roughness", rating.roughness}};
-}
 constexpr std::array kLayerNames{
     "elevation", "variance", "traversability", "slope", "step", "roughness"};
+std::array<ImageView<const float>, kLayerNames.size()> layers_of(
+    const pipeline::Pipeline& pipeline) {
+    const auto& map = pipeline.map().layers();
+    const auto& rating = pipeline.rating();
+    return {map.height_m.view(),
+            map.height_var_m2.view(),
+            rating.traversability.view(),
+            rating.slope.view(),
+            rating.step.view(),
+            rating.roughness.view()};
+}
+
+Image<float> copy_of(ImageView<const float> values) {
+    Image<float> copy(values.width, values.height);
+    for (int y = 0; y < values.height; ++y) std::copy_n(values.row(y), values.width, copy.row(y));
+    return copy;
+}
 
 std::int64_t tenth_mm(double metres) {
     return std::llround(1e4 * metres);
@@ -63,14 +66,14 @@ void copy_layers(const pipeline::Pipeline& pipeline,
                  std::vector<page::PageLayer>& out) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     std::uint16_t index = 0;
-    for (const Layer& layer : layers_of(pipeline)) {
-        if (layer.values.width() == geometry.nx && layer.values.height() == geometry.ny) {
+    for (const ImageView<const float> values : layers_of(pipeline)) {
+        if (values.width == geometry.nx && values.height == geometry.ny) {
             out.push_back({version,
                            tenth_mm(geometry.origin_m.x()),
                            tenth_mm(geometry.origin_m.y()),
                            static_cast<std::int32_t>(tenth_mm(geometry.resolution_m)),
                            index,
-                           layer.values});
+                           copy_of(values)});
         }
         ++index;
     }

@@ -165,8 +165,8 @@ Status write_results(const RunOptions& options,
     writes += io::write_tum_trajectory(out + "/trajectory.tum", trajectory_of(record.frames));
     writes += io::write_tum_trajectory(out + "/trajectory_camera.tum",
                                        trajectory_of(record.frames, record.rig.body_from_left()));
-    writes += io::write_esri_grid(out + "/elevation.asc", geometry, layers.height_m);
-    writes += io::write_esri_grid(out + "/variance.asc", geometry, layers.height_var_m2);
+    writes += io::write_esri_grid(out + "/elevation.asc", geometry, layers.height_m.copy());
+    writes += io::write_esri_grid(out + "/variance.asc", geometry, layers.height_var_m2.copy());
     writes += io::write_esri_grid(out + "/traversability.asc",
                                   geometry,
                                   or_unknown(pipeline.rating().traversability, geometry));
@@ -225,6 +225,7 @@ std::string empty_map_reason(const RunRecord& record, const pipeline::Pipeline& 
         {f.gated_confidence,
          "are at depth edges, seen too flat, or likely outliers (elevation.pixels)"},
         {f.gated_density, "have too few neighbours (elevation.prefilter)"},
+        {f.gated_border, "lie in cells that reach beyond the image (elevation.reduction)"},
     };
     const auto& worst =
         *std::max_element(std::begin(causes), std::end(causes), [](const auto& a, const auto& b) {

@@ -47,12 +47,12 @@ void add_sigma_pictures(const pipeline::Pipeline& pipeline,
                         const eval::Overlays& drawn,
                         eval::ReportContent& content) {
     const auto& layers = pipeline.map().layers();
-    content.pictures.push_back(
-        {"How sure the map is of each height",
-         eval::encode_png(eval::render_layer(pipeline.map().geometry(),
-                                             sigma_of(layers.height_var_m2, layers.height_m),
-                                             eval::height_sigma_style(),
-                                             drawn))});
+    content.pictures.push_back({"How sure the map is of each height",
+                                eval::encode_png(eval::render_layer(
+                                    pipeline.map().geometry(),
+                                    sigma_of(layers.height_var_m2.copy(), layers.height_m.copy()),
+                                    eval::height_sigma_style(),
+                                    drawn))});
     if (pipeline.depth().sigma_px.empty()) return;
     content.pictures.push_back(
         {"One sigma of the disparity, pixel by pixel, as the map believes it",
@@ -177,25 +177,21 @@ Status write_pictures_and_report(const RunOptions& options,
                                  const pipeline::Pipeline& pipeline,
                                  const RunRecord& record) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
-    const auto& layers = pipeline.map().layers();
+    const grid::Layer height_m = pipeline.map().layers().height_m.copy();
     const eval::Overlays drawn = overlays_of(machine, record);
-    const auto elevation_png = eval::encode_png(
-        eval::render_layer(geometry, layers.height_m, eval::elevation_style(), drawn));
+    const auto elevation_png =
+        eval::encode_png(eval::render_layer(geometry, height_m, eval::elevation_style(), drawn));
     const grid::Layer unknown(geometry.nx, geometry.ny, std::nanf(""));
     const grid::Layer& rating =
         pipeline.rating().traversability.empty() ? unknown : pipeline.rating().traversability;
     const auto rating_png = eval::encode_png(eval::render_layer(
         geometry, rating, eval::traversability_style(settings.maps.safe_threshold), drawn));
-    const auto stairs_png =
-        eval::encode_png(eval::render_features(geometry,
-                                               layers.height_m,
-                                               pipeline.features(),
-                                               drawn,
-                                               {"Edges and stairs", "over the heights"}));
+    const auto stairs_png = eval::encode_png(eval::render_features(
+        geometry, height_m, pipeline.features(), drawn, {"Edges and stairs", "over the heights"}));
 
     const auto classes_png =
         eval::encode_png(eval::render_classes(geometry,
-                                              layers.height_m,
+                                              height_m,
                                               pipeline.ground_classes(),
                                               drawn,
                                               {"What the ground is", "cell by cell"}));

@@ -163,13 +163,13 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     truth.trajectory.resize(std::min(truth.trajectory.size(), frames.size()));
     TruthFigures figures;
     const grid::GridGeometry& geometry = pipeline.map().geometry();
-    const grid::Layer live_m = pipeline.map().layers().height_m;
+    const grid::Layer live_m = pipeline.map().layers().height_m.copy();
     const sim::Lattice lattice = lattice_of(geometry);
 
     eval::MapPair maps;
     maps.geometry = geometry;
     maps.live_m = live_m;
-    maps.live_var_m2 = pipeline.map().layers().height_var_m2;
+    maps.live_var_m2 = pipeline.map().layers().height_var_m2.copy();
     maps.live_traversability = or_unknown(pipeline.rating().traversability, geometry);
     maps.truth_m = sim::dem(truth.scene, lattice);
     const double odom_z_m = odom_height_m(pipeline, truth, frames);

@@ -152,7 +152,10 @@ std::vector<FuseStepResult> run_fuse_steps(const AncestorConfig& config,
     for (const FuseStep& step : steps) {
         map.move_to(step.move_x_m, step.move_y_m);
         map.add(step.cloud, step.time_s);
-        results.push_back({map.geometry(), map.elevation_m(), map.variance_m2(), map.time_s()});
+        results.push_back({map.geometry(),
+                           map.elevation_m().copy(),
+                           map.variance_m2().copy(),
+                           map.time_s().copy()});
     }
     return results;
 }

@@ -41,7 +41,7 @@ ElevationConfig exact_config() {
     return config;
 }
 
-float at(const ElevationMap& map, const grid::Layer& layer, double x_m, double y_m) {
+float at(const ElevationMap& map, const ElevationLayers::Layer& layer, double x_m, double y_m) {
     const auto cell = map.geometry().cell_at(x_m, y_m);
     return cell ? layer.at(cell->ix, cell->iy) : kNan;
 }

@@ -28,16 +28,16 @@ grid::MapRegion region_of(const ElevationMap& map, const std::optional<grid::Lat
     grid::MapRegion region;
     region.resolution_m = map.geometry().resolution_m;
     region.box = grid::box_of(map.geometry());
-    region.height_m = layers.height_m;
-    region.height_var_m2 = layers.height_var_m2;
-    region.count = layers.count;
-    region.seen_ns = layers.seen_ns;
-    region.horizontal_drift_m = layers.horizontal_drift_m;
-    region.highest_m = layers.highest_m;
-    region.lowest_m = layers.lowest_m;
-    region.clearance_m = layers.clearance_m;
-    region.confidence = layers.confidence;
-    region.density_ratio = layers.density_ratio;
+    region.height_m = layers.height_m.copy();
+    region.height_var_m2 = layers.height_var_m2.copy();
+    region.count = layers.count.copy();
+    region.seen_ns = layers.seen_ns.copy();
+    region.horizontal_drift_m = layers.horizontal_drift_m.copy();
+    region.highest_m = layers.highest_m.copy();
+    region.lowest_m = layers.lowest_m.copy();
+    region.clearance_m = layers.clearance_m.copy();
+    region.confidence = layers.confidence.copy();
+    region.density_ratio = layers.density_ratio.copy();
     forget_boundless(region);
     return window ? grid::cut(std::move(region), *window) : region;
 }

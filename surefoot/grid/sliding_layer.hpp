@@ -48,8 +48,8 @@ class SlidingLayer {
     [[nodiscard]] ImageView<T> view() noexcept { return {data(), nx_, ny_, nx_}; }
     [[nodiscard]] ImageView<const T> view() const noexcept { return {data(), nx_, ny_, nx_}; }
 
-    /// A copy, for files and pictures.
-    operator Image<T>() const {
+    /// A copy, for files and pictures. Not a conversion: a reference to an image would bind to it.
+    [[nodiscard]] Image<T> copy() const {
         Image<T> image(nx_, ny_);
         std::memcpy(image.data(), data(), size() * sizeof(T));
         return image;

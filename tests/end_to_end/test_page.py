@@ -2,6 +2,7 @@
 import gzip
 import http.client
 import json
+import math
 import re
 import socket
 import struct
@@ -18,6 +19,7 @@ SCENE = ("sim:floor", "--speed", "0.2", "--set", "sim.sensor=analytic")
 MAP, POSE, IMAGE, LAYER = 1, 2, 3, 4
 MAP_HEAD = struct.Struct("<QqqqiIHHBBHI")
 POSE_HEAD = struct.Struct("<q3d4f4fBBH")
+LAYER_HEAD = struct.Struct("<QqqIHHHH")
 
 
 class Page(RosbridgeClient):
@@ -26,7 +28,7 @@ class Page(RosbridgeClient):
     def __init__(self, port):
         super().__init__(port, path="/page")
         self.ground, self.wholes, self.map_bytes, self.versions = {}, 0, [], {}
-        self.joints = []
+        self.joints, self.values = [], {}
         self.poses, self.layers, self.images, self.texts, self.goodbye = [], [], [], [], None
 
     def want(self, **keys):
@@ -50,7 +52,17 @@ class Page(RosbridgeClient):
         kind, protocol, _ = struct.unpack_from("<BBH", payload)
         assert protocol == 1
         {MAP: self.take_map, POSE: self.take_pose, IMAGE: lambda body: self.images.append(body),
-         LAYER: lambda body: self.layers.append(struct.unpack_from("<QqqIHHHH", body))}[kind](payload[4:])
+         LAYER: self.take_layer}[kind](payload[4:])
+
+    def take_layer(self, body):
+        """Head, and the newest values of each layer: (map version, cell of odom -> value where there is one)."""
+        head = LAYER_HEAD.unpack_from(body)
+        version, x, y, side, nx, ny, index, _ = head
+        values = struct.unpack_from(f"<{nx * ny}f", body, LAYER_HEAD.size)
+        assert LAYER_HEAD.size + 4 * nx * ny == len(body)
+        self.layers.append(head)
+        self.values[index] = (version, {(x // side + i % nx, y // side + i // nx): value
+                                        for i, value in enumerate(values) if not math.isnan(value)})
 
     def take_pose(self, body):
         pose = POSE_HEAD.unpack_from(body)
@@ -221,6 +233,28 @@ class LivePage(PageTest):
         self.assertTrue(page.images)
         plain = self.page().listen(1.0)
         self.assertEqual((plain.layers, plain.images), ([], []))
+
+    def test_layers_are_those_of_the_map(self):
+        """Heights of the layer and of the ground, which come by different ways, at one version of the map."""
+        page = self.page()
+        page.want(map_hz=10, layers=["elevation", "variance"])
+        compared, end = 0, time.monotonic() + 40.0
+        while compared < 3 and time.monotonic() < end:
+            page.values = {}
+            while set(page.values) != {0, 1} and time.monotonic() < end:
+                page.listen(0.1)
+            version, heights_m = page.values[0]
+            if page.values[1][0] != version or version not in page.versions or len(heights_m) < 1000:
+                continue
+            compared += 1
+            self.assertEqual(heights_m.keys(), page.values[1][1].keys())
+            self.assertTrue(all(1e-9 < variance_m2 < 0.1 for variance_m2 in page.values[1][1].values()))
+            ground = page.versions[version]
+            known = {cell for cell, (height_mm, _, _) in ground.items() if height_mm > -30000}
+            self.assertGreater(len(known & heights_m.keys()), 0.95 * len(heights_m))
+            for cell in known & heights_m.keys():
+                self.assertLess(abs(1e3 * heights_m[cell] - ground[cell][0]), 0.7, cell)
+        self.assertEqual(compared, 3)
 
     def test_who_sends_nonsense_is_told_and_let_go(self):
         for text, words in ((b"{", "JSON"), (b"[]", "object"), (b'{"op":"fly"}', "no operation 'fly'"),
