@@ -134,9 +134,14 @@ export function featureLabels(stairs: Stairs): FeatureLabel[] {
           },
         ];
   const line = (what: string, { height_m }: LineFeature, rest = "") => `${what} ${metres(height_m)}${rest}`;
+  // The table has them all.
+  const drops = stairs.drops.filter(
+    ({ pose: [x_m, y_m] }) =>
+      x_m === null || y_m === null || !stairs.flights.some((flight) => isOnFlight(flight, x_m, y_m)),
+  );
   return [
     ...stairs.flights.flatMap((flight) => at(flight, goingLength_m(flight), ...flightLines(flight))),
-    ...stairs.drops.flatMap((drop) => at(drop, 0, line("drop", drop, drop.bottom_seen ? "" : " or more"))),
+    ...drops.flatMap((drop) => at(drop, 0, line("drop", drop, drop.bottom_seen ? "" : " or more"))),
     ...stairs.kerbs.flatMap((kerb) => at(kerb, 0, line(`kerb ${kerb.kind}`, kerb))),
     ...stairs.sills.flatMap((sill) => at(sill, 0, line("sill", sill))),
     ...stairs.doors.flatMap((door) => at(door, 0, `door ${metres(door.width_m)}`)),

@@ -133,16 +133,22 @@ export function paintGround(
       const state = stateAt(ix, iy);
       const ground = state & kGroundMask;
       const shade = ground === kGround.unknown ? 1 : light(map, ix, iy);
-      const [main, pattern] = pairOf(ground, colors).map((color) => packed(color, shade));
-      const inside = (dx: number, dy: number) => (stateAt(ix + dx, iy + dy) & kVouched) !== 0;
-      const on_rim =
-        (state & kVouched) !== 0 && !(inside(-1, 0) && inside(1, 0) && inside(0, -1) && inside(0, 1));
+      const [main_color, pattern_color] = pairOf(ground, colors);
+      const main = packed(main_color, shade);
+      const pattern = packed(pattern_color, shade);
+      const around =
+        stateAt(ix - 1, iy) & stateAt(ix + 1, iy) & stateAt(ix, iy - 1) & stateAt(ix, iy + 1) & kVouched;
+      const on_rim = (state & kVouched) !== 0 && around === 0;
       for (let j = 0; j < kCell_px; ++j) {
         const y = (origin_iy + iy) * kCell_px + j;
         const at = (side_px - 1 - (row * kCell_px + j)) * side_px + column * kCell_px;
+        if (on_rim || ground === kGround.free) {
+          pixels.fill(on_rim ? rim_color : main, at, at + kCell_px);
+          continue;
+        }
         for (let i = 0; i < kCell_px; ++i) {
           const x = (origin_ix + ix) * kCell_px + i;
-          pixels[at + i] = on_rim ? rim_color : patterned(ground, x, y) ? pattern : main;
+          pixels[at + i] = patterned(ground, x, y) ? pattern : main;
         }
       }
     }

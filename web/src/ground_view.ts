@@ -29,6 +29,10 @@ const kSpoken: Record<SignKind, string> = {
 /// Edges say how deep it goes by themselves.
 const kFlightsAlone = { drops: [], kerbs: [], sills: [], doors: [] };
 
+/// Cells are painted pixel by pixel, several times a second: moving them to a graphics card and back takes longer, and
+/// where there is none and the browser plays one, seconds.
+const kByProcessor: CanvasRenderingContext2DSettings = { willReadFrequently: true };
+
 /// The ground from above, heading up.
 export class GroundView {
   spoken: { code: number; kind: SignKind } | undefined;
@@ -43,7 +47,7 @@ export class GroundView {
 
   constructor(canvas: HTMLCanvasElement, store: Store) {
     this.#canvas = canvas;
-    this.#context = canvas.getContext("2d")!;
+    this.#context = canvas.getContext("2d", kByProcessor)!;
     this.#store = store;
   }
 
@@ -113,7 +117,7 @@ export class GroundView {
   #drawUnknown(place: Place, at: { x: number; y: number; scale: number }, across_m: number): void {
     const tile = new ImageData(kTile_px, kTile_px);
     paintUnknownTile(this.#colors(), new Uint32Array(tile.data.buffer));
-    this.#tile.getContext("2d")!.putImageData(tile, 0, 0);
+    this.#tile.getContext("2d", kByProcessor)!.putImageData(tile, 0, 0);
     const context = this.#context;
     const pattern = context.createPattern(this.#tile, "repeat")!;
     const pixel_m = (this.#store.map.resolution_m || 0.025) / kCell_px;
@@ -162,7 +166,7 @@ export class GroundView {
       this.#image = new ImageData(side_px, side_px);
     }
     paintGround(this.#store.map, window, this.#colors(), new Uint32Array(this.#image.data.buffer));
-    this.#cells.getContext("2d")!.putImageData(this.#image, 0, 0);
+    this.#cells.getContext("2d", kByProcessor)!.putImageData(this.#image, 0, 0);
   }
 
   /// Lines with teeth to the lower side (on the right hand), as on a walker's map.

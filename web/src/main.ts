@@ -13,6 +13,8 @@ import { WalkView } from "./walk_view.ts";
 
 /// How often the page looks at its own clock.
 const kTick_ms = 100;
+/// What is drawn is a machine that walks slowly; tablets without a graphics card draw it, too.
+const kDraw_ms = 66;
 
 const store = new Store();
 const tones = new Tones();
@@ -29,14 +31,20 @@ const gate = new GateLink(
 const service = new ServiceLink(store, `${scheme}//${location.host}/page${query}`, () => gate.open());
 
 let drawing = false;
+let drawn_at_ms = -kDraw_ms;
 /// Draws once, soon, however much changed.
 function changed(): void {
   if (drawing) return;
   drawing = true;
-  requestAnimationFrame(() => {
-    drawing = false;
-    draw();
-  });
+  const wait_ms = drawn_at_ms + kDraw_ms - performance.now();
+  if (wait_ms > 0) setTimeout(() => requestAnimationFrame(drawNow), wait_ms);
+  else requestAnimationFrame(drawNow);
+}
+
+function drawNow(): void {
+  drawing = false;
+  drawn_at_ms = performance.now();
+  draw();
 }
 
 const walk = new WalkView(store, gate, tones, changed);

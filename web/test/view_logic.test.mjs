@@ -305,6 +305,9 @@ test("labels say riser by going, and lie on the thing", () => {
   assert.ok(Math.abs(labels[0].y_m - (-1.15 - 0.62)) < 1e-3, "at its last edge");
   const nowhere = { ...stairs(), flights: [{ ...flight, pose: [null, null, null, null] }] };
   assert.equal(featureLabels(nowhere).length, 3);
+  const [drop] = stairs().drops;
+  const on_flight = { ...stairs(), drops: [drop, { ...drop, pose: [-0.4, -1.4, 0, 0] }] };
+  assert.equal(featureLabels(on_flight).length, 4, "a flight's edges need no words of their own");
 });
 
 test("edges of a flight are the flight's", () => {
