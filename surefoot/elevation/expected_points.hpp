@@ -58,7 +58,7 @@ class ExpectedPoints {
         float z;
         float offset_m;
     };
-    std::array<Side, 5> sides_;
+    std::array<Side, 5> sides_{};
 };
 
 }  // namespace surefoot::elevation
