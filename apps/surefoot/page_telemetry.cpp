@@ -21,22 +21,15 @@ constexpr std::size_t kMedianFrames = 64;
 /// Layers that cost nothing but a copy.
 constexpr std::array kLayerNames{
     "elevation", "variance", "traversability", "slope", "step", "roughness"};
-std::array<ImageView<const float>, kLayerNames.size()> layers_of(
-    const pipeline::Pipeline& pipeline) {
+std::array<grid::Layer, kLayerNames.size()> layers_of(const pipeline::Pipeline& pipeline) {
     const auto& map = pipeline.map().layers();
     const auto& rating = pipeline.rating();
-    return {map.height_m.view(),
-            map.height_var_m2.view(),
-            rating.traversability.view(),
-            rating.slope.view(),
-            rating.step.view(),
-            rating.roughness.view()};
-}
-
-Image<float> copy_of(ImageView<const float> values) {
-    Image<float> copy(values.width, values.height);
-    for (int y = 0; y < values.height; ++y) std::copy_n(values.row(y), values.width, copy.row(y));
-    return copy;
+    return {map.height_m.copy(),
+            map.height_var_m2.copy(),
+            rating.traversability,
+            rating.slope,
+            rating.step,
+            rating.roughness};
 }
 
 std::int64_t tenth_mm(double metres) {
@@ -65,15 +58,16 @@ void copy_layers(const pipeline::Pipeline& pipeline,
                  std::uint64_t version,
                  std::vector<page::PageLayer>& out) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
+    auto layers = layers_of(pipeline);
     std::uint16_t index = 0;
-    for (const ImageView<const float> values : layers_of(pipeline)) {
-        if (values.width == geometry.nx && values.height == geometry.ny) {
+    for (grid::Layer& values : layers) {
+        if (values.width() == geometry.nx && values.height() == geometry.ny) {
             out.push_back({version,
                            tenth_mm(geometry.origin_m.x()),
                            tenth_mm(geometry.origin_m.y()),
                            static_cast<std::int32_t>(tenth_mm(geometry.resolution_m)),
                            index,
-                           copy_of(values)});
+                           std::move(values)});
         }
         ++index;
     }

@@ -8,24 +8,38 @@
 namespace surefoot::elevation {
 namespace {
 
-TEST(ExpectedPoints, AreThePixelsWhoseRaysMeetTheCell) {
-    camera::RectifiedRig rig;
-    rig.width = 2688;
-    rig.height = 1504;
-    rig.fx_px = 1400.0;
-    rig.fy_px = 1300.0;
-    rig.cx_px = 1340.0;
-    rig.cy_px = 750.0;
-    rig.baseline_m = 0.12;
+/// A camera that looks down by 32 deg, turned and tilted, with a lens of its own.
+camera::RectifiedRig tilted_rig(
+    int width, int height, double fx_px, double fy_px, double cx_px, double cy_px) {
     const Eigen::Quaterniond turned =
         exp_so3({0.03, 0.0, 0.4}) * exp_so3({0.0, 32.0 * std::numbers::pi / 180.0, 0.0});
-    rig.T_body_camera = Pose{turned, {0.1, 0.0, 0.0}} * T_body_optical();
-    const Pose T_odom_body{Eigen::Quaterniond::Identity(), {2.0, 1.0, 1.1}};
+    return {width,
+            height,
+            fx_px,
+            fy_px,
+            cx_px,
+            cy_px,
+            0.12,
+            Pose{turned, {0.1, 0.0, 0.0}} * T_body_optical()};
+}
+
+grid::GridGeometry square(double resolution_m, const Eigen::Vector2d& origin_m) {
     grid::GridGeometry geometry;
-    geometry.resolution_m = 0.025;
+    geometry.resolution_m = resolution_m;
     geometry.nx = 160;
     geometry.ny = 160;
-    geometry.origin_m = {2.0, -0.5};
+    geometry.origin_m = origin_m;
+    return geometry;
+}
+
+Pose standing() {
+    return {Eigen::Quaterniond::Identity(), {2.0, 1.0, 1.1}};
+}
+
+TEST(ExpectedPoints, AreThePixelsWhoseRaysMeetTheCell) {
+    const camera::RectifiedRig rig = tilted_rig(2688, 1504, 1400.0, 1300.0, 1340.0, 750.0);
+    const Pose T_odom_body = standing();
+    const grid::GridGeometry geometry = square(0.025, {2.0, -0.5});
     constexpr double kGround_m = 0.05;
 
     Image<int> met(geometry.nx, geometry.ny, 0);
@@ -57,23 +71,9 @@ TEST(ExpectedPoints, AreThePixelsWhoseRaysMeetTheCell) {
 }
 
 TEST(ExpectedPoints, TellsWhichCellsBothEyesSeeWhole) {
-    camera::RectifiedRig rig;
-    rig.width = 672;
-    rig.height = 376;
-    rig.fx_px = 340.0;
-    rig.fy_px = 330.0;
-    rig.cx_px = 330.0;
-    rig.cy_px = 190.0;
-    rig.baseline_m = 0.12;
-    const Eigen::Quaterniond turned =
-        exp_so3({0.03, 0.0, 0.4}) * exp_so3({0.0, 32.0 * std::numbers::pi / 180.0, 0.0});
-    rig.T_body_camera = Pose{turned, {0.1, 0.0, 0.0}} * T_body_optical();
-    const Pose T_odom_body{Eigen::Quaterniond::Identity(), {2.0, 1.0, 1.1}};
-    grid::GridGeometry geometry;
-    geometry.resolution_m = 0.05;
-    geometry.nx = 160;
-    geometry.ny = 160;
-    geometry.origin_m = {-1.0, -3.0};
+    const camera::RectifiedRig rig = tilted_rig(672, 376, 340.0, 330.0, 330.0, 190.0);
+    const Pose T_odom_body = standing();
+    const grid::GridGeometry geometry = square(0.05, {-1.0, -3.0});
     constexpr float kGround_m = 0.05F;
     const ExpectedPoints expected(rig, T_odom_body, geometry);
     const Pose T_camera_odom = (T_odom_body * rig.T_body_camera).inverse();

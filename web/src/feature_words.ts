@@ -135,10 +135,7 @@ export function featureLabels(stairs: Stairs): FeatureLabel[] {
         ];
   const line = (what: string, { height_m }: LineFeature, rest = "") => `${what} ${metres(height_m)}${rest}`;
   // The table has them all.
-  const drops = stairs.drops.filter(
-    ({ pose: [x_m, y_m] }) =>
-      x_m === null || y_m === null || !stairs.flights.some((flight) => isOnFlight(flight, x_m, y_m)),
-  );
+  const drops = stairs.drops.filter(({ pose: [x_m, y_m] }) => !isOnSomeFlight(stairs.flights, x_m, y_m));
   return [
     ...stairs.flights.flatMap((flight) => at(flight, goingLength_m(flight), ...flightLines(flight))),
     ...drops.flatMap((drop) => at(drop, 0, line("drop", drop, drop.bottom_seen ? "" : " or more"))),
@@ -164,6 +161,10 @@ export function isOnFlight(flight: Flight, x_m: number, y_m: number): boolean {
     along_m < goingLength_m(flight) + room_m &&
     Math.abs(across_m) < (flight.width_m ?? 0) / 2 + room_m
   );
+}
+
+export function isOnSomeFlight(flights: Flight[], x_m: number | null, y_m: number | null): boolean {
+  return x_m !== null && y_m !== null && flights.some((flight) => isOnFlight(flight, x_m, y_m));
 }
 
 const kFarthest_m = 3;

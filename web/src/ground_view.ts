@@ -11,7 +11,7 @@ import {
   paintUnknownTile,
 } from "./ground_picture.ts";
 import { isDark, setAttribute } from "./dom.ts";
-import { featureLabels, isOnFlight, spreadLabels, withoutRepeats } from "./feature_words.ts";
+import { featureLabels, isOnSomeFlight, type LabelBox, spreadLabels, withoutRepeats } from "./feature_words.ts";
 import type { Box, Edge } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
@@ -32,6 +32,12 @@ const kFlightsAlone = { drops: [], kerbs: [], sills: [], doors: [] };
 /// Cells are painted pixel by pixel, several times a second: moving them to a graphics card and back takes longer, and
 /// where there is none and the browser plays one, seconds.
 const kByProcessor: CanvasRenderingContext2DSettings = { willReadFrequently: true };
+
+interface Label extends LabelBox {
+  text: string;
+  font: string;
+  ratio: number; ///< pixels of the picture to one of the page
+}
 
 /// The ground from above, heading up.
 export class GroundView {
@@ -217,7 +223,7 @@ export class GroundView {
       .map((edge) => ({ ...ends(edge), drop_m: (edge.upper_tenth_mm - edge.lower_tenth_mm) * 1e-4 }))
       .filter(({ ax, ay, bx, by }) => Math.hypot(bx - ax, by - ay) > 0.25)
       .map((edge) => ({ ...edge, x_m: (edge.ax + edge.bx) / 2, y_m: (edge.ay + edge.by) / 2 }))
-      .filter(({ x_m, y_m }) => !flights.some((flight) => isOnFlight(flight, x_m, y_m)))
+      .filter(({ x_m, y_m }) => !isOnSomeFlight(flights, x_m, y_m))
       .sort(
         (a, b) =>
           Math.hypot(a.x_m - place.x_m, a.y_m - place.y_m) - Math.hypot(b.x_m - place.x_m, b.y_m - place.y_m),
@@ -230,37 +236,33 @@ export class GroundView {
 
   /// Labels that make room for each other.
   #labels(labels: { lines: string[]; x_m: number; y_m: number }[], size_px: number): void {
-    const context = this.#context;
-    const ratio = Math.min(2, devicePixelRatio || 1);
-    context.save();
-    context.font = `600 ${size_px * ratio}px system-ui, sans-serif`;
-    const boxes = labels.map(({ lines, x_m, y_m }) => {
-      const text = lines.join(", ");
-      const { x, y } = context.getTransform().transformPoint({ x: x_m, y: y_m });
-      return { text, x, y, width: context.measureText(text).width + 14 * ratio, height: 1.56 * size_px * ratio };
-    });
-    context.restore();
-    const back = context.getTransform().inverse();
-    for (const { text, x, y } of spreadLabels(withoutRepeats(boxes), this.#canvas.width, this.#canvas.height)) {
-      const at = back.transformPoint({ x, y });
-      this.#label(text, at.x, at.y, size_px);
-    }
+    const boxes = labels.map(({ lines, x_m, y_m }) => this.#labelBox(lines.join(", "), x_m, y_m, size_px));
+    for (const box of spreadLabels(withoutRepeats(boxes), this.#canvas.width, this.#canvas.height)) this.#drawLabel(box);
   }
 
-  /// Words at a place of the present drawing units, upright.
-  #label(text: string, x: number, y: number, size_px: number): void {
+  /// Words at a place of the present drawing units, upright: in pixels.
+  #labelBox(text: string, x: number, y: number, size_px: number): Label {
     const context = this.#context;
-    const at = context.getTransform().transformPoint({ x, y });
     const ratio = Math.min(2, devicePixelRatio || 1);
+    const at = context.getTransform().transformPoint({ x, y });
+    const font = `600 ${size_px * ratio}px system-ui, sans-serif`;
     context.save();
-    context.setTransform(1, 0, 0, 1, at.x, at.y);
-    context.font = `600 ${size_px * ratio}px system-ui, sans-serif`;
+    context.font = font;
+    const width = context.measureText(text).width + 14 * ratio;
+    context.restore();
+    return { text, font, ratio, x: at.x, y: at.y, width, height: size_px * 1.56 * ratio };
+  }
+
+  #drawLabel({ text, font, ratio, x, y, width, height }: Label): void {
+    const context = this.#context;
+    context.save();
+    context.setTransform(1, 0, 0, 1, x, y);
+    context.font = font;
     context.textAlign = "center";
     context.textBaseline = "middle";
-    const half = context.measureText(text).width / 2 + 7 * ratio;
     context.fillStyle = "rgb(20 23 28 / 0.88)";
     context.beginPath();
-    context.roundRect(-half, -size_px * 0.78 * ratio, 2 * half, size_px * 1.56 * ratio, 6 * ratio);
+    context.roundRect(-width / 2, -height / 2, width, height, 6 * ratio);
     context.fill();
     context.fillStyle = "#fff";
     context.fillText(text, 0, ratio);
@@ -291,7 +293,7 @@ export class GroundView {
       context.beginPath();
       context.arc(0, 0, radius_m, 0, 2 * Math.PI);
       context.stroke();
-      this.#label(`${radius_m} m`, radius_m * Math.cos(0.62), -radius_m * Math.sin(0.62), 13);
+      this.#drawLabel(this.#labelBox(`${radius_m} m`, radius_m * Math.cos(0.62), -radius_m * Math.sin(0.62), 13));
     }
     const radius_m = this.#store.vouch_radius_m;
     if (radius_m === undefined) return;
