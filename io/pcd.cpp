@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "io/bytes.hpp"
+#include "io/cloud_rows.hpp"
 #include "io/file.hpp"
 #include "io/lzf.hpp"
 #include "io/point_cloud.hpp"
@@ -360,6 +361,33 @@ Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file) {
     if (cloud.points_m.empty() || cloud.height == 0) cloud.height = 1;
     cloud.T_cloud_sensor = header->T_cloud_sensor;
     return cloud;
+}
+
+std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size) {
+    const Result<Header> header = parse_header(head, "");
+    if (!header || header->data != Header::Data::binary || !check_fields(*header, ""))
+        return std::nullopt;
+    CloudRows rows;
+    rows.first_byte = head.size() - header->body.size();
+    rows.rows = *header->points;
+    rows.row_bytes = header->stride();
+    if (rows.rows > (size - rows.first_byte) / rows.row_bytes) return std::nullopt;
+    rows.head = [text = std::string(head.substr(0, rows.first_byte))](std::uint64_t count) {
+        std::string with_count;
+        LineReader lines(text);
+        while (const auto line = lines.next()) {
+            const auto words = split(*line);
+            const std::string_view key = words.empty() ? std::string_view() : words[0];
+            if (key == "WIDTH" || key == "POINTS") {
+                with_count += fmt::format("{} {}", key, count);
+            } else {
+                with_count += key == "HEIGHT" ? "HEIGHT 1" : std::string(*line);
+            }
+            with_count += '\n';
+        }
+        return with_count;
+    };
+    return rows;
 }
 
 std::string format_pcd(const PointCloud& cloud, const CloudFormat& format) {

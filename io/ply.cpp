@@ -3,10 +3,12 @@
 // properties, then their rows, as text or packed in either byte order.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "io/bytes.hpp"
+#include "io/cloud_rows.hpp"
 #include "io/file.hpp"
 #include "io/point_cloud.hpp"
 #include "io/text.hpp"
@@ -327,6 +329,34 @@ Result<PointCloud> parse_ply(std::string_view bytes, const std::string& file) {
         if (!skip_element(values, element)) return too_short(file, element, header->body.size());
     }
     return input_error(fmt::format("{}: PLY without vertices", file));
+}
+
+std::optional<CloudRows> ply_rows(std::string_view head, std::uint64_t size) {
+    const Result<Header> header = parse_header(head, "");
+    if (!header || header->encoding == Header::Encoding::ascii || header->elements.empty())
+        return std::nullopt;
+    const Element& vertex = header->elements.front();
+    const auto is_list = [](const Property& property) { return property.count_type.has_value(); };
+    if (vertex.name != "vertex" || vertex.properties.empty() ||
+        std::any_of(vertex.properties.begin(), vertex.properties.end(), is_list))
+        return std::nullopt;
+    CloudRows rows;
+    rows.first_byte = head.size() - header->body.size();
+    rows.rows = vertex.count;
+    rows.row_bytes = vertex.smallest_row(true);
+    if (rows.rows > (size - rows.first_byte) / rows.row_bytes) return std::nullopt;
+    rows.head = [text = std::string(head.substr(0, rows.first_byte))](std::uint64_t count) {
+        std::string with_count;
+        LineReader lines(text);
+        while (const auto line = lines.next()) {
+            const auto words = split(*line);
+            const bool counts = words.size() == 3 && words[0] == "element" && words[1] == "vertex";
+            with_count += counts ? fmt::format("element vertex {}", count) : std::string(*line);
+            with_count += '\n';
+        }
+        return with_count;
+    };
+    return rows;
 }
 
 std::string format_ply(const PointCloud& cloud, const CloudFormat& format) {

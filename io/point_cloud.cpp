@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "io/file.hpp"
 
 namespace surefoot::io {
@@ -32,21 +35,30 @@ std::optional<std::string> PointCloud::problem() const {
     return std::nullopt;
 }
 
+Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) {
+    const std::string extension = extension_of(file);
+    if (extension == ".ply") return parse_ply(bytes, file);
+    if (extension == ".pcd") return parse_pcd(bytes, file);
+    if (extension == ".las") return parse_las(bytes, file);
+    if (extension == ".vtk") return parse_vtk(bytes, file);
+    return parse_text_cloud(bytes, file);
+}
+
 Result<PointCloud> read_cloud(const std::string& path) {
+    static constexpr std::string_view kExtensions[] = {
+        ".ply", ".pcd", ".las", ".vtk", ".xyz", ".asc", ".txt", ".csv"};
     const std::string extension = extension_of(path);
-    const bool text =
-        extension == ".xyz" || extension == ".asc" || extension == ".txt" || extension == ".csv";
-    if (!text && extension != ".ply" && extension != ".pcd") {
+    if (std::find(std::begin(kExtensions), std::end(kExtensions), extension) ==
+        std::end(kExtensions)) {
         const char* hint = extension == ".laz"
-                               ? "LAZ has no packaged reader: convert it to PLY or PCD first"
-                               : "clouds are read from .ply .pcd .xyz .asc .txt .csv";
+                               ? "nothing packaged reads LAZ: convert it with 'pdal translate "
+                                 "IN.laz OUT.las' or 'laszip'"
+                               : "clouds are read from .ply .pcd .las .vtk .xyz .asc .txt .csv";
         return input_error(fmt::format("{}: unknown cloud format '{}'; {}", path, extension, hint));
     }
     const Result<std::string> bytes = read_file(path);
     if (!bytes) return bytes.error();
-    if (extension == ".ply") return parse_ply(*bytes, path);
-    if (extension == ".pcd") return parse_pcd(*bytes, path);
-    return parse_text_cloud(*bytes, path);
+    return parse_cloud(*bytes, path);
 }
 
 }  // namespace surefoot::io

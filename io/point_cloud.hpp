@@ -40,8 +40,10 @@ struct CloudFormat {
     bool double_precision = false;  ///< for large (projected) coordinates; float keeps 24 bits
 };
 
-/// By extension: .ply, .pcd, and .xyz .asc .txt .csv as text.
+/// By extension: .ply, .pcd, .las, .vtk, and .xyz .asc .txt .csv as text.
 [[nodiscard]] Result<PointCloud> read_cloud(const std::string& path);
+/// The content of such a file; `file` says by its extension what it is.
+[[nodiscard]] Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file);
 
 /// PLY 1.0: ascii, binary_little_endian, binary_big_endian; vertices with x y z, optional colours
 /// (red green blue) and any further numeric property as scalar. Other elements are stepped over.
@@ -57,6 +59,12 @@ struct CloudFormat {
 [[nodiscard]] Status write_pcd(const std::string& path,
                                const PointCloud& cloud,
                                const CloudFormat& format = {});
+
+/// LAS 1.0 to 1.4, point formats 0 to 10: intensity, classification and colours; not LAZ.
+[[nodiscard]] Result<PointCloud> parse_las(std::string_view bytes, const std::string& file);
+
+/// The POINTS of a legacy VTK file, as text.
+[[nodiscard]] Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file);
 
 /// Lines of at least "x y z" with blanks, commas, semicolons or tabs between; '#' and '//' lines
 /// are comments; a "//X Y Z name ..." head names the further columns, which become scalars.

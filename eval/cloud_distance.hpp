@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/geometry/kd_tree.hpp"
+
+namespace surefoot::eval {
+
+/// C2C: from each compared point to the nearest *point* of the reference [m], in the order of
+/// `compared_m`; points must be finite, the reference not empty. Never negative, and never smaller
+/// than what the reference's own spacing allows: of two clouds of one surface it tells the spacing.
+[[nodiscard]] std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
+                                                   std::span<const Eigen::Vector3f> compared_m,
+                                                   Executor& executor = serial());
+
+/// Distances in figures; NaN values are left out, and every figure but count is NaN without values.
+struct DistanceFigures {
+    std::int64_t count = 0;
+    double mean_m = 0.0;
+    double std_m = 0.0;  ///< divided by n
+    double rms_m = 0.0;
+    double least_m = 0.0;
+    double most_m = 0.0;
+    double p50_m = 0.0;  ///< percentiles of the values as they are, linear between two ranks
+    double p90_m = 0.0;
+    double p99_m = 0.0;
+    double median_abs_m = 0.0;
+    double p90_abs_m = 0.0;
+};
+[[nodiscard]] DistanceFigures distance_figures(std::span<const float> distances_m);
+
+}  // namespace surefoot::eval

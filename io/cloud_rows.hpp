@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace surefoot::io {
+
+/// A cloud file whose points are rows of one size: any run of them, behind a head that says how
+/// many they are, is a file of the same format.
+struct CloudRows {
+    std::uint64_t first_byte = 0;
+    std::uint64_t rows = 0;
+    std::uint64_t row_bytes = 0;
+    std::function<std::string(std::uint64_t)> head;  ///< for a number of rows
+};
+
+/// From the first bytes of a file of `size` bytes. Nothing where it is damaged, or its points are
+/// no such rows (text, compressed, lists).
+[[nodiscard]] std::optional<CloudRows> ply_rows(std::string_view head, std::uint64_t size);
+[[nodiscard]] std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size);
+[[nodiscard]] std::optional<CloudRows> las_rows(std::string_view head, std::uint64_t size);
+
+}  // namespace surefoot::io

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/cloud_writer.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "io/file.hpp"
+
+namespace surefoot::io {
+namespace {
+
+Error cannot_write(const std::string& path, int error) {
+    return output_error(
+        fmt::format("{}: cannot write: {}", path, std::generic_category().message(error)));
+}
+
+/// A comment that takes the place that a number of fewer digits leaves.
+std::string filler(const char* comment, std::int64_t points, int times) {
+    constexpr int kDigits = 20;
+    const int digits = static_cast<int>(std::to_string(points).size());
+    return fmt::format("{} {:->{}}\n", comment, "", times * (kDigits - digits));
+}
+
+/// The number behind a key at the beginning of a line becomes another.
+void put_count(std::string& head, const std::string& key, std::int64_t points) {
+    const std::size_t number = head.find("\n" + key + " ") + key.size() + 2;
+    head.replace(number, head.find('\n', number) - number, std::to_string(points));
+}
+
+}  // namespace
+
+Result<CloudWriter> CloudWriter::create(const std::string& path, const CloudFormat& format) {
+    const std::string extension = extension_of(path);
+    const bool text =
+        extension == ".xyz" || extension == ".asc" || extension == ".txt" || extension == ".csv";
+    if (!text && extension != ".ply" && extension != ".pcd") {
+        return usage_error(fmt::format(
+            "{}: clouds are written as .ply .pcd .xyz .asc .txt .csv, not '{}'", path, extension));
+    }
+    const Kind kind = text ? Kind::text : extension == ".ply" ? Kind::ply : Kind::pcd;
+    CloudWriter writer(path, kind, format, -1);
+    writer.descriptor_ =
+        ::open(writer.part_path().c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
+    if (writer.descriptor_ < 0) return cannot_write(path, errno);
+    return writer;
+}
+
+CloudWriter::~CloudWriter() {
+    if (descriptor_ < 0) return;
+    ::close(descriptor_);
+    ::unlink(part_path().c_str());
+}
+
+CloudWriter::CloudWriter(CloudWriter&& other) noexcept
+    : path_(std::move(other.path_)),
+      kind_(other.kind_),
+      format_(other.format_),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      head_(std::move(other.head_)),
+      points_(other.points_),
+      size_(other.size_) {}
+
+/// Of the same length for every number of points.
+std::string CloudWriter::head(std::int64_t points) const {
+    std::string head = head_;
+    if (kind_ == Kind::ply) {
+        put_count(head, "element vertex", points);
+        const std::string_view end = "end_header\n";
+        head.insert(head.size() - end.size(), filler("comment", points, 1));
+    } else if (kind_ == Kind::pcd) {
+        put_count(head, "WIDTH", points);
+        put_count(head, "HEIGHT", 1);
+        put_count(head, "POINTS", points);
+        head.insert(0, filler("#", points, 2));
+    }
+    return head;
+}
+
+Status CloudWriter::write_at(std::int64_t offset, std::string_view bytes) const {
+    while (!bytes.empty()) {
+        const ssize_t written =
+            ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return cannot_write(path_, errno);
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+        offset += written;
+    }
+    return {};
+}
+
+Status CloudWriter::add(const PointCloud& block) {
+    if (descriptor_ < 0) return output_error(fmt::format("{}: is finished already", path_));
+    if (const auto problem = block.problem()) return output_error(path_ + ": " + *problem);
+    const CloudFormat format{true, format_.double_precision};
+    std::string bytes = kind_ == Kind::ply   ? format_ply(block, format)
+                        : kind_ == Kind::pcd ? format_pcd(block, format)
+                                             : format_text_cloud(block);
+    const std::string_view last = kind_ == Kind::ply   ? "end_header\n"
+                                  : kind_ == Kind::pcd ? "DATA binary\n"
+                                                       : "\n";
+    const std::size_t body = bytes.find(last) + last.size();
+    if (size_ == 0) {
+        head_ = bytes.substr(0, body);
+        if (Status status = write_at(0, head(0)); !status) return status;
+        size_ = static_cast<std::int64_t>(head(0).size());
+    }
+    const std::string_view rows = std::string_view(bytes).substr(body);
+    if (Status status = write_at(size_, rows); !status) return status;
+    size_ += static_cast<std::int64_t>(rows.size());
+    points_ += static_cast<std::int64_t>(block.points_m.size());
+    return {};
+}
+
+Status CloudWriter::finish() {
+    if (descriptor_ < 0) return output_error(fmt::format("{}: is finished already", path_));
+    if (size_ == 0) {
+        if (Status status = add(PointCloud{}); !status) return status;
+    }
+    if (Status status = write_at(0, head(points_)); !status) return status;
+    if (::close(std::exchange(descriptor_, -1)) != 0) return cannot_write(path_, errno);
+    if (std::rename(part_path().c_str(), path_.c_str()) == 0) return {};
+    const int error = errno;
+    ::unlink(part_path().c_str());
+    return cannot_write(path_, error);
+}
+
+}  // namespace surefoot::io

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/geometry/kd_tree.hpp"
+
+namespace surefoot::geometry {
+
+struct AlignmentConfig {
+    int most_iterations = 100;
+    /// Points of the moved cloud that are used, taken evenly; all where there are fewer.
+    int most_points = 100000;
+    int normal_neighbours = 30;  ///< of a reference point, that give its normal
+    /// Pairs farther apart than this do not count [m]; 0 = all do.
+    double reach_m = 0.0;
+    /// Share of the pairs that count, nearest first, in (0, 1]. Less than 1 where the clouds do not
+    /// cover each other; it also gives up what holds weak directions.
+    double kept_share = 1.0;
+    /// Directions along all surfaces are held by borders that both clouds have.
+    bool borders = true;
+    double smallest_step_m = 1e-5;  ///< with less than both the alignment has converged
+    double smallest_step_rad = 1e-5;
+};
+
+/// One iteration: what its pairs said before the step, and the step.
+struct AlignmentStep {
+    std::int64_t pairs = 0;
+    std::int64_t borders = 0;    ///< points on a border of both clouds
+    double rms_m = 0.0;          ///< of the distances across the reference's surface
+    double nearest_rms_m = 0.0;  ///< of the distances between the points of a pair
+    double step_m = 0.0;
+    double step_rad = 0.0;
+};
+
+struct CloudAlignment {
+    Pose T_reference_moved;
+    bool converged = false;
+    /// Directions of the six (three of them turns) along all surfaces that are held by borders
+    /// alone, and those that nothing holds: there the guess stays as it was. A bare floor has three
+    /// of them together.
+    int border_directions = 0;
+    int free_directions = 0;
+    /// One sigma of the place and of the turn, from the scatter across the surface and the pairs'
+    /// number, as if each pair erred by itself; of directions that surfaces hold alone.
+    double sigma_m = 0.0;
+    double sigma_rad = 0.0;
+    std::vector<AlignmentStep> steps;
+};
+
+/// Iterative closest point with distances across the reference's surface (Chen and Medioni 1992;
+/// Besl and McKay 1992 for the pairs): of points on stairs and floors those to the nearest *point*
+/// slide by the spacing of the points. Along stairs that have no side walls surfaces hold nothing;
+/// there the places where both clouds end are brought together, if the guess has them within some
+/// spacings of each other. The same result for any number of threads, and in every run.
+/// The moved cloud and the reference must not be empty; points are finite.
+[[nodiscard]] CloudAlignment align_clouds(const KdTree& reference,
+                                          std::span<const Eigen::Vector3f> moved_m,
+                                          const Pose& T_reference_moved_guess,
+                                          const AlignmentConfig& config,
+                                          Executor& executor = serial());
+
+}  // namespace surefoot::geometry

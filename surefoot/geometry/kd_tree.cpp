@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/geometry/kd_tree.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+
+#include "surefoot/core/assert.hpp"
+
+namespace surefoot::geometry {
+namespace {
+
+using Eigen::Vector3f;
+
+/// Points of a leaf, at most. Searches of one million points took least time with 8 to 16.
+constexpr std::size_t kLeaf = 12;
+/// Branches that each are a piece of work of their own.
+constexpr int kParallelLevels = 5;
+/// Below this the pieces are not worth their threads.
+constexpr std::size_t kSmallestPiece = 2048;
+/// Sums of three squares are off by less; what lies within it of the best is looked at.
+constexpr float kRounding = 1.0F - 4e-7F;
+
+int level_of(std::uint32_t node) noexcept {
+    return static_cast<int>(std::bit_width(node)) - 1;
+}
+
+float sq_distance(const Vector3f& a, const Vector3f& b) noexcept {
+    const float dx = a.x() - b.x();
+    const float dy = a.y() - b.y();
+    const float dz = a.z() - b.z();
+    return dx * dx + dy * dy + dz * dz;
+}
+
+/// One nearest point.
+struct OneNearest {
+    Vector3f query_m;
+    Neighbour best;
+
+    [[nodiscard]] float bound() const noexcept { return best.sq_distance_m2; }
+    void scan(std::span<const Vector3f> run, std::size_t first) noexcept {
+        for (std::size_t i = 0; i < run.size(); ++i) {
+            const float sq = sq_distance(run[i], query_m);
+            if (sq < best.sq_distance_m2) best = {static_cast<std::uint32_t>(first + i), sq};
+        }
+    }
+};
+
+/// Several, sorted by insertion: they are few.
+struct SomeNearest {
+    Vector3f query_m;
+    std::span<Neighbour> found;
+    std::size_t count = 0;
+
+    [[nodiscard]] float bound() const noexcept {
+        return count < found.size() ? std::numeric_limits<float>::infinity()
+                                    : found.back().sq_distance_m2;
+    }
+    void scan(std::span<const Vector3f> run, std::size_t first) noexcept {
+        for (std::size_t i = 0; i < run.size(); ++i) {
+            const float sq = sq_distance(run[i], query_m);
+            if (!(sq < bound())) continue;
+            std::size_t at = count < found.size() ? count++ : count - 1;
+            for (; at > 0 && found[at - 1].sq_distance_m2 > sq; --at) found[at] = found[at - 1];
+            found[at] = {static_cast<std::uint32_t>(first + i), sq};
+        }
+    }
+};
+
+}  // namespace
+
+KdTree::KdTree(std::vector<Vector3f> points_m, Executor& executor)
+    : points_m_(std::move(points_m)) {
+    SUREFOOT_ASSERT(points_m_.size() < Neighbour::kNone);
+    if (points_m_.empty()) return;
+    while ((points_m_.size() >> levels_) + 1 > kLeaf) ++levels_;
+    nodes_.resize(std::size_t{1} << levels_);
+    box_ = {points_m_.front(), points_m_.front()};
+    for (const Vector3f& p_m : points_m_) {
+        box_.low_m = box_.low_m.cwiseMin(p_m);
+        box_.high_m = box_.high_m.cwiseMax(p_m);
+    }
+    // The first levels are cut one after the other, then each branch by itself: the same tree for
+    // any number of threads.
+    const int shared = points_m_.size() >> kParallelLevels < kSmallestPiece
+                           ? 0
+                           : std::min(levels_, kParallelLevels);
+    for (int level = 0; level < shared; ++level) {
+        executor.parallel_for(1 << level,
+                              [&](int i) { cut((1U << level) + static_cast<std::uint32_t>(i)); });
+    }
+    executor.parallel_for(1 << shared,
+                          [&](int i) { build((1U << shared) + static_cast<std::uint32_t>(i)); });
+}
+
+/// Halves the points of a node across the longer side of their box.
+void KdTree::cut(std::uint32_t node) {
+    const int level = level_of(node);
+    const std::uint64_t number = node - (1U << level);
+    const auto at = [&](std::size_t i) {
+        return points_m_.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    const auto first = at(first_of(level, number));
+    const auto middle = at(first_of(level + 1, 2 * number + 1));
+    const auto end = at(first_of(level, number + 1));
+    Vector3f low_m = *first;
+    Vector3f high_m = *first;
+    for (auto p = first; p != end; ++p) {
+        low_m = low_m.cwiseMin(*p);
+        high_m = high_m.cwiseMax(*p);
+    }
+    Eigen::Index axis = 0;
+    (high_m - low_m).maxCoeff(&axis);
+    std::nth_element(first, middle, end, [axis](const Vector3f& a, const Vector3f& b) {
+        return a[axis] < b[axis];
+    });
+    float last_m = low_m[axis];
+    for (auto p = first; p != middle; ++p) last_m = std::max(last_m, (*p)[axis]);
+    nodes_[node] = {last_m, (*middle)[axis], static_cast<std::int32_t>(axis)};
+}
+
+void KdTree::build(std::uint32_t node) {
+    if (level_of(node) == levels_) return;
+    cut(node);
+    build(2 * node);
+    build(2 * node + 1);
+}
+
+std::size_t KdTree::first_in_leaf(std::uint32_t node) const noexcept {
+    return first_of(levels_, node - (1U << levels_));
+}
+
+KdTree::Run KdTree::leaf(std::uint32_t node) const noexcept {
+    const std::size_t first = first_in_leaf(node);
+    return Run(points_m_).subspan(first, first_in_leaf(node + 1) - first);
+}
+
+/// `offset_m`: from the query to the box of the node, along each axis.
+template <typename Search>
+void KdTree::descend(Search& search, std::uint32_t node, Vector3f& offset_m) const {
+    if (level_of(node) == levels_) {
+        search.scan(leaf(node), first_in_leaf(node));
+        return;
+    }
+    const Node& cut = nodes_[node];
+    const float at_m = search.query_m[cut.axis];
+    const bool right = (at_m - cut.low_m) + (at_m - cut.high_m) >= 0.0F;
+    descend(search, 2 * node + (right ? 1 : 0), offset_m);
+    const float near_m = offset_m[cut.axis];
+    offset_m[cut.axis] = right ? at_m - cut.low_m : cut.high_m - at_m;
+    if (offset_m.squaredNorm() * kRounding <= search.bound())
+        descend(search, 2 * node + (right ? 0 : 1), offset_m);
+    offset_m[cut.axis] = near_m;
+}
+
+Neighbour KdTree::neighbour(const Vector3f& query_m, std::uint32_t index) const {
+    return {index, sq_distance(points_m_[index], query_m)};
+}
+
+Neighbour KdTree::nearest(const Vector3f& query_m, Neighbour start) const {
+    if (empty()) return start;
+    OneNearest search{query_m, start};
+    Vector3f offset_m = offset_to_box(query_m);
+    descend(search, 1, offset_m);
+    return search.best;
+}
+
+std::size_t KdTree::nearest(const Vector3f& query_m, std::span<Neighbour> found) const {
+    if (empty() || found.empty()) return 0;
+    SomeNearest search{query_m, found, 0};
+    Vector3f offset_m = offset_to_box(query_m);
+    descend(search, 1, offset_m);
+    return search.count;
+}
+
+Vector3f KdTree::offset_to_box(const Vector3f& query_m) const {
+    const Vector3f zero = Vector3f::Zero();
+    return (box_.low_m - query_m).cwiseMax(query_m - box_.high_m).cwiseMax(zero);
+}
+
+std::uint32_t KdTree::find(const Vector3f& point_m) const {
+    const Neighbour same = nearest(point_m, {Neighbour::kNone, std::numeric_limits<float>::min()});
+    return same.index != Neighbour::kNone && points_m_[same.index] == point_m ? same.index
+                                                                              : Neighbour::kNone;
+}
+
+/// Visits the leaves whose box the region may touch.
+template <typename Region>
+void KdTree::walk(const Region& region, std::uint32_t node, const Box& box, OnRun on_run) const {
+    if (!region.may_touch(box.low_m, box.high_m)) return;
+    if (level_of(node) == levels_) return on_run(leaf(node));
+    const Node& cut = nodes_[node];
+    Box part = box;
+    part.high_m[cut.axis] = cut.low_m;
+    walk(region, 2 * node, part, on_run);
+    part = box;
+    part.low_m[cut.axis] = cut.high_m;
+    walk(region, 2 * node + 1, part, on_run);
+}
+
+namespace {
+
+struct BallRegion {
+    Vector3f middle_m;
+    float sq_radius_m2;
+
+    [[nodiscard]] bool may_touch(const Vector3f& low_m, const Vector3f& high_m) const {
+        const Vector3f zero = Vector3f::Zero();
+        return (low_m - middle_m).cwiseMax(middle_m - high_m).cwiseMax(zero).squaredNorm() <=
+               sq_radius_m2 / kRounding;
+    }
+};
+
+/// Axes that tell a box from a cylinder: those of the box, that of the cylinder and two across it
+/// (Ericson 2005, Real-Time Collision Detection, 5.2.1). Which others there are does not pay.
+class CylinderRegion {
+  public:
+    explicit CylinderRegion(const Cylinder& c) : middle_m_(c.middle_m) {
+        axes_.col(0) = c.axis;
+        axes_.col(1) = c.axis.unitOrthogonal();
+        axes_.col(2) = c.axis.cross(axes_.col(1));
+        reach_m_ = {c.half_length_m, c.radius_m, c.radius_m};
+        const Vector3f across = (Vector3f::Ones() - c.axis.cwiseAbs2()).cwiseMax(0.0F).cwiseSqrt();
+        box_m_ = c.half_length_m * c.axis.cwiseAbs() + c.radius_m * across;
+        // What roundings of coordinates of this size may add up to.
+        const Vector3f most = middle_m_.cwiseAbs() + box_m_;
+        slack_m_ = 1e-6F * most.maxCoeff();
+    }
+    [[nodiscard]] bool may_touch(const Vector3f& low_m, const Vector3f& high_m) const {
+        const Vector3f to_m = 0.5F * (low_m + high_m) - middle_m_;
+        const Vector3f half_m = 0.5F * (high_m - low_m) + Vector3f::Constant(slack_m_);
+        if ((to_m.cwiseAbs() - half_m - box_m_).maxCoeff() > 0.0F) return false;
+        const Vector3f along_m = (axes_.transpose() * to_m).cwiseAbs();
+        const Vector3f box_along_m = axes_.cwiseAbs().transpose() * half_m;
+        return (along_m - box_along_m - reach_m_).maxCoeff() <= 0.0F;
+    }
+
+  private:
+    Vector3f middle_m_;
+    Eigen::Matrix3f axes_;
+    Vector3f reach_m_;  ///< along the axes
+    Vector3f box_m_;    ///< along those of the box
+    float slack_m_ = 0.0F;
+};
+
+}  // namespace
+
+void KdTree::walk_ball(const Vector3f& middle_m, float radius_m, OnRun on_run) const {
+    if (!empty()) walk(BallRegion{middle_m, radius_m * radius_m}, 1, box_, on_run);
+}
+
+void KdTree::walk_cylinder(const Cylinder& cylinder, OnRun on_run) const {
+    if (!empty()) walk(CylinderRegion{cylinder}, 1, box_, on_run);
+}
+
+}  // namespace surefoot::geometry

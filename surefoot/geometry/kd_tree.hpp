@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+
+namespace surefoot::geometry {
+
+/// A point of a tree and how far it is.
+struct Neighbour {
+    static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t index = kNone;  ///< in `KdTree::points_m`
+    float sq_distance_m2 = std::numeric_limits<float>::infinity();
+};
+
+/// A cylinder by the middle of its axis.
+struct Cylinder {
+    Eigen::Vector3f middle_m = Eigen::Vector3f::Zero();
+    Eigen::Vector3f axis = Eigen::Vector3f::UnitZ();  ///< unit
+    float radius_m = 0.0F;
+    float half_length_m = 0.0F;
+};
+
+/// Balanced k-d tree over points (Bentley 1975; Friedman, Bentley and Finkel 1977). It takes the
+/// points over and puts them into an order of its own, leaf by leaf, so that a leaf is a run of
+/// memory and no index is kept: 12 bytes a point and about one more for the nodes. Points are
+/// floats, relative to an origin near them; distances are exact to the rounding of
+/// floats, whatever the order of the points was. Searches are const and may run on many threads.
+///
+/// Errors: none; points must be finite, and fewer than 2^32 - 1.
+class KdTree {
+  public:
+    explicit KdTree(std::vector<Eigen::Vector3f> points_m, Executor& executor = serial());
+
+    [[nodiscard]] bool empty() const noexcept { return points_m_.empty(); }
+    /// In the order of the tree.
+    [[nodiscard]] std::span<const Eigen::Vector3f> points_m() const noexcept { return points_m_; }
+
+    /// The nearest point, or `start` where none is nearer than it. A start that is near already
+    /// (that of the query before) makes the search short.
+    [[nodiscard]] Neighbour nearest(const Eigen::Vector3f& query_m, Neighbour start = {}) const;
+    /// What `start` should be: point `index` as a neighbour of `query_m`.
+    [[nodiscard]] Neighbour neighbour(const Eigen::Vector3f& query_m, std::uint32_t index) const;
+
+    /// The nearest points, ascending; a query that is a point of the tree is one of its own.
+    /// Returns how many there are: `found.size()`, or all points where there are fewer.
+    std::size_t nearest(const Eigen::Vector3f& query_m, std::span<Neighbour> found) const;
+
+    /// A point with exactly these coordinates; `Neighbour::kNone` where there is none.
+    [[nodiscard]] std::uint32_t find(const Eigen::Vector3f& point_m) const;
+
+    /// Calls `visit(std::span<const Eigen::Vector3f>)` with runs of points that hold all those of
+    /// the ball, and others.
+    template <typename Visit>
+    void runs_near_ball(const Eigen::Vector3f& middle_m, float radius_m, Visit&& visit) const {
+        walk_ball(middle_m, radius_m, OnRun(visit));
+    }
+    /// The same for a cylinder.
+    template <typename Visit>
+    void runs_near_cylinder(const Cylinder& cylinder, Visit&& visit) const {
+        walk_cylinder(cylinder, OnRun(visit));
+    }
+
+  private:
+    using Run = std::span<const Eigen::Vector3f>;
+    /// What is to be done with a run, by reference.
+    class OnRun {
+      public:
+        template <typename Visit>
+        explicit OnRun(Visit& visit)
+            : visit_(&visit), call_([](void* v, Run run) { (*static_cast<Visit*>(v))(run); }) {}
+        void operator()(Run run) const { call_(visit_, run); }
+
+      private:
+        void* visit_;
+        void (*call_)(void*, Run);
+    };
+    /// What lies left ends at `low_m`, what lies right begins at `high_m`.
+    struct Node {
+        float low_m = 0.0F;
+        float high_m = 0.0F;
+        std::int32_t axis = 0;
+    };
+    struct Box {
+        Eigen::Vector3f low_m;
+        Eigen::Vector3f high_m;
+    };
+
+    void walk_ball(const Eigen::Vector3f& middle_m, float radius_m, OnRun on_run) const;
+    void walk_cylinder(const Cylinder& cylinder, OnRun on_run) const;
+    template <typename Region>
+    void walk(const Region& region, std::uint32_t node, const Box& box, OnRun on_run) const;
+    template <typename Search>
+    void descend(Search& search, std::uint32_t node, Eigen::Vector3f& offset_m) const;
+
+    void cut(std::uint32_t node);
+    void build(std::uint32_t node);
+    /// First point of a node of a level; nodes of a level share the points as evenly as it goes.
+    [[nodiscard]] std::size_t first_of(int level, std::uint64_t number) const noexcept {
+        return static_cast<std::size_t>((points_m_.size() * number) >> level);
+    }
+    [[nodiscard]] std::size_t first_in_leaf(std::uint32_t node) const noexcept;
+    [[nodiscard]] Run leaf(std::uint32_t node) const noexcept;
+    [[nodiscard]] Eigen::Vector3f offset_to_box(const Eigen::Vector3f& query_m) const;
+
+    std::vector<Eigen::Vector3f> points_m_;
+    std::vector<Node> nodes_;  ///< children of i are 2 i and 2 i + 1; the root is 1
+    int levels_ = 0;           ///< above the leaves
+    Box box_{Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+};
+
+}  // namespace surefoot::geometry

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/geometry/surface_normal.hpp"
+
+#include <cmath>
+
+#include "surefoot/geometry/symmetric3.hpp"
+
+namespace surefoot::geometry {
+namespace {
+
+/// Sums over points, counted from the middle of the ball.
+struct Sums {
+    int count = 0;
+    Eigen::Vector3d first = Eigen::Vector3d::Zero();
+    Symmetric3 second;
+
+    void add(const Eigen::Vector3d& d) {
+        ++count;
+        first += d;
+        second.xx += d.x() * d.x();
+        second.xy += d.x() * d.y();
+        second.xz += d.x() * d.z();
+        second.yy += d.y() * d.y();
+        second.yz += d.y() * d.z();
+        second.zz += d.z() * d.z();
+    }
+    [[nodiscard]] Symmetric3 covariance() const {
+        const double n = count;
+        const Eigen::Vector3d m = first / n;
+        return {second.xx / n - m.x() * m.x(),
+                second.xy / n - m.x() * m.y(),
+                second.xz / n - m.x() * m.z(),
+                second.yy / n - m.y() * m.y(),
+                second.yz / n - m.y() * m.z(),
+                second.zz / n - m.z() * m.z()};
+    }
+};
+
+}  // namespace
+
+std::optional<Eigen::Vector3f> surface_normal(const KdTree& cloud,
+                                              const Eigen::Vector3f& middle_m,
+                                              float radius_m) {
+    const Eigen::Vector3d from_m = middle_m.cast<double>();
+    const double sq_radius_m2 = static_cast<double>(radius_m) * static_cast<double>(radius_m);
+    Sums sums;
+    cloud.runs_near_ball(middle_m, radius_m, [&](std::span<const Eigen::Vector3f> run) {
+        for (const Eigen::Vector3f& p_m : run) {
+            const Eigen::Vector3d to_m = p_m.cast<double>() - from_m;
+            if (to_m.squaredNorm() <= sq_radius_m2) sums.add(to_m);
+        }
+    });
+    if (sums.count < 3) return std::nullopt;
+    const SmallestAxis thin = smallest_axis(sums.covariance());
+    // As in plane_fit: a millionth of the ball across a line is no surface.
+    constexpr double kLine = 1e-6;
+    if (!(thin.middle > kLine * kLine * sq_radius_m2)) return std::nullopt;
+    Eigen::Vector3d normal = thin.direction;
+    // What is upright within roundings has no upper side that would mean anything.
+    constexpr double kUpright = 1e-6;
+    const double side = std::abs(normal.z()) > kUpright               ? normal.z()
+                        : std::abs(normal.x()) > std::abs(normal.y()) ? normal.x()
+                                                                      : normal.y();
+    if (side < 0.0) normal = -normal;
+    return normal.cast<float>().normalized();
+}
+
+}  // namespace surefoot::geometry
