@@ -24,8 +24,8 @@ PointCloud many_points(std::size_t count, std::uint64_t seed) {
     PointCloud cloud;
     cloud.scalars.push_back({"intensity", {}});
     for (std::size_t i = 0; i < count; ++i) {
-        // Binary fractions: the same number in text, float and double.
-        const auto c = [&] { return static_cast<double>(rng.below(1000000)) / 256.0 - 2000.0; };
+        // Quarters: the same number in text, float and double.
+        const auto c = [&] { return 0.25 * static_cast<double>(rng.below(40000)) - 5000.0; };
         cloud.points_m.emplace_back(c(), c(), c());
         cloud.colours.push_back({static_cast<std::uint8_t>(i), 2, 3});
         cloud.scalars[0].values.push_back(static_cast<float>(i));
