@@ -59,7 +59,8 @@ class CloudStream::Part {
   public:
     virtual ~Part() = default;
     virtual Result<PointCloud> next() = 0;
-    virtual Status rewind() = 0;
+    virtual void rewind() = 0;
+    [[nodiscard]] virtual std::optional<std::uint64_t> points() const { return std::nullopt; }
 };
 
 /// Rows of one size.
@@ -76,10 +77,8 @@ class CloudStream::Rows final : public Part {
         next_ += count;
         return parse_cloud(rows_.head(count) + *bytes, path_);
     }
-    Status rewind() override {
-        next_ = 0;
-        return {};
-    }
+    void rewind() override { next_ = 0; }
+    [[nodiscard]] std::optional<std::uint64_t> points() const override { return rows_.rows; }
 
   private:
     std::string path_;
@@ -125,10 +124,7 @@ class CloudStream::Lines final : public Part {
         if (!any_) return parse_text_cloud("", path_);
         return PointCloud{};
     }
-    Status rewind() override {
-        at_ = 0;
-        return {};
-    }
+    void rewind() override { at_ = 0; }
 
   private:
     static bool has_points(std::string_view text) {
@@ -167,9 +163,9 @@ class CloudStream::Whole final : public Part {
         next_ += count;
         return block;
     }
-    Status rewind() override {
-        next_ = 0;
-        return {};
+    void rewind() override { next_ = 0; }
+    [[nodiscard]] std::optional<std::uint64_t> points() const override {
+        return cloud_.points_m.size();
     }
 
   private:
@@ -206,8 +202,11 @@ Result<CloudStream> CloudStream::open(const std::string& path) {
 Result<PointCloud> CloudStream::next() {
     return part_->next();
 }
-Status CloudStream::rewind() {
-    return part_->rewind();
+void CloudStream::rewind() {
+    part_->rewind();
+}
+std::optional<std::uint64_t> CloudStream::points() const {
+    return part_->points();
 }
 
 Eigen::Vector3d shift_for(const Eigen::Vector3d& first_m) {
@@ -256,6 +255,7 @@ Result<ShiftedCloud> read_shifted(const std::string& path, std::optional<Eigen::
     if (!stream) return stream.error();
     ShiftedReader reader(path, shift_m);
     ShiftedCloud cloud;
+    cloud.points_m.reserve(static_cast<std::size_t>(stream->points().value_or(0)));
     while (true) {
         const auto block = stream->next();
         if (!block) return block.error();

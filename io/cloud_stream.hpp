@@ -26,7 +26,9 @@ class CloudStream {
     /// The next points with all that is known of them; none at the end.
     [[nodiscard]] Result<PointCloud> next();
     /// From the first point again.
-    [[nodiscard]] Status rewind();
+    void rewind();
+    /// How many points there are, where the file says so.
+    [[nodiscard]] std::optional<std::uint64_t> points() const;
 
   private:
     class Part;

@@ -267,6 +267,7 @@ int bench(const BenchOptions& options) {
                                                     {"terrain", bench_terrain},
                                                     {"gate", bench_gate},
                                                     {"places", bench_places},
+                                                    {"clouds", bench_clouds},
                                                     {"sim", bench_sim}};
     std::vector<BenchResult> all;
     for (const auto& [name, group] : groups) {

@@ -53,6 +53,10 @@ struct BenchResult {
 [[nodiscard]] Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common,
                                                              Executor& executor);
 
+/// The cloud tools on a million points, as others were measured.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_clouds(const CommonOptions& common,
+                                                            Executor& executor);
+
 /// Frames of two scenes as the simulator makes them, sharp, blurred and without images, beside what
 /// the chain needs to find depth and motion in images. Only frames during which the camera moves.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common,

@@ -8,8 +8,8 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
+#include "io/cloud_stream.hpp"
 #include "io/dem_file.hpp"
-#include "io/point_cloud.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -19,13 +19,27 @@ eval::Reduce reduce_named(const std::string& name) {
     return name == "min" ? eval::Reduce::min : eval::Reduce::max;
 }
 
+/// Hands every block of a cloud to `use`.
+template <typename Use>
+Status each_block(io::CloudStream& cloud, const Use& use) {
+    cloud.rewind();
+    while (true) {
+        const auto block = cloud.next();
+        if (!block) return block.error();
+        if (block->points_m.empty()) return {};
+        use(block->points_m);
+    }
+}
+
 }  // namespace
 
 int dem(const DemOptions& options) {
-    const auto cloud = io::read_cloud(options.cloud);
+    auto cloud = io::CloudStream::open(options.cloud);
     if (!cloud) return report(cloud.error());
     eval::CloudBounds bounds;
-    bounds.add(cloud->points_m);
+    const auto add_to_bounds = [&](const auto& points_m) { bounds.add(points_m); };
+    if (const auto status = each_block(*cloud, add_to_bounds); !status)
+        return report(status.error());
     const auto grid =
         bounds.grid(options.resolution_m,
                     options.lattice == "node" ? eval::Lattice::node : eval::Lattice::cell);
@@ -34,7 +48,8 @@ int dem(const DemOptions& options) {
             {grid.error().code, fmt::format("{}: {}", options.cloud, grid.error().message)});
     }
     eval::DemBuilder builder(*grid, reduce_named(options.reduce));
-    builder.add(cloud->points_m);
+    const auto add_to_map = [&](const auto& points_m) { builder.add(points_m); };
+    if (const auto status = each_block(*cloud, add_to_map); !status) return report(status.error());
     const grid::Layer heights_m = builder.heights_m();
     if (auto status = io::write_esri_grid(options.out_file, grid->geometry, heights_m); !status)
         return report(status.error());

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <opencv2/core/utility.hpp>
 #include <string_view>
 
@@ -106,6 +107,10 @@ struct AllOptions {
     DepthOptions depth;
     DepthAccuracyOptions depth_accuracy;
     DemOptions dem;
+    VoxelOptions voxel;
+    SorOptions sor;
+    IcpOptions icp;
+    EvalCloudsOptions eval_clouds;
     EvalSuiteOptions eval_suite;
     CalibrateOptions calibrate_mono;
     CalibrateOptions calibrate_stereo;
@@ -655,6 +660,133 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
     add_eval_depth(*verb, all.eval_depth, exit_code);
 }
 
+void add_voxel(CLI::App& app, VoxelOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(app,
+                                   "voxel",
+                                   "one point for each voxel of a cloud of any size: their mean",
+                                   "surefoot voxel out/stairs.ply --size 0.01 --out "
+                                   "out/stairs_10mm.ply"),
+                          o,
+                          voxel,
+                          exit_code,
+                          Reads::no_settings);
+    verb->add_option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ")->required()->type_name("CLOUD");
+    verb->add_option(
+            "--size", o.size_m, "side of a voxel; borders lie on its multiples (default 0.001)")
+        ->type_name("M")
+        ->check(number_in(1e-5, 1e3));
+    verb->add_option("--out", o.out_file, "PLY, PCD or XYZ; places alone, ordered by x, y, z")
+        ->required()
+        ->type_name("F.ply");
+}
+
+void add_sor(CLI::App& app, SorOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(app,
+                                   "sor",
+                                   "statistical outlier removal: what lies farther from its "
+                                   "neighbours than is usual in the cloud",
+                                   "surefoot sor out/stairs.ply --out out/stairs_clean.ply"),
+                          o,
+                          sor,
+                          exit_code,
+                          Reads::no_settings);
+    verb->add_option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ")->required()->type_name("CLOUD");
+    verb->add_option("--neighbours", o.neighbours, "that are averaged (default 7)")
+        ->type_name("K")
+        ->check(CLI::Range(1, 1000));
+    const std::map<std::string, bool> countings{{"self", false}, {"others", true}};
+    verb->add_option("--counting",
+                     o.without_self,
+                     "self: the point is one of the K, as in CloudCompare and Open3D (default); "
+                     "others: it is not, as in PCL")
+        ->type_name("self|others")
+        ->transform(CLI::Transformer(countings));
+    verb->add_option(
+            "--sigmas", o.sigmas, "standard deviations above the mean that are kept (default 4)")
+        ->type_name("S")
+        ->check(number_in(0.0, 1e6));
+    verb->add_option("--out", o.out_file, "PLY, PCD or XYZ; colours and values are kept")
+        ->required()
+        ->type_name("F.ply");
+}
+
+void add_icp(CLI::App& app, IcpOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(app,
+                                   "icp",
+                                   "lays a cloud onto another, to the reference's surfaces; exit 1 "
+                                   "where it does not converge",
+                                   "surefoot icp out/stairs.ply out/stairs_10mm.ply --guess "
+                                   "0.02,0,0.01,0.5 --reach 0.2 --out out/stairs_aligned.ply"),
+                          o,
+                          icp,
+                          exit_code,
+                          Reads::no_settings);
+    verb->add_option("reference", o.reference, "stays where it is")
+        ->required()
+        ->type_name("REFERENCE");
+    verb->add_option("moved", o.moved, "is laid onto it")->required()->type_name("MOVED");
+    verb->add_option("--guess",
+                     o.guess,
+                     "where the moved cloud is by eye: a file with the 4x4 matrix to the "
+                     "reference, or metres and degrees (default: where it is)")
+        ->type_name("FILE|X,Y,Z,YAW");
+    verb->add_option("--trim",
+                     o.kept_share,
+                     "share of the pairs that counts, nearest first; below 1 where the clouds do "
+                     "not cover each other (default 1)")
+        ->type_name("SHARE")
+        ->check(number_in(0.01, 1.0));
+    verb->add_option("--reach", o.reach_m, "pairs farther apart do not count (default: all do)")
+        ->type_name("M")
+        ->check(positive_number());
+    verb->add_option("--points",
+                     o.most_points,
+                     "of the moved cloud that are used, taken evenly (default 100000)")
+        ->type_name("N")
+        ->check(CLI::Range(100, 100000000));
+    verb->add_flag("--surfaces-alone",
+                   o.surfaces_alone,
+                   "where no surface holds a direction, leave the guess: do not look at where both "
+                   "clouds end");
+    verb->add_option("--out", o.out_file, "the moved cloud in its new place: PLY, PCD or XYZ")
+        ->type_name("F.ply");
+    verb->add_option("--transform", o.transform_file, "the 4x4 matrix as text")->type_name("F.txt");
+}
+
+void add_eval_clouds(CLI::App& eval, EvalCloudsOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(eval,
+                                   "clouds",
+                                   "distances between two clouds: C2C, or M3C2 with its level of "
+                                   "detection",
+                                   "surefoot eval clouds out/stairs.ply out/stairs_10mm.ply --out "
+                                   "out/clouds --json\n"
+                                   "  surefoot eval clouds out/stairs.ply out/stairs_10mm.ply "
+                                   "--method m3c2 --set eval.m3c2.normals=pca"),
+                          o,
+                          eval_clouds,
+                          exit_code);
+    verb->add_option("reference", o.reference, "PLY, PCD, LAS, VTK or XYZ")
+        ->required()
+        ->type_name("REFERENCE");
+    verb->add_option("compared", o.compared, "in the same frame")
+        ->required()
+        ->type_name("COMPARED");
+    verb->add_option("--method",
+                     o.method,
+                     "c2c: to the nearest point of the reference; m3c2: along normals, settings "
+                     "eval.m3c2.*")
+        ->check(CLI::IsMember({"c2c", "m3c2"}));
+    verb->add_option("--core", o.cores, "m3c2: where to look (default: every reference point)")
+        ->type_name("CLOUD");
+    verb->add_option("--values",
+                     o.values_file,
+                     "a line for each compared point (c2c: the distance) or core point (m3c2: "
+                     "distance,lod,std1,std2,n1,n2,significant)")
+        ->type_name("F.csv");
+    verb->add_option("--out", o.out_dir, "folder for distances.png, histogram.svg, distances.ply")
+        ->type_name("DIR");
+}
+
 void add_dem(CLI::App& app, DemOptions& o, int& exit_code) {
     CLI::App* verb = bind(add_verb(app,
                                    "dem",
@@ -665,7 +797,9 @@ void add_dem(CLI::App& app, DemOptions& o, int& exit_code) {
                           dem,
                           exit_code,
                           Reads::no_settings);
-    verb->add_option("cloud", o.cloud, "PCD, PLY or XYZ, z up")->required()->type_name("CLOUD");
+    verb->add_option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ of any size, z up")
+        ->required()
+        ->type_name("CLOUD");
     verb->add_option("--resolution", o.resolution_m, "side of a cell")
         ->required()
         ->type_name("M")
@@ -943,11 +1077,19 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
         bench,
         exit_code);
     bench_verb
-        ->add_option("group",
-                     all.bench.group,
-                     "chain, camera, odometry, stereo, terrain, gate, places, sim; empty = all")
-        ->check(CLI::IsMember(
-            {"chain", "camera", "odometry", "stereo", "terrain", "gate", "places", "sim"}));
+        ->add_option(
+            "group",
+            all.bench.group,
+            "chain, camera, odometry, stereo, terrain, gate, places, clouds, sim; empty = all")
+        ->check(CLI::IsMember({"chain",
+                               "camera",
+                               "odometry",
+                               "stereo",
+                               "terrain",
+                               "gate",
+                               "places",
+                               "clouds",
+                               "sim"}));
 
     CLI::App* record_verb =
         bind(add_verb(app,
@@ -1076,12 +1218,16 @@ int main_with_arguments(int argc, char** argv) {
     add_depth(app, all.depth, exit_code);
     add_depth_accuracy(app, all.depth_accuracy, exit_code);
     add_dem(app, all.dem, exit_code);
+    add_voxel(app, all.voxel, exit_code);
+    add_sor(app, all.sor, exit_code);
+    add_icp(app, all.icp, exit_code);
     add_gate(app, all.gate, exit_code);
     add_rex_link(app, all.rex_link, exit_code);
     add_serve(app, all.serve, exit_code);
     add_audit(app, all, exit_code);
     add_eval(app, all, exit_code);
     add_eval_suite(*app.get_subcommand("eval"), all.eval_suite, exit_code);
+    add_eval_clouds(*app.get_subcommand("eval"), all.eval_clouds, exit_code);
     add_rig(app, all.rig, exit_code);
     add_urdf(app, all.urdf, exit_code);
     add_calibrate(app, all, exit_code);

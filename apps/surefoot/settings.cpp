@@ -17,6 +17,7 @@ void Settings::describe(ConfigVisitor& visitor) {
     pipeline.describe(visitor);
     visitor.begin_group("eval");
     visitor.group("maps", maps);
+    visitor.group("m3c2", m3c2);
     visitor.end_group();
     visitor.begin_group("sim");
     sim.describe(visitor);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/surefoot/verbs.hpp"
+#include "eval/m3c2.hpp"
 #include "eval/maps.hpp"
 #include "io/config_yaml.hpp"
 #include "io/live_camera.hpp"
@@ -20,6 +21,7 @@ namespace surefoot::app {
 struct Settings {
     pipeline::PipelineConfig pipeline;
     eval::EvalMapsConfig maps;
+    eval::M3c2Config m3c2;
     sim::SceneOptions sim;          ///< how simulated scenes are seen
     sim::LaserScannerConfig laser;  ///< and scanned
     io::CameraConfig live;          ///< how live cameras are used

@@ -212,6 +212,49 @@ struct DemOptions {
 };
 int dem(const DemOptions& options);
 
+struct VoxelOptions {
+    CommonOptions common;
+    std::string cloud;
+    double size_m = 0.001;
+    std::string out_file;
+};
+int voxel(const VoxelOptions& options);
+
+struct SorOptions {
+    CommonOptions common;
+    std::string cloud;
+    int neighbours = 7;
+    bool without_self = false;  ///< --counting others
+    double sigmas = 4.0;
+    std::string out_file;
+};
+int sor(const SorOptions& options);
+
+struct IcpOptions {
+    CommonOptions common;
+    std::string reference;
+    std::string moved;
+    std::string guess;  ///< file with a 4x4 matrix, or x,y,z,yaw in m and deg; empty = none
+    double kept_share = 1.0;
+    double reach_m = 0.0;
+    int most_points = 100000;
+    bool surfaces_alone = false;
+    std::string out_file;        ///< the moved cloud in its new place; empty = none
+    std::string transform_file;  ///< 4x4; empty = none
+};
+int icp(const IcpOptions& options);
+
+struct EvalCloudsOptions {
+    CommonOptions common;
+    std::string reference;
+    std::string compared;
+    std::string method = "c2c";
+    std::string cores;        ///< of m3c2; empty = the reference
+    std::string values_file;  ///< empty = none
+    std::string out_dir;      ///< pictures and a coloured cloud; empty = none
+};
+int eval_clouds(const EvalCloudsOptions& options);
+
 struct StairsOptions {
     CommonOptions common;
     std::string map;      ///< .asc, .png, a cloud, or the folder of a run

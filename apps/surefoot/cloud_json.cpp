@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/cloud_json.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apps/surefoot/log.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int kIndent = 2;
+
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+Json vector(const Eigen::Vector3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+}  // namespace
+
+std::string voxel_json(const ThinnedCloud& thinned, double size_m, const std::string& file) {
+    const Json object = {{"points", thinned.points},
+                         {"voxels", thinned.voxels},
+                         {"skipped", thinned.skipped},
+                         {"size_m", size_m},
+                         {"shift_m", vector(thinned.shift_m)},
+                         {"file", file}};
+    return object.dump(kIndent);
+}
+
+std::string sor_json(const KeptPoints& result,
+                     int others,
+                     const eval::OutlierFilter& filter,
+                     const std::string& file) {
+    const Json object = {{"points", result.points},
+                         {"kept", result.kept},
+                         {"skipped", result.skipped},
+                         {"others", others},
+                         {"mean_m", number(filter.mean_m())},
+                         {"std_m", number(filter.std_m())},
+                         {"limit_m", number(filter.limit_m())},
+                         {"shift_m", vector(result.shift_m)},
+                         {"file", file}};
+    return object.dump(kIndent);
+}
+
+std::string icp_json(const geometry::CloudAlignment& found, const Eigen::Vector3d& shift_m) {
+    constexpr double kDegPerRad = 180.0 / M_PI;
+    const Eigen::Matrix4d m = found.T_reference_moved.matrix();
+    Json rows = Json::array();
+    for (int i = 0; i < 4; ++i) rows.push_back({m(i, 0), m(i, 1), m(i, 2), m(i, 3)});
+    Json steps = Json::array();
+    for (const geometry::AlignmentStep& step : found.steps) {
+        steps.push_back({{"pairs", step.pairs},
+                         {"borders", step.borders},
+                         {"rms_m", number(step.rms_m)},
+                         {"nearest_rms_m", number(step.nearest_rms_m)},
+                         {"step_m", number(step.step_m)},
+                         {"step_deg", number(step.step_rad * kDegPerRad)}});
+    }
+    const geometry::AlignmentStep last =
+        found.steps.empty() ? geometry::AlignmentStep{} : found.steps.back();
+    const Json object = {{"T_reference_moved", rows},
+                         {"converged", found.converged},
+                         {"iterations", found.steps.size()},
+                         {"pairs", last.pairs},
+                         {"rms_m", number(last.rms_m)},
+                         {"nearest_rms_m", number(last.nearest_rms_m)},
+                         {"sigma_m", number(found.sigma_m)},
+                         {"sigma_deg", number(found.sigma_rad * kDegPerRad)},
+                         {"border_directions", found.border_directions},
+                         {"free_directions", found.free_directions},
+                         {"shift_m", vector(shift_m)},
+                         {"steps", steps}};
+    return object.dump(kIndent);
+}
+
+std::string clouds_json(const CloudComparison& comparison) {
+    const eval::DistanceFigures& f = comparison.figures;
+    Json object = {{"method", comparison.method},
+                   {"count", f.count},
+                   {"mean_m", number(f.mean_m)},
+                   {"std_m", number(f.std_m)},
+                   {"rms_m", number(f.rms_m)},
+                   {"min_m", number(f.least_m)},
+                   {"max_m", number(f.most_m)},
+                   {"p50_m", number(f.p50_m)},
+                   {"p90_m", number(f.p90_m)},
+                   {"p99_m", number(f.p99_m)},
+                   {"median_abs_m", number(f.median_abs_m)},
+                   {"p90_abs_m", number(f.p90_abs_m)},
+                   {"skipped", comparison.skipped},
+                   {"shift_m", vector(comparison.shift_m)}};
+    if (comparison.cores) {
+        object["cores"] = *comparison.cores;
+        object["significant"] = comparison.significant;
+        object["median_lod95_m"] = number(comparison.median_lod95_m);
+    }
+    return object.dump(kIndent);
+}
+
+void tell_shift(const Eigen::Vector3d& shift_m) {
+    if (shift_m.isZero()) return;
+    log_info(fmt::format("coordinates are counted from ({:g}, {:g}, {:g}) m in between",
+                         shift_m.x(),
+                         shift_m.y(),
+                         shift_m.z()));
+}
+
+}  // namespace surefoot::app

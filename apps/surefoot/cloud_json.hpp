@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "apps/surefoot/voxel_stream.hpp"
+#include "eval/cloud_distance.hpp"
+#include "eval/cloud_outliers.hpp"
+#include "surefoot/geometry/cloud_alignment.hpp"
+
+// The JSON objects of the cloud tools; the names are a contract (docs/json.md).
+namespace surefoot::app {
+
+[[nodiscard]] std::string voxel_json(const ThinnedCloud& thinned,
+                                     double size_m,
+                                     const std::string& file);
+
+/// What a filter left of a cloud.
+struct KeptPoints {
+    std::int64_t points = 0;
+    std::int64_t kept = 0;
+    std::int64_t skipped = 0;  ///< that were not finite
+    Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+};
+[[nodiscard]] std::string sor_json(const KeptPoints& result,
+                                   int others,
+                                   const eval::OutlierFilter& filter,
+                                   const std::string& file);
+
+/// `shift_m`: where coordinates were counted from in between; the matrix is of whole ones.
+[[nodiscard]] std::string icp_json(const geometry::CloudAlignment& found,
+                                   const Eigen::Vector3d& shift_m);
+
+/// What two clouds differ by; the last three of M3C2 alone.
+struct CloudComparison {
+    std::string method;
+    eval::DistanceFigures figures;
+    std::int64_t skipped = 0;  ///< points without a distance
+    Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+    std::optional<std::int64_t> cores;
+    std::int64_t significant = 0;
+    double median_lod95_m = 0.0;
+};
+[[nodiscard]] std::string clouds_json(const CloudComparison& comparison);
+
+/// Says where coordinates were counted from, if it was not zero.
+void tell_shift(const Eigen::Vector3d& shift_m);
+
+}  // namespace surefoot::app

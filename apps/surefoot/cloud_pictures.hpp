@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::app {
+
+/// Distances at places, and what to call them.
+struct PlacedDistances {
+    std::span<const Eigen::Vector3f> points_m;
+    std::span<const float> distances_m;  ///< NaN = none
+    bool is_signed = false;
+    std::string title;
+    std::string subtitle;
+};
+
+/// Into a folder: distances.png (from above, each cell the mean of its points), histogram.svg, and
+/// distances.ply, the points in the colours of the picture with their distance.
+[[nodiscard]] Status write_cloud_pictures(const std::string& folder,
+                                          const PlacedDistances& placed,
+                                          const Eigen::Vector3d& shift_m);
+
+}  // namespace surefoot::app

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/surefoot/cloud_json.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "io/cloud_stream.hpp"
+#include "io/cloud_writer.hpp"
+#include "io/file.hpp"
+#include "io/text.hpp"
+#include "surefoot/geometry/cloud_alignment.hpp"
+
+namespace surefoot::app {
+namespace {
+
+std::vector<double> numbers_of(const std::string& text) {
+    std::vector<double> numbers;
+    for (const std::string_view word : io::split(text, " \t\r\n,;")) {
+        const auto value = io::parse_double(word);
+        if (!value || !std::isfinite(*value)) return {};
+        numbers.push_back(*value);
+    }
+    return numbers;
+}
+
+/// Where the moved cloud is thought to be: a file with a 4x4 matrix, or x,y,z,yaw.
+Result<Pose> parse_guess(const std::string& guess) {
+    if (guess.empty()) return Pose{};
+    if (!io::is_file(guess)) {
+        const std::vector<double> n = numbers_of(guess);
+        if (n.size() == 4) {
+            constexpr double kRadPerDeg = M_PI / 180.0;
+            return Pose{exp_so3({0.0, 0.0, kRadPerDeg * n[3]}), {n[0], n[1], n[2]}};
+        }
+        return usage_error(
+            fmt::format("--guess {}: neither a file nor x,y,z,yaw (metres and degrees)", guess));
+    }
+    const auto text = io::read_file(guess);
+    if (!text) return text.error();
+    const std::vector<double> n = numbers_of(*text);
+    if (n.size() != 16 && n.size() != 12) {
+        return usage_error(
+            fmt::format("{}: expected the 16 numbers of a 4x4 matrix, row by row", guess));
+    }
+    Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+    for (std::size_t i = 0; i < 12; ++i) {
+        T(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
+    }
+    const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+    constexpr double kRigid = 1e-3;
+    if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kRigid ||
+        R.determinant() < 0.0) {
+        return usage_error(fmt::format("{}: the matrix does not turn and move alone", guess));
+    }
+    return Pose::from_matrix(T);
+}
+
+/// The same motion where all coordinates count from `shift_m`, and back with its negative.
+Pose shifted(const Pose& T, const Eigen::Vector3d& shift_m) {
+    return {T.rotation, T.translation_m + T.rotation * shift_m - shift_m};
+}
+
+Status write_moved(const std::string& from, const std::string& to, const Pose& T, bool wide) {
+    auto stream = io::CloudStream::open(from);
+    if (!stream) return stream.error();
+    auto writer = io::CloudWriter::create(to, {true, wide});
+    if (!writer) return writer.error();
+    while (true) {
+        auto block = stream->next();
+        if (!block) return block.error();
+        if (block->points_m.empty()) return writer->finish();
+        for (Eigen::Vector3d& p_m : block->points_m) p_m = T * p_m;
+        if (auto status = writer->add(*block); !status) return status;
+    }
+}
+
+std::string matrix_text(const Pose& T) {
+    const Eigen::Matrix4d m = T.matrix();
+    std::string text;
+    for (int row = 0; row < 4; ++row) {
+        text += fmt::format("{} {} {} {}\n", m(row, 0), m(row, 1), m(row, 2), m(row, 3));
+    }
+    return text;
+}
+
+/// What the surfaces did not say.
+void warn(const geometry::CloudAlignment& found) {
+    if (found.free_directions == 6) {
+        log_warning(
+            "no pair of points counts: is the guess near enough, and --reach large enough?");
+    } else if (found.free_directions > 0) {
+        log_warning(fmt::format(
+            "{} of 6 directions are held by nothing in the clouds: there the guess stays as it was",
+            found.free_directions));
+    }
+    if (found.border_directions > 0) {
+        log_info(
+            fmt::format("{} of 6 directions are held by no surface, but by where both clouds end",
+                        found.border_directions));
+    }
+    if (!found.converged)
+        log_warning(fmt::format("not converged in {} iterations", found.steps.size()));
+}
+
+}  // namespace
+
+int icp(const IcpOptions& options) {
+    const auto guess = parse_guess(options.guess);
+    if (!guess) return report(guess.error());
+    auto reference = io::read_shifted(options.reference);
+    if (!reference) return report(reference.error());
+    const Eigen::Vector3d shift_m = reference->shift_m;
+    auto moved = io::read_shifted(options.moved, shift_m);
+    if (!moved) return report(moved.error());
+    const auto executor = make_executor(options.common);
+    geometry::AlignmentConfig config;
+    config.kept_share = options.kept_share;
+    config.reach_m = options.reach_m;
+    config.most_points = options.most_points;
+    config.borders = !options.surfaces_alone;
+    geometry::CloudAlignment found =
+        geometry::align_clouds(geometry::KdTree(std::move(reference->points_m), *executor),
+                               moved->points_m,
+                               shifted(*guess, shift_m),
+                               config,
+                               *executor);
+    moved->points_m.clear();
+    found.T_reference_moved = shifted(found.T_reference_moved, -shift_m);
+    warn(found);
+    if (!options.transform_file.empty()) {
+        const auto status =
+            io::write_file(options.transform_file, matrix_text(found.T_reference_moved));
+        if (!status) return report(status.error());
+    }
+    if (!options.out_file.empty()) {
+        const auto status = write_moved(
+            options.moved, options.out_file, found.T_reference_moved, !shift_m.isZero());
+        if (!status) return report(status.error());
+    }
+    if (options.common.json) {
+        print_answer(icp_json(found, shift_m));
+    } else {
+        fmt::print("{}", matrix_text(found.T_reference_moved));
+        const geometry::AlignmentStep& last = found.steps.back();
+        fmt::print(
+            "after {} iterations: {} pairs, {:.2f} mm across the surface (rms), {:.2f} mm to the "
+            "nearest point; place and turn to {:.2f} mm and {:.4f} deg\n",
+            found.steps.size(),
+            last.pairs,
+            1e3 * last.rms_m,
+            1e3 * last.nearest_rms_m,
+            1e3 * found.sigma_m,
+            found.sigma_rad * 180.0 / M_PI);
+        tell_shift(shift_m);
+    }
+    return found.converged ? kExitOk : kExitFailed;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "apps/surefoot/cloud_json.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "eval/cloud_outliers.hpp"
+#include "io/cloud_stream.hpp"
+#include "io/cloud_writer.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr std::size_t kTaken = 2048;  ///< points that one thread takes
+
+/// The points of a block for which `keep` holds a 1, with all that is known of them.
+io::PointCloud kept_of(const io::PointCloud& block, const std::vector<char>& keep) {
+    io::PointCloud kept;
+    for (const io::CloudScalar& scalar : block.scalars) kept.scalars.push_back({scalar.name, {}});
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        if (keep[i] == 0) continue;
+        kept.points_m.push_back(block.points_m[i]);
+        if (!block.colours.empty()) kept.colours.push_back(block.colours[i]);
+        for (std::size_t s = 0; s < kept.scalars.size(); ++s)
+            kept.scalars[s].values.push_back(block.scalars[s].values[i]);
+    }
+    kept.width = static_cast<int>(kept.points_m.size());
+    return kept;
+}
+
+Result<std::int64_t> write_kept(const SorOptions& options,
+                                const Eigen::Vector3d& shift_m,
+                                const eval::OutlierFilter& filter,
+                                Executor& executor) {
+    auto stream = io::CloudStream::open(options.cloud);
+    if (!stream) return stream.error();
+    auto writer = io::CloudWriter::create(options.out_file, {true, !shift_m.isZero()});
+    if (!writer) return writer.error();
+    while (true) {
+        const auto block = stream->next();
+        if (!block) return block.error();
+        if (block->points_m.empty()) break;
+        std::vector<char> keep(block->points_m.size(), 0);
+        executor.parallel_for(
+            static_cast<int>((keep.size() + kTaken - 1) / kTaken), [&](int piece) {
+                const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
+                for (std::size_t i = begin; i < std::min(begin + kTaken, keep.size()); ++i) {
+                    const Eigen::Vector3d& p_m = block->points_m[i];
+                    keep[i] = p_m.allFinite() && filter.keeps((p_m - shift_m).cast<float>());
+                }
+            });
+        const io::PointCloud kept = kept_of(*block, keep);
+        if (kept.points_m.empty()) continue;
+        if (auto status = writer->add(kept); !status) return status.error();
+    }
+    const std::int64_t count = writer->points();
+    if (auto status = writer->finish(); !status) return status.error();
+    return count;
+}
+
+}  // namespace
+
+int sor(const SorOptions& options) {
+    const int others = options.without_self ? options.neighbours : options.neighbours - 1;
+    if (others < 1) {
+        return report(usage_error(
+            fmt::format("--neighbours {}: the point itself is one of them, so that 2 are the "
+                        "fewest; or add --counting others",
+                        options.neighbours)));
+    }
+    const auto executor = make_executor(options.common);
+    auto cloud = io::read_shifted(options.cloud);
+    if (!cloud) return report(cloud.error());
+    const auto points = static_cast<std::int64_t>(cloud->points_m.size());
+    const eval::OutlierFilter filter(geometry::KdTree(std::move(cloud->points_m), *executor),
+                                     {others, options.sigmas},
+                                     *executor);
+    const auto kept = write_kept(options, cloud->shift_m, filter, *executor);
+    if (!kept) return report(kept.error());
+    if (options.common.json) {
+        print_answer(sor_json(
+            {points, *kept, cloud->skipped, cloud->shift_m}, others, filter, options.out_file));
+        return kExitOk;
+    }
+    fmt::print(
+        "{} points of {} kept: {} neighbours beside the point itself lie {:.2f} mm away on average "
+        "(standard deviation {:.2f} mm), at most {:.2f} mm of what is kept; in {}\n",
+        *kept,
+        points,
+        others,
+        1e3 * filter.mean_m(),
+        1e3 * filter.std_m(),
+        1e3 * filter.limit_m(),
+        options.out_file);
+    tell_shift(cloud->shift_m);
+    return kExitOk;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/voxel_stream.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <vector>
+
+#include "eval/voxels.hpp"
+#include "io/cloud_stream.hpp"
+#include "io/cloud_writer.hpp"
+#include "io/file.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using Eigen::Vector3f;
+
+/// Voxels along x that stay together.
+constexpr std::int64_t kSlabVoxels = 64;
+constexpr std::int64_t kWritten = 1 << 16;  ///< points that are handed to the writer at once
+
+std::int64_t slab_of(const Vector3f& p_m, double size_m) {
+    const std::int64_t number = eval::voxel_number(p_m.x(), size_m);
+    return number >= 0 ? number / kSlabVoxels : -((kSlabVoxels - 1 - number) / kSlabVoxels);
+}
+
+/// A cloud, its points as floats from one shift.
+class Source {
+  public:
+    static Result<Source> open(const std::string& path) {
+        auto stream = io::CloudStream::open(path);
+        if (!stream) return stream.error();
+        return Source(path, std::move(stream).value());
+    }
+    /// Hands the points block by block to `use`, which returns a Status.
+    template <typename Use>
+    Status each_block(const Use& use) {
+        stream_.rewind();
+        io::ShiftedReader reader(path_, shift_m_);
+        std::vector<Vector3f> points_m;
+        while (true) {
+            const auto block = stream_.next();
+            if (!block) return block.error();
+            if (block->points_m.empty()) break;
+            points_m.clear();
+            if (auto status = reader.add(*block, points_m); !status) return status;
+            if (auto status = use(points_m); !status) return status;
+        }
+        if (!shift_m_) shift_m_ = reader.shift_m();
+        skipped_ = reader.skipped();
+        return {};
+    }
+    [[nodiscard]] Eigen::Vector3d shift_m() const {
+        return shift_m_.value_or(Eigen::Vector3d::Zero());
+    }
+    [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
+
+  private:
+    Source(std::string path, io::CloudStream stream)
+        : path_(std::move(path)), stream_(std::move(stream)) {}
+    std::string path_;
+    io::CloudStream stream_;
+    std::optional<Eigen::Vector3d> shift_m_;
+    std::int64_t skipped_ = 0;
+};
+
+/// How many points there are where.
+struct Census {
+    std::map<std::int64_t, std::int64_t> by_slab;
+    std::int64_t points = 0;
+    Vector3f low_m = Vector3f::Zero();
+    Vector3f high_m = Vector3f::Zero();
+};
+
+Result<Census> count(Source& source, const std::string& cloud, double size_m) {
+    Census census;
+    const auto status = source.each_block([&](const std::vector<Vector3f>& points_m) -> Status {
+        for (const Vector3f& p_m : points_m) {
+            if (census.points++ == 0) census.low_m = census.high_m = p_m;
+            census.low_m = census.low_m.cwiseMin(p_m);
+            census.high_m = census.high_m.cwiseMax(p_m);
+            ++census.by_slab[slab_of(p_m, size_m)];
+        }
+        return {};
+    });
+    if (!status) return status.error();
+    if (census.points == 0) {
+        return input_error(
+            fmt::format("{}: no point with finite coordinates among {}", cloud, source.skipped()));
+    }
+    if (eval::fits_voxels(census.low_m, census.high_m, size_m)) return census;
+    const Vector3f side_m = census.high_m - census.low_m;
+    return usage_error(
+        fmt::format("{}: {:g} x {:g} x {:g} m cannot be numbered in voxels of {:g} m: choose "
+                    "larger ones, or remove stray points",
+                    cloud,
+                    static_cast<double>(side_m.x()),
+                    static_cast<double>(side_m.y()),
+                    static_cast<double>(side_m.z()),
+                    size_m));
+}
+
+/// Runs of slabs, each with at most so many points where a slab alone has no more: the first slab
+/// of each.
+std::vector<std::int64_t> runs_of(const Census& census, std::int64_t most) {
+    std::vector<std::int64_t> first;
+    std::int64_t in_run = 0;
+    for (const auto& [slab, points] : census.by_slab) {
+        if (first.empty() || in_run + points > most) {
+            first.push_back(slab);
+            in_run = 0;
+        }
+        in_run += points;
+    }
+    return first;
+}
+
+/// Files of floats in a folder of their own, which is removed in the end.
+class Scratch {
+  public:
+    Scratch(std::string folder, std::size_t files) : folder_(std::move(folder)), files_(files) {}
+    ~Scratch() {
+        files_.clear();
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+
+    Status open() {
+        if (auto status = io::make_folder(folder_); !status) return status;
+        for (std::size_t i = 0; i < files_.size(); ++i) {
+            files_[i].open(name(i),
+                           std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
+            if (!files_[i]) return output_error(fmt::format("{}: cannot write", name(i)));
+        }
+        return {};
+    }
+    Status add(std::size_t file, std::span<const Vector3f> points_m) {
+        files_[file].write(reinterpret_cast<const char*>(points_m.data()),
+                           static_cast<std::streamsize>(points_m.size_bytes()));
+        if (files_[file]) return {};
+        return output_error(fmt::format(
+            "{}: cannot write {} bytes: is the disk full?", name(file), points_m.size_bytes()));
+    }
+    /// All points of a file, which is then emptied.
+    Result<std::vector<Vector3f>> take(std::size_t file) {
+        std::fstream& from = files_[file];
+        from.flush();
+        const auto bytes = static_cast<std::uint64_t>(std::filesystem::file_size(name(file)));
+        std::vector<Vector3f> points_m(bytes / sizeof(Vector3f));
+        from.seekg(0);
+        from.read(reinterpret_cast<char*>(points_m.data()), static_cast<std::streamsize>(bytes));
+        if (!from) return input_error(fmt::format("{}: cannot be read back", name(file)));
+        from.close();
+        std::filesystem::remove(name(file));
+        return points_m;
+    }
+
+  private:
+    [[nodiscard]] std::string name(std::size_t i) const {
+        return fmt::format("{}/{}.f32", folder_, i);
+    }
+    std::string folder_;
+    std::vector<std::fstream> files_;
+};
+
+Status deal_out(Source& source,
+                const std::vector<std::int64_t>& first_slab,
+                double size_m,
+                Scratch& scratch) {
+    std::vector<std::vector<Vector3f>> dealt(first_slab.size());
+    return source.each_block([&](const std::vector<Vector3f>& points_m) -> Status {
+        for (auto& some : dealt) some.clear();
+        for (const Vector3f& p_m : points_m) {
+            const auto after =
+                std::upper_bound(first_slab.begin(), first_slab.end(), slab_of(p_m, size_m));
+            dealt[static_cast<std::size_t>(after - first_slab.begin()) - 1].push_back(p_m);
+        }
+        for (std::size_t i = 0; i < dealt.size(); ++i) {
+            if (auto status = scratch.add(i, dealt[i]); !status) return status;
+        }
+        return {};
+    });
+}
+
+Status write_points(std::span<const Vector3f> points_m,
+                    const Eigen::Vector3d& shift_m,
+                    io::CloudWriter& writer) {
+    for (std::size_t from = 0; from < points_m.size(); from += kWritten) {
+        io::PointCloud block;
+        const std::size_t end = std::min(from + kWritten, points_m.size());
+        for (std::size_t i = from; i < end; ++i)
+            block.points_m.emplace_back(points_m[i].cast<double>() + shift_m);
+        block.width = static_cast<int>(block.points_m.size());
+        if (auto status = writer.add(block); !status) return status;
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<ThinnedCloud> thin_cloud(const std::string& cloud,
+                                double size_m,
+                                const std::string& out_file,
+                                Executor& executor,
+                                std::int64_t most_in_memory) {
+    auto source = Source::open(cloud);
+    if (!source) return source.error();
+    const auto census = count(*source, cloud, size_m);
+    if (!census) return census.error();
+    auto writer = io::CloudWriter::create(out_file, {true, !source->shift_m().isZero()});
+    if (!writer) return writer.error();
+    const auto write = [&](std::span<const Vector3f> points_m) {
+        return write_points(
+            eval::voxel_means_m(points_m, size_m, executor), source->shift_m(), *writer);
+    };
+    if (census->points <= most_in_memory) {
+        std::vector<Vector3f> all_m;
+        all_m.reserve(static_cast<std::size_t>(census->points));
+        const auto status = source->each_block([&](const std::vector<Vector3f>& points_m) {
+            all_m.insert(all_m.end(), points_m.begin(), points_m.end());
+            return Status();
+        });
+        if (!status) return status.error();
+        if (auto written = write(all_m); !written) return written.error();
+    } else {
+        const std::vector<std::int64_t> runs = runs_of(*census, most_in_memory / 2);
+        Scratch scratch(out_file + ".scratch", runs.size());
+        if (auto status = scratch.open(); !status) return status.error();
+        if (auto status = deal_out(*source, runs, size_m, scratch); !status) return status.error();
+        for (std::size_t i = 0; i < runs.size(); ++i) {
+            const auto points_m = scratch.take(i);
+            if (!points_m) return points_m.error();
+            if (auto written = write(*points_m); !written) return written.error();
+        }
+    }
+    const std::int64_t voxels = writer->points();
+    if (auto status = writer->finish(); !status) return status.error();
+    return ThinnedCloud{census->points, source->skipped(), voxels, source->shift_m()};
+}
+
+}  // namespace surefoot::app
