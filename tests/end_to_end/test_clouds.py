@@ -1,0 +1,233 @@
+"""Cloud tools: the vectors of CloudCompare, one cloud in every format, large and bad clouds."""
+import json
+import math
+import struct
+import unittest
+
+from surefoot_cli import CliTest, read_asc, surefoot
+
+AGREEMENT_M = 1e-6  # of the vectors, as their README states it
+
+
+def table(path):
+    return [[float(word) for word in line.split()] for line in path.read_text().splitlines() if not line.startswith("//")]
+
+
+def values(path):
+    return [[float(word) for word in line.split(",")] for line in path.read_text().splitlines()]
+
+
+def ply(points, kind="<", real="float", tail=""):
+    code = {"float": "f", "double": "d"}[real]
+    order = "little" if kind == "<" else "big"
+    head = f"ply\nformat binary_{order}_endian 1.0\nelement vertex {len(points)}\n"
+    head += "".join(f"property {real} {axis}\n" for axis in "xyz") + f"{tail}end_header\n"
+    return head.encode() + b"".join(struct.pack(f"{kind}3{code}", *p) for p in points)
+
+
+def grid_points(side=20, step=0.1):
+    """A level square with a step of 0.2 m across its middle, in multiples of 1/1024 m."""
+    on_lattice = lambda v: round(v * 1024) / 1024
+    return [(on_lattice(i * step), on_lattice(j * step), on_lattice(0.2 if i * 2 >= side else 0.0))
+            for i in range(side) for j in range(side)]
+
+
+class Conformance(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.vectors = self.data("conformance", "clouds")
+
+    def test_c2c(self):
+        out = self.dir / "c2c.csv"
+        answer = self.json_of("eval", "clouds", self.vectors / "ref_e1.ply", self.vectors / "ref_e2.ply", "--values", out)
+        expected = [row[-1] for row in table(self.vectors / "c2c_e2_vs_e1.asc")]
+        found = [row[0] for row in values(out)]
+        self.assertEqual(len(found), len(expected))
+        worst = max(abs(a - b) for a, b in zip(found, expected))
+        print(f"c2c: largest difference {worst:.2g} m")
+        self.assertLess(worst, AGREEMENT_M)
+        self.assertEqual(answer["count"], len(expected))
+        self.assertAlmostEqual(answer["mean_m"], sum(expected) / len(expected), delta=AGREEMENT_M)
+
+    def test_m3c2(self):
+        out = self.dir / "m3c2.csv"
+        settings = {"projection_diameter_m": 0.1, "half_length_m": 0.15, "registration_error_m": 0.001, "min_points": 5}
+        answer = self.json_of("eval", "clouds", self.vectors / "ref_e1.ply", self.vectors / "ref_e2.ply", "--method", "m3c2",
+                              "--core", self.vectors / "ref_core.ply", "--values", out,
+                              *[word for key, value in settings.items() for word in ("--set", f"eval.m3c2.{key}={value}")])
+        expected = table(self.vectors / "m3c2_vertical.asc")
+        found = values(out)
+        self.assertEqual(len(found), len(expected))
+        worst = 0.0
+        for i, (ours, theirs) in enumerate(zip(found, expected)):
+            distance, lod, std1, std2, n1, n2, significant = ours
+            self.assertEqual([n1, n2, significant], [theirs[3], theirs[4], theirs[7]], f"core point {i}")
+            for a, b in ((distance, theirs[9]), (lod, theirs[8]), (std1, theirs[5]), (std2, theirs[6])):
+                self.assertEqual(math.isnan(a), math.isnan(b), f"core point {i}: {ours}")
+                worst = worst if math.isnan(a) else max(worst, abs(a - b))
+        print(f"m3c2: largest difference {worst:.2g} m")
+        self.assertLess(worst, AGREEMENT_M)
+        self.assertEqual(answer["significant"], sum(row[7] for row in expected))
+
+    def test_sor(self):
+        for words in (["--neighbours", 7], ["--neighbours", 6, "--counting", "others"]):
+            self.run_ok("sor", self.vectors / "ref_sor_in.ply", "--sigmas", 4, *words, "--out", self.dir / "kept.xyz")
+            found, expected = table(self.dir / "kept.xyz"), table(self.vectors / "sor_7_4.asc")
+            self.assertEqual(len(found), len(expected))
+            for ours, theirs in zip(found, expected):
+                for a, b in zip(ours, theirs):
+                    self.assertAlmostEqual(a, b, delta=AGREEMENT_M)
+        both = [self.json_of("sor", self.vectors / "ref_sor_in.ply", "--counting", counting, "--out", self.dir / "k.xyz")
+                for counting in ("self", "others")]
+        self.assertEqual([answer["others"] for answer in both], [6, 7])
+        self.assertLess(both[0]["mean_m"], both[1]["mean_m"])
+
+    def test_dem(self):
+        self.run_ok("dem", self.vectors / "ref_e1.ply", "--resolution", 0.025, "--lattice", "node", "--out", self.dir / "d.asc")
+        header, rows = read_asc(self.dir / "d.asc")
+        expected = {}
+        for x, y, z, _ in table(self.vectors / "dem_0.025_MAX.asc"):
+            expected[round((x - header["xllcorner"]) / 0.025 - 0.5), round((y - header["yllcorner"]) / 0.025 - 0.5)] = z
+        found = {(i, len(rows) - 1 - j): z for j, row in enumerate(rows) for i, z in enumerate(row) if z is not None}
+        self.assertEqual(set(found), set(expected))
+        self.assertLess(max(abs(found[cell] - expected[cell]) for cell in expected), AGREEMENT_M)
+
+    def test_icp(self):
+        out = self.dir / "T.txt"
+        answer = self.json_of("icp", self.vectors / "ref_e1.ply", self.vectors / "ref_e3_misaligned.ply", "--transform", out,
+                              "--out", self.dir / "aligned.ply")
+        truth = table(self.vectors / "ref_e3_true_transform_e3_to_e1.txt")
+        found = table(out)
+        for ours, printed in zip(answer["T_reference_moved"], found):
+            for a, b in zip(ours, printed):
+                self.assertAlmostEqual(a, b, delta=1e-12)
+        trace = sum(found[i][k] * truth[i][k] for i in range(3) for k in range(3))
+        turn_deg = math.degrees(math.acos(min(1.0, (trace - 1.0) / 2.0)))
+        place_mm = 1e3 * math.dist([row[3] for row in found[:3]], [row[3] for row in truth[:3]])
+        print(f"icp: off by {turn_deg:.4f} deg, {place_mm:.2f} mm after {answer['iterations']} iterations")
+        self.assertTrue(answer["converged"])
+        self.assertLess(turn_deg, 0.05)
+        self.assertLess(place_mm, 2.0)
+        # The stairs have no side walls: along them the borders hold, and that is said.
+        self.assertEqual((answer["border_directions"], answer["free_directions"]), (1, 0))
+        after = self.json_of("eval", "clouds", self.vectors / "ref_e1.ply", self.dir / "aligned.ply")
+        before = self.json_of("eval", "clouds", self.vectors / "ref_e1.ply", self.vectors / "ref_e3_misaligned.ply")
+        self.assertLess(after["rms_m"], 0.6 * before["rms_m"])
+        # A guess far off, given as a matrix and as numbers.
+        (self.dir / "guess.txt").write_text("1 0 0 0.1\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+        for guess in ("0.1,0,0,0", self.dir / "guess.txt"):
+            again = self.json_of("icp", self.vectors / "ref_e1.ply", self.vectors / "ref_e3_misaligned.ply", "--guess", guess)
+            self.assertGreater(again["steps"][0]["rms_m"], answer["steps"][0]["rms_m"])
+
+
+class Formats(CliTest):
+    def test_the_same_cloud_from_every_format(self):
+        points = grid_points()
+        text = "".join(f"{x} {y} {z}\n" for x, y, z in points)
+        head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n" + f"WIDTH {len(points)}\nHEIGHT 1\nPOINTS {len(points)}\n"
+        las = bytearray(227)
+        las[0:4], las[24:26], las[94:96] = b"LASF", bytes([1, 2]), struct.pack("<H", 227)
+        las[96:100], las[105:107], las[107:111] = struct.pack("<I", 227), struct.pack("<H", 20), struct.pack("<I", len(points))
+        las[131:179] = struct.pack("<6d", *[1 / 1024] * 3, 0, 0, 0)
+        las += b"".join(struct.pack("<3i8x", *(round(c * 1024) for c in p)) for p in points)
+        ascii_head = ply(points).split(b"end_header\n")[0].replace(b"binary_little_endian", b"ascii")
+        files = {"le.ply": ply(points), "be.ply": ply(points, ">", "double"), "a.ply": ascii_head + b"end_header\n" + text.encode(),
+                 "b.pcd": (head + "DATA binary\n").encode() + b"".join(struct.pack("<3f", *p) for p in points),
+                 "a.pcd": (head + "DATA ascii\n" + text).encode(), "a.xyz": text.encode(),
+                 "crlf.csv": text.replace(" ", ",").replace("\n", "\r\n").encode(), "a.las": bytes(las),
+                 "a.vtk": f"# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS {len(points)} float\n{text}".encode()}
+        for name, content in files.items():
+            (self.dir / name).write_bytes(content)
+            answer = self.json_of("eval", "clouds", self.dir / "le.ply", self.dir / name)
+            self.assertEqual((answer["count"], answer["max_m"]), (len(points), 0.0), name)
+            thinned = self.json_of("voxel", self.dir / name, "--size", 0.25, "--out", self.dir / "v.xyz")
+            self.assertEqual((thinned["points"], thinned["skipped"]), (len(points), 0), name)
+            self.assertEqual(table(self.dir / "v.xyz"), table(self.dir / "v.xyz"))
+
+    def test_large_coordinates_keep_their_millimetres(self):
+        far = [(x + 637012.25, y + 5403400.5, z + 431.0) for x, y, z in grid_points()]
+        moved = [(x, y, z + 1 / 256) for x, y, z in far]
+        (self.dir / "a.ply").write_bytes(ply(far, real="double"))
+        (self.dir / "b.ply").write_bytes(ply(moved, real="double"))
+        answer = self.json_of("eval", "clouds", self.dir / "a.ply", self.dir / "b.ply", "--out", self.dir / "pictures")
+        self.assertEqual(answer["shift_m"], [637000.0, 5403400.0, 0.0])
+        self.assertAlmostEqual(answer["p50_m"], 1 / 256, delta=1e-6)
+        self.assertAlmostEqual(answer["max_m"], 1 / 256, delta=1e-6)
+        self.assertEqual({path.name for path in (self.dir / "pictures").iterdir()}, {"distances.png", "distances.ply", "histogram.svg"})
+        back = self.json_of("icp", self.dir / "a.ply", self.dir / "b.ply")["T_reference_moved"]
+        place = [sum(row[k] * (637013.25, 5403401.5, 431.0, 1.0)[k] for k in range(4)) for row in back[:3]]
+        self.assertAlmostEqual(place[2], 431.0 - 1 / 256, delta=1e-5)
+        kept = self.json_of("sor", self.dir / "a.ply", "--out", self.dir / "kept.ply")
+        same = self.json_of("eval", "clouds", self.dir / "a.ply", self.dir / "kept.ply")
+        self.assertEqual((same["count"], same["max_m"]), (kept["kept"], 0.0))
+
+    def test_sor_keeps_all_that_is_known_of_a_point(self):
+        lines = [f"{x} {y} {z} {i}" for i, (x, y, z) in enumerate(grid_points())] + ["0.5 0.5 9 1e4"]
+        (self.dir / "a.xyz").write_text("//X Y Z intensity\n" + "\n".join(lines) + "\n")
+        self.run_ok("sor", self.dir / "a.xyz", "--out", self.dir / "k.xyz")
+        self.assertEqual([row[3] for row in table(self.dir / "k.xyz")], list(range(len(lines) - 1)))
+        self.assertTrue((self.dir / "k.xyz").read_text().startswith("//X Y Z intensity\n"))
+
+
+class BadInput(CliTest):
+    def refused(self, why, *words):
+        before = {path: path.read_bytes() for path in self.dir.rglob("*") if path.is_file()}
+        process = surefoot(*words)
+        self.assertIn(process.returncode, (1, 2), process.stderr)
+        sentences = [line for line in process.stderr.splitlines() if line.startswith("error")]
+        self.assertEqual(len(sentences), 1, process.stderr)
+        self.assertIn(why, sentences[0])
+        self.assertEqual(before, {path: path.read_bytes() for path in self.dir.rglob("*") if path.is_file()}, "left something")
+
+    def test_a_sentence_each_and_nothing_left(self):
+        points = grid_points()
+        good = self.dir / "good.ply"
+        good.write_bytes(ply(points))
+        nan = float("nan")
+        bad = {"empty.ply": (ply([]), "no point with finite"), "nan.ply": (ply([(nan, nan, nan)] * 5), "among 5"),
+               "cut.ply": (ply(points)[:-1], "truncated"), "head.ply": (ply(points).split(b"property")[0], "truncated"),
+               "lies.ply": (ply(points).replace(b"vertex 400", b"vertex 4000000000"), "4000000000 'vertex' announced"),
+               "far.ply": (ply([*points, (1e30, 0, 0)]), "100 km"), "text.xyz": (b"1 2\n", "2 numbers"),
+               "decimal.csv": (b"1,5;2,5;3,5\n1,5;2,5\n", "4 numbers where 6"), "nothing.las": (b"", "not a LAS file"),
+               "what.dat": (b"x", "unknown cloud format '.dat'"), "packed.laz": (b"LASF", "pdal")}
+        for name, (content, why) in bad.items():
+            (self.dir / name).write_bytes(content)
+        for name, (_, why) in bad.items():
+            path = self.dir / name
+            for words in (["voxel", path, "--size", 0.01, "--out", self.dir / "o.ply"], ["sor", path, "--out", self.dir / "o.ply"],
+                          ["icp", good, path, "--out", self.dir / "o.ply"], ["icp", path, good],
+                          ["eval", "clouds", path, good], ["eval", "clouds", good, path, "--values", self.dir / "o.csv"],
+                          ["eval", "clouds", good, good, "--method", "m3c2", "--core", path]):
+                self.refused(why, *words)
+
+    def test_one_point_duplicates_and_noise_are_answered(self):
+        one = self.dir / "one.ply"
+        one.write_bytes(ply([(1.0, 2.0, 3.0)]))
+        same = self.dir / "same.ply"
+        same.write_bytes(ply([(1.0, 2.0, 3.0)] * 20000))
+        for path, count in ((one, 1), (same, 20000)):
+            self.assertEqual(self.json_of("sor", path, "--out", self.dir / "s.ply")["kept"], count)
+            self.assertEqual(self.json_of("voxel", path, "--out", self.dir / "v.ply")["voxels"], 1)
+            self.assertEqual(self.json_of("eval", "clouds", path, one)["max_m"], 0.0)
+            process = surefoot("icp", path, one, "--json")
+            self.assertEqual(process.returncode, 1)
+            self.assertEqual(json.loads(process.stdout)["free_directions"], 6)
+            self.assertIn("no pair of points counts", process.stderr)
+
+    def test_wrong_calls(self):
+        good = self.dir / "good.ply"
+        good.write_bytes(ply(grid_points()))
+        for why, words in (("there is no", ["sor", good, "--neighbors", 3, "--out", self.dir / "o.ply"]),
+                           ("--neighbours", ["sor", good, "--neighbours", 1, "--out", self.dir / "o.ply"]),
+                           ("not '.las'", ["voxel", good, "--out", self.dir / "o.las"]),
+                           ("--guess", ["icp", good, good, "--guess", "1,2"]),
+                           ("m3c2 alone", ["eval", "clouds", good, good, "--core", good]),
+                           ("cannot be numbered", ["voxel", good, "--size", "1e-5", "--out", self.dir / "o.ply"])):
+            if why == "cannot be numbered":
+                (self.dir / "wide.ply").write_bytes(ply([(0, 0, 0), (90000, 90000, 90000)]))
+                words[1] = self.dir / "wide.ply"
+            self.refused(why, *words)
+
+
+if __name__ == "__main__":
+    unittest.main()
