@@ -2,12 +2,16 @@
 // Any bytes must end in a value or in an error with a sentence: no crash, no endless loop, no huge
 // allocation. SUREFOOT_FUZZ_READER names the function under test.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/cloud_rows.hpp"
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
 #include "io/machine_file.hpp"
@@ -34,6 +38,38 @@ void must_explain(const Result<T>& result) {
 }
 [[maybe_unused]] void fuzz_pcd(std::string_view bytes) {
     must_explain(io::parse_pcd(bytes, "f"));
+}
+[[maybe_unused]] void fuzz_las(std::string_view bytes) {
+    must_explain(io::parse_las(bytes, "f"));
+}
+[[maybe_unused]] void fuzz_vtk(std::string_view bytes) {
+    must_explain(io::parse_vtk(bytes, "f"));
+}
+/// Pieces of a file are files: what is read whole is read piece by piece, too.
+[[maybe_unused]] void fuzz_cloud_rows(std::string_view bytes) {
+    const struct {
+        std::optional<io::CloudRows> rows;
+        Result<io::PointCloud> (*parse)(std::string_view, const std::string&);
+    } formats[] = {{io::ply_rows(bytes, bytes.size()), io::parse_ply},
+                   {io::pcd_rows(bytes, bytes.size()), io::parse_pcd},
+                   {io::las_rows(bytes, bytes.size()), io::parse_las}};
+    for (const auto& [rows, parse] : formats) {
+        if (!rows || rows->rows == 0) continue;
+        if (rows->first_byte + rows->rows * rows->row_bytes > bytes.size()) std::abort();
+        const std::string_view last =
+            bytes.substr(rows->first_byte + (rows->rows - 1) * rows->row_bytes, rows->row_bytes);
+        const auto whole = parse(bytes, "whole");
+        const auto one = parse(rows->head(1) + std::string(last), "piece");
+        if (whole.ok() != one.ok()) std::abort();
+        if (!whole.ok()) continue;
+        const Eigen::Vector3d& a_m = whole->points_m.back();
+        const Eigen::Vector3d& b_m = one->points_m.back();
+        if (whole->points_m.size() != rows->rows || one->points_m.size() != 1) std::abort();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (a_m[axis] != b_m[axis] && !(std::isnan(a_m[axis]) && std::isnan(b_m[axis])))
+                std::abort();
+        }
+    }
 }
 [[maybe_unused]] void fuzz_text_cloud(std::string_view bytes) {
     must_explain(io::parse_text_cloud(bytes, "f"));

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -39,19 +40,34 @@ struct Rig {
 };
 
 /// A socket to the server, from ever another address of 127/8: ports of one run out.
-int connect_to(std::uint16_t port) {
-    static std::uint32_t number = 0;
+int connect_from(std::uint32_t number, std::uint16_t port) {
     const int handle = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in from{};
     from.sin_family = AF_INET;
-    from.sin_addr.s_addr = htonl((127U << 24U) + 2U + number++ % 60'000U);
+    from.sin_addr.s_addr = htonl((127U << 24U) + 2U + number % 60'000U);
     sockaddr_in to = from;
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(port);
-    if (bind(handle, reinterpret_cast<const sockaddr*>(&from), sizeof(from)) != 0 ||
-        connect(handle, reinterpret_cast<const sockaddr*>(&to), sizeof(to)) != 0)
-        std::abort();
-    return handle;
+    if (bind(handle, reinterpret_cast<const sockaddr*>(&from), sizeof(from)) == 0 &&
+        connect(handle, reinterpret_cast<const sockaddr*>(&to), sizeof(to)) == 0)
+        return handle;
+    close(handle);
+    return -1;
+}
+
+/// The system may be short of something for a moment; a server that accepts nobody any more is a
+/// finding.
+int connect_to(std::uint16_t port) {
+    static std::uint32_t number = 0;
+    constexpr int kTries = 500;
+    constexpr useconds_t kPause_us = 10'000;
+    for (int i = 0; i < kTries; ++i) {
+        const int handle = connect_from(number++, port);
+        if (handle >= 0) return handle;
+        usleep(kPause_us);
+    }
+    std::perror("cannot connect for five seconds");
+    std::abort();
 }
 
 /// Frames whose heads the bytes choose: opcode and end in one byte, length in the next.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "io/bytes.hpp"
+#include "io/cloud_rows.hpp"
 #include "io/cloud_writer.hpp"
 #include "io/file.hpp"
 #include "io/io_testing.hpp"
@@ -291,6 +292,10 @@ TEST(Las, RefusesWhatIsDamagedOrCompressed) {
     EXPECT_TRUE(contains(why("LAXF"), "not a LAS file"));
     EXPECT_TRUE(contains(why(good.substr(0, 100)), "truncated LAS header"));
     EXPECT_TRUE(contains(why(good.substr(0, good.size() - 1)), "do not fit into"));
+    std::string headless = good;
+    headless[94] = '\0';
+    EXPECT_TRUE(contains(why(headless), "LAS header of 0 bytes"));
+    EXPECT_FALSE(las_rows(headless, headless.size()));
     std::string laz = good;
     laz[104] = static_cast<char>(laz[104] | 0x80);
     EXPECT_TRUE(contains(why(laz), "pdal translate"));

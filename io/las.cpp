@@ -66,6 +66,11 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     const char* data = bytes.data();
     const auto header_bytes = load_le<std::uint16_t>(data + kHeaderSize);
     const auto format = load_le<std::uint8_t>(data + kFormat);
+    if (header_bytes < kSmallestHeader) {
+        return damaged(
+            file,
+            fmt::format("LAS header of {} bytes, at least {}", header_bytes, kSmallestHeader));
+    }
     if ((format & kCompressed) != 0) {
         return damaged(file,
                        "compressed (LAZ) points, which nothing here reads: convert the file with "

@@ -104,6 +104,44 @@ std::string clouds_json(const CloudComparison& comparison) {
     return object.dump(kIndent);
 }
 
+namespace {
+
+Json repeated_json(const eval::Repeated& r) {
+    return {{"mean_m", number(r.mean_m)},
+            {"std_m", number(r.std_error_m)},
+            {"spread_m", number(r.spread_m)},
+            {"values_m", r.values_m}};
+}
+
+}  // namespace
+
+std::string measure_json(const eval::HeightHistogram& heights,
+                         const eval::StairMeasures& stairs,
+                         const std::optional<std::optional<double>>& door_width_m,
+                         const Eigen::Vector3d& shift_m) {
+    constexpr double kDegPerRad = 180.0 / M_PI;
+    Json levels = Json::array();
+    for (const eval::Level& level : heights.levels) {
+        levels.push_back(
+            {{"height_m", level.height_m + shift_m.z()},
+             {"rms_m", level.rms_m},
+             {"tilt_deg", level.tilt_rad * kDegPerRad},
+             {"points", level.points},
+             {"middle_m", {level.middle_m.x() + shift_m.x(), level.middle_m.y() + shift_m.y()}}});
+    }
+    Json object = {{"levels", levels},
+                   {"riser", repeated_json(stairs.riser)},
+                   {"going", repeated_json(stairs.going)},
+                   {"uphill_deg",
+                    stairs.uphill.isZero()
+                        ? Json(nullptr)
+                        : Json(std::atan2(stairs.uphill.y(), stairs.uphill.x()) * kDegPerRad)},
+                   {"shift_m", vector(shift_m)}};
+    if (door_width_m)
+        object["door"] = {{"width_m", *door_width_m ? Json(**door_width_m) : Json(nullptr)}};
+    return object.dump(kIndent);
+}
+
 void tell_shift(const Eigen::Vector3d& shift_m) {
     if (shift_m.isZero()) return;
     log_info(fmt::format("coordinates are counted from ({:g}, {:g}, {:g}) m in between",

@@ -7,6 +7,7 @@
 
 #include "apps/surefoot/voxel_stream.hpp"
 #include "eval/cloud_distance.hpp"
+#include "eval/cloud_measures.hpp"
 #include "eval/cloud_outliers.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
 
@@ -44,6 +45,12 @@ struct CloudComparison {
     double median_lod95_m = 0.0;
 };
 [[nodiscard]] std::string clouds_json(const CloudComparison& comparison);
+
+/// Levels, stairs and, where it was asked for, the width of a door; null where none was found.
+[[nodiscard]] std::string measure_json(const eval::HeightHistogram& heights,
+                                       const eval::StairMeasures& stairs,
+                                       const std::optional<std::optional<double>>& door_width_m,
+                                       const Eigen::Vector3d& shift_m);
 
 /// Says where coordinates were counted from, if it was not zero.
 void tell_shift(const Eigen::Vector3d& shift_m);

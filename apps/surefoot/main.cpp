@@ -111,6 +111,7 @@ struct AllOptions {
     SorOptions sor;
     IcpOptions icp;
     EvalCloudsOptions eval_clouds;
+    MeasureOptions measure;
     EvalSuiteOptions eval_suite;
     CalibrateOptions calibrate_mono;
     CalibrateOptions calibrate_stereo;
@@ -753,6 +754,34 @@ void add_icp(CLI::App& app, IcpOptions& o, int& exit_code) {
     verb->add_option("--transform", o.transform_file, "the 4x4 matrix as text")->type_name("F.txt");
 }
 
+void add_measure(CLI::App& app, MeasureOptions& o, int& exit_code) {
+    CLI::App* verb = bind(add_verb(app,
+                                   "measure",
+                                   "level surfaces of a cloud (z up) by the histogram of its "
+                                   "heights: heights and planes, risers and goings of a straight "
+                                   "flight, the width of a door",
+                                   "surefoot measure out/stairs_10mm.ply --histogram "
+                                   "out/heights.svg --json"),
+                          o,
+                          measure,
+                          exit_code,
+                          Reads::no_settings);
+    verb->add_option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ; map.ply of a run")
+        ->required()
+        ->type_name("CLOUD");
+    verb->add_option("--door",
+                     o.door,
+                     "a place in a doorway and the way through it, metres and degrees: its clear "
+                     "width")
+        ->type_name("X,Y,YAW");
+    verb->add_option("--box", o.box, "what is looked at, from above: two corners")
+        ->type_name("X0,Y0,X1,Y1");
+    verb->add_option("--bin", o.bin_m, "of the histogram (default 0.005)")
+        ->type_name("M")
+        ->check(number_in(1e-4, 0.05));
+    verb->add_option("--histogram", o.histogram_file, "picture of the heights")->type_name("F.svg");
+}
+
 void add_eval_clouds(CLI::App& eval, EvalCloudsOptions& o, int& exit_code) {
     CLI::App* verb = bind(add_verb(eval,
                                    "clouds",
@@ -1221,6 +1250,7 @@ int main_with_arguments(int argc, char** argv) {
     add_voxel(app, all.voxel, exit_code);
     add_sor(app, all.sor, exit_code);
     add_icp(app, all.icp, exit_code);
+    add_measure(app, all.measure, exit_code);
     add_gate(app, all.gate, exit_code);
     add_rex_link(app, all.rex_link, exit_code);
     add_serve(app, all.serve, exit_code);

@@ -41,6 +41,12 @@ Result<std::array<double, 3>> parse_three_numbers(const std::string& option,
     return parse_numbers<3>(option, text, "three", meaning);
 }
 
+Result<std::array<double, 4>> parse_four_numbers(const std::string& option,
+                                                 const std::string& text,
+                                                 const std::string& meaning) {
+    return parse_numbers<4>(option, text, "four", meaning);
+}
+
 Result<std::array<double, 2>> parse_two_numbers(const std::string& option,
                                                 const std::string& text,
                                                 const std::string& meaning) {

@@ -13,6 +13,11 @@ namespace surefoot::app {
                                                                 const std::string& text,
                                                                 const std::string& meaning);
 
+/// Four of them, "a,b,c,d".
+[[nodiscard]] Result<std::array<double, 4>> parse_four_numbers(const std::string& option,
+                                                               const std::string& text,
+                                                               const std::string& meaning);
+
 /// Two of them, "a,b".
 [[nodiscard]] Result<std::array<double, 2>> parse_two_numbers(const std::string& option,
                                                               const std::string& text,

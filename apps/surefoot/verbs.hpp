@@ -255,6 +255,17 @@ struct EvalCloudsOptions {
 };
 int eval_clouds(const EvalCloudsOptions& options);
 
+struct MeasureOptions {
+    CommonOptions common;
+    std::string cloud;
+    std::string door;  ///< x,y,yaw (m, deg); empty = none
+    std::string box;   ///< x0,y0,x1,y1 (m); empty = the whole cloud
+    double bin_m = 0.005;
+    std::string histogram_file;  ///< SVG; empty = none
+};
+/// What one reads off a cloud by hand: levels, risers, goings, a door.
+int measure(const MeasureOptions& options);
+
 struct StairsOptions {
     CommonOptions common;
     std::string map;      ///< .asc, .png, a cloud, or the folder of a run

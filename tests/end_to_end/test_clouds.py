@@ -169,6 +169,47 @@ class Formats(CliTest):
         self.assertTrue((self.dir / "k.xyz").read_text().startswith("//X Y Z intensity\n"))
 
 
+class Measure(CliTest):
+    def scan(self, scene, *words):
+        path = self.dir / f"{scene}.ply"
+        self.run_ok("sim", scene, "--scan", path, "--set", "sim.laser.step_deg=0.2", *words)
+        return path
+
+    def test_the_demonstration_stairs(self):
+        answer = self.json_of("measure", self.scan("demo_stairs"), "--box", "3,-0.55,5.5,0.55", "--histogram", self.dir / "h.svg")
+        self.assertEqual(len(answer["riser"]["values_m"]), 3)
+        self.assertAlmostEqual(answer["riser"]["mean_m"], 0.18, delta=0.0005)
+        self.assertAlmostEqual(answer["going"]["mean_m"], 0.31, delta=0.005)
+        self.assertAlmostEqual(answer["uphill_deg"], 0.0, delta=3.0)
+        self.assertAlmostEqual(answer["levels"][0]["height_m"], 0.0, delta=0.0005)
+        self.assertTrue((self.dir / "h.svg").read_text().startswith("<svg"))
+
+    def test_a_door(self):
+        steps = lambda low, high, step: [low + i * step for i in range(round((high - low) / step) + 1)]
+        floor = [(x, y, 0.0) for x in steps(-1.0, 1.0, 0.02) for y in steps(-1.5, 1.5, 0.02)]
+        wall = [(side, y, z) for side in (-0.06, 0.06) for y in steps(-1.5, 1.5, 0.02) if abs(y) > 0.45 for z in steps(0.0, 2.0, 0.02)]
+        jambs = [(x, y, z) for x in steps(-0.06, 0.06, 0.02) for y in (-0.45, 0.45) for z in steps(0.0, 2.0, 0.02)]
+        # Turned by 30 deg about (5, 2): the way through is not an axis.
+        c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+        points = [(5 + c * x - s * y, 2 + s * x + c * y, z) for x, y, z in floor + wall + jambs]
+        (self.dir / "door.ply").write_bytes(ply(points))
+        answer = self.json_of("measure", self.dir / "door.ply", "--door", "5,2,30")
+        self.assertAlmostEqual(answer["door"]["width_m"], 0.9, delta=0.001)
+        beside = surefoot("measure", self.dir / "door.ply", "--door", f"{5 - c},{2 - s},30", "--json")
+        self.assertIsNone(json.loads(beside.stdout)["door"]["width_m"])
+        self.assertIn("nothing stands", beside.stderr)
+
+    def test_nothing_to_measure(self):
+        (self.dir / "noise.xyz").write_text("".join(f"{i % 7} {i % 11} {i % 13}\n" for i in range(200)))
+        answer = self.json_of("measure", self.dir / "noise.xyz")
+        self.assertEqual((answer["levels"], answer["riser"]["mean_m"], answer["uphill_deg"]), ([], None, None))
+        for why, words in (("four finite numbers", ["--box", "1,2"]), ("no point of the cloud lies in it", ["--box", "90,90,99,99"]),
+                           ("three finite numbers", ["--door", "1,2"]), ("no level surface", ["--door", "1,2,3"])):
+            process = surefoot("measure", self.dir / "noise.xyz", *words)
+            self.assertIn(process.returncode, (1, 2))
+            self.assertIn(why, process.stderr)
+
+
 class BadInput(CliTest):
     def refused(self, why, *words):
         before = {path: path.read_bytes() for path in self.dir.rglob("*") if path.is_file()}

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/surefoot/cloud_json.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/numbers.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "eval/cloud_measures.hpp"
+#include "eval/line_plot.hpp"
+#include "io/cloud_stream.hpp"
+#include "io/file.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Heights upward from the lowest, for a picture.
+std::string histogram_svg(const eval::HeightHistogram& heights, std::int64_t points) {
+    eval::LinePlot plot;
+    plot.title = fmt::format("Heights: {} levels", heights.levels.size());
+    plot.x_label = fmt::format("height above {:.3f} m [m]", heights.low_m);  // axes begin at zero
+    plot.y_label = fmt::format("share of the level points in {:g} mm [%]", 1e3 * heights.bin_m);
+    eval::LinePlot::Line line;
+    for (std::size_t i = 0; i < heights.counts.size(); ++i) {
+        line.points.push_back(
+            {(static_cast<double>(i) + 0.5) * heights.bin_m,
+             100.0 * static_cast<double>(heights.counts[i]) / static_cast<double>(points)});
+    }
+    plot.lines.push_back(std::move(line));
+    return eval::line_plot_svg(plot);
+}
+
+/// Where the door is, counted from the shift; the floor is the lowest level.
+Result<eval::DoorPlace> parse_door(const std::string& text,
+                                   const eval::HeightHistogram& heights,
+                                   const Eigen::Vector3d& shift_m) {
+    const auto xyyaw = parse_three_numbers("--door", text, "x,y,yaw (m, m, deg)");
+    if (!xyyaw) return xyyaw.error();
+    if (heights.levels.empty()) {
+        return input_error("--door: no level surface was found to count heights of the jambs from");
+    }
+    constexpr double kRadPerDeg = M_PI / 180.0;
+    return eval::DoorPlace{Eigen::Vector2d((*xyyaw)[0], (*xyyaw)[1]) - shift_m.head<2>(),
+                           kRadPerDeg * (*xyyaw)[2],
+                           heights.levels.front().height_m};
+}
+
+/// Only what lies in a box from above counts.
+Status keep_box(const std::string& text, io::ShiftedCloud& cloud) {
+    if (text.empty()) return {};
+    const auto numbers = parse_four_numbers("--box", text, "x0,y0,x1,y1 (m)");
+    if (!numbers) return numbers.error();
+    const Eigen::Vector2d low_m((*numbers)[0], (*numbers)[1]);
+    const Eigen::Vector2d high_m((*numbers)[2], (*numbers)[3]);
+    std::erase_if(cloud.points_m, [&](const Eigen::Vector3f& p_m) {
+        const Eigen::Vector2d xy_m = p_m.head<2>().cast<double>() + cloud.shift_m.head<2>();
+        return (xy_m.array() < low_m.array()).any() || (xy_m.array() > high_m.array()).any();
+    });
+    if (!cloud.points_m.empty()) return {};
+    return usage_error(fmt::format("--box {}: no point of the cloud lies in it", text));
+}
+
+void print_repeated(const char* what, const eval::Repeated& r) {
+    if (r.values_m.empty()) return;
+    fmt::print("{}: {:.1f} +- {:.1f} mm, scatter {:.1f} mm, {} of them\n",
+               what,
+               1e3 * r.mean_m,
+               1e3 * r.std_error_m,
+               1e3 * r.spread_m,
+               r.values_m.size());
+}
+
+void print_figures(const eval::HeightHistogram& heights,
+                   const eval::StairMeasures& stairs,
+                   const std::optional<std::optional<double>>& door_width_m,
+                   const Eigen::Vector3d& shift_m) {
+    if (heights.levels.empty()) fmt::print("no level surface\n");
+    for (const eval::Level& level : heights.levels) {
+        fmt::print(
+            "level at {:.4f} m: {} points, {:.1f} mm across its plane (rms), tilt {:.2f} deg\n",
+            level.height_m + shift_m.z(),
+            level.points,
+            1e3 * level.rms_m,
+            level.tilt_rad * 180.0 / M_PI);
+    }
+    print_repeated("riser", stairs.riser);
+    print_repeated("going", stairs.going);
+    if (door_width_m && *door_width_m) fmt::print("door: {:.1f} mm wide\n", 1e3 * **door_width_m);
+    tell_shift(shift_m);
+}
+
+}  // namespace
+
+int measure(const MeasureOptions& options) {
+    auto cloud = io::read_shifted(options.cloud);
+    if (!cloud) return report(cloud.error());
+    eval::LevelConfig config;
+    config.bin_m = options.bin_m;
+    if (auto status = keep_box(options.box, *cloud); !status) return report(status.error());
+    const auto executor = make_executor(options.common);
+    const eval::SortedSurfaces surfaces = eval::sort_surfaces(cloud->points_m, *executor);
+    const eval::HeightHistogram heights = eval::height_histogram(surfaces.level_m, config);
+    const eval::StairMeasures stairs = eval::measure_stairs(surfaces, heights.levels);
+    std::optional<std::optional<double>> door_width_m;
+    if (!options.door.empty()) {
+        const auto door = parse_door(options.door, heights, cloud->shift_m);
+        if (!door) return report(door.error());
+        door_width_m = eval::door_width_m(cloud->points_m, *door);
+        if (!*door_width_m)
+            log_warning("--door: nothing stands within 3 m on one side, or too few points do");
+    }
+    if (!options.histogram_file.empty()) {
+        const auto status = io::write_file(
+            options.histogram_file,
+            histogram_svg(heights, static_cast<std::int64_t>(surfaces.level_m.size())));
+        if (!status) return report(status.error());
+    }
+    if (options.common.json) {
+        print_answer(measure_json(heights, stairs, door_width_m, cloud->shift_m));
+    } else {
+        print_figures(heights, stairs, door_width_m, cloud->shift_m);
+    }
+    return kExitOk;
+}
+
+}  // namespace surefoot::app
