@@ -212,8 +212,8 @@ Eigen::Vector2d uphill_of(std::span<const Level> levels) {
 SortedSurfaces sort_surfaces(std::span<const Vector3f> points_m, Executor& executor) {
     constexpr double kThinned_m = 0.01;
     constexpr float kRadius_m = 0.04F;  // a tread is a quarter of a metre
-    const float kUp = std::cos(static_cast<float>(20.0 * M_PI / 180.0));
-    const float kAside = std::sin(static_cast<float>(20.0 * M_PI / 180.0));
+    const float level_up = std::cos(static_cast<float>(20.0 * M_PI / 180.0));
+    const float upright_up = std::sin(static_cast<float>(20.0 * M_PI / 180.0));
     const geometry::KdTree cloud(voxel_means_m(points_m, kThinned_m, executor), executor);
     const auto thinned_m = cloud.points_m();
     std::vector<float> upward(thinned_m.size(), std::numeric_limits<float>::quiet_NaN());
@@ -228,8 +228,8 @@ SortedSurfaces sort_surfaces(std::span<const Vector3f> points_m, Executor& execu
         });
     SortedSurfaces sorted;
     for (std::size_t i = 0; i < thinned_m.size(); ++i) {
-        if (upward[i] >= kUp) sorted.level_m.push_back(thinned_m[i]);
-        if (upward[i] <= kAside) sorted.upright_m.push_back(thinned_m[i]);
+        if (upward[i] >= level_up) sorted.level_m.push_back(thinned_m[i]);
+        if (upward[i] <= upright_up) sorted.upright_m.push_back(thinned_m[i]);
     }
     return sorted;
 }

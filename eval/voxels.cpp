@@ -48,8 +48,8 @@ class VoxelKeys {
 };
 
 struct Keyed {
-    std::uint64_t key;
-    Vector3f point_m;
+    std::uint64_t key = 0;
+    Vector3f point_m = Vector3f::Zero();
 };
 
 /// Points by the first bits of their voxel's number, in their order.
@@ -137,8 +137,19 @@ std::vector<Vector3f> voxel_means_m(std::span<const Vector3f> points_m,
         by_bucket[bucket] =
             means_m(std::span(dealt.points).subspan(first, dealt.first[bucket + 1] - first));
     });
-    std::vector<Vector3f> all_m;
-    for (const auto& some_m : by_bucket) all_m.insert(all_m.end(), some_m.begin(), some_m.end());
+    std::vector<std::size_t> first;
+    std::size_t count = 0;
+    for (const auto& some_m : by_bucket) {
+        first.push_back(count);
+        count += some_m.size();
+    }
+    std::vector<Vector3f> all_m(count);
+    executor.parallel_for(static_cast<int>(kBuckets), [&](int number) {
+        const auto bucket = static_cast<std::size_t>(number);
+        std::copy(by_bucket[bucket].begin(),
+                  by_bucket[bucket].end(),
+                  all_m.begin() + static_cast<std::ptrdiff_t>(first[bucket]));
+    });
     return all_m;
 }
 

@@ -250,7 +250,8 @@ Status ShiftedReader::add(const PointCloud& block, std::vector<Eigen::Vector3f>&
     return {};
 }
 
-Result<ShiftedCloud> read_shifted(const std::string& path, std::optional<Eigen::Vector3d> shift_m) {
+Result<ShiftedCloud> read_shifted(const std::string& path,
+                                  const std::optional<Eigen::Vector3d>& shift_m) {
     auto stream = CloudStream::open(path);
     if (!stream) return stream.error();
     ShiftedReader reader(path, shift_m);

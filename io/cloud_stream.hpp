@@ -77,6 +77,6 @@ class ShiftedReader {
 
 /// The whole of a file; memory is 12 bytes a point.
 [[nodiscard]] Result<ShiftedCloud> read_shifted(
-    const std::string& path, std::optional<Eigen::Vector3d> shift_m = std::nullopt);
+    const std::string& path, const std::optional<Eigen::Vector3d>& shift_m = std::nullopt);
 
 }  // namespace surefoot::io

@@ -50,7 +50,7 @@ Result<std::int64_t> write_kept(const SorOptions& options,
                 const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
                 for (std::size_t i = begin; i < std::min(begin + kTaken, keep.size()); ++i) {
                     const Eigen::Vector3d& p_m = block->points_m[i];
-                    keep[i] = p_m.allFinite() && filter.keeps((p_m - shift_m).cast<float>());
+                    if (p_m.allFinite() && filter.keeps((p_m - shift_m).cast<float>())) keep[i] = 1;
                 }
             });
         const io::PointCloud kept = kept_of(*block, keep);
