@@ -7,18 +7,13 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <system_error>
 #include <utility>
 
 #include "io/file.hpp"
+#include "io/write_at.hpp"
 
 namespace surefoot::io {
 namespace {
-
-Error cannot_write(const std::string& path, int error) {
-    return output_error(
-        fmt::format("{}: cannot write: {}", path, std::generic_category().message(error)));
-}
 
 /// A comment that takes the place that a number of fewer digits leaves.
 std::string filler(const char* comment, std::int64_t points, int times) {
@@ -82,18 +77,6 @@ std::string CloudWriter::head(std::int64_t points) const {
     return head;
 }
 
-Status CloudWriter::write_at(std::int64_t offset, std::string_view bytes) const {
-    while (!bytes.empty()) {
-        const ssize_t written =
-            ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return cannot_write(path_, errno);
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-        offset += written;
-    }
-    return {};
-}
-
 Status CloudWriter::add(const PointCloud& block) {
     if (descriptor_ < 0) return output_error(fmt::format("{}: is finished already", path_));
     if (const auto problem = block.problem()) return output_error(path_ + ": " + *problem);
@@ -107,11 +90,11 @@ Status CloudWriter::add(const PointCloud& block) {
     const std::size_t body = bytes.find(last) + last.size();
     if (size_ == 0) {
         head_ = bytes.substr(0, body);
-        if (Status status = write_at(0, head(0)); !status) return status;
+        if (Status status = write_at(descriptor_, 0, head(0), path_); !status) return status;
         size_ = static_cast<std::int64_t>(head(0).size());
     }
     const std::string_view rows = std::string_view(bytes).substr(body);
-    if (Status status = write_at(size_, rows); !status) return status;
+    if (Status status = write_at(descriptor_, size_, rows, path_); !status) return status;
     size_ += static_cast<std::int64_t>(rows.size());
     points_ += static_cast<std::int64_t>(block.points_m.size());
     return {};
@@ -122,7 +105,7 @@ Status CloudWriter::finish() {
     if (size_ == 0) {
         if (Status status = add(PointCloud{}); !status) return status;
     }
-    if (Status status = write_at(0, head(points_)); !status) return status;
+    if (Status status = write_at(descriptor_, 0, head(points_), path_); !status) return status;
     if (::close(std::exchange(descriptor_, -1)) != 0) return cannot_write(path_, errno);
     if (std::rename(part_path().c_str(), path_.c_str()) == 0) return {};
     const int error = errno;

@@ -32,7 +32,6 @@ class CloudWriter {
         : path_(std::move(path)), kind_(kind), format_(format), descriptor_(descriptor) {}
     [[nodiscard]] std::string part_path() const { return path_ + ".part"; }
     [[nodiscard]] std::string head(std::int64_t points) const;
-    [[nodiscard]] Status write_at(std::int64_t offset, std::string_view bytes) const;
 
     std::string path_;
     Kind kind_;

@@ -6,28 +6,20 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
 #include "io/bytes.hpp"
+#include "io/write_at.hpp"
 #include "surefoot/core/assert.hpp"
 
 namespace surefoot::io {
-namespace {
-
-Error cannot_write(const std::string& path, int error) {
-    return output_error(
-        fmt::format("{}: cannot write: {}", path, std::generic_category().message(error)));
-}
-
-}  // namespace
-
 Result<PlyStream> PlyStream::create(const std::string& path,
                                     const std::vector<std::string>& scalars) {
     const int descriptor = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
     if (descriptor < 0) return cannot_write(path, errno);
     PlyStream stream(path, descriptor, scalars);
-    if (Status status = stream.write_at(0, stream.header()); !status) return status.error();
+    if (Status status = write_at(stream.descriptor_, 0, stream.header(), stream.path_); !status)
+        return status.error();
     return stream;
 }
 
@@ -63,18 +55,6 @@ std::string PlyStream::header() const {
     return text + "end_header\n";
 }
 
-Status PlyStream::write_at(std::int64_t offset, std::string_view bytes) const {
-    while (!bytes.empty()) {
-        const ssize_t written =
-            ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return cannot_write(path_, errno);
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-        offset += written;
-    }
-    return {};
-}
-
 Status PlyStream::add(std::span<const float> values) {
     const std::size_t properties = 3 + scalars_.size();
     SUREFOOT_ASSERT(values.size() % properties == 0);
@@ -84,13 +64,13 @@ Status PlyStream::add(std::span<const float> values) {
     for (const float value : values) store_le(bytes, value);
     const auto row = static_cast<std::int64_t>(properties * sizeof(float));
     const std::int64_t end = static_cast<std::int64_t>(header().size()) + row * points_;
-    if (Status status = write_at(end, bytes); !status) {
+    if (Status status = write_at(descriptor_, end, bytes, path_); !status) {
         // Devices cannot be cut; the error that matters is reported anyway.
         [[maybe_unused]] const int cut = ::ftruncate(descriptor_, static_cast<off_t>(end));
         return status;
     }
     points_ += static_cast<std::int64_t>(values.size() / properties);
-    return write_at(0, header());
+    return write_at(descriptor_, 0, header(), path_);
 }
 
 Status PlyStream::close() {

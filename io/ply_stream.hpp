@@ -34,7 +34,6 @@ class PlyStream {
     PlyStream(std::string path, int descriptor, const std::vector<std::string>& scalars)
         : path_(std::move(path)), descriptor_(descriptor), scalars_(scalars) {}
     [[nodiscard]] std::string header() const;
-    [[nodiscard]] Status write_at(std::int64_t offset, std::string_view bytes) const;
 
     std::string path_;
     int descriptor_ = -1;

@@ -127,7 +127,6 @@ int icp(const IcpOptions& options) {
                                shifted(*guess, shift_m),
                                config,
                                *executor);
-    moved->points_m.clear();
     found.T_reference_moved = shifted(found.T_reference_moved, -shift_m);
     warn(found);
     if (!options.transform_file.empty()) {
