@@ -763,7 +763,7 @@ void add_measure(CLI::App& app, MeasureOptions& o, int& exit_code) {
                                    "surefoot measure out/stairs_10mm.ply --histogram "
                                    "out/heights.svg --json"),
                           o,
-                          measure,
+                          measure_cloud,
                           exit_code,
                           Reads::no_settings);
     verb->add_option("cloud", o.cloud, "PLY, PCD, LAS, VTK or XYZ; map.ply of a run")

@@ -93,7 +93,7 @@ void print_figures(const eval::HeightHistogram& heights,
 
 }  // namespace
 
-int measure(const MeasureOptions& options) {
+int measure_cloud(const MeasureOptions& options) {
     auto cloud = io::read_shifted(options.cloud);
     if (!cloud) return report(cloud.error());
     eval::LevelConfig config;

@@ -264,7 +264,7 @@ struct MeasureOptions {
     std::string histogram_file;  ///< SVG; empty = none
 };
 /// What one reads off a cloud by hand: levels, risers, goings, a door.
-int measure(const MeasureOptions& options);
+int measure_cloud(const MeasureOptions& options);
 
 struct StairsOptions {
     CommonOptions common;
