@@ -100,6 +100,16 @@ class Verbs(CliTest):
              "width height resolution_m origin_m known_cells files folder"),
             (["dem", run / "map.ply", "--resolution", 0.1, "--out", self.dir / "dem.asc"],
              "width height resolution_m origin_m known_cells points skipped file"),
+            (["voxel", run / "map.ply", "--size", 0.1, "--out", self.dir / "thin.ply"], "points voxels skipped size_m shift_m file"),
+            (["sor", run / "map.ply", "--out", self.dir / "clean.ply"],
+             "points kept skipped others mean_m std_m limit_m shift_m file"),
+            (["icp", run / "map.ply", run / "map.ply"],
+             "T_reference_moved converged iterations pairs rms_m nearest_rms_m sigma_m sigma_deg border_directions "
+             "free_directions shift_m steps"),
+            (["measure", run / "map.ply"], "levels riser going uphill_deg shift_m"),
+            (["eval", "clouds", run / "map.ply", self.dir / "clean.ply", "--method", "m3c2"],
+             "method count mean_m std_m rms_m min_m max_m p50_m p90_m p99_m median_abs_m p90_abs_m skipped shift_m cores "
+             "significant median_lod95_m"),
             (["calibrate", "render", "--board", "chessboard:8x5:0.03", "--rig", "zed_vga", "--views", 12, "--out",
               self.dir / "chess"], "views folder"),
             (["calibrate", "mono", self.dir / "chess", "--eye", "left", "--board", "chessboard:8x5:0.03", "--out",
