@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/pieces.hpp"
 #include "surefoot/geometry/spatial_order.hpp"
 
 namespace surefoot::eval {
@@ -38,10 +39,7 @@ std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
     for (std::size_t from = 0; from < compared_m.size(); from += kSorted) {
         const auto points_m = compared_m.subspan(from, std::min(kSorted, compared_m.size() - from));
         const std::vector<std::uint32_t> order = geometry::spatial_order(points_m);
-        const auto pieces = static_cast<int>((points_m.size() + kTaken - 1) / kTaken);
-        executor.parallel_for(pieces, [&](int piece) {
-            const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
-            const std::size_t end = std::min(begin + kTaken, order.size());
+        in_pieces(order.size(), kTaken, executor, [&](std::size_t begin, std::size_t end, auto) {
             Neighbour last;
             for (std::size_t i = begin; i < end; ++i) {
                 const Eigen::Vector3f& p_m = points_m[order[i]];

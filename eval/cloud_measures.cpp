@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "eval/voxels.hpp"
+#include "surefoot/core/pieces.hpp"
 #include "surefoot/geometry/kd_tree.hpp"
 #include "surefoot/geometry/plane_fit.hpp"
 #include "surefoot/geometry/surface_normal.hpp"
@@ -210,22 +211,19 @@ Eigen::Vector2d uphill_of(std::span<const Level> levels) {
 }  // namespace
 
 SortedSurfaces sort_surfaces(std::span<const Vector3f> points_m, Executor& executor) {
-    constexpr double kThinned_m = 0.01;
     constexpr float kRadius_m = 0.04F;  // a tread is a quarter of a metre
     const float level_up = std::cos(static_cast<float>(20.0 * M_PI / 180.0));
     const float upright_up = std::sin(static_cast<float>(20.0 * M_PI / 180.0));
-    const geometry::KdTree cloud(voxel_means_m(points_m, kThinned_m, executor), executor);
+    const geometry::KdTree cloud(voxel_means_m(points_m, kSurfaceVoxel_m, executor), executor);
     const auto thinned_m = cloud.points_m();
     std::vector<float> upward(thinned_m.size(), std::numeric_limits<float>::quiet_NaN());
     constexpr std::size_t kTaken = 4096;
-    executor.parallel_for(
-        static_cast<int>((thinned_m.size() + kTaken - 1) / kTaken), [&](int piece) {
-            const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
-            for (std::size_t i = begin; i < std::min(begin + kTaken, thinned_m.size()); ++i) {
-                const auto normal = geometry::surface_normal(cloud, thinned_m[i], kRadius_m);
-                if (normal) upward[i] = std::abs(normal->z());
-            }
-        });
+    in_pieces(thinned_m.size(), kTaken, executor, [&](std::size_t begin, std::size_t end, auto) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto normal = geometry::surface_normal(cloud, thinned_m[i], kRadius_m);
+            if (normal) upward[i] = std::abs(normal->z());
+        }
+    });
     SortedSurfaces sorted;
     for (std::size_t i = 0; i < thinned_m.size(); ++i) {
         if (upward[i] >= level_up) sorted.level_m.push_back(thinned_m[i]);

@@ -18,8 +18,10 @@ struct SortedSurfaces {
     std::vector<Eigen::Vector3f> level_m;    ///< normals within 20 deg of the vertical
     std::vector<Eigen::Vector3f> upright_m;  ///< within 20 deg of the horizontal
 };
-/// Thins the cloud to a point for each 10 mm first, so that what is near to a scanner does not
-/// count for more. Points must be finite and `fits_voxels`.
+/// The cloud is thinned to a point for each voxel of this size first, so that what is near to a
+/// scanner does not count for more.
+inline constexpr double kSurfaceVoxel_m = 0.01;
+/// Points must be finite, and their box `fits_voxels`.
 [[nodiscard]] SortedSurfaces sort_surfaces(std::span<const Eigen::Vector3f> points_m,
                                            Executor& executor = serial());
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/cloud_outliers.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/pieces.hpp"
 
 namespace surefoot::eval {
 namespace {
@@ -19,11 +19,9 @@ OutlierFilter::OutlierFilter(geometry::KdTree cloud,
     : cloud_(std::move(cloud)), to_neighbours_m_(cloud_.points_m().size()) {
     SUREFOOT_ASSERT(config.others > 0 && config.sigmas >= 0.0);
     const auto points_m = cloud_.points_m();
-    const auto pieces = static_cast<int>((points_m.size() + kTaken - 1) / kTaken);
-    executor.parallel_for(pieces, [&](int piece) {
+    in_pieces(points_m.size(), kTaken, executor, [&](std::size_t begin, std::size_t end, auto) {
         std::vector<geometry::Neighbour> found(static_cast<std::size_t>(config.others) + 1);
-        const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
-        for (std::size_t i = begin; i < std::min(begin + kTaken, points_m.size()); ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
             const std::size_t count = cloud_.nearest(points_m[i], found);
             double sum_m = 0.0;  // the point itself adds nothing
             for (std::size_t k = 0; k < count; ++k)

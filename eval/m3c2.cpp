@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "surefoot/core/pieces.hpp"
 #include "surefoot/geometry/surface_normal.hpp"
 
 namespace surefoot::eval {
@@ -120,10 +121,8 @@ std::vector<M3c2Value> m3c2(const geometry::KdTree& reference,
                             const M3c2Config& config,
                             Executor& executor) {
     std::vector<M3c2Value> values(cores_m.size());
-    const auto pieces = static_cast<int>((cores_m.size() + kTaken - 1) / kTaken);
-    executor.parallel_for(pieces, [&](int piece) {
-        const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
-        for (std::size_t i = begin; i < std::min(begin + kTaken, cores_m.size()); ++i)
+    in_pieces(cores_m.size(), kTaken, executor, [&](std::size_t begin, std::size_t end, auto) {
+        for (std::size_t i = begin; i < end; ++i)
             values[i] = compare(reference, compared, cores_m[i], config);
     });
     return values;

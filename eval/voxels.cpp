@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/pieces.hpp"
 
 namespace surefoot::eval {
 namespace {
@@ -22,9 +23,9 @@ constexpr std::size_t kBuckets = 1U << kBucketBits;
 /// Voxels of a box as whole numbers that ascend with x, then y, then z.
 class VoxelKeys {
   public:
-    VoxelKeys(const Vector3f& low_m, const Vector3f& high_m, double size_m)
-        : size_m_(size_m), low_(numbers(low_m)) {
-        bits_ = (numbers(high_m) - low_).unaryExpr([](std::int64_t span) {
+    VoxelKeys(const geometry::PointBox& box, double size_m)
+        : size_m_(size_m), low_(numbers(box.low_m)) {
+        bits_ = (numbers(box.high_m) - low_).unaryExpr([](std::int64_t span) {
             return static_cast<std::int64_t>(std::bit_width(static_cast<std::uint64_t>(span)));
         });
     }
@@ -60,16 +61,15 @@ struct Dealt {
 
 Dealt deal(std::span<const Vector3f> points_m, const VoxelKeys& keys, Executor& executor) {
     const int shift = std::max(0, keys.bits() - kBucketBits);
-    const std::size_t pieces = (points_m.size() + kTaken - 1) / kTaken;
+    const std::size_t pieces = pieces_of(points_m.size(), kTaken);
     const auto each = [&](auto&& work) {
-        executor.parallel_for(static_cast<int>(pieces), [&](int piece) {
-            const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
-            const std::size_t end = std::min(begin + kTaken, points_m.size());
+        const auto deal_piece = [&](std::size_t begin, std::size_t end, std::size_t piece) {
             for (std::size_t i = begin; i < end; ++i) {
                 const std::uint64_t key = keys.key(points_m[i]);
-                work(static_cast<std::size_t>(piece) * kBuckets + (key >> shift), key, points_m[i]);
+                work(piece * kBuckets + (key >> shift), key, points_m[i]);
             }
-        });
+        };
+        in_pieces(points_m.size(), kTaken, executor, deal_piece);
     };
     std::vector<std::size_t> next(pieces * kBuckets);
     each([&](std::size_t slot, std::uint64_t, const Vector3f&) { ++next[slot]; });
@@ -110,11 +110,11 @@ std::int64_t voxel_number(float p_m, double size_m) noexcept {
     return static_cast<std::int64_t>(std::floor(static_cast<double>(p_m) / size_m));
 }
 
-bool fits_voxels(const Vector3f& low_m, const Vector3f& high_m, double size_m) {
+bool fits_voxels(const geometry::PointBox& box, double size_m) {
     // Beyond this the numbers themselves would not fit.
-    const double most = std::max(static_cast<double>(high_m.cwiseAbs().maxCoeff()),
-                                 static_cast<double>(low_m.cwiseAbs().maxCoeff()));
-    return most / size_m < 1e18 && VoxelKeys(low_m, high_m, size_m).bits() <= kMostBits;
+    const float most_m = box.high_m.cwiseAbs().cwiseMax(box.low_m.cwiseAbs()).maxCoeff();
+    return static_cast<double>(most_m) / size_m < 1e18 &&
+           VoxelKeys(box, size_m).bits() <= kMostBits;
 }
 
 std::vector<Vector3f> voxel_means_m(std::span<const Vector3f> points_m,
@@ -122,14 +122,9 @@ std::vector<Vector3f> voxel_means_m(std::span<const Vector3f> points_m,
                                     Executor& executor) {
     SUREFOOT_ASSERT(size_m > 0.0);
     if (points_m.empty()) return {};
-    Vector3f low_m = points_m.front();
-    Vector3f high_m = low_m;
-    for (const Vector3f& p_m : points_m) {
-        low_m = low_m.cwiseMin(p_m);
-        high_m = high_m.cwiseMax(p_m);
-    }
-    SUREFOOT_ASSERT(fits_voxels(low_m, high_m, size_m));
-    Dealt dealt = deal(points_m, VoxelKeys(low_m, high_m, size_m), executor);
+    const geometry::PointBox box = geometry::box_of(points_m);
+    SUREFOOT_ASSERT(fits_voxels(box, size_m));
+    Dealt dealt = deal(points_m, VoxelKeys(box, size_m), executor);
     std::vector<std::vector<Vector3f>> by_bucket(kBuckets);
     executor.parallel_for(static_cast<int>(kBuckets), [&](int number) {
         const auto bucket = static_cast<std::size_t>(number);

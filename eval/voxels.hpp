@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
+#include "surefoot/geometry/point_box.hpp"
 
 namespace surefoot::eval {
 
@@ -23,8 +24,6 @@ namespace surefoot::eval {
                                                          Executor& executor = serial());
 
 /// Can the voxels of a box be numbered? 2^63 can: those of a millimetre in a cube of 2 km.
-[[nodiscard]] bool fits_voxels(const Eigen::Vector3f& low_m,
-                               const Eigen::Vector3f& high_m,
-                               double size_m);
+[[nodiscard]] bool fits_voxels(const geometry::PointBox& box, double size_m);
 
 }  // namespace surefoot::eval

@@ -63,9 +63,9 @@ TEST(Voxels, BordersLieOnMultiples) {
 TEST(Voxels, NothingOnePlaceAndTooMany) {
     EXPECT_TRUE(voxel_means_m({}, 0.001).empty());
     EXPECT_EQ(voxel_means_m(Points(5000, {1, 2, 3}), 0.001), Points(1, {1, 2, 3}));
-    EXPECT_TRUE(fits_voxels({0, 0, 0}, {1600, 1600, 1600}, 0.001));
-    EXPECT_FALSE(fits_voxels({0, 0, 0}, {1e7F, 1e7F, 1e7F}, 0.001));
-    EXPECT_FALSE(fits_voxels({0, 0, 0}, {1e30F, 0, 0}, 0.001));
+    EXPECT_TRUE(fits_voxels({{0, 0, 0}, {1600, 1600, 1600}}, 0.001));
+    EXPECT_FALSE(fits_voxels({{0, 0, 0}, {1e7F, 1e7F, 1e7F}}, 0.001));
+    EXPECT_FALSE(fits_voxels({{0, 0, 0}, {1e30F, 0, 0}}, 0.001));
 }
 
 }  // namespace

@@ -49,10 +49,6 @@ class ByteFile {
     std::uint64_t size_ = 0;
 };
 
-bool is_text(const std::string& extension) {
-    return extension == ".xyz" || extension == ".asc" || extension == ".txt" || extension == ".csv";
-}
-
 }  // namespace
 
 class CloudStream::Part {
@@ -182,7 +178,7 @@ Result<CloudStream> CloudStream::open(const std::string& path) {
     const std::string extension = extension_of(path);
     if (is_file(path)) {
         ByteFile file(path);
-        if (file.good() && is_text(extension))
+        if (file.good() && is_text_cloud(extension))
             return CloudStream(std::make_unique<Lines>(path, std::move(file)));
         const auto head = file.good() ? file.read(0, kHeadBytes) : Result<std::string>("");
         if (!head) return head.error();
@@ -257,12 +253,9 @@ Result<ShiftedCloud> read_shifted(const std::string& path,
     ShiftedReader reader(path, shift_m);
     ShiftedCloud cloud;
     cloud.points_m.reserve(static_cast<std::size_t>(stream->points().value_or(0)));
-    while (true) {
-        const auto block = stream->next();
-        if (!block) return block.error();
-        if (block->points_m.empty()) break;
-        if (auto status = reader.add(*block, cloud.points_m); !status) return status.error();
-    }
+    const auto status = stream->each_block(
+        [&](const PointCloud& block) { return reader.add(block, cloud.points_m); });
+    if (!status) return status.error();
     cloud.shift_m = reader.shift_m();
     cloud.skipped = reader.skipped();
     if (cloud.points_m.empty()) {

@@ -27,6 +27,18 @@ class CloudStream {
     [[nodiscard]] Result<PointCloud> next();
     /// From the first point again.
     void rewind();
+    /// Hands all blocks, from the first point on, to `use`, which takes a PointCloud& and returns a
+    /// Status; one that is none of success ends it.
+    template <typename Use>
+    [[nodiscard]] Status each_block(const Use& use) {
+        rewind();
+        while (true) {
+            auto block = next();
+            if (!block) return block.error();
+            if (block->points_m.empty()) return {};
+            if (Status status = use(*block); !status) return status;
+        }
+    }
     /// How many points there are, where the file says so.
     [[nodiscard]] std::optional<std::uint64_t> points() const;
 
@@ -61,15 +73,15 @@ class ShiftedReader {
 
     /// Appends the finite points of a block to `out`.
     [[nodiscard]] Status add(const PointCloud& block, std::vector<Eigen::Vector3f>& out);
-    /// One point, where it is finite.
-    [[nodiscard]] Result<std::optional<Eigen::Vector3f>> shifted(const Eigen::Vector3d& p_m);
-
     [[nodiscard]] Eigen::Vector3d shift_m() const {
         return shift_m_.value_or(Eigen::Vector3d::Zero());
     }
     [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
 
   private:
+    /// One point, where it is finite.
+    [[nodiscard]] Result<std::optional<Eigen::Vector3f>> shifted(const Eigen::Vector3d& p_m);
+
     std::string path_;
     std::optional<Eigen::Vector3d> shift_m_;
     std::int64_t skipped_ = 0;

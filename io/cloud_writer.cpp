@@ -32,8 +32,7 @@ void put_count(std::string& head, const std::string& key, std::int64_t points) {
 
 Result<CloudWriter> CloudWriter::create(const std::string& path, const CloudFormat& format) {
     const std::string extension = extension_of(path);
-    const bool text =
-        extension == ".xyz" || extension == ".asc" || extension == ".txt" || extension == ".csv";
+    const bool text = is_text_cloud(extension);
     if (!text && extension != ".ply" && extension != ".pcd") {
         return usage_error(fmt::format(
             "{}: clouds are written as .ply .pcd .xyz .asc .txt .csv, not '{}'", path, extension));

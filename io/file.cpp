@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "io/text.hpp"
+#include "io/write_at.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -22,10 +23,6 @@ namespace fs = std::filesystem;
 
 std::string reason(int error) {
     return std::generic_category().message(error);
-}
-
-Error cannot_write(const std::string& path, int error) {
-    return output_error(fmt::format("{}: cannot write: {}", path, reason(error)));
 }
 
 /// Writes everything, or returns errno.

@@ -47,6 +47,7 @@ constexpr std::size_t kIntensity = 12;
 constexpr std::uint8_t kCompressed = 0xC0;  ///< bits that LAZ sets in the format
 
 struct Header {
+    std::size_t header_bytes = 0;
     std::size_t points_at = 0;
     std::size_t record_bytes = 0;
     std::size_t format = 0;
@@ -79,6 +80,7 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     if (format >= kFormats.size())
         return damaged(file, fmt::format("LAS point format {}, 0 to 10 are known", format));
     Header header;
+    header.header_bytes = header_bytes;
     header.format = format;
     header.points_at = load_le<std::uint32_t>(data + kPointsAt);
     header.record_bytes = load_le<std::uint16_t>(data + kRecordBytes);
@@ -167,14 +169,12 @@ Result<PointCloud> parse_las(std::string_view bytes, const std::string& file) {
 
 std::optional<CloudRows> las_rows(std::string_view head, std::uint64_t size) {
     const auto header = parse_header(head, size, "");
-    if (!header) return std::nullopt;
-    const auto header_bytes = load_le<std::uint16_t>(head.data() + kHeaderSize);
-    if (header_bytes > head.size()) return std::nullopt;
+    if (!header || header->header_bytes > head.size()) return std::nullopt;
     CloudRows rows;
     rows.first_byte = header->points_at;
     rows.rows = header->points;
     rows.row_bytes = header->record_bytes;
-    rows.head = [copy = std::string(head.substr(0, header_bytes))](std::uint64_t count) {
+    rows.head = [copy = std::string(head.substr(0, header->header_bytes))](std::uint64_t count) {
         std::string bytes = copy;
         const auto put = [&](std::size_t at, auto value) {
             std::string packed;

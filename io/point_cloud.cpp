@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
-
 #include "io/file.hpp"
 
 namespace surefoot::io {
@@ -35,6 +32,10 @@ std::optional<std::string> PointCloud::problem() const {
     return std::nullopt;
 }
 
+bool is_text_cloud(std::string_view extension) noexcept {
+    return extension == ".xyz" || extension == ".asc" || extension == ".txt" || extension == ".csv";
+}
+
 Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) {
     const std::string extension = extension_of(file);
     if (extension == ".ply") return parse_ply(bytes, file);
@@ -45,11 +46,10 @@ Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) 
 }
 
 Result<PointCloud> read_cloud(const std::string& path) {
-    static constexpr std::string_view kExtensions[] = {
-        ".ply", ".pcd", ".las", ".vtk", ".xyz", ".asc", ".txt", ".csv"};
     const std::string extension = extension_of(path);
-    if (std::find(std::begin(kExtensions), std::end(kExtensions), extension) ==
-        std::end(kExtensions)) {
+    const bool named =
+        extension == ".ply" || extension == ".pcd" || extension == ".las" || extension == ".vtk";
+    if (!named && !is_text_cloud(extension)) {
         const char* hint = extension == ".laz"
                                ? "nothing packaged reads LAZ: convert it with 'pdal translate "
                                  "IN.laz OUT.las' or 'laszip'"

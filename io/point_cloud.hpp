@@ -40,6 +40,9 @@ struct CloudFormat {
     bool double_precision = false;  ///< for large (projected) coordinates; float keeps 24 bits
 };
 
+/// .xyz .asc .txt .csv: a point a line.
+[[nodiscard]] bool is_text_cloud(std::string_view extension) noexcept;
+
 /// By extension: .ply, .pcd, .las, .vtk, and .xyz .asc .txt .csv as text.
 [[nodiscard]] Result<PointCloud> read_cloud(const std::string& path);
 /// The content of such a file; `file` says by its extension what it is.

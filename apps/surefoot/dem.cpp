@@ -19,27 +19,17 @@ eval::Reduce reduce_named(const std::string& name) {
     return name == "min" ? eval::Reduce::min : eval::Reduce::max;
 }
 
-/// Hands every block of a cloud to `use`.
-template <typename Use>
-Status each_block(io::CloudStream& cloud, const Use& use) {
-    cloud.rewind();
-    while (true) {
-        const auto block = cloud.next();
-        if (!block) return block.error();
-        if (block->points_m.empty()) return {};
-        use(block->points_m);
-    }
-}
-
 }  // namespace
 
 int dem(const DemOptions& options) {
     auto cloud = io::CloudStream::open(options.cloud);
     if (!cloud) return report(cloud.error());
     eval::CloudBounds bounds;
-    const auto add_to_bounds = [&](const auto& points_m) { bounds.add(points_m); };
-    if (const auto status = each_block(*cloud, add_to_bounds); !status)
-        return report(status.error());
+    const auto read = cloud->each_block([&](const io::PointCloud& block) {
+        bounds.add(block.points_m);
+        return Status();
+    });
+    if (!read) return report(read.error());
     const auto grid =
         bounds.grid(options.resolution_m,
                     options.lattice == "node" ? eval::Lattice::node : eval::Lattice::cell);
@@ -48,8 +38,11 @@ int dem(const DemOptions& options) {
             {grid.error().code, fmt::format("{}: {}", options.cloud, grid.error().message)});
     }
     eval::DemBuilder builder(*grid, reduce_named(options.reduce));
-    const auto add_to_map = [&](const auto& points_m) { builder.add(points_m); };
-    if (const auto status = each_block(*cloud, add_to_map); !status) return report(status.error());
+    const auto read_again = cloud->each_block([&](const io::PointCloud& block) {
+        builder.add(block.points_m);
+        return Status();
+    });
+    if (!read_again) return report(read_again.error());
     const grid::Layer heights_m = builder.heights_m();
     if (auto status = io::write_esri_grid(options.out_file, grid->geometry, heights_m); !status)
         return report(status.error());

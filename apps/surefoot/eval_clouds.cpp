@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "apps/surefoot/cloud_json.hpp"
@@ -93,14 +91,12 @@ Status write_values(const std::string& path, const Compared& result) {
     const std::string none = result.m3c2.empty() ? "nan\n" : "nan,nan,nan,nan,0,0,0\n";
     std::string text;
     std::size_t next = 0;
-    while (true) {
-        const auto block = stream->next();
-        if (!block) return block.error();
-        if (block->points_m.empty()) break;
-        for (const Eigen::Vector3d& p_m : block->points_m)
+    const auto status = stream->each_block([&](const io::PointCloud& block) {
+        for (const Eigen::Vector3d& p_m : block.points_m)
             text += p_m.allFinite() ? line_of(result, next++) : none;
-    }
-    return io::write_file(path, text);
+        return Status();
+    });
+    return status ? io::write_file(path, text) : status;
 }
 
 std::string sentence_of(const CloudComparison& c) {

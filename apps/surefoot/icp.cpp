@@ -68,13 +68,11 @@ Status write_moved(const std::string& from, const std::string& to, const Pose& T
     if (!stream) return stream.error();
     auto writer = io::CloudWriter::create(to, {true, wide});
     if (!writer) return writer.error();
-    while (true) {
-        auto block = stream->next();
-        if (!block) return block.error();
-        if (block->points_m.empty()) return writer->finish();
-        for (Eigen::Vector3d& p_m : block->points_m) p_m = T * p_m;
-        if (auto status = writer->add(*block); !status) return status;
-    }
+    const auto status = stream->each_block([&](io::PointCloud& block) {
+        for (Eigen::Vector3d& p_m : block.points_m) p_m = T * p_m;
+        return writer->add(block);
+    });
+    return status ? writer->finish() : status;
 }
 
 std::string matrix_text(const Pose& T) {

@@ -99,6 +99,9 @@ int measure_cloud(const MeasureOptions& options) {
     eval::LevelConfig config;
     config.bin_m = options.bin_m;
     if (auto status = keep_box(options.box, *cloud); !status) return report(status.error());
+    const geometry::PointBox box = geometry::box_of(cloud->points_m);
+    if (auto status = check_voxels(box, eval::kSurfaceVoxel_m, options.cloud); !status)
+        return report(status.error());
     const auto executor = make_executor(options.common);
     const eval::SortedSurfaces surfaces = eval::sort_surfaces(cloud->points_m, *executor);
     const eval::HeightHistogram heights = eval::height_histogram(surfaces.level_m, config);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "apps/surefoot/cloud_json.hpp"
@@ -11,6 +10,7 @@
 #include "eval/cloud_outliers.hpp"
 #include "io/cloud_stream.hpp"
 #include "io/cloud_writer.hpp"
+#include "surefoot/core/pieces.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -40,25 +40,20 @@ Result<std::int64_t> write_kept(const SorOptions& options,
     if (!stream) return stream.error();
     auto writer = io::CloudWriter::create(options.out_file, {true, !shift_m.isZero()});
     if (!writer) return writer.error();
-    while (true) {
-        const auto block = stream->next();
-        if (!block) return block.error();
-        if (block->points_m.empty()) break;
-        std::vector<char> keep(block->points_m.size(), 0);
-        executor.parallel_for(
-            static_cast<int>((keep.size() + kTaken - 1) / kTaken), [&](int piece) {
-                const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
-                for (std::size_t i = begin; i < std::min(begin + kTaken, keep.size()); ++i) {
-                    const Eigen::Vector3d& p_m = block->points_m[i];
-                    if (p_m.allFinite() && filter.keeps((p_m - shift_m).cast<float>())) keep[i] = 1;
-                }
-            });
-        const io::PointCloud kept = kept_of(*block, keep);
-        if (kept.points_m.empty()) continue;
-        if (auto status = writer->add(kept); !status) return status.error();
-    }
+    const auto status = stream->each_block([&](const io::PointCloud& block) {
+        std::vector<char> keep(block.points_m.size(), 0);
+        in_pieces(keep.size(), kTaken, executor, [&](std::size_t begin, std::size_t end, auto) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Eigen::Vector3d& p_m = block.points_m[i];
+                if (p_m.allFinite() && filter.keeps((p_m - shift_m).cast<float>())) keep[i] = 1;
+            }
+        });
+        const io::PointCloud kept = kept_of(block, keep);
+        return kept.points_m.empty() ? Status() : writer->add(kept);
+    });
+    if (!status) return status.error();
     const std::int64_t count = writer->points();
-    if (auto status = writer->finish(); !status) return status.error();
+    if (auto finished = writer->finish(); !finished) return finished.error();
     return count;
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -40,17 +39,14 @@ class Source {
     /// Hands the points block by block to `use`, which returns a Status.
     template <typename Use>
     Status each_block(const Use& use) {
-        stream_.rewind();
         io::ShiftedReader reader(path_, shift_m_);
         std::vector<Vector3f> points_m;
-        while (true) {
-            const auto block = stream_.next();
-            if (!block) return block.error();
-            if (block->points_m.empty()) break;
+        Status status = stream_.each_block([&](const io::PointCloud& block) -> Status {
             points_m.clear();
-            if (auto status = reader.add(*block, points_m); !status) return status;
-            if (auto status = use(points_m); !status) return status;
-        }
+            if (auto added = reader.add(block, points_m); !added) return added;
+            return use(points_m);
+        });
+        if (!status) return status;
         if (!shift_m_) shift_m_ = reader.shift_m();
         skipped_ = reader.skipped();
         return {};
@@ -73,17 +69,16 @@ class Source {
 struct Census {
     std::map<std::int64_t, std::int64_t> by_slab;
     std::int64_t points = 0;
-    Vector3f low_m = Vector3f::Zero();
-    Vector3f high_m = Vector3f::Zero();
+    geometry::PointBox box;
 };
 
 Result<Census> count(Source& source, const std::string& cloud, double size_m) {
     Census census;
     const auto status = source.each_block([&](const std::vector<Vector3f>& points_m) -> Status {
         for (const Vector3f& p_m : points_m) {
-            if (census.points++ == 0) census.low_m = census.high_m = p_m;
-            census.low_m = census.low_m.cwiseMin(p_m);
-            census.high_m = census.high_m.cwiseMax(p_m);
+            if (census.points++ == 0) census.box = {p_m, p_m};
+            census.box.low_m = census.box.low_m.cwiseMin(p_m);
+            census.box.high_m = census.box.high_m.cwiseMax(p_m);
             ++census.by_slab[slab_of(p_m, size_m)];
         }
         return {};
@@ -93,16 +88,8 @@ Result<Census> count(Source& source, const std::string& cloud, double size_m) {
         return input_error(
             fmt::format("{}: no point with finite coordinates among {}", cloud, source.skipped()));
     }
-    if (eval::fits_voxels(census.low_m, census.high_m, size_m)) return census;
-    const Vector3f side_m = census.high_m - census.low_m;
-    return usage_error(
-        fmt::format("{}: {:g} x {:g} x {:g} m cannot be numbered in voxels of {:g} m: choose "
-                    "larger ones, or remove stray points",
-                    cloud,
-                    static_cast<double>(side_m.x()),
-                    static_cast<double>(side_m.y()),
-                    static_cast<double>(side_m.z()),
-                    size_m));
+    if (auto fits = check_voxels(census.box, size_m, cloud); !fits) return fits.error();
+    return census;
 }
 
 /// Runs of slabs, each with at most so many points where a slab alone has no more: the first slab
@@ -204,6 +191,19 @@ Status write_points(std::span<const Vector3f> points_m,
 }
 
 }  // namespace
+
+Status check_voxels(const geometry::PointBox& box, double size_m, const std::string& cloud) {
+    if (eval::fits_voxels(box, size_m)) return {};
+    const Eigen::Vector3d side_m = (box.high_m - box.low_m).cast<double>();
+    return usage_error(
+        fmt::format("{}: {:g} x {:g} x {:g} m cannot be numbered in voxels of {:g} m: choose "
+                    "larger ones, or remove stray points",
+                    cloud,
+                    side_m.x(),
+                    side_m.y(),
+                    side_m.z(),
+                    size_m));
+}
 
 Result<ThinnedCloud> thin_cloud(const std::string& cloud,
                                 double size_m,

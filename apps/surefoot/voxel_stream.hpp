@@ -7,6 +7,7 @@
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/geometry/point_box.hpp"
 
 namespace surefoot::app {
 
@@ -17,6 +18,11 @@ struct ThinnedCloud {
     std::int64_t voxels = 0;   ///< points that are left
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
 };
+
+/// Refuses a box whose voxels cannot be numbered; `cloud` is for the error.
+[[nodiscard]] Status check_voxels(const geometry::PointBox& box,
+                                  double size_m,
+                                  const std::string& cloud);
 
 /// One point for each voxel, their mean, written as the cloud `out_file`. Clouds with more points
 /// than `most_in_memory` are dealt out into slabs along x in a folder beside the output, 12 bytes a

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/pieces.hpp"
 #include "surefoot/geometry/surface_normal.hpp"
 
 namespace surefoot::geometry {
@@ -18,14 +19,6 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 constexpr std::size_t kTaken = 2048;  ///< points that one thread takes, and that are summed at once
-
-template <typename Work>
-void in_pieces(std::size_t count, Executor& executor, const Work& work) {
-    executor.parallel_for(static_cast<int>((count + kTaken - 1) / kTaken), [&](int piece) {
-        const std::size_t begin = static_cast<std::size_t>(piece) * kTaken;
-        work(begin, std::min(begin + kTaken, count), static_cast<std::size_t>(piece));
-    });
-}
 
 std::vector<Vector3f> taken_evenly(std::span<const Vector3f> points_m, int most) {
     const auto limit = static_cast<std::size_t>(most);
@@ -63,9 +56,12 @@ class Pairing {
           nearest_(moved_m_.size()) {}
 
     const std::vector<Pair>& pairs_at(const Pose& T_reference_moved) {
-        in_pieces(moved_m_.size(), executor_, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) pair_up(i, T_reference_moved);
-        });
+        in_pieces(moved_m_.size(),
+                  kTaken,
+                  executor_,
+                  [&](std::size_t begin, std::size_t end, std::size_t) {
+                      for (std::size_t i = begin; i < end; ++i) pair_up(i, T_reference_moved);
+                  });
         if (config_.kept_share < 1.0) keep_nearest();
         return pairs_;
     }
@@ -133,16 +129,19 @@ class Borders {
         const std::vector<Vector3f>& points_m = pairing.moved_m();
         const KdTree moved(points_m, executor);
         std::vector<std::optional<Border>> found(points_m.size());
-        in_pieces(points_m.size(), executor, [&](std::size_t begin, std::size_t end, std::size_t) {
-            std::vector<Neighbour> near(kNeighbours);
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::size_t count = moved.nearest(points_m[i], near);
-                const float radius_m = std::sqrt(near[count - 1].sq_distance_m2);
-                const auto off_m = to_middle(moved, points_m[i], radius_m);
-                if (off_m && off_m->norm() > kCandidate * static_cast<double>(radius_m))
-                    found[i] = Border{i, radius_m, *off_m};
-            }
-        });
+        in_pieces(points_m.size(),
+                  kTaken,
+                  executor,
+                  [&](std::size_t begin, std::size_t end, std::size_t) {
+                      std::vector<Neighbour> near(kNeighbours);
+                      for (std::size_t i = begin; i < end; ++i) {
+                          const std::size_t count = moved.nearest(points_m[i], near);
+                          const float radius_m = std::sqrt(near[count - 1].sq_distance_m2);
+                          const auto off_m = to_middle(moved, points_m[i], radius_m);
+                          if (off_m && off_m->norm() > kCandidate * static_cast<double>(radius_m))
+                              found[i] = Border{i, radius_m, *off_m};
+                      }
+                  });
         for (const auto& border : found) {
             if (border) borders_.push_back(*border);
         }
@@ -151,10 +150,13 @@ class Borders {
 
     /// `surface`: the pairs of the points, whose normals tell what lies within the surface.
     const std::vector<Pair>& pairs_at(const Pose& T, const std::vector<Pair>& surface) {
-        in_pieces(borders_.size(), executor_, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i)
-                pairs_[i] = pair_up(borders_[i], T, surface[borders_[i].index]);
-        });
+        in_pieces(borders_.size(),
+                  kTaken,
+                  executor_,
+                  [&](std::size_t begin, std::size_t end, std::size_t) {
+                      for (std::size_t i = begin; i < end; ++i)
+                          pairs_[i] = pair_up(borders_[i], T, surface[borders_[i].index]);
+                  });
         return pairs_;
     }
 
@@ -248,12 +250,13 @@ Normals6 sum_up(const std::vector<Pair>& pairs,
                 const Vector3d& pivot_m,
                 double lever_m,
                 Executor& executor) {
-    std::vector<Normals6> parts((pairs.size() + kTaken - 1) / kTaken);
-    in_pieces(pairs.size(), executor, [&](std::size_t begin, std::size_t end, std::size_t piece) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (pairs[i].counts) parts[piece].add(pairs[i], pivot_m, lever_m);
-        }
-    });
+    std::vector<Normals6> parts(pieces_of(pairs.size(), kTaken));
+    in_pieces(
+        pairs.size(), kTaken, executor, [&](std::size_t begin, std::size_t end, std::size_t piece) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (pairs[i].counts) parts[piece].add(pairs[i], pivot_m, lever_m);
+            }
+        });
     Normals6 all;
     for (const Normals6& part : parts) all.add(part);
     return all;

@@ -75,11 +75,7 @@ KdTree::KdTree(std::vector<Vector3f> points_m, Executor& executor)
     if (points_m_.empty()) return;
     while ((points_m_.size() >> levels_) + 1 > kLeaf) ++levels_;
     nodes_.resize(std::size_t{1} << levels_);
-    box_ = {points_m_.front(), points_m_.front()};
-    for (const Vector3f& p_m : points_m_) {
-        box_.low_m = box_.low_m.cwiseMin(p_m);
-        box_.high_m = box_.high_m.cwiseMax(p_m);
-    }
+    box_ = box_of(points_m_);
     // The first levels are cut one after the other, then each branch by itself: the same tree for
     // any number of threads.
     const int shared = points_m_.size() >> kParallelLevels < kSmallestPiece
@@ -103,18 +99,13 @@ void KdTree::cut(std::uint32_t node) {
     const auto first = at(first_of(level, number));
     const auto middle = at(first_of(level + 1, 2 * number + 1));
     const auto end = at(first_of(level, number + 1));
-    Vector3f low_m = *first;
-    Vector3f high_m = *first;
-    for (auto p = first; p != end; ++p) {
-        low_m = low_m.cwiseMin(*p);
-        high_m = high_m.cwiseMax(*p);
-    }
+    const PointBox box = box_of({first, end});
     Eigen::Index axis = 0;
-    (high_m - low_m).maxCoeff(&axis);
+    (box.high_m - box.low_m).maxCoeff(&axis);
     std::nth_element(first, middle, end, [axis](const Vector3f& a, const Vector3f& b) {
         return a[axis] < b[axis];
     });
-    float last_m = low_m[axis];
+    float last_m = box.low_m[axis];
     for (auto p = first; p != middle; ++p) last_m = std::max(last_m, (*p)[axis]);
     nodes_[node] = {last_m, (*middle)[axis], static_cast<std::int32_t>(axis)};
 }
@@ -186,11 +177,14 @@ std::uint32_t KdTree::find(const Vector3f& point_m) const {
 
 /// Visits the leaves whose box the region may touch.
 template <typename Region>
-void KdTree::walk(const Region& region, std::uint32_t node, const Box& box, OnRun on_run) const {
+void KdTree::walk(const Region& region,
+                  std::uint32_t node,
+                  const PointBox& box,
+                  OnRun on_run) const {
     if (!region.may_touch(box.low_m, box.high_m)) return;
     if (level_of(node) == levels_) return on_run(leaf(node));
     const Node& cut = nodes_[node];
-    Box part = box;
+    PointBox part = box;
     part.high_m[cut.axis] = cut.low_m;
     walk(region, 2 * node, part, on_run);
     part = box;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
+#include "surefoot/geometry/point_box.hpp"
 
 namespace surefoot::geometry {
 
@@ -86,15 +87,11 @@ class KdTree {
         float high_m = 0.0F;
         std::int32_t axis = 0;
     };
-    struct Box {
-        Eigen::Vector3f low_m;
-        Eigen::Vector3f high_m;
-    };
 
     void walk_ball(const Eigen::Vector3f& middle_m, float radius_m, OnRun on_run) const;
     void walk_cylinder(const Cylinder& cylinder, OnRun on_run) const;
     template <typename Region>
-    void walk(const Region& region, std::uint32_t node, const Box& box, OnRun on_run) const;
+    void walk(const Region& region, std::uint32_t node, const PointBox& box, OnRun on_run) const;
     template <typename Search>
     void descend(Search& search, std::uint32_t node, Eigen::Vector3f& offset_m) const;
 
@@ -111,7 +108,7 @@ class KdTree {
     std::vector<Eigen::Vector3f> points_m_;
     std::vector<Node> nodes_;  ///< children of i are 2 i and 2 i + 1; the root is 1
     int levels_ = 0;           ///< above the leaves
-    Box box_{Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+    PointBox box_;
 };
 
 }  // namespace surefoot::geometry

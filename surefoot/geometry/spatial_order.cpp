@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/geometry/point_box.hpp"
 
 namespace surefoot::geometry {
 namespace {
@@ -40,19 +41,14 @@ void sort_by_digit(std::span<const Keyed> from, std::span<Keyed> to, int shift) 
 std::vector<std::uint32_t> spatial_order(std::span<const Eigen::Vector3f> points_m) {
     SUREFOOT_ASSERT(points_m.size() < 0xFFFFFFFFU);
     if (points_m.empty()) return {};
-    Eigen::Vector3f low_m = points_m.front();
-    Eigen::Vector3f high_m = low_m;
-    for (const Eigen::Vector3f& p_m : points_m) {
-        low_m = low_m.cwiseMin(p_m);
-        high_m = high_m.cwiseMax(p_m);
-    }
+    const PointBox box = box_of(points_m);
     // One scale for all axes: cells are cubes.
-    const float side_m = (high_m - low_m).maxCoeff();
+    const float side_m = (box.high_m - box.low_m).maxCoeff();
     constexpr float kCells = 1 << kBits;
     const float scale = side_m > 0.0F ? kCells / side_m : 0.0F;
     std::vector<Keyed> keyed(points_m.size());
     for (std::size_t i = 0; i < points_m.size(); ++i) {
-        const Eigen::Vector3f cell = scale * (points_m[i] - low_m);
+        const Eigen::Vector3f cell = scale * (points_m[i] - box.low_m);
         const auto bits = [&](float c) {
             return spread(static_cast<std::uint32_t>(std::min(c, kCells - 1.0F)));
         };

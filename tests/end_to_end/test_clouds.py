@@ -203,6 +203,10 @@ class Measure(CliTest):
         (self.dir / "noise.xyz").write_text("".join(f"{i % 7} {i % 11} {i % 13}\n" for i in range(200)))
         answer = self.json_of("measure", self.dir / "noise.xyz")
         self.assertEqual((answer["levels"], answer["riser"]["mean_m"], answer["uphill_deg"]), ([], None, None))
+        (self.dir / "wide.ply").write_bytes(ply([(0, 0, 0), (90000, 90000, 90000)]))
+        process = surefoot("measure", self.dir / "wide.ply")
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("cannot be numbered", process.stderr)
         for why, words in (("four finite numbers", ["--box", "1,2"]), ("no point of the cloud lies in it", ["--box", "90,90,99,99"]),
                            ("three finite numbers", ["--door", "1,2"]), ("no level surface", ["--door", "1,2,3"])):
             process = surefoot("measure", self.dir / "noise.xyz", *words)

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "surefoot/core/executor.hpp"
+
+namespace surefoot {
+
+/// How many pieces of `size` things `count` of them make; the last may be smaller.
+[[nodiscard]] constexpr std::size_t pieces_of(std::size_t count, std::size_t size) noexcept {
+    return (count + size - 1) / size;
+}
+
+/// Calls `work(begin, end, piece)` once for each piece. Pieces are the same for any number of
+/// threads, so that what is summed up in each, and then in their order, is too.
+template <typename Work>
+void in_pieces(std::size_t count, std::size_t size, Executor& executor, const Work& work) {
+    executor.parallel_for(static_cast<int>(pieces_of(count, size)), [&](int number) {
+        const auto piece = static_cast<std::size_t>(number);
+        work(piece * size, std::min((piece + 1) * size, count), piece);
+    });
+}
+
+}  // namespace surefoot
