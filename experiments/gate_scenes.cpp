@@ -45,7 +45,7 @@
 #include "apps/surefoot/offline_map.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
-#include "eval/thesis_policy.hpp"
+#include "apps/surefoot/thesis_policy_steps.hpp"
 #include "experiments/hazard_scene.hpp"
 #include "experiments/map_noise.hpp"
 #include "experiments/scene_chain.hpp"
@@ -165,23 +165,6 @@ bool only_unknown(const gate::Verdict& verdict) {
     return (verdict.reasons.bits() & ~unknown.bits()) == 0;
 }
 
-/// The thesis' query on the same heights.
-bool thesis_allows(const Machine& machine,
-                   const grid::GridGeometry& geometry,
-                   ImageView<const float> rating,
-                   const Pose& T_odom_body,
-                   int command) {
-    const Movement& movement = machine.movements[static_cast<std::size_t>(command)];
-    const double yaw = yaw_rad(T_odom_body);
-    const double forward_m = 1e-4 * movement.forward_tenth_mm;
-    const double left_m = 1e-4 * movement.left_tenth_mm;
-    const traversability::FootprintPose target{
-        T_odom_body.translation_m.x() + std::cos(yaw) * forward_m - std::sin(yaw) * left_m,
-        T_odom_body.translation_m.y() + std::sin(yaw) * forward_m + std::cos(yaw) * left_m,
-        yaw + std::atan2(movement.sin_turn, movement.cos_turn)};
-    return eval::thesis_policy({}, target, geometry, rating).allowed;
-}
-
 std::string missed_line(const Question& question,
                         const std::string& variant,
                         int command,
@@ -275,7 +258,7 @@ void ask_own(const Question& question, const AskedMap& map, const Variant& varia
                 missed_line(question, variant.name, command, map.T_odom_body, question.truth);
     }
     const bool thesis =
-        thesis_allows(variant.machine, map.geometry, map.rating, map.T_odom_body, command);
+        app::thesis_allows(variant.machine, map.geometry, map.rating, map.T_odom_body, command);
     if (thesis != question.truth.safe)
         tally.add(variant.name, question.truth.safe ? "thesis_refused" : "thesis_missed");
 }

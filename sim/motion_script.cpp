@@ -26,7 +26,10 @@ struct Limits {
 constexpr Limits kSpeeds[] = {{0.01, 2.0}, {0.02, 0.10}, {0.2, 2.0}};
 constexpr double kFarthest_m = 1000.0;
 constexpr double kLongestPause_s = 3600.0;
-constexpr double kSteepest = 0.5;  ///< of a ramp between two waypoints: stairs are for feet
+/// Between two waypoints. What rolls takes a ramp; who carries a camera by hand climbs stairs.
+constexpr double kSteepest[] = {0.5, 0.0, 1.0};
+constexpr double kLowestHand_m = 0.5;
+constexpr double kHighestHand_m = 2.2;
 
 /// Moves all stops but the first by about a centimetre and a third of a degree.
 void vary(std::vector<Waypoint>& stops, std::uint64_t seed) {
@@ -88,17 +91,33 @@ Status check_waypoint(std::size_t i, const Waypoint& stop) {
     return {};
 }
 
-Status check_slope(std::size_t i, const Waypoint& from, const Waypoint& to) {
+Status check_slope(Carrier carrier, std::size_t i, const Waypoint& from, const Waypoint& to) {
     const double rise_m = to.ground_z_m - from.ground_z_m;
     const double way_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
-    if (std::abs(rise_m) <= kSteepest * way_m) return {};
+    const double steepest = kSteepest[static_cast<std::size_t>(carrier)];
+    if (std::abs(rise_m) <= steepest * way_m) return {};
     return usage_error(fmt::format(
-        "simulator: the way to waypoint {} rises by {:.3f} m over {:.3f} m, a trolley or a hand "
-        "takes 1:{:.0f} at most; put waypoints at the foot and the top of the ramp, or use the rex",
+        "simulator: the way to waypoint {} rises by {:.3f} m over {:.3f} m, a {} takes 1:{:.0f} at "
+        "most; put waypoints at the foot and the top of what climbs, or use the rex",
         i,
         rise_m,
         way_m,
-        1.0 / kSteepest));
+        kCarrierNames[static_cast<std::size_t>(carrier)],
+        1.0 / steepest));
+}
+
+Status check_height(const MotionScript& script) {
+    if (script.height_m == 0.0) return {};
+    if (script.carrier != Carrier::hand) {
+        return usage_error(fmt::format("simulator: height_m is that of a hand; a {} has its own",
+                                       kCarrierNames[static_cast<std::size_t>(script.carrier)]));
+    }
+    if (script.height_m >= kLowestHand_m && script.height_m <= kHighestHand_m) return {};
+    return usage_error(
+        fmt::format("simulator: height_m is {}, a hand holds {} to {} m (0 = its own)",
+                    script.height_m,
+                    kLowestHand_m,
+                    kHighestHand_m));
 }
 
 Status check(const MotionScript& script) {
@@ -114,10 +133,13 @@ Status check(const MotionScript& script) {
                         speeds.slowest_m_s,
                         speeds.fastest_m_s));
     }
+    if (Status status = check_height(script); !status) return status;
     for (std::size_t i = 0; i < script.waypoints.size(); ++i) {
         if (Status status = check_waypoint(i, script.waypoints[i]); !status) return status;
         if (i == 0 || script.carrier == Carrier::rex) continue;
-        if (Status status = check_slope(i, script.waypoints[i - 1], script.waypoints[i]); !status)
+        if (Status status =
+                check_slope(script.carrier, i, script.waypoints[i - 1], script.waypoints[i]);
+            !status)
             return status;
     }
     return {};
@@ -169,6 +191,7 @@ Result<ScriptedMotion> make_motion(const MotionScript& script,
     if (script.carrier == Carrier::hand) {
         HandConfig config;
         if (script.speed_m_s > 0.0) config.speed_m_s = script.speed_m_s;
+        if (script.height_m > 0.0) config.height_m = script.height_m;
         return ScriptedMotion{std::make_shared<HandMotion>(stops, config, seed), {}, {}};
     }
     TrolleyConfig config;

@@ -21,6 +21,8 @@ struct MotionScript {
     Carrier carrier = Carrier::trolley;
     /// 0 = the carrier's own. Of the rex: length of a step ahead by the time that a step takes.
     double speed_m_s = 0.0;
+    /// Of base_link above the ground, for a hand; 0 = its own.
+    double height_m = 0.0;
     std::vector<Waypoint> waypoints;
 };
 

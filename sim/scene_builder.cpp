@@ -51,6 +51,7 @@ void SceneBuilder::place_one(const SceneNode& node, const Spec& spec, const Plac
     if (const auto problem = spec.problem()) return reader_.fail(node, *problem);
     Site site{scene_, place, rng_};
     spec.add(site);
+    ++solids_;
     lines_.resize(static_cast<std::size_t>(scene_.primitives()), node.line);
     if (scene_.primitives() > kMaxPrimitives) {
         reader_.fail(
@@ -104,12 +105,22 @@ void SceneBuilder::add_group(const SceneNode& node, const Place& place) {
 
 void SceneBuilder::add_repeat(const SceneNode& node, const Place& place) {
     RepeatSpec repeat;
-    reader_.read(node, repeat, {"name", "solids"});
+    reader_.read(node, repeat, {"name", "parameters", "solids"});
     const SceneNode* name = reader_.required(node, "name", SceneNode::Kind::text);
     const SceneNode* solids = reader_.required(node, "solids", SceneNode::Kind::list);
+    const SceneNode* parameters =
+        node.find("parameters") == nullptr
+            ? nullptr
+            : reader_.required(node, "parameters", SceneNode::Kind::group);
     for (int k = 0; k < repeat.count && !reader_.error(); ++k) {
         reader_.define(*name, name->text, k);
+        if (parameters != nullptr) {
+            for (const SceneNode& parameter : parameters->items) reader_.define(parameter, rng_);
+        }
         add_solids(*solids, place);
+        if (parameters != nullptr) {
+            for (const SceneNode& parameter : parameters->items) reader_.forget(parameter.key);
+        }
         reader_.forget(name->text);
     }
 }

@@ -25,6 +25,8 @@ class SceneBuilder {
 
     [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
     [[nodiscard]] Scene take_scene() { return std::move(scene_); }
+    /// Boxes, tables, flights, ... that were added, each counted once.
+    [[nodiscard]] int solids() const noexcept { return solids_; }
     /// Line of the file that a primitive comes from.
     [[nodiscard]] int line_of(int primitive) const {
         return lines_[static_cast<std::size_t>(primitive)];
@@ -44,6 +46,7 @@ class SceneBuilder {
     SceneReader& reader_;
     Rng rng_;
     Scene scene_;
+    int solids_ = 0;
     std::vector<std::string> material_texts_;
     std::vector<const char*> material_names_;
     std::vector<int> lines_;

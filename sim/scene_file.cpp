@@ -11,6 +11,7 @@
 #include "sim/scene_motion.hpp"
 #include "sim/scene_node.hpp"
 #include "sim/scene_reader.hpp"
+#include "sim/scene_stations.hpp"
 #include "surefoot/core/fnv1a.hpp"
 #include "surefoot/core/nearest_names.hpp"
 
@@ -67,7 +68,7 @@ void define_parameters(SceneReader& reader,
     Rng rng(mix_seed(seed, kParameterStream));
     if (entry.figures != nullptr) {
         for (const SceneNode& figure : entry.figures->items) {
-            if (figure.key != "description") reader.define(figure, rng);
+            if (figure.key != "description" && figure.key != "motion") reader.define(figure, rng);
         }
     }
     if (root.find("parameters") == nullptr) return;
@@ -104,6 +105,7 @@ ScriptedScene build(SceneReader& reader,
                       "lighting",
                       "materials",
                       "solids",
+                      "scan",
                       "motion"});
     define_parameters(reader, root, entry, seed);
     out.parameters = drawn(reader);
@@ -111,15 +113,22 @@ ScriptedScene build(SceneReader& reader,
     if (const SceneNode* lighting = root.find("lighting")) builder.add_lighting(*lighting);
     const auto* materials = reader.required(root, "materials", SceneNode::Kind::group);
     const auto* solids = reader.required(root, "solids", SceneNode::Kind::list);
-    const auto* motion = reader.required(root, "motion", SceneNode::Kind::group);
+    const auto* motion = reader.required(
+        entry.figures != nullptr && entry.figures->find("motion") != nullptr ? *entry.figures
+                                                                             : root,
+        "motion",
+        SceneNode::Kind::group);
     if (reader.error()) return out;
     builder.add_materials(*materials);
     builder.add_solids(*solids, {});
+    if (const SceneNode* scan = root.find("scan"))
+        out.stations_m = read_stations(reader, *scan, builder.scene());
     out.script = read_motion(reader, *motion);
     if (reader.error()) return out;
     if (carrier && *carrier != out.script.carrier) {
         out.script.carrier = *carrier;
         out.script.speed_m_s = 0.0;  // the other carrier's own
+        out.script.height_m = 0.0;
     }
     auto made = make_motion(out.script, seed, ground_of(builder.scene()));
     if (!made) {
@@ -130,6 +139,7 @@ ScriptedScene build(SceneReader& reader,
     out.motion = std::move(made->motion);
     out.steps = std::move(made->steps);
     out.stops = std::move(made->stops);
+    out.solids = builder.solids();
     out.scene = builder.take_scene();
     return out;
 }

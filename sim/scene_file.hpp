@@ -29,7 +29,10 @@ namespace surefoot::sim {
 ///       - floor: {min_x_m: -3, min_y_m: -5, max_x_m: 9, max_y_m: 5, material: ground}
 ///       - group: {x_m: distance_m, heading_deg: 5, solids: [...]}
 ///       - repeat: {count: 4, name: k, solids: [...]}      # k = 0, 1, 2, 3; count 0 = none
-///     motion:
+///       - repeat: {count: 9, name: k, parameters: {size_m: {uniform: [0.1, 0.3]}}, solids: [...]}
+///     scan:                             # where a laser scanner stands, for `sim --scan`
+///       stations: [{x_m: 0, y_m: 2}, {x_m: 5, y_m: 0, above_m: 1.2}]
+///     motion:                           # a variant may have its own
 ///       carrier: trolley                              # or rex, hand
 ///       waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: end_m, y_m: 0}]
 ///

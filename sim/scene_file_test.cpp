@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -205,6 +206,122 @@ TEST(SceneFileTest, GroupsTurnAndRepeatsCount) {
         EXPECT_TRUE(std::isnan(height(scene, 2.06, 1.0 + k)));
         EXPECT_FALSE(scene.solid_at({2.0, 1.0 + k, 0.49}));
     }
+}
+
+TEST(SceneFileTest, ARepeatDrawsForEachCopy) {
+    const std::string solids =
+        "  - repeat: {count: 20, name: k, parameters: {high_m: {uniform: [0.1, 0.2]}, look: "
+        "{choice: [stone, wood]}}, solids: [{box: {x_m: 2 + k, y_m: 0, length_m: 0.5, width_m: 1, "
+        "top_m: high_m, material: look}}]}\n";
+    const Scene scene = scene_with(solids);
+    std::set<double> heights_m;
+    std::set<int> looks;
+    for (int k = 0; k < 20; ++k) {
+        const double high_m = height(scene, 2.0 + k, 0.0);
+        EXPECT_GE(high_m, 0.1);
+        EXPECT_LE(high_m, 0.2);
+        heights_m.insert(high_m);
+        looks.insert(scene.surfaces()[static_cast<std::size_t>(scene.first_surface(k))].material);
+        EXPECT_EQ(high_m, height(scene_with(solids), 2.0 + k, 0.0)) << "the seed decides";
+    }
+    EXPECT_EQ(heights_m.size(), 20U);
+    EXPECT_EQ(looks.size(), 2U);
+    EXPECT_NE(height(scene_with(solids, 2), 2.0, 0.0), height(scene, 2.0, 0.0));
+    const auto after =
+        read_scene({"test.yaml",
+                    file_with(solids + "  - box: {x_m: 9, y_m: 9, length_m: 1, width_m: 1, "
+                                       "top_m: high_m, material: stone}\n")},
+                   "",
+                   1);
+    ASSERT_FALSE(after);
+    EXPECT_NE(after.error().message.find("no number is named 'high_m'"), std::string::npos);
+}
+
+TEST(SceneFileTest, SolidsAreCountedOnceEach) {
+    const auto made = read_scene(
+        {"test.yaml",
+         file_with("  - table: {x_m: 3, y_m: 1, length_m: 1, width_m: 1, material: wood}\n"
+                   "  - repeat: {count: 3, name: k, solids: [{cylinder: {x_m: 4 + k, y_m: 2, "
+                   "radius_m: 0.1, top_m: 1, material: stone}}]}\n")},
+        "",
+        1);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_EQ(made->solids, 4);
+    EXPECT_GT(made->scene.primitives(), 4);
+}
+
+TEST(SceneFileTest, AScannerStandsOverTheGround) {
+    const std::string solids =
+        "  - floor: {min_x_m: -5, min_y_m: -5, max_x_m: 5, max_y_m: 5, material: stone}\n"
+        "  - box: {x_m: 3, y_m: 3, length_m: 1, width_m: 1, top_m: 0.5, material: stone}\n";
+    const auto made =
+        read_scene({"test.yaml",
+                    file_with(solids) +
+                        "scan: {stations: [{x_m: -2, y_m: 1}, {x_m: 3, y_m: 3, above_m: 1}]}\n"},
+                   "",
+                   1);
+    ASSERT_TRUE(made) << made.error().message;
+    ASSERT_EQ(made->stations_m.size(), 2U);
+    EXPECT_EQ(made->stations_m[0], Eigen::Vector3d(-2.0, 1.0, 1.6));
+    EXPECT_EQ(made->stations_m[1], Eigen::Vector3d(3.0, 3.0, 1.5));
+    const auto error_of = [&](const std::string& scan) {
+        const auto bad = read_scene({"test.yaml", file_with(solids) + scan}, "", 1);
+        return bad ? std::string("accepted") : bad.error().message;
+    };
+    EXPECT_NE(error_of("scan: {stations: [{x_m: 7, y_m: 0}]}\n").find("there is no ground"),
+              std::string::npos);
+    EXPECT_NE(error_of("scan: {stations: []}\n").find("'stations' are 0, allowed are 1 to 100"),
+              std::string::npos);
+    EXPECT_NE(error_of("scan: {from: 3}\n").find("key 'from' is not known here"),
+              std::string::npos);
+}
+
+TEST(SceneFileTest, AHandCarriesTheCameraUpAStairAtItsHeight) {
+    const auto text_with = [](const std::string& motion) {
+        std::string text = file_with(
+            "  - floor: {min_x_m: -5, min_y_m: -5, max_x_m: 9, max_y_m: 5, material: stone}\n"
+            "  - flight: {x_m: 2, y_m: 0, steps: 5, rise_m: 0.2, going_m: 0.25, width_m: 2, "
+            "landing_m: 3, material: stone}\n");
+        const std::string old = "  waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 1, y_m: 0}]\n";
+        return text.replace(text.find(old), old.size(), motion);
+    };
+    const std::string way =
+        "  waypoints: [{x_m: 0, y_m: 0, pause_s: 1}, {x_m: 1.75, y_m: 0}, {x_m: 3, y_m: 0, "
+        "ground_z_m: 1}]\n";
+    const auto made =
+        read_scene({"test.yaml", text_with("  carrier: hand\n  height_m: 1.8\n" + way)}, "", 1);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_NEAR(made->motion->at(0.0).T_world_body.translation_m.z(), 1.8, 1e-9);
+    EXPECT_NEAR(made->motion->at(1e3).T_world_body.translation_m.z(), 2.8, 1e-9);
+    const auto error_of = [&](const std::string& motion) {
+        const auto bad = read_scene({"test.yaml", text_with(motion)}, "", 1);
+        return bad ? std::string("accepted") : bad.error().message;
+    };
+    EXPECT_NE(error_of(way).find("a trolley takes 1:2 at most"), std::string::npos)
+        << error_of(way);
+    EXPECT_NE(error_of("  height_m: 1.8\n" + way).find("height_m is that of a hand"),
+              std::string::npos);
+    EXPECT_NE(error_of("  carrier: hand\n  height_m: 0.1\n" + way).find("height_m is 0.1, a hand"),
+              std::string::npos);
+}
+
+TEST(SceneFileTest, AVariantMayGoItsOwnWay) {
+    std::string text = file_with(
+        "  - box: {x_m: 5, y_m: 0, length_m: 1, width_m: 1, top_m: far_m, "
+        "material: stone}\n");
+    text =
+        "variants:\n"
+        "  near: {description: as the file says, far_m: 1}\n"
+        "  far: {description: its own way, far_m: 1, motion: {waypoints: [{x_m: 0, y_m: 0}, {x_m: "
+        "2 * far_m, y_m: 0}]}}\n" +
+        text.substr(text.find("parameters"));
+    const auto end_x_m = [&](const char* name) {
+        const auto made = read_scene({"test.yaml", text}, name, 1);
+        EXPECT_TRUE(made) << made.error().message;
+        return made->motion->at(1e3).T_world_body.translation_m.x();
+    };
+    EXPECT_NEAR(end_x_m("near"), 1.0, 0.02);
+    EXPECT_NEAR(end_x_m("far"), 2.0, 0.02);
 }
 
 struct BadFile {

@@ -38,9 +38,11 @@ constexpr const char* kScriptNames[] = {"approach",
 struct CarrierSpec {
     Carrier carrier = Carrier::trolley;
     double speed_m_s = 0.0;
+    double height_m = 0.0;
     void describe(ConfigVisitor& visitor) {
         visitor.enumeration("carrier", carrier, kCarrierNames, "what carries the camera");
         visitor.number("speed_m_s", speed_m_s, 0.0, 2.0, "0 = the carrier's own");
+        visitor.number("height_m", height_m, 0.0, 3.0, "of base_link in a hand; 0 = its own");
     }
 };
 
@@ -149,6 +151,7 @@ MotionScript read_script(SceneReader& reader, const SceneNode& group) {
     }
     MotionScript script = spec.made();
     script.speed_m_s = spec.carried.speed_m_s;
+    script.height_m = spec.carried.height_m;
     return script;
 }
 
@@ -158,6 +161,7 @@ MotionScript read_waypoints(SceneReader& reader, const SceneNode& group) {
     MotionScript script;
     script.carrier = carried.carrier;
     script.speed_m_s = carried.speed_m_s;
+    script.height_m = carried.height_m;
     const SceneNode* stops = reader.required(group, "waypoints", SceneNode::Kind::list);
     if (stops == nullptr) return script;
     if (stops->items.empty() || stops->items.size() > kMaxWaypoints) {

@@ -97,7 +97,7 @@ TEST(SceneMotionTest, MistakesAreNamedWithFileLineValueAndLimit) {
         {"script: approach, distance_m: 0", "'distance_m' is 0, allowed are 0.1 to 100"},
         {"script: approach, distance_m: 1, turn_deg: 3", "key 'turn_deg' is not known here"},
         {"script: approach, distance_m: 1, waypoints: [{x_m: 0, y_m: 0}]",
-         "key 'script' is not known here; there are: carrier, speed_m_s, waypoints"},
+         "key 'script' is not known here; there are: carrier, speed_m_s, height_m, waypoints"},
         {"script: approach, distance_m: far", "no number is named 'far'"},
         {"script: back_to_table, table_x_m: 1, left_m: 2",
          "left_m 2 is more than table_x_m 1: the table would be passed"},

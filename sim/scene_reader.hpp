@@ -39,7 +39,10 @@ class SceneReader {
     /// one number.
     void define(const SceneNode& parameter, Rng& rng);
     void define(const SceneNode& origin, const std::string& name, double value);
-    void forget(const std::string& name) { numbers_.erase(name); }
+    void forget(const std::string& name) {
+        numbers_.erase(name);
+        words_.erase(name);
+    }
     [[nodiscard]] const NamedNumbers& numbers() const noexcept { return numbers_; }
     [[nodiscard]] const std::map<std::string, std::string, std::less<>>& words() const noexcept {
         return words_;

@@ -38,6 +38,9 @@ struct ScriptedScene {
     std::shared_ptr<const Motion> motion;
     std::vector<StepEvent> steps;  ///< of a walking machine
     std::vector<Stop> stops;       ///< of a trolley
+    int solids = 0;                ///< boxes, tables, flights, ... each counted once
+    /// Where a laser scanner stands, if the file says it; world frame.
+    std::vector<Eigen::Vector3d> stations_m;
 };
 
 /// The scenes of sim/scenes/, which travel inside the program.

@@ -251,10 +251,17 @@ double worst_ground_m(const ScriptedScene& script) {
 }
 
 TEST(ScenesTest, EverySeedLeavesTheWayFreeAndDrawsItsOwnParameters) {
-    // Where the ground of the way is not flat: 1:50 across half the width, and a rug of 8 mm.
-    const std::map<std::string, double> uneven_m{{"cross_fall", 0.0075}, {"room", 0.008}};
+    // Where the ground of the way is not flat: 1:50 across half the width, a rug of 8 mm,
+    // joints of 1 mm.
+    const std::map<std::string, double> uneven_m{{"cross_fall", 0.0075},
+                                                 {"room", 0.008},
+                                                 {"thesis_h_hall", 0.001},
+                                                 {"thesis_h_hall_door", 0.001},
+                                                 {"thesis_h_hall_pillar", 0.001},
+                                                 {"thesis_h_hall_table", 0.001}};
     // Walks into danger or uphill: walking_scenes_test.cpp tells which of their steps are safe.
-    const std::set<std::string> not_free{"walk_back_into_table",
+    const std::set<std::string> not_free{"thesis_k_production_stairs_climbed",
+                                         "walk_back_into_table",
                                          "walk_descend_backwards",
                                          "walk_pivot_reverse_edge",
                                          "walk_ramp_1_12",
@@ -347,6 +354,8 @@ TEST(ScenesTest, TheCameraSeesWhatTheSceneIsAbout) {
         {"hand", Label::step},        {"walk_back", Label::table},    {"walk_descend", Label::step},
         {"walk_ramp", Label::ramp},   {"walk_sidestep", Label::wall}, {"walk_turn", Label::table},
         {"walk_pivot", Label::floor}, {"walk_floor", Label::floor},   {"walk_look", Label::floor},
+        {"thesis_a", Label::door},    {"thesis_b", Label::kerb},      {"thesis_f", Label::drop},
+        {"thesis_h", Label::floor},   {"thesis_j", Label::object},    {"thesis_", Label::step},
     };
     for (const SceneInfo& info : list_scenes()) {
         const auto subject = std::find_if(subjects.begin(), subjects.end(), [&](const auto& entry) {
@@ -357,6 +366,61 @@ TEST(ScenesTest, TheCameraSeesWhatTheSceneIsAbout) {
             const auto seen = seen_labels(make_scene(info.name, seed).value());
             EXPECT_TRUE(seen.contains(subject->second)) << info.name << " seed " << seed;
             EXPECT_TRUE(seen.contains(Label::floor)) << info.name << " seed " << seed;
+        }
+    }
+}
+
+/// Data sets of the thesis' Table 8.2: length and width [m] of each place, whichever way round.
+TEST(ScenesTest, ThePlacesOfTheThesisHaveTheirSizeAndManyThings) {
+    struct Place {
+        const char* name;
+        double long_m;
+        double wide_m;
+    };
+    constexpr Place kPlaces[] = {{"thesis_a_household", 15, 14},
+                                 {"thesis_b_roadside", 75, 40},
+                                 {"thesis_c_angled_stairs", 7, 7},
+                                 {"thesis_d_courtyard", 76, 58},
+                                 {"thesis_e_large_stairs", 24, 17},
+                                 {"thesis_f_ledges", 85, 66},
+                                 {"thesis_g_single_stairs", 9, 8},
+                                 {"thesis_h_hall", 39, 35},
+                                 {"thesis_i_demo_stairs", 12, 12},
+                                 {"thesis_j_office", 4, 4},
+                                 {"thesis_k_production_stairs", 12, 4},
+                                 {"thesis_l_reception", 11, 8},
+                                 {"thesis_m_steep_stairs", 9, 5}};
+    for (const Place& place : kPlaces) {
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            const ScriptedScene script = make_scene(place.name, seed).value();
+            EXPECT_GE(script.solids, 30) << place.name;
+            EXPECT_FALSE(script.stations_m.empty()) << place.name;
+            Vector2d low_m = Vector2d::Constant(1e9);
+            Vector2d high_m = -low_m;
+            for (int i = 0; i < script.scene.primitives(); ++i) {
+                for (const Vector3d& p_m : script.scene.hull(i)) {
+                    low_m = low_m.cwiseMin(p_m.head<2>());
+                    high_m = high_m.cwiseMax(p_m.head<2>());
+                }
+            }
+            const Vector2d size_m = high_m - low_m;
+            EXPECT_NEAR(size_m.maxCoeff(), place.long_m, 0.03 * place.long_m) << place.name;
+            EXPECT_NEAR(size_m.minCoeff(), place.wide_m, 0.03 * place.wide_m) << place.name;
+        }
+    }
+}
+
+/// Who carries the camera through a place is a choice: each of the three can go the way of each
+/// place (but that of the flight that is climbed by hand).
+TEST(ScenesTest, EveryCarrierCanGoThroughThePlacesOfTheThesis) {
+    for (const SceneInfo& info : list_scenes()) {
+        if (!info.name.starts_with("thesis_") || info.name.ends_with("_climbed")) continue;
+        for (const Carrier carrier : {Carrier::trolley, Carrier::rex, Carrier::hand}) {
+            for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+                const auto script = make_scene(info.name, seed, carrier);
+                EXPECT_TRUE(script)
+                    << info.name << " seed " << seed << ": " << script.error().message;
+            }
         }
     }
 }

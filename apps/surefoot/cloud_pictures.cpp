@@ -155,4 +155,21 @@ Status write_cloud_pictures(const std::string& folder,
     return writes.first();
 }
 
+std::string heights_svg(const eval::HeightHistogram& heights,
+                        std::int64_t points,
+                        const std::string& title) {
+    eval::LinePlot plot;
+    plot.title = fmt::format("{}: {} levels", title, heights.levels.size());
+    plot.x_label = fmt::format("height above {:.3f} m [m]", heights.low_m);  // axes begin at zero
+    plot.y_label = fmt::format("share of the level points in {:g} mm [%]", 1e3 * heights.bin_m);
+    eval::LinePlot::Line line;
+    for (std::size_t i = 0; i < heights.counts.size(); ++i) {
+        line.points.push_back(
+            {(static_cast<double>(i) + 0.5) * heights.bin_m,
+             100.0 * static_cast<double>(heights.counts[i]) / static_cast<double>(points)});
+    }
+    plot.lines.push_back(std::move(line));
+    return eval::line_plot_svg(plot);
+}
+
 }  // namespace surefoot::app

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <string>
 
+#include "eval/cloud_measures.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::app {
@@ -23,5 +25,10 @@ struct PlacedDistances {
 [[nodiscard]] Status write_cloud_pictures(const std::string& folder,
                                           const PlacedDistances& placed,
                                           const Eigen::Vector3d& shift_m);
+
+/// How many level points lie how high, upward from the lowest: an SVG. `points`: all of them.
+[[nodiscard]] std::string heights_svg(const eval::HeightHistogram& heights,
+                                      std::int64_t points,
+                                      const std::string& title);
 
 }  // namespace surefoot::app

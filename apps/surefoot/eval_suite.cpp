@@ -153,6 +153,7 @@ void print_summary(std::span<const SuiteRow> rows) {
 }  // namespace
 
 int eval_suite(const EvalSuiteOptions& options) {
+    if (options.thesis) return eval_thesis(options);
     const auto conditions = conditions_of(options);
     if (!conditions) return report(conditions.error());
     const auto cases = plan_suite(options, conditions->settings);

@@ -669,6 +669,7 @@ std::string rendered_boards_json(std::size_t views, const std::string& folder) {
 std::string scan_json(const Scanned& scanned) {
     const Json object = {{"points", scanned.points},
                          {"stations", scanned.stations},
+                         {"tiles", scanned.tiles},
                          {"complete", !scanned.error.has_value()},
                          {"error", scanned.error ? Json(scanned.error->message) : Json(nullptr)},
                          {"file", scanned.file}};

@@ -216,15 +216,25 @@ void add_sim(CLI::App& app, SimOptions& o, int& exit_code) {
                          o.scan_file,
                          "no recording but terrestrial laser scans, all points in the world frame; "
                          "up to 850 MB a station unless sim.laser.step_deg is larger")
-            ->type_name("F.ply")
+            ->type_name("F.ply|DIR")
             ->excludes(out);
     verb->add_option("--station",
                      o.stations,
-                     "where the scanner stands; may be repeated (default: 1.6 m above the start of "
-                     "the path)")
+                     "where the scanner stands; may be repeated (default: as the scene says, or "
+                     "1.6 m above the start of the path)")
         ->type_name("X,Y,Z")
         ->allow_extra_args(false)
         ->needs(scan);
+    CLI::Option* tile =
+        verb->add_option("--tile",
+                         o.tile_m,
+                         "the scan becomes a folder of square tiles with this side, and index.json")
+            ->type_name("M")
+            ->check(number_in(0.5, 1000.0))
+            ->needs(scan);
+    verb->add_option("--tile-format", o.tile_format, "of the tiles")
+        ->check(CLI::IsMember({"ply", "pcd"}))
+        ->needs(tile);
 }
 
 void add_rate(CLI::App& app, RateOptions& o, int& exit_code) {
@@ -861,6 +871,15 @@ void add_eval_suite(CLI::App& eval_verb, EvalSuiteOptions& s, int& exit_code) {
         ->required()
         ->type_name("DIR");
     suite->add_flag("--quick", s.quick, "a few short scenes, for every change of the code");
+    CLI::Option* thesis = suite->add_flag(
+        "--thesis",
+        s.thesis,
+        "instead: the experiments of the reference thesis on its rebuilt places, with its values "
+        "beside ours: thesis.html, thesis.json, thesis.csv");
+    suite->add_option("--runs", s.runs, "of --thesis, separated by commas; default all")
+        ->delimiter(',')
+        ->type_name("NAMES")
+        ->needs(thesis);
     suite
         ->add_option("--scenes", s.scenes, "names or scene files, separated by commas; default all")
         ->delimiter(',')

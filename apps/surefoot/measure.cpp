@@ -4,33 +4,17 @@
 #include <cmath>
 
 #include "apps/surefoot/cloud_json.hpp"
+#include "apps/surefoot/cloud_pictures.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "eval/cloud_measures.hpp"
-#include "eval/line_plot.hpp"
 #include "io/cloud_stream.hpp"
 #include "io/file.hpp"
 
 namespace surefoot::app {
 namespace {
-
-/// Heights upward from the lowest, for a picture.
-std::string histogram_svg(const eval::HeightHistogram& heights, std::int64_t points) {
-    eval::LinePlot plot;
-    plot.title = fmt::format("Heights: {} levels", heights.levels.size());
-    plot.x_label = fmt::format("height above {:.3f} m [m]", heights.low_m);  // axes begin at zero
-    plot.y_label = fmt::format("share of the level points in {:g} mm [%]", 1e3 * heights.bin_m);
-    eval::LinePlot::Line line;
-    for (std::size_t i = 0; i < heights.counts.size(); ++i) {
-        line.points.push_back(
-            {(static_cast<double>(i) + 0.5) * heights.bin_m,
-             100.0 * static_cast<double>(heights.counts[i]) / static_cast<double>(points)});
-    }
-    plot.lines.push_back(std::move(line));
-    return eval::line_plot_svg(plot);
-}
 
 /// Where the door is, counted from the shift; the floor is the lowest level.
 Result<eval::DoorPlace> parse_door(const std::string& text,
@@ -117,7 +101,7 @@ int measure_cloud(const MeasureOptions& options) {
     if (!options.histogram_file.empty()) {
         const auto status = io::write_file(
             options.histogram_file,
-            histogram_svg(heights, static_cast<std::int64_t>(surfaces.level_m.size())));
+            heights_svg(heights, static_cast<std::int64_t>(surfaces.level_m.size()), "Heights"));
         if (!status) return report(status.error());
     }
     if (options.common.json) {

@@ -5,18 +5,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <span>
 
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/progress.hpp"
+#include "apps/surefoot/scan_tiles.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/file.hpp"
 #include "io/ply_stream.hpp"
 #include "sim/laser_scanner.hpp"
+#include "sim/scene_stations.hpp"
 #include "sim/scenes.hpp"
 
 namespace surefoot::app {
@@ -24,32 +28,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of the scanner over the ground, on its tripod.
-constexpr double kTripod_m = 1.6;
-
-/// Where the path of the scene begins.
-Vector3d default_station(const sim::ScriptedScene& script) {
-    const Vector3d start_m = script.motion->at(0.0).T_world_body.translation_m;
-    const auto ground = script.scene.height_at(start_m.x(), start_m.y());
-    return {start_m.x(), start_m.y(), (ground ? ground->z_m : 0.0) + kTripod_m};
-}
-
-/// Inside a solid, or under everything that could carry a tripod.
-bool buried(const sim::Scene& scene, const Vector3d& station_m) {
-    if (scene.solid_at(station_m)) return true;
-    const auto surfaces = scene.surfaces_at(station_m.x(), station_m.y());
-    return !surfaces.empty() && station_m.z() < surfaces.back().z_m;
-}
-
-Result<std::vector<Vector3d>> stations_of(const SimOptions& options,
-                                          const sim::ScriptedScene& script) {
-    if (options.stations.empty()) return std::vector<Vector3d>{default_station(script)};
+Result<std::vector<Vector3d>> chosen_stations(const SimOptions& options,
+                                              const sim::ScriptedScene& script) {
+    if (options.stations.empty()) return stations_of(script);
     std::vector<Vector3d> stations_m;
     for (const std::string& text : options.stations) {
         const auto xyz = parse_three_numbers("--station", text, "x,y,z in metres");
         if (!xyz) return xyz.error();
         const Vector3d station_m((*xyz)[0], (*xyz)[1], (*xyz)[2]);
-        if (buried(script.scene, station_m)) {
+        if (sim::is_buried(script.scene, station_m)) {
             return usage_error(fmt::format(
                 "--station {}: lies under the ground or inside something solid of {}; choose a "
                 "place in the open",
@@ -76,10 +63,13 @@ void flatten(const sim::ScanColumn& column,
     }
 }
 
+/// Where points go, block by block as `flatten` leaves them.
+using TakePoints = std::function<Status(std::span<const float> values)>;
+
 void scan_all(const sim::LaserScanner& scanner,
               const std::vector<Vector3d>& stations_m,
               Executor& executor,
-              io::PlyStream& file,
+              const TakePoints& take,
               Scanned& scanned) {
     Progress progress("scan", static_cast<int>(stations_m.size()) * scanner.columns());
     std::vector<float> values;
@@ -94,26 +84,72 @@ void scan_all(const sim::LaserScanner& scanner,
                 return false;
             }
             flatten(column, T_world_scanner, station, values);
-            if (auto status = file.add(values); !status) scanned.error = status.error();
+            if (auto status = take(values); !status) scanned.error = status.error();
             progress.advance(station * scanner.columns() + column.index + 1);
             return !scanned.error;
         });
     }
 }
 
+/// One file, or a folder of tiles. Fails where nothing can be begun; what happens later is kept in
+/// `scanned`.
+Status write_scan(const SimOptions& options,
+                  const sim::LaserScanner& scanner,
+                  const std::vector<Vector3d>& stations_m,
+                  Executor& executor,
+                  Scanned& scanned) {
+    if (options.tile_m > 0.0) {
+        auto tiles = ScanTiles::create(options.scan_file, options.tile_format, options.tile_m);
+        if (!tiles) return tiles.error();
+        scan_all(
+            scanner,
+            stations_m,
+            executor,
+            [&](std::span<const float> values) { return tiles->add(values); },
+            scanned);
+        const ScanOrigin origin{
+            options.scene, options.common.seed, stations_m, !scanned.error.has_value()};
+        if (auto status = tiles->finish(origin); !status && !scanned.error)
+            scanned.error = status.error();
+        scanned.points = tiles->points();
+        scanned.tiles = tiles->tiles();
+        return {};
+    }
+    auto file = io::PlyStream::create(options.scan_file, {"station", "mixed"});
+    if (!file) return file.error();
+    scan_all(
+        scanner,
+        stations_m,
+        executor,
+        [&](std::span<const float> values) { return file->add(values); },
+        scanned);
+    if (auto status = file->close(); !status && !scanned.error) scanned.error = status.error();
+    scanned.points = file->points();
+    return {};
+}
+
 /// What a beam leaves in the file: x y z station mixed, as floats.
 constexpr std::int64_t kBytesPerPoint = 5 * sizeof(float);
 
-/// Points to expect: the share of beams that come back, looked at on a coarse fan from each
-/// station.
-Result<ScanSize> expected_size(const sim::Scene& scene,
-                               sim::LaserScannerConfig config,
-                               const sim::LaserScanner& scanner,
-                               const std::vector<Vector3d>& stations_m,
+}  // namespace
+
+std::vector<Vector3d> stations_of(const sim::ScriptedScene& script) {
+    if (!script.stations_m.empty()) return script.stations_m;
+    const Vector3d start_m = script.motion->at(0.0).T_world_body.translation_m;
+    const auto ground = script.scene.height_at(start_m.x(), start_m.y());
+    return {{start_m.x(), start_m.y(), (ground ? ground->z_m : 0.0) + sim::kTripod_m}};
+}
+
+Result<double> expected_points(const sim::Scene& scene,
+                               const sim::LaserScannerConfig& config,
+                               std::span<const Vector3d> stations_m,
                                Executor& executor) {
     constexpr double kCoarse_deg = 2.0;
-    config.step_deg = std::max(config.step_deg, kCoarse_deg);
-    const auto coarse = sim::LaserScanner::make(scene, config, 0);
+    sim::LaserScannerConfig coarse_config = config;
+    coarse_config.step_deg = std::max(config.step_deg, kCoarse_deg);
+    const auto full = sim::LaserScanner::make(scene, config, 0);
+    if (!full) return full.error();
+    const auto coarse = sim::LaserScanner::make(scene, coarse_config, 0);
     if (!coarse) return coarse.error();
     std::int64_t beams = 0;
     std::int64_t returns = 0;
@@ -131,12 +167,9 @@ Result<ScanSize> expected_size(const sim::Scene& scene,
     }
     const double share =
         beams > 0 ? static_cast<double>(returns) / static_cast<double>(beams) : 1.0;
-    const double all = static_cast<double>(std::ssize(stations_m)) * scanner.columns() *
-                       static_cast<double>(scanner.rows());
-    return ScanSize{all * share, all * share * kBytesPerPoint};
+    return share * static_cast<double>(std::ssize(stations_m)) *
+           static_cast<double>(full->columns()) * static_cast<double>(full->rows());
 }
-
-}  // namespace
 
 Status check_room(const std::string& file, const ScanSize& size, double free_bytes) {
     if (size.bytes <= free_bytes) return {};
@@ -154,7 +187,7 @@ int scan(const SimOptions& options) {
     if (!settings) return report(settings.error());
     const auto script = sim::make_scene(options.scene, options.common.seed);
     if (!script) return report(script.error());
-    const auto stations_m = stations_of(options, *script);
+    const auto stations_m = chosen_stations(options, *script);
     if (!stations_m) return report(stations_m.error());
     const auto scanner =
         sim::LaserScanner::make(script->scene, settings->laser, options.common.seed);
@@ -162,34 +195,33 @@ int scan(const SimOptions& options) {
 
     watch_for_interrupts();
     const auto executor = make_executor(options.common);
-    const auto size =
-        expected_size(script->scene, settings->laser, *scanner, *stations_m, *executor);
-    if (!size) return report(size.error());
+    const auto points = expected_points(script->scene, settings->laser, *stations_m, *executor);
+    if (!points) return report(points.error());
+    const ScanSize size{*points, *points * kBytesPerPoint};
     log_info(fmt::format("{}: about {:.3g} points, {:.0f} MB",
                          options.scan_file,
-                         size->points,
-                         std::ceil(1e-6 * size->bytes)));
+                         size.points,
+                         std::ceil(1e-6 * size.bytes)));
     const auto free_bytes = io::free_bytes(io::folder_of(options.scan_file));
     if (free_bytes) {  // unknown on some file systems: then writing tells
-        if (auto status = check_room(options.scan_file, *size, static_cast<double>(*free_bytes));
+        if (auto status = check_room(options.scan_file, size, static_cast<double>(*free_bytes));
             !status)
             return report(status.error());
     }
-    auto file = io::PlyStream::create(options.scan_file, {"station", "mixed"});
-    if (!file) return report(file.error());
-
     Scanned scanned{.file = options.scan_file, .error = std::nullopt};
-    scan_all(*scanner, *stations_m, *executor, *file, scanned);
-    if (auto status = file->close(); !status && !scanned.error) scanned.error = status.error();
-    scanned.points = file->points();
+    if (auto status = write_scan(options, *scanner, *stations_m, *executor, scanned); !status)
+        return report(status.error());
     if (options.common.json) {
         print_answer(scan_json(scanned));
     } else {
-        fmt::print("{} points of {} from {} station{} in {}\n",
+        const std::string tiles =
+            scanned.tiles > 0 ? fmt::format("{} tiles in ", scanned.tiles) : std::string();
+        fmt::print("{} points of {} from {} station{} in {}{}\n",
                    scanned.points,
                    options.scene,
                    scanned.stations,
                    scanned.stations == 1 ? "" : "s",
+                   tiles,
                    options.scan_file);
     }
     return scanned.error ? report(*scanned.error) : kExitOk;

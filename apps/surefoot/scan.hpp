@@ -1,13 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "sim/laser_scanner.hpp"
+#include "sim/scenes.hpp"
+#include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::app {
+
+/// Where the scanner stands: as the scene says, or over the start of its way.
+[[nodiscard]] std::vector<Eigen::Vector3d> stations_of(const sim::ScriptedScene& script);
+
+/// Points that all stations together will give: the share of beams that come back, looked at on a
+/// coarse fan from each.
+[[nodiscard]] Result<double> expected_points(const sim::Scene& scene,
+                                             const sim::LaserScannerConfig& config,
+                                             std::span<const Eigen::Vector3d> stations_m,
+                                             Executor& executor);
 
 /// What a scan is expected to write.
 struct ScanSize {
@@ -23,6 +39,7 @@ struct Scanned {
     std::string file;
     int stations = 0;  ///< that were begun
     std::int64_t points = 0;
+    int tiles = 0;  ///< files of it; 0 = one cloud
     std::optional<Error> error;
 };
 

@@ -19,17 +19,6 @@
 namespace surefoot::app {
 namespace {
 
-/// The chain's settings. How high base_link is over its own ground is known of every carrier: it is
-/// built so (the trolley is 4 cm lower than the walking machine).
-pipeline::PipelineConfig config_on(const sim::SceneTruth& truth, const Settings& settings) {
-    pipeline::PipelineConfig config = settings.pipeline;
-    const Eigen::Vector3d& start_m = truth.trajectory.front().T_world_body.translation_m;
-    const auto ground = truth.scene.height_at(start_m.x(), start_m.y());
-    if (config.ground.expected_height_m == 0.0 && ground)
-        config.ground.expected_height_m = start_m.z() - ground->z_m;
-    return config;
-}
-
 double share(int part, int whole) {
     return whole > 0 ? static_cast<double>(part) / whole : std::nan("");
 }
@@ -146,6 +135,15 @@ class CaseRun {
 };
 
 }  // namespace
+
+pipeline::PipelineConfig config_on(const sim::SceneTruth& truth, const Settings& settings) {
+    pipeline::PipelineConfig config = settings.pipeline;
+    const Eigen::Vector3d& start_m = truth.trajectory.front().T_world_body.translation_m;
+    const auto ground = truth.scene.height_at(start_m.x(), start_m.y());
+    if (config.ground.expected_height_m == 0.0 && ground)
+        config.ground.expected_height_m = start_m.z() - ground->z_m;
+    return config;
+}
 
 sim::CarriedBy carried_by(const std::string& name) {
     const auto at =

@@ -32,6 +32,11 @@ struct SuiteCase {
 /// One of sim::kCarriedByNames.
 [[nodiscard]] sim::CarriedBy carried_by(const std::string& name);
 
+/// The chain's settings. How high base_link is over its own ground is known of every carrier: it is
+/// built so (the trolley is 4 cm lower than the walking machine).
+[[nodiscard]] pipeline::PipelineConfig config_on(const sim::SceneTruth& truth,
+                                                 const Settings& settings);
+
 /// How a figure is shown to people; files hold SI units and shares of 1.
 enum class FigureKind : std::uint8_t { count, share, length_m, percent, pixels, number };
 

@@ -54,6 +54,8 @@ struct SimOptions {
     double rate_hz = 0.0;
     std::string scan_file;
     std::vector<std::string> stations;  ///< of the laser scanner: x,y,z
+    double tile_m = 0.0;                ///< side of the tiles of a scan; 0 = one file
+    std::string tile_format = "ply";
 };
 int simulate(const SimOptions& options);
 /// `sim --scan`: laser scans of a scene.
@@ -289,8 +291,12 @@ struct EvalSuiteOptions {
     bool quick = false;
     int frames = 0;        ///< of each case; 0 = the whole path
     double reach_m = 0.8;  ///< how far around the last pose the gate is asked
+    bool thesis = false;   ///< the experiments of the thesis instead
+    std::vector<std::string> runs;  ///< of these; empty = all
 };
 int eval_suite(const EvalSuiteOptions& options);
+/// `eval suite --thesis`.
+int eval_thesis(const EvalSuiteOptions& options);
 
 struct CalibrateOptions {
     CommonOptions common;

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/surefoot/thesis_truth.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/scan.hpp"
+#include "eval/cloud_outliers.hpp"
+#include "eval/dem.hpp"
+#include "eval/voxels.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr double kVoxel_m = 0.001;
+constexpr eval::OutlierConfig kOutliers{.others = 6, .sigmas = 4.0};
+/// Of the map's filter: what is higher over the ground is over everybody's head.
+constexpr double kCeiling_m = 2.0;
+
+bool holds(const ScanArea& area, const Eigen::Vector3d& p_m) {
+    return p_m.x() >= area.low_m.x() && p_m.x() <= area.high_m.x() && p_m.y() >= area.low_m.y() &&
+           p_m.y() <= area.high_m.y() && p_m.z() <= area.ceiling_m;
+}
+
+double distance_m(const ScanArea& area, const Eigen::Vector3d& station_m) {
+    const Eigen::Vector2d at_m = station_m.head<2>();
+    return (at_m - at_m.cwiseMax(area.low_m).cwiseMin(area.high_m)).norm();
+}
+
+/// Stations that are near enough, at least the nearest.
+std::vector<std::size_t> near_stations(const std::vector<Eigen::Vector3d>& all_m,
+                                       const ScanArea& area) {
+    std::vector<std::size_t> near;
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < all_m.size(); ++i) {
+        if (distance_m(area, all_m[i]) <= area.farthest_m) near.push_back(i);
+        if (distance_m(area, all_m[i]) < distance_m(area, all_m[nearest])) nearest = i;
+    }
+    if (near.empty()) near.push_back(nearest);
+    return near;
+}
+
+/// The cells of the area, on the lattice of all maps of that resolution.
+eval::DemGrid grid_of(const ScanArea& area, double resolution_m) {
+    eval::DemGrid grid;
+    grid.first = (area.low_m / resolution_m).array().floor();
+    const Eigen::Vector2d end = (area.high_m / resolution_m).array().ceil();
+    grid.geometry.resolution_m = resolution_m;
+    grid.geometry.nx = static_cast<int>(end.x() - grid.first.x());
+    grid.geometry.ny = static_cast<int>(end.y() - grid.first.y());
+    grid.geometry.origin_m = resolution_m * grid.first;
+    return grid;
+}
+
+std::vector<Eigen::Vector3f> without_outliers(std::vector<Eigen::Vector3f> points_m,
+                                              Executor& executor) {
+    const eval::OutlierFilter filter(geometry::KdTree(points_m, executor), kOutliers, executor);
+    std::erase_if(points_m, [&](const Eigen::Vector3f& p_m) { return !filter.keeps(p_m); });
+    return points_m;
+}
+
+grid::Layer heights_of(const std::vector<Eigen::Vector3f>& points_m, const eval::DemGrid& grid) {
+    eval::DemBuilder builder(grid, eval::Reduce::max);
+    std::vector<Eigen::Vector3d> block_m;
+    constexpr std::size_t kBlock = 1U << 16U;
+    for (std::size_t from = 0; from < points_m.size(); from += kBlock) {
+        block_m.clear();
+        for (std::size_t i = from; i < std::min(from + kBlock, points_m.size()); ++i)
+            block_m.push_back(points_m[i].cast<double>());
+        builder.add(block_m);
+    }
+    return builder.heights_m();
+}
+
+}  // namespace
+
+ScanArea area_around(const sim::ScriptedScene& script, double half_map_m) {
+    constexpr double kStep_s = 0.5;
+    const Eigen::Vector3d start_m = script.motion->at(0.0).T_world_body.translation_m;
+    ScanArea area{start_m.head<2>(), start_m.head<2>(), 0.0};
+    const double end_s = script.motion->duration_s();
+    for (double t_s = 0.0; t_s < end_s + kStep_s; t_s += kStep_s) {
+        const Eigen::Vector2d at_m =
+            script.motion->at(std::min(t_s, end_s)).T_world_body.translation_m.head<2>();
+        area.low_m = area.low_m.cwiseMin(at_m);
+        area.high_m = area.high_m.cwiseMax(at_m);
+    }
+    for (const sim::Waypoint& stop : script.script.waypoints)
+        area.ceiling_m = std::max(area.ceiling_m, stop.ground_z_m);
+    area.ceiling_m += kCeiling_m;
+    area.low_m.array() -= half_map_m;
+    area.high_m.array() += half_map_m;
+    return area;
+}
+
+Result<ScannedPlace> scan_place(const sim::ScriptedScene& script,
+                                const sim::LaserScannerConfig& config,
+                                std::uint64_t seed,
+                                const ScanArea& area,
+                                double resolution_m,
+                                Executor& executor) {
+    const auto scanner = sim::LaserScanner::make(script.scene, config, seed);
+    if (!scanner) return scanner.error();
+    const std::vector<Eigen::Vector3d> stations_m = stations_of(script);
+    ScannedPlace place;
+    std::vector<Eigen::Vector3f> points_m;
+    for (const std::size_t i : near_stations(stations_m, area)) {
+        Pose T_world_scanner;
+        T_world_scanner.translation_m = stations_m[i];
+        ++place.stations;
+        scanner->scan(
+            T_world_scanner, static_cast<int>(i), executor, [&](const sim::ScanColumn& column) {
+                for (const sim::ScanPoint& point : column.points) {
+                    if (std::isnan(point.point_scanner_m.x())) continue;
+                    const Eigen::Vector3d p_m = T_world_scanner * point.point_scanner_m;
+                    if (holds(area, p_m)) points_m.push_back(p_m.cast<float>());
+                }
+                return !interrupted();
+            });
+        if (interrupted()) return Error{ErrorCode::interrupted, "interrupted by the user"};
+    }
+    if (points_m.empty()) {
+        return input_error(
+            fmt::format("{}: no point of its laser scan lies around its way", script.info.name));
+    }
+    place.scanned = static_cast<std::int64_t>(points_m.size());
+    points_m = eval::voxel_means_m(points_m, kVoxel_m, executor);
+    place.points_m = without_outliers(std::move(points_m), executor);
+    const eval::DemGrid grid = grid_of(area, resolution_m);
+    place.geometry = grid.geometry;
+    place.height_m = heights_of(place.points_m, grid);
+    return place;
+}
+
+}  // namespace surefoot::app
