@@ -64,7 +64,8 @@ struct Repeated {
 /// Stairs whose levels are known: what one reads off histograms.
 struct StairMeasures {
     Repeated riser;  ///< height differences of at most 0.30 m between one level and the next
-    Repeated going;  ///< between the faces of risers, or where a map has none, the ends of levels
+    Repeated going;  ///< between the faces of risers, or where a map has none, the ends of levels;
+                     ///< longer ones are landings and are left out
     Eigen::Vector2d uphill = Eigen::Vector2d::Zero();  ///< unit; zero with fewer than two levels
 };
 /// For straight flights: places are counted along one line uphill. `levels`: of the level points.

@@ -99,6 +99,24 @@ TEST(StairMeasures, RiserAndGoingOfAFlightInAnyDirection) {
     }
 }
 
+TEST(StairMeasures, ALandingIsNoGoing) {
+    constexpr double kLanding_m = 0.9;
+    Points points_m = flight(0.0, true, 0.002, 5);
+    const auto middle_m = static_cast<float>(3.0 + 4.0 * kGoing_m - 0.01);
+    for (Eigen::Vector3f& p_m : points_m)
+        if (p_m.x() > middle_m) p_m.x() += static_cast<float>(kLanding_m);
+    Rng rng(6);
+    for (int i = 0; i < 9000; ++i) {
+        points_m.emplace_back(middle_m + static_cast<float>(rng.uniform(0.0, kLanding_m)),
+                              static_cast<float>(rng.uniform(-1.0, kWidth_m - 1.0)),
+                              static_cast<float>(4.0 * kRiser_m + 0.002 * rng.normal()));
+    }
+    const StairMeasures m = measured(points_m);
+    ASSERT_EQ(m.riser.values_m.size(), static_cast<std::size_t>(kSteps));
+    ASSERT_EQ(m.going.values_m.size(), kSteps - 2U);
+    EXPECT_NEAR(m.going.mean_m, kGoing_m, 3e-3);
+}
+
 TEST(StairMeasures, GoingsOfAMapWithoutFaces) {
     const Points points_m = flight(0.0, false, 0.004, 4);
     const StairMeasures m = measured(points_m);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/pieces.hpp"
 
 namespace surefoot::eval {
 namespace {
@@ -16,6 +17,8 @@ namespace {
 constexpr double kMostCells = 134217728.0;
 /// Whole numbers up to here are exact in double, and fit an int after the first is subtracted.
 constexpr double kLargestNumber = 1e15;
+/// Points that are worth a thread's while.
+constexpr std::size_t kPiece = 1U << 14U;
 
 /// Number of the cell, or of the nearest node, along one axis.
 double number_of(double p_m, double low, double resolution_m, Lattice lattice) {
@@ -25,17 +28,34 @@ double number_of(double p_m, double low, double resolution_m, Lattice lattice) {
 
 }  // namespace
 
-void CloudBounds::add(std::span<const Eigen::Vector3d> points_m) {
-    for (const Eigen::Vector3d& p_m : points_m) {
-        if (!p_m.allFinite()) {
-            ++skipped_;
-            continue;
-        }
-        if (points_ == 0) low_m_ = high_m_ = p_m.head<2>();
-        low_m_ = low_m_.cwiseMin(p_m.head<2>());
-        high_m_ = high_m_.cwiseMax(p_m.head<2>());
-        ++points_;
+void CloudBounds::add(std::span<const Eigen::Vector3d> points_m, Executor& executor) {
+    std::vector<CloudBounds> pieces(pieces_of(points_m.size(), kPiece));
+    in_pieces(points_m.size(),
+              kPiece,
+              executor,
+              [&](std::size_t begin, std::size_t end, std::size_t piece) {
+                  CloudBounds& bounds = pieces[piece];
+                  for (std::size_t i = begin; i < end; ++i) bounds.add(points_m[i]);
+              });
+    for (const CloudBounds& piece : pieces) {
+        skipped_ += piece.skipped_;
+        if (piece.points_ == 0) continue;
+        if (points_ == 0) low_m_ = high_m_ = piece.low_m_;
+        low_m_ = low_m_.cwiseMin(piece.low_m_);
+        high_m_ = high_m_.cwiseMax(piece.high_m_);
+        points_ += piece.points_;
     }
+}
+
+void CloudBounds::add(const Eigen::Vector3d& p_m) {
+    if (!p_m.allFinite()) {
+        ++skipped_;
+        return;
+    }
+    if (points_ == 0) low_m_ = high_m_ = p_m.head<2>();
+    low_m_ = low_m_.cwiseMin(p_m.head<2>());
+    high_m_ = high_m_.cwiseMax(p_m.head<2>());
+    ++points_;
 }
 
 Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
@@ -88,27 +108,52 @@ DemBuilder::DemBuilder(const DemGrid& grid, Reduce reduce) : grid_(grid), reduce
     count_.assign(cells, 0);
 }
 
-void DemBuilder::add(std::span<const Eigen::Vector3d> points_m) {
+std::uint32_t DemBuilder::cell_of(const Eigen::Vector3d& p_m) const {
     const grid::GridGeometry& geometry = grid_.geometry;
-    const auto number = [&](const Eigen::Vector3d& p_m, int axis) {
+    const auto number = [&](int axis) {
         return number_of(p_m[axis], grid_.first[axis], geometry.resolution_m, grid_.lattice);
     };
-    for (const Eigen::Vector3d& p_m : points_m) {
-        if (!p_m.allFinite()) continue;
-        const double ix = number(p_m, 0);
-        const double iy = number(p_m, 1);
-        if (!(ix >= 0.0 && iy >= 0.0 && ix < geometry.nx && iy < geometry.ny)) continue;
-        const std::size_t cell =
-            static_cast<std::size_t>(iy) * static_cast<std::size_t>(geometry.nx) +
-            static_cast<std::size_t>(ix);
-        double& value_m = value_m_[cell];
-        switch (reduce_) {
-            case Reduce::max: value_m = std::max(value_m, p_m.z()); break;
-            case Reduce::min: value_m = std::min(value_m, p_m.z()); break;
-            case Reduce::mean: value_m += p_m.z(); break;
-        }
-        ++count_[cell];
+    if (!p_m.allFinite()) return kNoCell;
+    const double ix = number(0);
+    const double iy = number(1);
+    if (!(ix >= 0.0 && iy >= 0.0 && ix < geometry.nx && iy < geometry.ny)) return kNoCell;
+    return static_cast<std::uint32_t>(iy) * static_cast<std::uint32_t>(geometry.nx) +
+           static_cast<std::uint32_t>(ix);
+}
+
+void DemBuilder::take(std::uint32_t cell, double z_m) {
+    double& value_m = value_m_[cell];
+    switch (reduce_) {
+        case Reduce::max: value_m = std::max(value_m, z_m); break;
+        case Reduce::min: value_m = std::min(value_m, z_m); break;
+        case Reduce::mean: value_m += z_m; break;
     }
+    ++count_[cell];
+}
+
+void DemBuilder::add(std::span<const Eigen::Vector3d> points_m, Executor& executor) {
+    if (executor.threads() == 1) {
+        for (const Eigen::Vector3d& p_m : points_m) {
+            const std::uint32_t cell = cell_of(p_m);
+            if (cell != kNoCell) take(cell, p_m.z());
+        }
+        return;
+    }
+    // Every thread has cells of its own, and takes their points in the order in which they came:
+    // the sums are those of one thread.
+    cells_.resize(points_m.size());
+    in_pieces(points_m.size(), kPiece, executor, [&](std::size_t begin, std::size_t end, auto) {
+        for (std::size_t i = begin; i < end; ++i) cells_[i] = cell_of(points_m[i]);
+    });
+    const auto threads = static_cast<std::uint32_t>(executor.threads());
+    const auto band = static_cast<std::uint32_t>(pieces_of(count_.size(), threads));
+    executor.parallel_for(executor.threads(), [&](int number) {
+        const std::uint32_t first = static_cast<std::uint32_t>(number) * band;
+        for (std::size_t i = 0; i < points_m.size(); ++i) {
+            const std::uint32_t cell = cells_[i];
+            if (cell - first < band && cell != kNoCell) take(cell, points_m[i].z());
+        }
+    });
 }
 
 grid::Layer DemBuilder::heights_m() const {

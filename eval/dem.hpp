@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 
@@ -33,7 +34,7 @@ struct DemGrid {
 /// not finite are counted and left out.
 class CloudBounds {
   public:
-    void add(std::span<const Eigen::Vector3d> points_m);
+    void add(std::span<const Eigen::Vector3d> points_m, Executor& executor = serial());
 
     [[nodiscard]] std::int64_t points() const noexcept { return points_; }
     [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
@@ -42,6 +43,8 @@ class CloudBounds {
     [[nodiscard]] Result<DemGrid> grid(double resolution_m, Lattice lattice) const;
 
   private:
+    void add(const Eigen::Vector3d& p_m);
+
     Eigen::Vector2d low_m_ = Eigen::Vector2d::Zero();
     Eigen::Vector2d high_m_ = Eigen::Vector2d::Zero();
     std::int64_t points_ = 0;
@@ -50,22 +53,27 @@ class CloudBounds {
 
 /// Heights of points on a grid, in any number of pieces: memory grows with the cells, not with the
 /// points. The highest and the lowest do not depend on the order of the points; the mean does by
-/// rounding alone (sums in double).
+/// rounding alone (sums in double). The same heights for any number of threads.
 class DemBuilder {
   public:
     DemBuilder(const DemGrid& grid, Reduce reduce);
 
     /// Points outside the grid and points that are not finite are left out.
-    void add(std::span<const Eigen::Vector3d> points_m);
+    void add(std::span<const Eigen::Vector3d> points_m, Executor& executor = serial());
 
     /// Heights so far; NaN where no point fell.
     [[nodiscard]] grid::Layer heights_m() const;
 
   private:
+    static constexpr std::uint32_t kNoCell = 0xffffffffU;
+    [[nodiscard]] std::uint32_t cell_of(const Eigen::Vector3d& p_m) const;
+    void take(std::uint32_t cell, double z_m);
+
     DemGrid grid_;
     Reduce reduce_;
     std::vector<double> value_m_;  ///< highest, lowest or sum
     std::vector<std::int64_t> count_;
+    std::vector<std::uint32_t> cells_;  ///< of the points of one call, with several threads
 };
 
 }  // namespace surefoot::eval

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <limits>
 #include <map>
 
@@ -59,6 +61,45 @@ TEST(Dem, NodeLatticeByHand) {
     EXPECT_EQ(mean.at(2, 0), 8.0F);
 }
 
+/// As three threads that happen to do the last first.
+class Backward final : public Executor {
+  public:
+    void parallel_for(int count, const std::function<void(int)>& work) override {
+        for (int index = count - 1; index >= 0; --index) work(index);
+    }
+    [[nodiscard]] int threads() const noexcept override { return 3; }
+};
+
+TEST(Dem, BoundsOfManyPointsAreTheSameForAnyNumberOfThreads) {
+    Rng rng(7);
+    Points points;
+    for (int i = 0; i < 70'000; ++i) {
+        points.emplace_back(rng.uniform(-3.0, 8.0), rng.uniform(-1.0, 1.0), rng.normal());
+        if (i % 1000 == 7) points.back().y() = kNan;
+    }
+    CloudBounds alone;
+    for (const Eigen::Vector3d& p_m : points) alone.add(std::span(&p_m, 1));
+    Backward threads;
+    CloudBounds together;
+    together.add(points, threads);
+    EXPECT_EQ(together.points(), alone.points());
+    EXPECT_EQ(together.skipped(), 70);
+    const DemGrid a = alone.grid(0.01, Lattice::node).value();
+    const DemGrid b = together.grid(0.01, Lattice::node).value();
+    EXPECT_EQ(a.geometry.nx, b.geometry.nx);
+    EXPECT_EQ(a.geometry.ny, b.geometry.ny);
+    EXPECT_EQ(a.geometry.origin_m, b.geometry.origin_m);
+    for (const Reduce reduce : {Reduce::max, Reduce::mean}) {
+        DemBuilder one(a, reduce);
+        one.add(points);
+        DemBuilder many(a, reduce);
+        many.add(points, threads);
+        const auto first = one.heights_m();
+        const auto second = many.heights_m();
+        EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(float)), 0);
+    }
+}
+
 TEST(Dem, EveryCellIsWhatAMapOfListsHolds) {
     Rng rng(1);
     for (int trial = 0; trial < 40; ++trial) {
@@ -98,6 +139,11 @@ TEST(Dem, EveryCellIsWhatAMapOfListsHolds) {
             builder.add(std::span(points).first(150));
             builder.add(std::span(points).subspan(150));
             const auto heights = builder.heights_m();
+            Backward threads;
+            DemBuilder threaded(grid, reduce);
+            threaded.add(points, threads);
+            const auto same = threaded.heights_m();
+            ASSERT_EQ(std::memcmp(same.data(), heights.data(), heights.size() * sizeof(float)), 0);
             std::size_t known = 0;
             for (int iy = 0; iy < heights.height(); ++iy) {
                 for (int ix = 0; ix < heights.width(); ++ix) {

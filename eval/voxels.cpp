@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/pieces.hpp"
@@ -48,16 +49,30 @@ class VoxelKeys {
     Numbers bits_ = Numbers::Zero();
 };
 
-struct Keyed {
-    std::uint64_t key = 0;
-    Vector3f point_m = Vector3f::Zero();
+/// Never read before it is written: memory is first touched by the threads that fill it.
+struct Keyed {  // NOLINT(*-member-init)
+    std::uint64_t key;
+    Vector3f point_m;
 };
 
 /// Points by the first bits of their voxel's number, in their order.
 struct Dealt {
-    std::vector<Keyed> points;
-    std::vector<std::size_t> first;  ///< of each bucket, and the end
+    std::unique_ptr<Keyed[]> points;  // NOLINT(*-avoid-c-arrays): a vector would fill it first
+    std::vector<std::size_t> first;   ///< of each bucket, and the end
 };
+
+geometry::PointBox box_in_pieces(std::span<const Vector3f> points_m, Executor& executor) {
+    std::vector<Vector3f> corners_m(2 * pieces_of(points_m.size(), kTaken));
+    in_pieces(points_m.size(),
+              kTaken,
+              executor,
+              [&](std::size_t begin, std::size_t end, std::size_t piece) {
+                  const auto box = geometry::box_of(points_m.subspan(begin, end - begin));
+                  corners_m[2 * piece] = box.low_m;
+                  corners_m[2 * piece + 1] = box.high_m;
+              });
+    return geometry::box_of(corners_m);
+}
 
 Dealt deal(std::span<const Vector3f> points_m, const VoxelKeys& keys, Executor& executor) {
     const int shift = std::max(0, keys.bits() - kBucketBits);
@@ -84,7 +99,7 @@ Dealt deal(std::span<const Vector3f> points_m, const VoxelKeys& keys, Executor& 
         }
     }
     dealt.first.push_back(sum);
-    dealt.points.resize(points_m.size());
+    dealt.points.reset(new Keyed[points_m.size()]);
     each([&](std::size_t slot, std::uint64_t key, const Vector3f& p_m) {
         dealt.points[next[slot]++] = {key, p_m};
     });
@@ -122,7 +137,7 @@ std::vector<Vector3f> voxel_means_m(std::span<const Vector3f> points_m,
                                     Executor& executor) {
     SUREFOOT_ASSERT(size_m > 0.0);
     if (points_m.empty()) return {};
-    const geometry::PointBox box = geometry::box_of(points_m);
+    const geometry::PointBox box = box_in_pieces(points_m, executor);
     SUREFOOT_ASSERT(fits_voxels(box, size_m));
     Dealt dealt = deal(points_m, VoxelKeys(box, size_m), executor);
     std::vector<std::vector<Vector3f>> by_bucket(kBuckets);
@@ -130,7 +145,7 @@ std::vector<Vector3f> voxel_means_m(std::span<const Vector3f> points_m,
         const auto bucket = static_cast<std::size_t>(number);
         const std::size_t first = dealt.first[bucket];
         by_bucket[bucket] =
-            means_m(std::span(dealt.points).subspan(first, dealt.first[bucket + 1] - first));
+            means_m(std::span(dealt.points.get() + first, dealt.first[bucket + 1] - first));
     });
     std::vector<std::size_t> first;
     std::size_t count = 0;

@@ -79,6 +79,14 @@ Result<ScriptedScene> make_scene(const std::string& name,
                     names.size()));
 }
 
+NamedNumbers drawn_numbers(const ScriptedScene& script) {
+    NamedNumbers numbers;
+    for (const SceneParameter& parameter : script.parameters) {
+        if (const auto value = evaluate(parameter.value, {})) numbers[parameter.name] = *value;
+    }
+    return numbers;
+}
+
 double drawn_number(const ScriptedScene& script, std::string_view name) {
     const auto found = std::find_if(script.parameters.begin(),
                                     script.parameters.end(),

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/expression.hpp"
 #include "sim/motion.hpp"
 #include "sim/motion_script.hpp"
 #include "sim/scene.hpp"
@@ -58,6 +59,9 @@ struct ScriptedScene {
 /// A number that the seed has drawn, by its name in the scene file ("edge_x_m"): where things
 /// stand, for tests and experiments. Precondition: the file has a parameter of that name.
 [[nodiscard]] double drawn_number(const ScriptedScene& script, std::string_view name);
+
+/// All numbers that it has drawn or computed, for expressions about the scene.
+[[nodiscard]] NamedNumbers drawn_numbers(const ScriptedScene& script);
 
 /// What never varies in `demo_stairs`: the thesis' stair.
 namespace demo_stairs {

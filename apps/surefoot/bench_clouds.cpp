@@ -102,10 +102,10 @@ Result<std::vector<BenchResult>> bench_clouds(const CommonOptions& common, Execu
     for (const Eigen::Vector3f& p_m : reference_m) wide_m.push_back(p_m.cast<double>());
     time("dem_25mm_max", [&] {
         eval::CloudBounds bounds;
-        bounds.add(wide_m);
+        bounds.add(wide_m, executor);
         const auto grid = bounds.grid(0.025, eval::Lattice::cell);
         eval::DemBuilder builder(*grid, eval::Reduce::max);
-        builder.add(wide_m);
+        builder.add(wide_m, executor);
         kept += static_cast<std::size_t>(grid->geometry.nx) + builder.heights_m().size();
     });
     if (kept == 0) return input_error("bench clouds: nothing was computed");

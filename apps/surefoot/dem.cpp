@@ -7,6 +7,7 @@
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/cloud_stream.hpp"
 #include "io/dem_file.hpp"
@@ -24,9 +25,10 @@ eval::Reduce reduce_named(const std::string& name) {
 int dem(const DemOptions& options) {
     auto cloud = io::CloudStream::open(options.cloud);
     if (!cloud) return report(cloud.error());
+    const auto executor = make_executor(options.common);
     eval::CloudBounds bounds;
     const auto read = cloud->each_block([&](const io::PointCloud& block) {
-        bounds.add(block.points_m);
+        bounds.add(block.points_m, *executor);
         return Status();
     });
     if (!read) return report(read.error());
@@ -39,7 +41,7 @@ int dem(const DemOptions& options) {
     }
     eval::DemBuilder builder(*grid, reduce_named(options.reduce));
     const auto read_again = cloud->each_block([&](const io::PointCloud& block) {
-        builder.add(block.points_m);
+        builder.add(block.points_m, *executor);
         return Status();
     });
     if (!read_again) return report(read_again.error());

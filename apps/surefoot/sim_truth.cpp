@@ -82,16 +82,6 @@ bool starts_at(std::vector<StampedPose>& trajectory, std::int64_t first_ns) {
            2.0 * moved.rotation.vec().norm() <= kTurned_rad;
 }
 
-/// Height of odom's origin in the world. Odom begins on the ground, which is the world's z = 0, if
-/// the ground was found; else at the first body, and then the truth is told from there.
-double odom_height_m(const pipeline::Pipeline& pipeline,
-                     const sim::SceneTruth& truth,
-                     const std::vector<FrameReport>& frames) {
-    if (pipeline.alignment().has_ground) return 0.0;
-    return truth.trajectory.front().T_world_body.translation_m.z() -
-           frames.front().motion.T_odom_body.translation_m.z();
-}
-
 void lift(grid::Layer& height_m, double by_m) {
     for (std::size_t i = 0; i < height_m.size(); ++i)
         height_m.data()[i] += static_cast<float>(by_m);
@@ -111,6 +101,14 @@ grid::Layer rated(const pipeline::Pipeline& pipeline, const grid::Layer& height_
 }
 
 }  // namespace
+
+double odom_height_m(const pipeline::Pipeline& pipeline,
+                     const sim::SceneTruth& truth,
+                     const std::vector<FrameReport>& frames) {
+    if (pipeline.alignment().has_ground) return 0.0;
+    return truth.trajectory.front().T_world_body.translation_m.z() -
+           frames.front().motion.T_odom_body.translation_m.z();
+}
 
 SimTruth::SimTruth(camera::FrameSource& source)
     : scene_(dynamic_cast<const sim::SceneSource*>(&source)) {}

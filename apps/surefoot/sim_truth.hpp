@@ -36,6 +36,12 @@ struct TruthFigures {
     Trajectory truth_trajectory;
 };
 
+/// Height of odom's origin in the world. Odom begins on the ground, which is the world's z = 0, if
+/// the ground was found; else at the first body, and then the truth is told from there.
+[[nodiscard]] double odom_height_m(const pipeline::Pipeline& pipeline,
+                                   const sim::SceneTruth& truth,
+                                   const std::vector<FrameReport>& frames);
+
 /// Collects the truth beside a run. Inert when the source is not simulated.
 class SimTruth {
   public:

@@ -28,15 +28,6 @@ namespace {
 /// Widest view of a map around a scan's way: half a map, and what alignment may move.
 constexpr double kAround_m = 3.2;
 
-sim::NamedNumbers numbers_of(const sim::ScriptedScene& script) {
-    sim::NamedNumbers numbers;
-    for (const sim::SceneParameter& parameter : script.parameters) {
-        const auto value = sim::evaluate(parameter.value, {});
-        if (value) numbers[parameter.name] = *value;
-    }
-    return numbers;
-}
-
 Result<GroundBox> box_of(const BoxText& text, const sim::NamedNumbers& numbers) {
     double value_m[4];
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -126,18 +117,24 @@ Status write_pictures(const std::string& folder,
     return writes.first();
 }
 
-/// The live map as it is.
-RatedMap ground_surface(const pipeline::Pipeline& pipeline) {
+grid::Layer lifted(const Image<float>& height_m, double by_m) {
+    grid::Layer out = height_m;
+    for (std::size_t i = 0; i < out.size(); ++i) out.data()[i] += static_cast<float>(by_m);
+    return out;
+}
+
+/// The live map as it is, heights in the world.
+RatedMap ground_surface(const pipeline::Pipeline& pipeline, double odom_z_m) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     return {geometry,
-            pipeline.map().layers().height_m.copy(),
+            lifted(pipeline.map().layers().height_m.copy(), odom_z_m),
             or_unknown(pipeline.rating().traversability, geometry)};
 }
 
 /// The live map as a scanner's heights show a place, and as the thesis' map had it: where something
 /// hangs over the ground, its underside instead of the ground, rated like all else.
-RatedMap highest_surfaces(const pipeline::Pipeline& pipeline) {
-    grid::Layer height_m = pipeline.map().layers().height_m.copy();
+RatedMap highest_surfaces(const pipeline::Pipeline& pipeline, double odom_z_m) {
+    grid::Layer height_m = lifted(pipeline.map().layers().height_m.copy(), odom_z_m);
     const grid::Layer clearance_m = pipeline.map().layers().clearance_m.copy();
     for (std::size_t i = 0; i < height_m.size(); ++i) {
         if (!std::isnan(clearance_m.data()[i])) height_m.data()[i] += clearance_m.data()[i];
@@ -223,11 +220,13 @@ class LiveRun {
         if (!scan) return scan.error();
         const RatedMap truth =
             rated_map(scan->geometry, scan->values, settings_.pipeline.traversability);
-        const RatedMap live = highest_surfaces(*pipeline_);
+        const double odom_z_m = odom_height_m(*pipeline_, source_->truth(), record.frames);
+        const RatedMap live = highest_surfaces(*pipeline_, odom_z_m);
         ComparedMap compared = compare_with_scan(live, truth, settings_.m3c2, settings_.maps);
         ThesisFigures figures = std::move(compared.figures);
         add_record(record, figures);
-        const RatedMap ground = laid_onto(truth, ground_surface(*pipeline_), compared.T_truth_live);
+        const RatedMap ground =
+            laid_onto(truth, ground_surface(*pipeline_, odom_z_m), compared.T_truth_live);
         if (auto status = measure_by_hand(run_, numbers, cell_points_m(ground), ground, figures);
             !status)
             return status.error();
@@ -331,7 +330,7 @@ Result<ThesisFigures> scan_of_run(const ThesisRun& run,
     figures.set("points_kept", static_cast<double>(place->points_m.size()));
     const RatedMap map =
         rated_map(place->geometry, place->height_m, conditions.settings.pipeline.traversability);
-    const sim::NamedNumbers numbers = numbers_of(*script);
+    const sim::NamedNumbers numbers = sim::drawn_numbers(*script);
     if (auto status = measure_by_hand(run, numbers, place->points_m, map, figures); !status)
         return status.error();
     Writes writes;
@@ -359,23 +358,20 @@ Result<ThesisFigures> live_run(const ThesisRun& run,
     if (const auto problem = settings.pipeline.problem()) return usage_error(*problem);
     LiveRun live(run, column, conditions, settings);
     if (auto status = live.open(); !status) return status.error();
-    return live.finish(numbers_of(*script));
+    return live.finish(sim::drawn_numbers(*script));
 }
 
 Result<ThesisFigures> scan_of_courtyard(const ThesisConditions& conditions, Executor& executor) {
     const auto script = sim::make_scene(kThesisCourtyard, conditions.seed);
     if (!script) return script.error();
-    // All of it; a quarter of the points is one for each 25 mm out to 30 m from a station.
+    // All of it.
     constexpr double kAll_m = 90.0;
-    constexpr double kStep_deg = 0.072;
     constexpr double kHill_m = 3.0;  // the ground rises far off
     ScanArea area = area_around(*script, kAll_m);
-    sim::LaserScannerConfig laser = conditions.settings.laser;
-    laser.step_deg = std::max(laser.step_deg, kStep_deg);
     area.farthest_m = 2.0 * kAll_m;
     area.ceiling_m += kHill_m;
     const auto place = scan_place(*script,
-                                  laser,
+                                  conditions.settings.laser,
                                   conditions.seed,
                                   area,
                                   conditions.settings.pipeline.elevation.resolution_m,

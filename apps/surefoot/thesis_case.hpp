@@ -16,7 +16,7 @@ namespace surefoot::app {
 
 /// What all parts of the report share.
 struct ThesisConditions {
-    Settings settings;  ///< ours
+    Settings settings;  ///< ours; laser: of the scans of the report
     Machine machine;
     std::uint64_t seed = 1;
     int max_frames = 0;  ///< of each recording; 0 = the whole way

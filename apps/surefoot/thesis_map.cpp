@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/thesis_map.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "apps/surefoot/cloud_pictures.hpp"
@@ -10,15 +12,15 @@
 #include "eval/cloud_measures.hpp"
 #include "eval/map_edges.hpp"
 #include "eval/percentile.hpp"
-#include "surefoot/geometry/cloud_alignment.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-/// Pairs farther apart are a wall's top that the camera never saw and the scanner did.
-constexpr double kReach_m = 0.10;
+/// Differences of heights beyond this many times their median are of something else.
+constexpr double kOutlier = 4.5;  // three sigma
+constexpr double kLeastSigma_m = 1e-4;
 /// A cylinder of M3C2 holds about a dozen cells: five are needed.
 constexpr double kCellsAcross = 4.0;
 
@@ -37,6 +39,62 @@ std::vector<double> sorted_sizes(const std::vector<float>& values) {
 
 double percentile(const std::vector<double>& sorted, double fraction) {
     return sorted.empty() ? std::nan("") : eval::percentile_of_sorted(sorted, fraction);
+}
+
+/// Height and tilt that lay the live heights onto those of the truth: the plane through the
+/// differences of their cells, without those that are farther from it than three times the usual
+/// (a wall's top that the camera never saw, a step that is off by a cell), until these stay.
+Pose height_and_tilt(const RatedMap& truth, const RatedMap& live) {
+    struct Difference {
+        Eigen::Vector3d at;  // x, y, 1
+        double rise_m;       // truth over live
+    };
+    const RatedMap there = laid_onto(truth, live, Pose{});
+    std::vector<Difference> all;
+    for (int iy = 0; iy < truth.geometry.ny; ++iy) {
+        for (int ix = 0; ix < truth.geometry.nx; ++ix) {
+            const double rise_m = static_cast<double>(truth.height_m.at(ix, iy)) -
+                                  static_cast<double>(there.height_m.at(ix, iy));
+            if (std::isnan(rise_m)) continue;
+            const Eigen::Vector2d at_m = truth.geometry.center_m({ix, iy});
+            all.push_back({{at_m.x(), at_m.y(), 1.0}, rise_m});
+        }
+    }
+    constexpr int kRounds = 20;
+    constexpr std::size_t kFewest = 50;
+    Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+    double limit_m = std::numeric_limits<double>::infinity();
+    std::vector<double> off_m;
+    for (int round = 0; round < kRounds; ++round) {
+        Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+        Eigen::Vector3d right = Eigen::Vector3d::Zero();
+        std::size_t used = 0;
+        for (const Difference& d : all) {
+            if (std::abs(d.rise_m - plane.dot(d.at)) > limit_m) continue;
+            normal += d.at * d.at.transpose();
+            right += d.at * d.rise_m;
+            ++used;
+        }
+        if (used < kFewest) return {};
+        // The first round takes the median height alone: steps and walls must not tilt it.
+        off_m.clear();
+        if (round == 0) {
+            for (const Difference& d : all) off_m.push_back(d.rise_m);
+            std::nth_element(off_m.begin(), off_m.begin() + std::ssize(off_m) / 2, off_m.end());
+            plane = {0.0, 0.0, off_m[off_m.size() / 2]};
+        } else {
+            plane = normal.ldlt().solve(right);
+        }
+        off_m.clear();
+        for (const Difference& d : all) off_m.push_back(std::abs(d.rise_m - plane.dot(d.at)));
+        std::nth_element(off_m.begin(), off_m.begin() + std::ssize(off_m) / 2, off_m.end());
+        limit_m = kOutlier * std::max(off_m[off_m.size() / 2], kLeastSigma_m);
+    }
+    Pose T_truth_live;
+    T_truth_live.rotation = Eigen::Quaterniond::FromTwoVectors(
+        Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-plane.x(), -plane.y(), 1.0));
+    T_truth_live.translation_m.z() = plane.z();
+    return T_truth_live;
 }
 
 void add_cloud_figures(std::span<const Eigen::Vector3f> live_m,
@@ -185,13 +243,7 @@ ComparedMap compare_with_scan(const RatedMap& live,
     ComparedMap out;
     const geometry::KdTree scan(cell_points_m(truth));
     std::vector<Eigen::Vector3f> live_m = cell_points_m(live);
-    geometry::AlignmentConfig alignment;
-    alignment.reach_m = kReach_m;
-    alignment.borders = false;  // a live map ends where nobody looked, not where its place does
-    const geometry::CloudAlignment aligned =
-        geometry::align_clouds(scan, live_m, Pose{}, alignment);
-    out.T_truth_live = aligned.T_reference_moved;
-    out.converged = aligned.converged;
+    out.T_truth_live = height_and_tilt(truth, live);
     out.figures.set("align_m", out.T_truth_live.translation_m.norm());
     out.figures.set("align_deg", 2.0 * out.T_truth_live.rotation.vec().norm() * kDegPerRad);
     for (Eigen::Vector3f& p_m : live_m) p_m = (out.T_truth_live * p_m.cast<double>()).cast<float>();

@@ -41,14 +41,13 @@ struct ComparedMap {
     grid::Layer m3c2_m;       ///< live - truth along the vertical; NaN = none
     Image<eval::Call> calls;  ///< confusion of the ratings
     Pose T_truth_live;        ///< what the alignment found
-    bool converged = false;
     ThesisFigures figures;
 };
-/// The maps are aligned by their surfaces (geometry/cloud_alignment) from where they are: in height
-/// and tilt, since the cells of a map have no upright faces. Along the ground both frames are that
-/// of the first base_link, and what odometry drifted stays in the figures. They are:
-/// align_m, align_deg, c2c_*, m3c2_*, height_*, edges_*, floor_spread_m, false_safe, false_unsafe,
-/// unknown. The live map must have a known cell.
+/// The live map is laid onto the scan in height and tilt, by the differences of their cells: the
+/// cells of a map have no upright faces that would say where it belongs along the ground, and there
+/// both frames are that of the first base_link. What odometry drifted stays in the figures. They
+/// are: align_m, align_deg, c2c_*, m3c2_*, height_*, edges_*, floor_spread_m, false_safe,
+/// false_unsafe, known_cells. The live map must have a known cell.
 [[nodiscard]] ComparedMap compare_with_scan(const RatedMap& live,
                                             const RatedMap& truth,
                                             const eval::M3c2Config& m3c2,

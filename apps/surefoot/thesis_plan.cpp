@@ -68,7 +68,7 @@ std::span<const ThesisRun> thesis_runs() {
     static constexpr BoxText kReception = {
         "stair_x_m - 1", "-0.45", "stair_x_m + 5 * going_m + 0.6", "0.45"};
     static constexpr BoxText kLarge = {
-        "stair_x_m - 1.2", "-1.5", "stair_x_m + (steps - 1) * going_m + 0.8", "1.5"};
+        "stair_x_m - 1.2", "-0.6", "stair_x_m + (steps - 1) * going_m + 0.8", "0.6"};
     static constexpr const char* kZed = "rex_zed";
     static constexpr const char* kStairs = "rex_demo_stairs";
     static constexpr ThesisRun kAll[] = {

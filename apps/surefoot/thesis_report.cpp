@@ -49,11 +49,7 @@ double exact_of(const ThesisRow& row, std::uint64_t seed) {
     const ThesisRun& run = run_named(row.run);
     const auto script = sim::make_scene(run.scene, seed, sim::carrier_of(carried_by(run.carrier)));
     if (!script) return std::nan("");
-    sim::NamedNumbers numbers;
-    for (const sim::SceneParameter& parameter : script->parameters) {
-        if (const auto value = sim::evaluate(parameter.value, {})) numbers[parameter.name] = *value;
-    }
-    const auto value = sim::evaluate(row.truth, numbers);
+    const auto value = sim::evaluate(row.truth, sim::drawn_numbers(*script));
     return value ? *value : std::nan("");
 }
 

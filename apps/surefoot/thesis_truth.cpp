@@ -5,18 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/scan.hpp"
 #include "eval/cloud_outliers.hpp"
-#include "eval/dem.hpp"
 #include "eval/voxels.hpp"
 
 namespace surefoot::app {
 namespace {
 
 constexpr double kVoxel_m = 0.001;
+constexpr std::size_t kNoCell = std::numeric_limits<std::size_t>::max();
 constexpr eval::OutlierConfig kOutliers{.others = 6, .sigmas = 4.0};
 /// Of the map's filter: what is higher over the ground is over everybody's head.
 constexpr double kCeiling_m = 2.0;
@@ -45,15 +48,15 @@ std::vector<std::size_t> near_stations(const std::vector<Eigen::Vector3d>& all_m
 }
 
 /// The cells of the area, on the lattice of all maps of that resolution.
-eval::DemGrid grid_of(const ScanArea& area, double resolution_m) {
-    eval::DemGrid grid;
-    grid.first = (area.low_m / resolution_m).array().floor();
+grid::GridGeometry cells_of(const ScanArea& area, double resolution_m) {
+    const Eigen::Vector2d first = (area.low_m / resolution_m).array().floor();
     const Eigen::Vector2d end = (area.high_m / resolution_m).array().ceil();
-    grid.geometry.resolution_m = resolution_m;
-    grid.geometry.nx = static_cast<int>(end.x() - grid.first.x());
-    grid.geometry.ny = static_cast<int>(end.y() - grid.first.y());
-    grid.geometry.origin_m = resolution_m * grid.first;
-    return grid;
+    grid::GridGeometry geometry;
+    geometry.resolution_m = resolution_m;
+    geometry.nx = static_cast<int>(end.x() - first.x());
+    geometry.ny = static_cast<int>(end.y() - first.y());
+    geometry.origin_m = resolution_m * first;
+    return geometry;
 }
 
 std::vector<Eigen::Vector3f> without_outliers(std::vector<Eigen::Vector3f> points_m,
@@ -63,17 +66,49 @@ std::vector<Eigen::Vector3f> without_outliers(std::vector<Eigen::Vector3f> point
     return points_m;
 }
 
-grid::Layer heights_of(const std::vector<Eigen::Vector3f>& points_m, const eval::DemGrid& grid) {
-    eval::DemBuilder builder(grid, eval::Reduce::max);
-    std::vector<Eigen::Vector3d> block_m;
-    constexpr std::size_t kBlock = 1U << 16U;
-    for (std::size_t from = 0; from < points_m.size(); from += kBlock) {
-        block_m.clear();
-        for (std::size_t i = from; i < std::min(from + kBlock, points_m.size()); ++i)
-            block_m.push_back(points_m[i].cast<double>());
-        builder.add(block_m);
+/// Highest supported surface of a cell: the highest point with enough others closely below it. One
+/// alone is the mean of an edge and of what lies behind it, which a beam that meets both measures.
+/// `z_m` is sorted here.
+float supported_height_m(std::span<float> z_m) {
+    constexpr float kClose_m = 0.02F;
+    constexpr std::size_t kFewest = 3;
+    constexpr std::size_t kShare = 50;  // one in so many
+    std::sort(z_m.begin(), z_m.end(), std::greater<>());
+    const std::size_t enough = std::min(std::max(kFewest, z_m.size() / kShare), z_m.size());
+    for (std::size_t i = 0; i + enough <= z_m.size(); ++i) {
+        if (z_m[i] - z_m[i + enough - 1] <= kClose_m) return z_m[i];
     }
-    return builder.heights_m();
+    return z_m.back();
+}
+
+grid::Layer heights_of(const std::vector<Eigen::Vector3f>& points_m,
+                       const grid::GridGeometry& geometry) {
+    const auto cell_of = [&](const Eigen::Vector3f& p_m) -> std::size_t {
+        const auto cell =
+            geometry.cell_at(static_cast<double>(p_m.x()), static_cast<double>(p_m.y()));
+        return cell ? static_cast<std::size_t>(cell->iy) * static_cast<std::size_t>(geometry.nx) +
+                          static_cast<std::size_t>(cell->ix)
+                    : kNoCell;
+    };
+    grid::Layer height_m(geometry.nx, geometry.ny, std::nanf(""));
+    std::vector<std::size_t> first(height_m.size() + 1, 0);
+    for (const Eigen::Vector3f& p_m : points_m) {
+        const std::size_t cell = cell_of(p_m);
+        if (cell != kNoCell) ++first[cell + 1];
+    }
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<float> z_m(first.back());
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for (const Eigen::Vector3f& p_m : points_m) {
+        const std::size_t cell = cell_of(p_m);
+        if (cell != kNoCell) z_m[next[cell]++] = p_m.z();
+    }
+    for (std::size_t i = 0; i < height_m.size(); ++i) {
+        if (first[i] == first[i + 1]) continue;
+        height_m.data()[i] =
+            supported_height_m(std::span(z_m).subspan(first[i], first[i + 1] - first[i]));
+    }
+    return height_m;
 }
 
 }  // namespace
@@ -130,9 +165,8 @@ Result<ScannedPlace> scan_place(const sim::ScriptedScene& script,
     place.scanned = static_cast<std::int64_t>(points_m.size());
     points_m = eval::voxel_means_m(points_m, kVoxel_m, executor);
     place.points_m = without_outliers(std::move(points_m), executor);
-    const eval::DemGrid grid = grid_of(area, resolution_m);
-    place.geometry = grid.geometry;
-    place.height_m = heights_of(place.points_m, grid);
+    place.geometry = cells_of(area, resolution_m);
+    place.height_m = heights_of(place.points_m, place.geometry);
     return place;
 }
 

@@ -28,7 +28,7 @@ struct ScanArea {
 struct ScannedPlace {
     std::vector<Eigen::Vector3f> points_m;  ///< cleaned, in the world
     grid::GridGeometry geometry;
-    grid::Layer height_m;  ///< highest point of each cell
+    grid::Layer height_m;  ///< highest supported surface of each cell
     int stations = 0;
     std::int64_t scanned = 0;  ///< points in the area
 };

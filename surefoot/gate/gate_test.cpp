@@ -673,6 +673,59 @@ TEST_F(VouchedStart, never_covers_what_was_measured) {
     EXPECT_TRUE(ask_now().reasons.contains(Reason::drop_off)) << words(ask_now());
 }
 
+TEST_F(VouchedStart, stands_for_a_measurement_that_is_unsure_and_agrees) {
+    // The row of cells at the lower border of the image: seen by few points, from one place.
+    const auto row_with = [&](double height_m, std::uint16_t sigma_tenth_mm, double x_m) {
+        floor = Terrain();
+        floor.box(-3.0, 0.6, -3.0, 3.0, static_cast<double>(kNaN));
+        floor.box(x_m, x_m + 0.025, -1.0, 1.0, height_m);
+        rebuild();
+        for (double y_m = -0.99; y_m < 1.0; y_m += 0.025)
+            map->sigma_tenth_mm[cell_at(*map, x_m + 0.01, y_m)] = sigma_tenth_mm;
+        seal(*map);
+    };
+    constexpr std::uint16_t kUnsure = 150;
+    row_with(0.0, kUnsure, 0.6);
+    expect_ok(ask_now());
+    query.vouched.radius_tenth_mm = 6000;  // the row lies outside
+    EXPECT_TRUE(ask_now().reasons.contains(Reason::not_resolvable)) << words(ask_now());
+    query.vouched.radius_tenth_mm = 8500;
+    row_with(0.015, kUnsure, 0.6);
+    expect_ok(ask_now());
+    row_with(0.0151, kUnsure, 0.6);
+    EXPECT_TRUE(ask_now().reasons.contains(Reason::not_resolvable)) << words(ask_now());
+    row_with(-0.0151, kUnsure, 0.6);
+    EXPECT_TRUE(ask_now().reasons.contains(Reason::not_resolvable)) << words(ask_now());
+    // One that is surer counts as measured, whatever the word says.
+    row_with(0.0, 79, 0.5);
+    const std::int64_t measured = ask_now().evidence.vouched_cells;
+    row_with(0.0, 80, 0.5);
+    EXPECT_GT(ask_now().evidence.vouched_cells, measured);
+}
+
+TEST_F(VouchedStart, leaves_what_hangs_over_an_unsure_cell_and_evidence_of_a_drop) {
+    constexpr std::uint16_t kUnsure = 150;
+    const auto unsure_cell = [&] {
+        floor = Terrain();
+        floor.box(-3.0, 0.4, -3.0, 3.0, static_cast<double>(kNaN));
+        rebuild();
+        const std::size_t at = cell_at(*map, 0.51, 0.18);
+        map->sigma_tenth_mm[at] = kUnsure;
+        return at;
+    };
+    std::size_t at = unsure_cell();
+    seal(*map);
+    expect_ok(ask_now());
+    at = unsure_cell();
+    map->clearance_tenth_mm[at] = 10'000;
+    seal(*map);
+    EXPECT_TRUE(ask_now().reasons.contains(Reason::body_clearance)) << words(ask_now());
+    at = unsure_cell();
+    map->drop_evidence[at] = 255;
+    seal(*map);
+    EXPECT_TRUE(ask_now().reasons.contains(Reason::drop_off)) << words(ask_now());
+}
+
 TEST_F(VouchedStart, does_not_tie_in_a_floor_at_another_height) {
     query.vouched.height_tenth_mm = 450;
     const Verdict verdict = ask_now();

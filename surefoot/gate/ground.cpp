@@ -93,7 +93,7 @@ void ReachableSurfaces::add_beside_vouched(const Ground& ground,
                 ground.doubled_center(ix, iy, {area.center_x_tenth_mm, area.center_y_tenth_mm});
             const std::int64_t distance_sq =
                 from_center.x * from_center.x + from_center.y * from_center.y;
-            if (cell.knowledge == Knowledge::measured && distance_sq <= 4 * reach * reach &&
+            if (cell.known() && distance_sq <= 4 * reach * reach &&
                 magnitude(cell.height_tenth_mm - area.height_tenth_mm) <= step_tenth_mm)
                 add(cell.component);
         }

@@ -33,6 +33,9 @@ struct GroundCell {
 
 /// The map, seen through an operator's word where there is one. The only place where a cell becomes
 /// known; a cell without a measurement has no other way than to lie wholly in the vouched area.
+/// There the word also stands for a measurement that decides nothing by itself and does not
+/// contradict it: it must not be worse to have looked than not to have looked. What hangs over such
+/// a cell and evidence of a drop stay.
 class Ground {
   public:
     Ground(const grid::MapSnapshot& map, const Query& query) noexcept;
@@ -56,6 +59,11 @@ class Ground {
             cell.drift_tenth_mm = map_.drift_tenth_mm[at];
             cell.clearance_tenth_mm = map_.clearance_tenth_mm[at];
             cell.height_tenth_mm = map_.height_tenth_mm[at];
+            if (vouching_ && is_unsure_but_agrees(cell) && is_vouched(ix, iy)) {
+                cell.knowledge = Knowledge::vouched;
+                cell.height_tenth_mm = vouched_.height_tenth_mm;
+                cell.sigma_tenth_mm = 0;
+            }
         } else if (vouching_ && is_vouched(ix, iy)) {
             cell.knowledge = Knowledge::vouched;
             cell.height_tenth_mm = vouched_.height_tenth_mm;
@@ -88,6 +96,14 @@ class Ground {
     [[nodiscard]] const VouchedArea& vouched() const noexcept { return vouched_; }
 
   private:
+    /// Too unsure for the limits of a foot by itself, and nearer to the word than two of its sigma.
+    [[nodiscard]] bool is_unsure_but_agrees(const GroundCell& cell) const noexcept {
+        constexpr std::int32_t kUnsureTenthMm = 79;
+        constexpr std::int64_t kAgreesTenthMm = 150;
+        const std::int64_t off = cell.height_tenth_mm - vouched_.height_tenth_mm;
+        return cell.sigma_tenth_mm > kUnsureTenthMm && off >= -kAgreesTenthMm &&
+               off <= kAgreesTenthMm;
+    }
     /// Whole, in the area.
     [[nodiscard]] bool is_vouched(std::int64_t ix, std::int64_t iy) const noexcept;
 
