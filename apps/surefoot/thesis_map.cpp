@@ -21,6 +21,8 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 /// Differences of heights beyond this many times their median are of something else.
 constexpr double kOutlier = 4.5;  // three sigma
 constexpr double kLeastSigma_m = 1e-4;
+/// Cells that are farther off are no uneven floor but something that was mapped there.
+constexpr double kOtherThing_m = 0.15;
 /// A cylinder of M3C2 holds about a dozen cells: five are needed.
 constexpr double kCellsAcross = 4.0;
 
@@ -133,7 +135,12 @@ void add_cloud_figures(std::span<const Eigen::Vector3f> live_m,
 void add_floor_figures(const RatedMap& truth,
                        const eval::EvalMapsConfig& config,
                        ComparedMap& out) {
-    const eval::CellMask floor = eval::level_floor(truth.height_m, config);
+    eval::CellMask floor = eval::level_floor(truth.height_m, config);
+    for (std::size_t i = 0; i < floor.size(); ++i) {
+        const double off_m = static_cast<double>(out.live.height_m.data()[i]) -
+                             static_cast<double>(truth.height_m.data()[i]);
+        if (std::abs(off_m) > kOtherThing_m) floor.data()[i] = 0;
+    }
     const eval::HeightJumps jumps = eval::height_jumps(out.live.height_m, floor, {});
     const std::vector<double> sizes = sorted_sizes(jumps.jump_m);
     out.figures.set("edges_p99_m", percentile(sizes, 0.99));
