@@ -138,8 +138,47 @@ class Parts {
     std::optional<Error> first_error_;
 };
 
-std::uint64_t hash_for(const ThesisConditions& conditions, const std::string& part) {
-    return fnv1a(fmt::format("{} {} {}", part, conditions.seed, conditions.max_frames),
+/// What stands in a place and how it is lit, as its seed draws it: another version of the program
+/// may have changed it.
+std::uint64_t hash_of_place(const std::string& scene, const ThesisConditions& conditions) {
+    const auto script = sim::make_scene(scene, conditions.seed);
+    if (!script) return 0;
+    const sim::Scene& place = script->scene;
+    const sim::Lighting& light = place.lighting();
+    std::uint64_t hash = fnv1a(fmt::format("{} {} {} {} {} {} {}",
+                                           light.ambient,
+                                           light.lamp,
+                                           light.lamp_azimuth_deg,
+                                           light.lamp_elevation_deg,
+                                           light.stripe_width_m,
+                                           light.stripe_gap_m,
+                                           light.stripe_yaw_deg));
+    for (int i = 0; i < place.primitives(); ++i) {
+        for (const Eigen::Vector3d& p_m : place.hull(i))
+            hash = fnv1a(fmt::format("{} {} {}", p_m.x(), p_m.y(), p_m.z()), hash);
+    }
+    for (const sim::Material& material : place.materials()) {
+        hash = fnv1a(fmt::format("{} {} {} {}",
+                                 static_cast<int>(material.pattern),
+                                 material.albedo,
+                                 material.contrast,
+                                 static_cast<int>(material.finish)),
+                     hash);
+    }
+    for (const Eigen::Vector3d& p_m : script->stations_m)
+        hash = fnv1a(fmt::format("{} {} {}", p_m.x(), p_m.y(), p_m.z()), hash);
+    return hash;
+}
+
+/// Everything that the figures of a part depend on.
+std::uint64_t hash_for(const ThesisConditions& conditions,
+                       const std::string& part,
+                       const std::string& scene) {
+    return fnv1a(fmt::format("{} {} {} {}",
+                             part,
+                             conditions.seed,
+                             conditions.max_frames,
+                             hash_of_place(scene, conditions)),
                  hash_of(conditions.settings));
 }
 
@@ -155,7 +194,7 @@ std::vector<Part> scans_of(const std::vector<ThesisRun>& runs,
         if (!scenes.insert(run.scene).second) continue;
         parts.push_back({fmt::format("laser scan of {}", run.scene),
                          conditions.scan_folder(run.scene),
-                         hash_for(conditions, run.scene),
+                         hash_for(conditions, run.scene, run.scene),
                          kScan,
                          [&, run] { return scan_of_run(run, conditions, serial()); },
                          [&, run](const ThesisFigures& f) { results.scans[run.scene] = f; }});
@@ -163,7 +202,7 @@ std::vector<Part> scans_of(const std::vector<ThesisRun>& runs,
     if (courtyard) {
         parts.push_back({"laser scan of the courtyard",
                          conditions.scan_folder(kThesisCourtyard),
-                         hash_for(conditions, kThesisCourtyard),
+                         hash_for(conditions, kThesisCourtyard, kThesisCourtyard),
                          3 * kScan,
                          [&] { return scan_of_courtyard(conditions, serial()); },
                          [&](const ThesisFigures& f) { results.courtyard = f; }});
@@ -189,7 +228,8 @@ std::vector<Part> recordings_of(const std::vector<ThesisRun>& runs,
             parts.push_back(
                 {fmt::format("{}, {}", run.name, kThesisColumnNames[i]),
                  conditions.run_folder(run, column),
-                 hash_for(conditions, fmt::format("{}/{}", run.name, kThesisColumnNames[i])),
+                 hash_for(
+                     conditions, fmt::format("{}/{}", run.name, kThesisColumnNames[i]), run.scene),
                  frames_of(run, conditions),
                  [&, run, column] { return live_run(run, column, conditions); },
                  [&, run, i](const ThesisFigures& f) { results.runs[run.name][i] = f; }});

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <optional>
 #include <utility>
 
 #include "apps/surefoot/settings.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 constexpr std::int64_t kRest_ns = 400'000'000;   ///< between two movements
 constexpr std::int64_t kRetry_ns = 500'000'000;  ///< where the gate cannot judge
+/// A gate that is in FAULT waits for somebody to arm it, and a script cannot.
+constexpr std::int64_t kPatience_ns = 120'000'000'000;
 /// The machine has stood still for so long before the next movement is asked for: the simulator's
 /// frame rings after a step.
 constexpr double kSettled_s = 1.0;
@@ -28,15 +31,23 @@ class ScriptedWalker final : public Walker {
     }
     bool answered(const AskedStep& step, bool judged, std::int64_t elapsed_ns) override {
         const bool is_over = step.moved || judged;
-        if (is_over) ++next_;
         rest_until_ns_ = elapsed_ns + (is_over ? kRest_ns : kRetry_ns);
-        return is_over;
+        if (is_over) {
+            ++next_;
+            unjudged_since_ns_.reset();
+            return true;
+        }
+        if (!unjudged_since_ns_) unjudged_since_ns_ = elapsed_ns;
+        if (elapsed_ns - *unjudged_since_ns_ < kPatience_ns) return false;
+        next_ = codes_.size();
+        return true;
     }
 
   private:
     std::vector<std::uint8_t> codes_;
     std::size_t next_ = 0;
     std::int64_t rest_until_ns_ = 0;
+    std::optional<std::int64_t> unjudged_since_ns_;
 };
 
 /// Asking again is up to whoever holds the joystick.

@@ -37,7 +37,8 @@ class Walker {
 };
 
 /// One movement after the other: where the gate cannot judge (it warms up), waits and asks again;
-/// where it says no, goes on with the next.
+/// where it says no, goes on with the next. Where it could not judge for two minutes, gives up: the
+/// last answer is told, and no more is asked.
 [[nodiscard]] std::unique_ptr<Walker> scripted_walker(std::vector<std::uint8_t> codes);
 /// Whoever holds the joystick on a page.
 [[nodiscard]] std::unique_ptr<Walker> page_walker(page::Steering& steering);
