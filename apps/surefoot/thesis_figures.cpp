@@ -47,8 +47,8 @@ Status write_figures(const std::string& folder,
                      const ThesisFigures& figures) {
     std::string text = fmt::format("{}{:016x}\nname,value\n", kHead, conditions);
     for (const auto& [name, value] : figures.all()) {
-        text += std::isnan(value) ? fmt::format("{},nan\n", name)
-                                  : fmt::format("{},{}\n", name, value);
+        text +=
+            std::isnan(value) ? fmt::format("{},nan\n", name) : fmt::format("{},{}\n", name, value);
     }
     return io::write_file(file_of(folder), text);
 }

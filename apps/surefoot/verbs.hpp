@@ -289,9 +289,9 @@ struct EvalSuiteOptions {
     int seeds = 1;
     std::vector<double> noise = {1.0, 2.0};
     bool quick = false;
-    int frames = 0;        ///< of each case; 0 = the whole path
-    double reach_m = 0.8;  ///< how far around the last pose the gate is asked
-    bool thesis = false;   ///< the experiments of the thesis instead
+    int frames = 0;                 ///< of each case; 0 = the whole path
+    double reach_m = 0.8;           ///< how far around the last pose the gate is asked
+    bool thesis = false;            ///< the experiments of the thesis instead
     std::vector<std::string> runs;  ///< of these; empty = all
 };
 int eval_suite(const EvalSuiteOptions& options);
