@@ -17,6 +17,10 @@ namespace {
 constexpr double kMostCells = 134217728.0;
 /// Whole numbers up to here are exact in double, and fit an int after the first is subtracted.
 constexpr double kLargestNumber = 1e15;
+/// Sums of heights are whole numbers of 2^-23 m (0.12 um), which double adds exactly up to 10^9 m.
+constexpr double kSteps = 8388608.0;
+/// Cells of all threads together: 1 GB. Larger grids have fewer threads.
+constexpr std::size_t kMostPartCells = 1U << 26U;
 /// Points that are worth a thread's while.
 constexpr std::size_t kPiece = 1U << 14U;
 
@@ -34,8 +38,9 @@ void CloudBounds::add(std::span<const Eigen::Vector3d> points_m, Executor& execu
               kPiece,
               executor,
               [&](std::size_t begin, std::size_t end, std::size_t piece) {
-                  CloudBounds& bounds = pieces[piece];
+                  CloudBounds bounds;  // beside another thread's it would share a cache line
                   for (std::size_t i = begin; i < end; ++i) bounds.add(points_m[i]);
+                  pieces[piece] = bounds;
               });
     for (const CloudBounds& piece : pieces) {
         skipped_ += piece.skipped_;
@@ -98,14 +103,20 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
 }
 
 DemBuilder::DemBuilder(const DemGrid& grid, Reduce reduce) : grid_(grid), reduce_(reduce) {
+    parts_.push_back(empty());
+}
+
+DemBuilder::Part DemBuilder::empty() const {
     const auto cells =
-        static_cast<std::size_t>(grid.geometry.nx) * static_cast<std::size_t>(grid.geometry.ny);
+        static_cast<std::size_t>(grid_.geometry.nx) * static_cast<std::size_t>(grid_.geometry.ny);
     const double infinity = std::numeric_limits<double>::infinity();
-    value_m_.assign(cells,
-                    reduce == Reduce::max   ? -infinity
-                    : reduce == Reduce::min ? infinity
-                                            : 0.0);
-    count_.assign(cells, 0);
+    Part part;
+    part.value.assign(cells,
+                      reduce_ == Reduce::max   ? -infinity
+                      : reduce_ == Reduce::min ? infinity
+                                               : 0.0);
+    part.count.assign(cells, 0);
+    return part;
 }
 
 std::uint32_t DemBuilder::cell_of(const Eigen::Vector3d& p_m) const {
@@ -121,37 +132,28 @@ std::uint32_t DemBuilder::cell_of(const Eigen::Vector3d& p_m) const {
            static_cast<std::uint32_t>(ix);
 }
 
-void DemBuilder::take(std::uint32_t cell, double z_m) {
-    double& value_m = value_m_[cell];
+void DemBuilder::join(double value, double& kept) const {
     switch (reduce_) {
-        case Reduce::max: value_m = std::max(value_m, z_m); break;
-        case Reduce::min: value_m = std::min(value_m, z_m); break;
-        case Reduce::mean: value_m += z_m; break;
+        case Reduce::max: kept = std::max(kept, value); break;
+        case Reduce::min: kept = std::min(kept, value); break;
+        case Reduce::mean: kept += value; break;
     }
-    ++count_[cell];
 }
 
 void DemBuilder::add(std::span<const Eigen::Vector3d> points_m, Executor& executor) {
-    if (executor.threads() == 1) {
-        for (const Eigen::Vector3d& p_m : points_m) {
+    const std::size_t cells = parts_.front().count.size();
+    const std::size_t most = std::max(kMostPartCells / cells, std::size_t{1});
+    const std::size_t parts = std::min(static_cast<std::size_t>(executor.threads()), most);
+    while (parts_.size() < parts) parts_.push_back(empty());
+    const std::size_t share = pieces_of(points_m.size(), parts);
+    if (share == 0) return;
+    in_pieces(points_m.size(), share, executor, [&](std::size_t begin, std::size_t end, auto i) {
+        for (const Eigen::Vector3d& p_m : points_m.subspan(begin, end - begin)) {
             const std::uint32_t cell = cell_of(p_m);
-            if (cell != kNoCell) take(cell, p_m.z());
-        }
-        return;
-    }
-    // Every thread has cells of its own, and takes their points in the order in which they came:
-    // the sums are those of one thread.
-    cells_.resize(points_m.size());
-    in_pieces(points_m.size(), kPiece, executor, [&](std::size_t begin, std::size_t end, auto) {
-        for (std::size_t i = begin; i < end; ++i) cells_[i] = cell_of(points_m[i]);
-    });
-    const auto threads = static_cast<std::uint32_t>(executor.threads());
-    const auto band = static_cast<std::uint32_t>(pieces_of(count_.size(), threads));
-    executor.parallel_for(executor.threads(), [&](int number) {
-        const std::uint32_t first = static_cast<std::uint32_t>(number) * band;
-        for (std::size_t i = 0; i < points_m.size(); ++i) {
-            const std::uint32_t cell = cells_[i];
-            if (cell - first < band && cell != kNoCell) take(cell, points_m[i].z());
+            if (cell == kNoCell) continue;
+            const double z_m = p_m.z();
+            join(reduce_ == Reduce::mean ? std::round(kSteps * z_m) : z_m, parts_[i].value[cell]);
+            ++parts_[i].count[cell];
         }
     });
 }
@@ -159,10 +161,16 @@ void DemBuilder::add(std::span<const Eigen::Vector3d> points_m, Executor& execut
 grid::Layer DemBuilder::heights_m() const {
     grid::Layer heights_m(
         grid_.geometry.nx, grid_.geometry.ny, std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t i = 0; i < count_.size(); ++i) {
-        if (count_[i] == 0) continue;
-        const double divisor = reduce_ == Reduce::mean ? static_cast<double>(count_[i]) : 1.0;
-        heights_m.data()[i] = static_cast<float>(value_m_[i] / divisor);
+    for (std::size_t i = 0; i < heights_m.size(); ++i) {
+        double value = parts_.front().value[i];
+        std::int64_t count = parts_.front().count[i];
+        for (const Part& part : std::span(parts_).subspan(1)) {
+            join(part.value[i], value);
+            count += part.count[i];
+        }
+        if (count == 0) continue;
+        const double divisor = reduce_ == Reduce::mean ? kSteps * static_cast<double>(count) : 1.0;
+        heights_m.data()[i] = static_cast<float>(value / divisor);
     }
     return heights_m;
 }

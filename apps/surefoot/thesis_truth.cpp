@@ -12,6 +12,7 @@
 
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/scan.hpp"
+#include "apps/surefoot/stray_points.hpp"
 #include "eval/cloud_outliers.hpp"
 #include "eval/voxels.hpp"
 
@@ -66,19 +67,18 @@ std::vector<Eigen::Vector3f> without_outliers(std::vector<Eigen::Vector3f> point
     return points_m;
 }
 
-/// Highest supported surface of a cell: the highest point with enough others closely below it. One
-/// alone is the mean of an edge and of what lies behind it, which a beam that meets both measures.
-/// `z_m` is sorted here.
+/// Highest supported surface of a cell: the highest point with enough others closely below it; NaN
+/// without. What few points alone say may be strays. `z_m` is sorted here.
 float supported_height_m(std::span<float> z_m) {
     constexpr float kClose_m = 0.02F;
     constexpr std::size_t kFewest = 3;
     constexpr std::size_t kShare = 50;  // one in so many
     std::sort(z_m.begin(), z_m.end(), std::greater<>());
-    const std::size_t enough = std::min(std::max(kFewest, z_m.size() / kShare), z_m.size());
+    const std::size_t enough = std::max(kFewest, z_m.size() / kShare);
     for (std::size_t i = 0; i + enough <= z_m.size(); ++i) {
         if (z_m[i] - z_m[i + enough - 1] <= kClose_m) return z_m[i];
     }
-    return z_m.back();
+    return std::nanf("");
 }
 
 grid::Layer heights_of(const std::vector<Eigen::Vector3f>& points_m,
@@ -104,7 +104,6 @@ grid::Layer heights_of(const std::vector<Eigen::Vector3f>& points_m,
         if (cell != kNoCell) z_m[next[cell]++] = p_m.z();
     }
     for (std::size_t i = 0; i < height_m.size(); ++i) {
-        if (first[i] == first[i + 1]) continue;
         height_m.data()[i] =
             supported_height_m(std::span(z_m).subspan(first[i], first[i + 1] - first[i]));
     }
@@ -147,15 +146,20 @@ Result<ScannedPlace> scan_place(const sim::ScriptedScene& script,
         Pose T_world_scanner;
         T_world_scanner.translation_m = stations_m[i];
         ++place.stations;
+        StrayFilter filter(config);
+        const StrayFilter::Take keep = [&](std::span<const Eigen::Vector3d> points_scanner_m) {
+            for (const Eigen::Vector3d& p_scanner_m : points_scanner_m) {
+                if (std::isnan(p_scanner_m.x())) continue;
+                const Eigen::Vector3d p_m = T_world_scanner * p_scanner_m;
+                if (holds(area, p_m)) points_m.push_back(p_m.cast<float>());
+            }
+            return !interrupted();
+        };
         scanner->scan(
             T_world_scanner, static_cast<int>(i), executor, [&](const sim::ScanColumn& column) {
-                for (const sim::ScanPoint& point : column.points) {
-                    if (std::isnan(point.point_scanner_m.x())) continue;
-                    const Eigen::Vector3d p_m = T_world_scanner * point.point_scanner_m;
-                    if (holds(area, p_m)) points_m.push_back(p_m.cast<float>());
-                }
-                return !interrupted();
+                return filter.add(column, keep);
             });
+        filter.finish(keep);
         if (interrupted()) return Error{ErrorCode::interrupted, "interrupted by the user"};
     }
     if (points_m.empty()) {

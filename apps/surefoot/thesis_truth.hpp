@@ -23,14 +23,15 @@ struct ScanArea {
 /// What the map of a run may reach: everything within half a map around the way.
 [[nodiscard]] ScanArea area_around(const sim::ScriptedScene& script, double half_map_m);
 
-/// The laser scan of a place as chapter 8 of the thesis makes it: stations registered, thinned to
-/// 1 mm, statistical outliers removed (7 points, the point among them, 4 sigma), heights on 25 mm.
+/// The laser scan of a place as chapter 8 of the thesis makes it, stray points of each station left
+/// out first: stations registered, thinned to 1 mm, statistical outliers removed (7 points, the
+/// point among them, 4 sigma), heights on 25 mm.
 struct ScannedPlace {
     std::vector<Eigen::Vector3f> points_m;  ///< cleaned, in the world
     grid::GridGeometry geometry;
-    grid::Layer height_m;  ///< highest supported surface of each cell
+    grid::Layer height_m;  ///< highest surface of each cell that three points agree on
     int stations = 0;
-    std::int64_t scanned = 0;  ///< points in the area
+    std::int64_t scanned = 0;  ///< points in the area, without strays
 };
 /// Errors: a scanner that sees nothing; no point in the area.
 [[nodiscard]] Result<ScannedPlace> scan_place(const sim::ScriptedScene& script,
