@@ -126,7 +126,7 @@ TEST(Dem, EveryCellIsWhatAMapOfListsHolds) {
             if (!p.allFinite()) continue;
             const auto index = [&](double value, double low) {
                 return lattice == Lattice::node
-                           ? static_cast<int>((value - low) / resolution_m + 0.5)
+                           ? static_cast<int>(std::floor((value - low) / resolution_m + 0.5))
                            : static_cast<int>(std::floor(value / resolution_m) -
                                               std::floor(low / resolution_m));
             };

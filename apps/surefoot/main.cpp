@@ -104,6 +104,7 @@ struct AllOptions {
     EvalTrajectoryOptions eval_trajectory;
     EvalMapsOptions eval_maps;
     EvalDepthOptions eval_depth;
+    EvalStairsOptions eval_stairs;
     DepthOptions depth;
     DepthAccuracyOptions depth_accuracy;
     DemOptions dem;
@@ -618,6 +619,40 @@ void add_eval_depth(CLI::App& eval_verb, EvalDepthOptions& o, int& exit_code) {
         ->type_name("SIGMA.pfm");
 }
 
+void add_eval_stairs(CLI::App& eval_verb, EvalStairsOptions& o, int& exit_code) {
+    CLI::App* verb =
+        bind(add_verb(eval_verb,
+                      "stairs",
+                      "flights, drops, kerbs, sills, doors and edges against the true ones",
+                      "surefoot stairs out/floor_recording/elevation.asc --out out/floor_truth\n"
+                      "  surefoot eval stairs out/floor out/floor_truth --json"),
+             o,
+             eval_stairs,
+             exit_code,
+             Reads::no_settings);
+    verb->add_option("found", o.found, "stairs.json, or the folder of a run that holds it")
+        ->required()
+        ->type_name("FOUND");
+    verb->add_option("truth",
+                     o.truth,
+                     "the same in the same frame: of true heights (stairs), or written by hand "
+                     "with the lists that are known")
+        ->required()
+        ->type_name("TRUTH");
+    verb->add_option("--across", o.across_m, "how far a match may lie off along the way over it")
+        ->type_name("M")
+        ->check(positive_number())
+        ->capture_default_str();
+    verb->add_option("--along", o.along_m, "how far to its side")
+        ->type_name("M")
+        ->check(positive_number())
+        ->capture_default_str();
+    verb->add_option("--turn", o.turn_deg, "how far turned")
+        ->type_name("DEG")
+        ->check(positive_number())
+        ->capture_default_str();
+}
+
 void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
     CLI::App* verb = app.add_subcommand("eval", "measure results against ground truth");
     verb->require_subcommand(1);
@@ -669,6 +704,7 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
     maps->add_option("--out", m.out_dir, "folder for confusion.png and error.png")
         ->type_name("DIR");
     add_eval_depth(*verb, all.eval_depth, exit_code);
+    add_eval_stairs(*verb, all.eval_stairs, exit_code);
 }
 
 void add_voxel(CLI::App& app, VoxelOptions& o, int& exit_code) {

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/stairs_json.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "server/page/feature_lists.hpp"
+#include "server/wire/json_text.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -19,7 +25,206 @@ Json classes_json(const stairs::GroundClasses& classes, double resolution_m) {
     return json;
 }
 
+constexpr wire::JsonLimits kFileLimits{.max_bytes = 64U << 20U};
+
+/// Reads objects of a list, and keeps the first thing that is wrong.
+class ListReader {
+  public:
+    explicit ListReader(std::string file) : file_(std::move(file)) {}
+
+    [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+    /// Calls `read(object)` for each object of the list; false without the list.
+    template <typename Read>
+    bool each(const Json& all, const std::string& list, const Read& read) {
+        if (!all.contains(list)) return false;
+        if (!all[list].is_array()) fail(list, "is no list");
+        for (std::size_t i = 0; i < all[list].size() && !error_; ++i) {
+            at_ = fmt::format("{}[{}]", list, i);
+            if (!all[list][i].is_object()) fail("", "is no object");
+            if (!error_) read(all[list][i]);
+        }
+        return true;
+    }
+
+    /// NaN where there is none.
+    double number(const Json& object, const char* name) {
+        if (!object.contains(name) || object[name].is_null())
+            return std::numeric_limits<double>::quiet_NaN();
+        if (!object[name].is_number()) fail(name, "is no number");
+        return error_ ? 0.0 : object[name].get<double>();
+    }
+    bool flag(const Json& object, const char* name, bool otherwise) {
+        if (!object.contains(name)) return otherwise;
+        if (!object[name].is_boolean()) fail(name, "is neither true nor false");
+        return error_ ? otherwise : object[name].get<bool>();
+    }
+    int count(const Json& object, const char* name) {
+        constexpr int kMost = 10000;
+        const bool whole = object.contains(name) && object[name].is_number_integer();
+        if (!whole || object[name].get<double>() < 0 || object[name].get<double>() > kMost)
+            fail(name, fmt::format("is no whole number from 0 to {}", kMost));
+        return error_ ? 0 : object[name].get<int>();
+    }
+    bool leads_down(const Json& object) {
+        const bool text = object.contains("kind") && object["kind"].is_string();
+        const std::string kind = text ? object["kind"].get<std::string>() : "";
+        if (kind != "up" && kind != "down") fail("kind", "is neither \"up\" nor \"down\"");
+        return kind == "down";
+    }
+    template <int kSize>
+    Eigen::Matrix<double, kSize, 1> numbers(const Json& object, const char* name) {
+        Eigen::Matrix<double, kSize, 1> values = Eigen::Matrix<double, kSize, 1>::Zero();
+        const bool list = object.contains(name) && object[name].is_array() &&
+                          object[name].size() == static_cast<std::size_t>(kSize);
+        if (!list) fail(name, fmt::format("is no list of {} numbers", kSize));
+        for (int i = 0; i < kSize && !error_; ++i) {
+            const Json& value = object[name][static_cast<std::size_t>(i)];
+            if (!value.is_number()) fail(name, fmt::format("is no list of {} numbers", kSize));
+            if (!error_) values[i] = value.get<double>();
+        }
+        return values;
+    }
+    stairs::FeaturePose pose(const Json& object) {
+        const Eigen::Vector4d values = numbers<4>(object, "pose");
+        return {values.head<3>(), values[3]};
+    }
+
+  private:
+    void fail(const std::string& name, const std::string& what) {
+        if (error_) return;
+        const std::string where = at_.empty() || name.empty() ? at_ + name : at_ + "." + name;
+        error_ = input_error(fmt::format(
+            "{}: {} {}; the names are those of stairs.json (docs/json.md)", file_, where, what));
+    }
+
+    std::string file_;
+    std::string at_;
+    std::optional<Error> error_;
+};
+
+stairs::LineFeature line_of(ListReader& reader, const Json& object, bool down) {
+    stairs::LineFeature line;
+    line.pose = reader.pose(object);
+    const double height_m = std::abs(reader.number(object, "height_m"));
+    line.height_m = std::copysign(height_m, down ? -1.0 : 1.0);
+    line.length_m = reader.number(object, "length_m");
+    line.bottom_seen = reader.flag(object, "bottom_seen", true);
+    return line;
+}
+
+stairs::Flight flight_of(ListReader& reader, const Json& object) {
+    stairs::Flight flight;
+    flight.kind = reader.leads_down(object) ? stairs::FlightKind::down : stairs::FlightKind::up;
+    flight.pose = reader.pose(object);
+    flight.steps = reader.count(object, "steps");
+    flight.riser_m = reader.number(object, "riser_m");
+    flight.going_m = reader.number(object, "going_m");
+    flight.width_m = reader.number(object, "width_m");
+    return flight;
+}
+
+stairs::Door door_of(ListReader& reader, const Json& object) {
+    stairs::Door door;
+    door.pose = reader.pose(object);
+    door.width_m = reader.number(object, "width_m");
+    door.sill_m = reader.number(object, "sill_m");
+    return door;
+}
+
+stairs::Edge edge_of(ListReader& reader, const Json& object) {
+    stairs::Edge edge;
+    edge.from_m = reader.numbers<2>(object, "from");
+    edge.to_m = reader.numbers<2>(object, "to");
+    edge.upper_m = reader.number(object, "upper_m");
+    edge.lower_m = reader.number(object, "lower_m");
+    edge.lower_seen = reader.flag(object, "lower_seen", true);
+    return edge;
+}
+
+Json or_null(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json figures_json(const eval::MatchErrors& figures) {
+    return {{"count", figures.count},
+            {"mean_m", or_null(figures.mean_m)},
+            {"std_m", or_null(figures.std_m)},
+            {"max_abs_m", or_null(figures.max_abs_m)}};
+}
+
+Json poses_json(const std::vector<stairs::FeaturePose>& poses) {
+    Json list = Json::array();
+    for (const stairs::FeaturePose& pose : poses)
+        list.push_back({pose.p_m.x(), pose.p_m.y(), pose.p_m.z(), pose.yaw_rad});
+    return list;
+}
+
+/// `height`: how the height of this kind is called.
+Json kind_json(const eval::KindErrors& errors, const char* height) {
+    return {{"truth", errors.truth},
+            {"found", errors.found},
+            {"matched", errors.matched},
+            {"recall", or_null(errors.recall())},
+            {"precision", or_null(errors.precision())},
+            {"across", figures_json(errors.across)},
+            {height, figures_json(errors.height)},
+            {"missed", poses_json(errors.missed)},
+            {"extra", poses_json(errors.extra)}};
+}
+
 }  // namespace
+
+Result<ListedFeatures> parse_stairs(std::string_view text, const std::string& file) {
+    const auto all = wire::parse_json(text, kFileLimits);
+    if (!all) return input_error(fmt::format("{}: {}", file, all.error().message));
+    if (!all->is_object())
+        return input_error(fmt::format("{}: holds no JSON object, as stairs.json does", file));
+    ListedFeatures out;
+    stairs::TerrainFeatures& features = out.features;
+    ListReader reader(file);
+    const auto read = [&](const char* list, const auto& add) {
+        if (reader.each(*all, list, add)) out.lists.insert(list);
+    };
+    read("flights",
+         [&](const Json& object) { features.flights.push_back(flight_of(reader, object)); });
+    read("drops",
+         [&](const Json& object) { features.drops.push_back(line_of(reader, object, true)); });
+    read("kerbs", [&](const Json& object) {
+        features.kerbs.push_back(line_of(reader, object, reader.leads_down(object)));
+    });
+    read("sills",
+         [&](const Json& object) { features.sills.push_back(line_of(reader, object, false)); });
+    read("doors", [&](const Json& object) { features.doors.push_back(door_of(reader, object)); });
+    read("edges", [&](const Json& object) { features.edges.push_back(edge_of(reader, object)); });
+    if (reader.error()) return *reader.error();
+    if (out.lists.empty()) {
+        return input_error(fmt::format(
+            "{}: has none of flights, drops, kerbs, sills, doors and edges, as stairs.json does",
+            file));
+    }
+    return out;
+}
+
+std::string feature_errors_json(const eval::FeatureErrors& errors,
+                                const std::set<std::string>& lists) {
+    Json flights = kind_json(errors.flights, "riser");
+    flights["steps_right"] = errors.flights.steps_right;
+    flights["going"] = figures_json(errors.flights.going);
+    flights["width"] = figures_json(errors.flights.width);
+    Json doors = kind_json(errors.doors, "sill");
+    doors["width"] = figures_json(errors.doors.width);
+    Json json = {{"flights", flights},
+                 {"drops", kind_json(errors.drops, "height")},
+                 {"kerbs", kind_json(errors.kerbs, "height")},
+                 {"sills", kind_json(errors.sills, "height")},
+                 {"doors", doors},
+                 {"edges", kind_json(errors.edges, "height")}};
+    for (auto& [name, value] : json.items()) {
+        if (!lists.contains(name)) value = nullptr;
+    }
+    return json.dump(2);
+}
 
 std::string stairs_json(const stairs::TerrainFeatures& features,
                         const stairs::GroundClasses& classes,

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -34,15 +35,17 @@ stairs::LineFeature line(double height_m) {
     return line;
 }
 
-const std::string kPose = R"("pose":[1.5,-0.5,0.25,0.125])";
+std::string pose_text() {
+    return R"("pose":[1.5,-0.5,0.25,0.125])";
+}
 
-const std::string kNoCells = [] {
+std::string no_cells() {
     std::string text = R"("classes":{)";
     for (const char* name : stairs::kGroundClassNames)
         text += std::string(text.back() == '{' ? "" : ",") + '"' + name +
                 R"(":{"cells":0,"area_m2":0.0})";
     return text + "},";
-}();
+}
 
 TEST(StairsJson, CellsAreCountedByTheirClass) {
     stairs::GroundClasses classes;
@@ -60,7 +63,7 @@ TEST(StairsJson, CellsAreCountedByTheirClass) {
 TEST(StairsJson, NothingIsEmptyLists) {
     EXPECT_EQ(packed(json_of({}, {})),
               R"({"flights":[],"drops":[],"kerbs":[],"sills":[],"doors":[],"edges":[],)" +
-                  kNoCells + R"("assumed":[]})");
+                  no_cells() + R"("assumed":[]})");
 }
 
 TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
@@ -86,7 +89,7 @@ TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
                         R"("riser_spread_m":0.75,"going_m":1.25,"going_std_m":1.5,)"
                         R"("going_spread_m":1.75,"width_m":2.25,"landing_m":2.5,"turn_rad":2.75,)"
                         R"("cut":true,"open":true,)" +
-                        kPose + "}],"),
+                        pose_text() + "}],"),
               std::string::npos)
         << json_of(features, {});
 }
@@ -116,7 +119,7 @@ TEST(StairsJson, DropsAndKerbsHavePositiveHeights) {
     features.kerbs = {line(-0.25), line(0.25)};
     features.sills = {line(0.5)};
     const auto common = [](const char* height, const char* seen) {
-        return kPose + R"(,"height_m":)" + height +
+        return pose_text() + R"(,"height_m":)" + height +
                R"(,"length_m":2.0,"sigma_m":0.5,"bottom_seen":)" + seen + "}";
     };
     const std::string json = packed(json_of(features, {}));
@@ -166,12 +169,72 @@ TEST(StairsJson, DoorsEdgesAndWhatWasAssumed) {
     EXPECT_NE(
         packed(json_of(features, {"z is \"up\""}))
             .find(R"("doors":[{"width_m":0.75,"width_std_m":0.5,"sill_m":0.25,"clearance_m":2.0,)" +
-                  kPose +
+                  pose_text() +
                   R"(}],"edges":[{"from":[1.0,2.0],"to":[3.0,4.0],"upper_m":0.5,"lower_m":-0.25,)"
                   R"("lower_seen":false,"sigma_m":0.125}],)" +
-                  kNoCells + R"("assumed":["zis\"up\""]})"),
+                  no_cells() + R"("assumed":["zis\"up\""]})"),
         std::string::npos)
         << json_of(features, {});
+}
+
+TEST(StairsJson, WhatIsWrittenIsRead) {
+    stairs::TerrainFeatures features;
+    stairs::Flight flight;
+    flight.kind = stairs::FlightKind::down;
+    flight.pose = {{1.5, -0.5, 0.25}, 0.125};
+    flight.steps = 1;
+    flight.riser_m = 0.25;
+    flight.going_m = kNan;
+    flight.width_m = 2.25;
+    features.flights = {flight};
+    features.drops = {line(-0.5)};
+    features.drops[0].bottom_seen = false;
+    features.kerbs = {line(0.125), line(-0.125)};
+    features.sills = {line(0.0625)};
+    stairs::Door door;
+    door.pose = {{3.5, 0.5, 0.0}, -0.25};
+    door.width_m = 0.875;
+    door.sill_m = 0.0;
+    door.clearance_m = kNan;
+    features.doors = {door};
+    stairs::Edge edge;
+    edge.from_m = {1.0, 2.0};
+    edge.to_m = {3.0, 4.0};
+    edge.upper_m = 0.5;
+    edge.lower_m = -0.25;
+    features.edges = {edge};
+    const auto read = parse_stairs(json_of(features, {}), "stairs.json");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->lists.size(), 6U);
+    const stairs::TerrainFeatures& again = read->features;
+    ASSERT_EQ(again.flights.size(), 1U);
+    EXPECT_EQ(again.flights[0].kind, stairs::FlightKind::down);
+    EXPECT_EQ(again.flights[0].pose.p_m, flight.pose.p_m);
+    EXPECT_EQ(again.flights[0].pose.yaw_rad, 0.125);
+    EXPECT_EQ(again.flights[0].steps, 1);
+    EXPECT_EQ(again.flights[0].riser_m, 0.25);
+    EXPECT_TRUE(std::isnan(again.flights[0].going_m));
+    EXPECT_EQ(again.flights[0].width_m, 2.25);
+    ASSERT_EQ(again.drops.size(), 1U);
+    EXPECT_EQ(again.drops[0].height_m, -0.5);
+    EXPECT_FALSE(again.drops[0].bottom_seen);
+    EXPECT_EQ(again.drops[0].length_m, 2.0);
+    ASSERT_EQ(again.kerbs.size(), 2U);
+    EXPECT_EQ(again.kerbs[0].height_m, 0.125);
+    EXPECT_EQ(again.kerbs[1].height_m, -0.125);
+    EXPECT_TRUE(again.kerbs[0].bottom_seen);
+    ASSERT_EQ(again.sills.size(), 1U);
+    EXPECT_EQ(again.sills[0].height_m, 0.0625);
+    ASSERT_EQ(again.doors.size(), 1U);
+    EXPECT_EQ(again.doors[0].width_m, 0.875);
+    EXPECT_EQ(again.doors[0].sill_m, 0.0);
+    EXPECT_EQ(again.doors[0].pose.yaw_rad, -0.25);
+    ASSERT_EQ(again.edges.size(), 1U);
+    EXPECT_EQ(again.edges[0].from_m, edge.from_m);
+    EXPECT_EQ(again.edges[0].to_m, edge.to_m);
+    EXPECT_EQ(again.edges[0].upper_m, 0.5);
+    EXPECT_EQ(again.edges[0].lower_m, -0.25);
+    EXPECT_FALSE(again.edges[0].lower_seen);
 }
 
 }  // namespace

@@ -177,6 +177,16 @@ struct EvalDepthOptions {
 };
 int eval_depth(const EvalDepthOptions& options);
 
+struct EvalStairsOptions {
+    CommonOptions common;
+    std::string found;  ///< stairs.json, or the folder of a run
+    std::string truth;
+    double across_m = 0.15;
+    double along_m = 0.5;
+    double turn_deg = 20.0;
+};
+int eval_stairs(const EvalStairsOptions& options);
+
 struct DepthOptions {
     CommonOptions common;
     std::string left;

@@ -14,7 +14,7 @@ from surefoot_cli import BINARY, ROOT, CliTest, grey_png, read_asc, surefoot
 # In the order in which one example needs another's results.
 VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["stairs"], ["fuse"], ["ground"], ["dem"], ["voxel"], ["sor"], ["icp"], ["measure"], ["gate"],
          ["serve"], ["rex-link"], ["audit"], ["audit", "verify"], ["audit", "replay"], ["eval"], ["eval", "trajectory"],
-         ["eval", "maps"], ["eval", "clouds"], ["eval", "depth"], ["eval", "suite"], ["calibrate"],
+         ["eval", "maps"], ["eval", "clouds"], ["eval", "depth"], ["eval", "stairs"], ["eval", "suite"], ["calibrate"],
          ["calibrate", "render"], ["calibrate", "mono"], ["calibrate", "stereo"], ["config"], ["doctor"], ["bench"],
          ["record"], ["replay"], ["info"], ["rig"], ["urdf"], ["map"], ["map", "info"], ["map", "merge"], ["map", "export"]]
 GATE_EXIT_CODES = (0, 3, 4)
@@ -91,6 +91,7 @@ class Verbs(CliTest):
              "elevation traversability coverage sigma by_distance by_range by_column edges floor"),
             (["eval", "depth", depth / "disparity.pfm", depth / "truth.pfm"],
              "bad_1_percent bad_2_percent density_percent auc bad_0_5_percent error sigma sparsification"),
+            (["eval", "stairs", run / "stairs.json", run], "flights drops kerbs sills doors edges"),
             (["eval", "suite", "--quick", "--scenes", "floor", "--noise", 1, "--out", self.dir / "suite"], "cases scenes carriers bins"),
             (["map", "info", region], "width height resolution_m origin_m known_cells version frame frame_since_ns "
              "stamp_ns T_frame_body config_hash layers skipped_layers file"),
@@ -359,6 +360,36 @@ def read_png_size(path):
 
 class Measures(CliTest):
     """The figures of the measuring verbs, worked out by hand or by a few lines of Python."""
+
+    def test_eval_stairs_by_hand(self):
+        found, truth = self.dir / "run" / "stairs.json", self.dir / "truth.json"
+        found.parent.mkdir()
+        flight = {"kind": "up", "steps": 4, "riser_m": 0.172, "going_m": 0.285, "pose": [1.02, 0.1, 0, 0.05]}
+        kerb = {"kind": "down", "height_m": 0.1, "pose": [5, 0, 0, 0]}
+        found.write_text(json.dumps({"flights": [flight], "kerbs": [kerb], "drops": []}))
+        flight.update(riser_m=0.17, going_m=None, pose=[1, 0, 0, 0])
+        kerb.update(kind="up")
+        truth.write_text(json.dumps({"flights": [flight], "kerbs": [kerb]}))
+        errors = json.loads(self.run_ok("eval", "stairs", found.parent, truth, "--json").stdout)
+        flights = errors["flights"]
+        self.assertEqual([flights[k] for k in ("truth", "found", "matched", "steps_right", "recall", "precision")], [1, 1, 1, 1, 1, 1])
+        self.assertAlmostEqual(flights["riser"]["mean_m"], 0.002)
+        self.assertAlmostEqual(flights["across"]["mean_m"], 0.02)
+        self.assertEqual(flights["going"], {"count": 0, "mean_m": None, "std_m": None, "max_abs_m": None})
+        self.assertEqual((errors["kerbs"]["matched"], errors["kerbs"]["missed"], errors["kerbs"]["extra"]), (0, [[5, 0, 0, 0]], [[5, 0, 0, 0]]))
+        self.assertIsNone(errors["drops"])  # the truth says nothing of them
+        self.assertIn("steps right in 1 of 1", self.run_ok("eval", "stairs", found, truth).stdout)
+        narrow = json.loads(self.run_ok("eval", "stairs", found, truth, "--across", 0.01, "--json").stdout)
+        self.assertEqual(narrow["flights"]["matched"], 0)
+        for text, says in (('{"flights": 3}', "flights is no list"), ('{"flights": [{"kind": "up", "steps": 2}]}', "flights[0].pose"),
+                           ('{"kerbs": [{"pose": [0, 0, 0, 0]}]}', "kerbs[0].kind"), ("{}", "none of flights"), ("[1]", "no JSON object"),
+                           ('{"edges": [{"from": [0, 0], "to": [0, "x"]}]}', "edges[0].to"), ('{"sills": [', "truth.json"),
+                           ('{"flights": [{"kind": "up", "steps": -1, "pose": [0, 0, 0, 0]}]}', "flights[0].steps")):
+            truth.write_text(text)
+            process = surefoot("eval", "stairs", found, truth)
+            self.assertEqual(process.returncode, 1, text)
+            self.assertIn(says, process.stderr)
+            self.assertIn("truth.json", process.stderr)
 
     def test_eval_depth_by_hand(self):
         folder = ROOT / "tests" / "conformance" / "depth"

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "apps/surefoot/json_output.hpp"
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/stairs_json.hpp"
+#include "apps/surefoot/verbs.hpp"
+#include "eval/feature_errors.hpp"
+#include "io/file.hpp"
+
+namespace surefoot::app {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+/// A file, or the folder of a run that holds it.
+Result<ListedFeatures> read_features(const std::string& path) {
+    const std::string inside = path + "/stairs.json";
+    const std::string& file = io::is_file(inside) ? inside : path;
+    const auto text = io::read_file(file);
+    if (!text) return text.error();
+    return parse_stairs(*text, file);
+}
+
+std::string in_mm(const eval::MatchErrors& figures) {
+    if (figures.count == 0) return "-";
+    return fmt::format("{:+.1f} / {:.1f} / {:.1f} ({})",
+                       1e3 * figures.mean_m,
+                       1e3 * figures.std_m,
+                       1e3 * figures.max_abs_m,
+                       figures.count);
+}
+
+void print_kind(const char* name, const eval::KindErrors& kind, const char* height) {
+    fmt::print("{:8} {:3} of {:3} found, {:3} more; place across {}, {} {}\n",
+               name,
+               kind.matched,
+               kind.truth,
+               kind.extra.size(),
+               in_mm(kind.across),
+               height,
+               in_mm(kind.height));
+}
+
+void print_errors(const eval::FeatureErrors& errors, const std::set<std::string>& lists) {
+    fmt::print("found minus true [mm]: mean / standard deviation / largest (pairs)\n");
+    if (lists.contains("flights")) {
+        print_kind("flights", errors.flights, "riser");
+        fmt::print("         steps right in {} of {}; going {}, width {}\n",
+                   errors.flights.steps_right,
+                   errors.flights.matched,
+                   in_mm(errors.flights.going),
+                   in_mm(errors.flights.width));
+    }
+    if (lists.contains("drops")) print_kind("drops", errors.drops, "height");
+    if (lists.contains("kerbs")) print_kind("kerbs", errors.kerbs, "height");
+    if (lists.contains("sills")) print_kind("sills", errors.sills, "height");
+    if (lists.contains("doors")) {
+        print_kind("doors", errors.doors, "sill");
+        fmt::print("         width {}\n", in_mm(errors.doors.width));
+    }
+    if (lists.contains("edges")) print_kind("edges", errors.edges, "height");
+}
+
+}  // namespace
+
+int eval_stairs(const EvalStairsOptions& options) {
+    const auto found = read_features(options.found);
+    if (!found) return report(found.error());
+    const auto truth = read_features(options.truth);
+    if (!truth) return report(truth.error());
+    std::set<std::string> lists;
+    for (const std::string& list : truth->lists) {
+        if (found->lists.contains(list)) {
+            lists.insert(list);
+        } else {
+            log_warning(fmt::format(
+                "{}: has no list {}, which the truth has: not compared", options.found, list));
+        }
+    }
+    const eval::FeatureMatch match{
+        options.across_m, options.along_m, options.turn_deg * kRadPerDeg};
+    const eval::FeatureErrors errors =
+        eval::feature_errors(found->features, truth->features, match);
+    if (options.common.json) {
+        print_answer(feature_errors_json(errors, lists));
+    } else {
+        print_errors(errors, lists);
+    }
+    return kExitOk;
+}
+
+}  // namespace surefoot::app
