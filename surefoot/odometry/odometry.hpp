@@ -26,7 +26,7 @@ struct OdometryConfig {
     int ok_inliers = 30;
     int min_inliers = 10;
     double ok_residual_px = 1.2;
-    double calibration_share = 0.003;
+    double calibration_share = 0.0025;
     /// Poses err by what their landmarks and pixels err, and share most of both with the pose
     /// before. After this time they are taken as independent, so that motions over some seconds,
     /// which the map composes of those between frames, state the error that they have
