@@ -46,7 +46,7 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
     if (e.residual_px > config.ok_residual_px)
         return {Health::degraded, because(HealthReason::large_residual)};
     if (gap) return {Health::degraded, HealthReason::time_gap};
-    if (e.was_lost) return {Health::degraded, HealthReason::recovered};
+    if (e.was_unsure) return {Health::degraded, HealthReason::recovered};
     if (e.imu_disagrees) return {Health::degraded, HealthReason::imu_disagreement};
     if (e.machine_disagrees) return {Health::degraded, HealthReason::machine_disagreement};
     return {Health::ok, e.imu_gap ? HealthReason::imu_gap : HealthReason::none};

@@ -20,7 +20,7 @@ struct HealthEvidence {
     double gap_s = 0.0;        ///< since the previous frame
     double usual_gap_s = 0.0;  ///< the gap before that; 0 = unknown
     bool stamp_grows = true;
-    bool was_lost = false;             ///< the previous frame gave no pose
+    bool was_unsure = false;           ///< the previous frame gave no pose, or measured no depth
     double sharpness_ratio = 1.0;      ///< to the last good frame, see ImagePyramid::sharpness
     double translation_sigma_m = 0.0;  ///< weakest direction
     double rotation_sigma_rad = 0.0;   ///< weakest direction
@@ -38,8 +38,9 @@ struct HealthVerdict {
 
 /// Lost without a pose, with fewer than `min_inliers`, or when points agree in one direction only,
 /// or when a right image shows something but not what the left one does (eyes exchanged).
-/// The first frame after that is degraded: what it finds again may lie elsewhere than the poses
-/// meanwhile said.
+/// The first frame after that, or after one of which too few depths were measured, is degraded:
+/// what it finds again may lie elsewhere than the poses meanwhile said (by the baseline, where the
+/// eyes were exchanged).
 /// The reason is the cause where one is known: a time gap, then blur, then what the points say.
 /// A gap of the IMU costs no accuracy as long as enough is seen: OK, with that reason.
 [[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);

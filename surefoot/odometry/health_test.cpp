@@ -90,7 +90,7 @@ TEST(Health, ASecondMotionIsAMovingScene) {
 
 TEST(Health, TheFirstPoseAfterALossIsSaid) {
     HealthEvidence e = good();
-    e.was_lost = true;
+    e.was_unsure = true;
     expect(e, Health::degraded, HealthReason::recovered);
 }
 

@@ -127,7 +127,8 @@ struct Odometry::Impl {
     Pose T_odom_good;                             ///< camera pose then
     double sharpness = 0.0;                       ///< of the image then
     double usual_gap_s = 0.0;                     ///< between the two frames before the present one
-    bool was_lost = false;                        ///< the previous frame
+    bool was_unsure = false;                      ///< the previous frame: lost, or without depth
+    bool without_depth = false;                   ///< the present frame measured too little
     bool started = false;
     int frames = 0;
     int frames_since_keyframe = 0;
@@ -163,7 +164,7 @@ MotionEstimate Odometry::update(const PointFrame& frame) {
 void Odometry::skip(const StereoFrame& frame) {
     if (impl_->inertial) impl_->inertial->keep(frame.imu);
     impl_->machine.advance(frame.machine_motion);
-    impl_->was_lost = impl_->started;
+    impl_->was_unsure = impl_->started;
 }
 
 /// The landmarks of another source mean nothing to this one.
@@ -182,10 +183,11 @@ MotionEstimate Odometry::Impl::update(std::int64_t now_ns,
     solver.sigma_px = noise.sigma_px();
     map.set_noise(solver.sigma_px);
     if (inertial) inertial->advance(imu, now_ns);
+    without_depth = false;
     MotionEstimate estimate = follow(now_ns, executor);
     estimate.time_ns = now_ns;
     usual_gap_s = frames > 0 ? std::max(seconds_from_ns(now_ns - time_ns), 0.0) : 0.0;
-    was_lost = estimate.health == Health::lost;
+    was_unsure = estimate.health == Health::lost || without_depth;
     time_ns = now_ns;
     frames += 1;
     return estimate;
@@ -283,7 +285,7 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     evidence.gap_s = seconds_from_ns(now_ns - time_ns);
     evidence.usual_gap_s = usual_gap_s;
     evidence.stamp_grows = now_ns > time_ns;
-    evidence.was_lost = was_lost;
+    evidence.was_unsure = was_unsure;
     evidence.right_shows_something = front->right_shows_something();
     evidence.sharpness_ratio = front->sharpness() / std::max(sharpness, 1e-9);
     evidence.imu_disagrees = inertial && inertial->disagrees();
@@ -399,6 +401,7 @@ MotionEstimate Odometry::Impl::found(std::int64_t now_ns,
     lost_body.setZero();
     T_odom_good = T;
     good_time_ns = now_ns;
+    without_depth = evidence.depth_inliers < config.min_inliers;
     const HealthVerdict verdict = judge(config, evidence);
     estimate.health = verdict.health;
     estimate.reason = verdict.reason;
