@@ -165,13 +165,16 @@ TEST(FoxgloveClient, WhatCannotBeMetIsSaid) {
     Service service;
     service.turn();
     service.subscribe(1, FoxgloveChannel::pose);
-    for (const char* text :
-         {R"({"op":"subscribe","subscriptions":[{"id":2,"channelId":0},{"id":3,"channelId":99}]})",
-          R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})",
-          R"({"op":"subscribe","subscriptions":[{"id":2,"channelId":5}]})",
-          R"({"op":"unsubscribe","subscriptionIds":[8,9]})",
-          R"({"op":"advertise","channels":[]})",
-          R"({"op":"setParameters","parameters":[]})"}) {
+    const std::string first_beyond = std::to_string(kFoxgloveChannelCount + 1);
+    for (const std::string& text :
+         {std::string(R"({"op":"subscribe","subscriptions":[{"id":2,"channelId":0}]})"),
+          R"({"op":"subscribe","subscriptions":[{"id":3,"channelId":)" + first_beyond + "}]}",
+          std::string(R"({"op":"subscribe","subscriptions":[{"id":3,"channelId":99}]})"),
+          std::string(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})"),
+          std::string(R"({"op":"subscribe","subscriptions":[{"id":2,"channelId":5}]})"),
+          std::string(R"({"op":"unsubscribe","subscriptionIds":[8,9]})"),
+          std::string(R"({"op":"advertise","channels":[]})"),
+          std::string(R"({"op":"setParameters","parameters":[]})")}) {
         ASSERT_TRUE(service.ask(text));
         const auto texts = texts_of(service.turn());
         ASSERT_EQ(texts.size(), 1U) << text;
