@@ -80,6 +80,7 @@ TEST(ModelFile, every_mistake_is_named_with_file_line_key_and_value) {
         {"name: small", "name: my robot", 1, "name: 'my robot': letters, digits and _"},
         {"color: \"#0072b2\"", "color: blue", 3, "materials[0].color: 'blue' is no color"},
         {"#0072b2", "#0072bg", 3, "'#0072bg' is no color: write it as"},
+        {"#0072b2", "x0072b2", 3, "'x0072b2' is no color: write it as"},
         {"- {name: shank}", "- {name: thigh}", 7, "links[2].name: 'thigh' is there already"},
         {"- {name: shank}", "- {name: shank, mass: 1}", 7, "unknown key 'links[2].mass'"},
         {"size_y_m: 0.2", "size_y_m: -0.2", 6, "links[1].boxes[0].size_y_m: -0.2 is outside"},
