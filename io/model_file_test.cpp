@@ -17,7 +17,7 @@ using testing::contains;
 constexpr double kRad = std::numbers::pi / 180.0;
 
 /// Two links, the upper one fixed to the root, the lower one on a knee that is turned by 90 deg.
-const std::string kSmall = R"(name: small
+constexpr const char* kSmall = R"(name: small
 materials:
   - {name: blue, color: "#0072b2"}
 links:

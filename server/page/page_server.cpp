@@ -46,6 +46,8 @@ constexpr auto kIdle = std::chrono::seconds(10);
 constexpr std::size_t kMaxMessageBytes = 4096;
 constexpr std::int64_t kStatusEvery_ns = 500'000'000;
 constexpr std::int64_t kCountEvery_ns = 500'000'000;  ///< how far a recording is
+constexpr std::int64_t kMostLayerBytesPerSecond =
+    1'200'000;  ///< of the 2 MB/s that a page may cost
 // Of a viewer, before it is let go. A wish costs a whole map, a hand on the joystick nothing.
 constexpr wire::RateLimit kWishes{5, 20};
 constexpr wire::RateLimit kMessages{40, 80};
@@ -200,6 +202,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::uint64_t layers_serial_ = 0;
     std::uint64_t images_serial_ = 0;
     std::int64_t map_due_ns_ = 0;
+    std::int64_t layers_due_ns_ = 0;
     std::int64_t images_due_ns_ = 0;
     std::int64_t status_due_ns_ = 0;
     std::uint64_t status_serial_ = 0;
@@ -423,11 +426,16 @@ void Viewer::push_map(std::int64_t now_ns) {
     map_due_ns_ = now_ns + period_ns(std::min(wish_.map_hz, sockets_.rates.map_hz.load()));
     push(map_message(show.map, map_ ? &*map_ : nullptr));
     map_ = show.map;
-    if (show.layers_serial == layers_serial_) return;
+    if (show.layers_serial == layers_serial_ || now_ns < layers_due_ns_) return;
     layers_serial_ = show.layers_serial;
+    std::int64_t bytes = 0;
     for (const std::uint16_t index : wish_.layers) {
-        if (auto message = show.layer(index)) push(std::move(*message));
+        auto message = show.layer(index);
+        if (!message) continue;
+        bytes += std::ssize(*message);
+        push(std::move(*message));
     }
+    layers_due_ns_ = now_ns + bytes * (kSecond_ns / kMostLayerBytesPerSecond);
 }
 
 void Viewer::push_images(std::int64_t now_ns) {

@@ -414,6 +414,32 @@ class OtherMachine(PageTest):
         self.assertEqual(connection.getresponse().status, 404)
 
 
+class LargeMap(PageTest):
+    """2.6 million cells around the machine."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.serve(*SCENE, "--set", "elevation.length_m=40")
+
+    def test_all_of_its_layers_come_within_2_mb_a_second(self):
+        page = self.page()
+        page.want(map_hz=10, layers=["elevation", "variance", "traversability", "slope", "step", "roughness"])
+        end = time.monotonic() + 60.0
+        while (len(page.ground) < 1000 or {layer[6] for layer in page.layers} != set(range(6))) and time.monotonic() < end:
+            page.listen(0.3)
+        self.assertGreater(len(page.ground), 1000)
+        self.assertEqual({layer[6] for layer in page.layers}, set(range(6)))
+        maps, layers, poses, began = len(page.map_bytes), len(page.layers), len(page.poses), time.monotonic()
+        page.listen(10.0)
+        sizes = [4 * nx * ny for _, _, _, _, nx, ny, _, _ in page.layers[layers:]]
+        self.assertGreaterEqual(len(sizes), 6)
+        seconds = time.monotonic() - began
+        print(f"40 m: {sum(page.map_bytes[maps:]) / seconds / 1e6:.2f} MB/s of ground, {sum(sizes) / seconds / 1e6:.2f} MB/s of {len(sizes)} layers")
+        self.assertLess((sum(page.map_bytes[maps:]) + sum(sizes)) / seconds, 2e6)
+        self.assertGreater(len(page.poses), poses)
+        self.assertIsNone(page.goodbye)
+
+
 class Ports(CliTest):
     def test_a_taken_port_is_said_and_the_next_one_is_used(self):
         with socket.socket() as other:
