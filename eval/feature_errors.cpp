@@ -13,6 +13,7 @@ namespace {
 
 using stairs::FeaturePose;
 
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// What all kinds are compared by.
@@ -44,7 +45,7 @@ std::vector<Pair> candidates(const std::vector<Placed>& found,
     for (std::size_t f = 0; f < found.size(); ++f) {
         for (std::size_t t = 0; t < truth.size(); ++t) {
             if (found[f].down != truth[t].down) continue;
-            if (turn_between(found[f], truth[t]) > match.turn_rad) continue;
+            if (turn_between(found[f], truth[t]) > match.turn_deg * kRadPerDeg) continue;
             const double yaw = truth[t].pose.yaw_rad;
             const Eigen::Vector2d way(std::cos(yaw), std::sin(yaw));
             const Eigen::Vector2d off_m = (found[f].pose.p_m - truth[t].pose.p_m).head<2>();

@@ -13,7 +13,7 @@ namespace surefoot::eval {
 struct FeatureMatch {
     double across_m = 0.15;
     double along_m = 0.5;
-    double turn_rad = 0.35;
+    double turn_deg = 20.0;
 };
 
 /// Found minus true, of matched pairs whose both values are known.

@@ -7,16 +7,15 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/surefoot/log.hpp"
+#include "server/wire/json_text.hpp"
 
 namespace surefoot::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using wire::Json;
+using wire::number;
 constexpr int kIndent = 2;
 
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 Json vector(const Eigen::Vector3d& v) {
     return {v.x(), v.y(), v.z()};
 }

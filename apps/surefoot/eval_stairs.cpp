@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/stairs_json.hpp"
@@ -12,8 +10,6 @@
 
 namespace surefoot::app {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// A file, or the folder of a run that holds it.
 Result<ListedFeatures> read_features(const std::string& path) {
@@ -80,10 +76,8 @@ int eval_stairs(const EvalStairsOptions& options) {
                 "{}: has no list {}, which the truth has: not compared", options.found, list));
         }
     }
-    const eval::FeatureMatch match{
-        options.across_m, options.along_m, options.turn_deg * kRadPerDeg};
     const eval::FeatureErrors errors =
-        eval::feature_errors(found->features, truth->features, match);
+        eval::feature_errors(found->features, truth->features, options.match);
     if (options.common.json) {
         print_answer(feature_errors_json(errors, lists));
     } else {

@@ -173,12 +173,8 @@ std::uint64_t hash_of_place(const std::string& scene, const ThesisConditions& co
 /// Everything that the figures of a part depend on.
 std::uint64_t hash_for(const ThesisConditions& conditions,
                        const std::string& part,
-                       const std::string& scene) {
-    return fnv1a(fmt::format("{} {} {} {}",
-                             part,
-                             conditions.seed,
-                             conditions.max_frames,
-                             hash_of_place(scene, conditions)),
+                       std::uint64_t place) {
+    return fnv1a(fmt::format("{} {} {} {}", part, conditions.seed, conditions.max_frames, place),
                  hash_of(conditions.settings));
 }
 
@@ -194,18 +190,19 @@ std::vector<Part> scans_of(const std::vector<ThesisRun>& runs,
         if (!scenes.insert(run.scene).second) continue;
         parts.push_back({fmt::format("laser scan of {}", run.scene),
                          conditions.scan_folder(run.scene),
-                         hash_for(conditions, run.scene, run.scene),
+                         hash_for(conditions, run.scene, hash_of_place(run.scene, conditions)),
                          kScan,
                          [&, run] { return scan_of_run(run, conditions, serial()); },
                          [&, run](const ThesisFigures& f) { results.scans[run.scene] = f; }});
     }
     if (courtyard) {
-        parts.push_back({"laser scan of the courtyard",
-                         conditions.scan_folder(kThesisCourtyard),
-                         hash_for(conditions, kThesisCourtyard, kThesisCourtyard),
-                         3 * kScan,
-                         [&] { return scan_of_courtyard(conditions, serial()); },
-                         [&](const ThesisFigures& f) { results.courtyard = f; }});
+        parts.push_back(
+            {"laser scan of the courtyard",
+             conditions.scan_folder(kThesisCourtyard),
+             hash_for(conditions, kThesisCourtyard, hash_of_place(kThesisCourtyard, conditions)),
+             3 * kScan,
+             [&] { return scan_of_courtyard(conditions, serial()); },
+             [&](const ThesisFigures& f) { results.courtyard = f; }});
     }
     return parts;
 }
@@ -223,14 +220,15 @@ std::vector<Part> recordings_of(const std::vector<ThesisRun>& runs,
                                 ThesisResults& results) {
     std::vector<Part> parts;
     for (const ThesisRun& run : runs) {
+        const std::uint64_t place = hash_of_place(run.scene, conditions);
+        const int frames = frames_of(run, conditions);
         for (const ThesisColumn column : {ThesisColumn::ours, ThesisColumn::thesis}) {
             const auto i = static_cast<std::size_t>(column);
             parts.push_back(
                 {fmt::format("{}, {}", run.name, kThesisColumnNames[i]),
                  conditions.run_folder(run, column),
-                 hash_for(
-                     conditions, fmt::format("{}/{}", run.name, kThesisColumnNames[i]), run.scene),
-                 frames_of(run, conditions),
+                 hash_for(conditions, fmt::format("{}/{}", run.name, kThesisColumnNames[i]), place),
+                 frames,
                  [&, run, column] { return live_run(run, column, conditions); },
                  [&, run, i](const ThesisFigures& f) { results.runs[run.name][i] = f; }});
         }

@@ -11,6 +11,7 @@
 #include "apps/surefoot/ground_box.hpp"
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/suite_rows.hpp"
+#include "server/wire/json_text.hpp"
 #include "server/wire/verdict_json.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -18,13 +19,10 @@ namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written: the same run gives the same bytes.
-using Json = nlohmann::ordered_json;
+using wire::Json;
+using wire::number;
 
 constexpr double kDegPerRad = 180.0 / M_PI;
-
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 const char* name_of(grid::GravitySource source) {
     switch (source) {

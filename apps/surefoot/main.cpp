@@ -639,15 +639,16 @@ void add_eval_stairs(CLI::App& eval_verb, EvalStairsOptions& o, int& exit_code) 
                      "with the lists that are known")
         ->required()
         ->type_name("TRUTH");
-    verb->add_option("--across", o.across_m, "how far a match may lie off along the way over it")
+    verb->add_option(
+            "--across", o.match.across_m, "how far a match may lie off along the way over it")
         ->type_name("M")
         ->check(positive_number())
         ->capture_default_str();
-    verb->add_option("--along", o.along_m, "how far to its side")
+    verb->add_option("--along", o.match.along_m, "how far to its side")
         ->type_name("M")
         ->check(positive_number())
         ->capture_default_str();
-    verb->add_option("--turn", o.turn_deg, "how far turned")
+    verb->add_option("--turn", o.match.turn_deg, "how far turned")
         ->type_name("DEG")
         ->check(positive_number())
         ->capture_default_str();

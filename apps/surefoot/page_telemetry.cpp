@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "eval/shown_part.hpp"
 #include "io/urdf_file.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -54,35 +55,35 @@ double median(std::deque<double> values) {
     return *middle;
 }
 
-/// Cells of a map, ends not included.
-struct CellBox {
-    int x = 0, y = 0, x_end = 0, y_end = 0;
-};
-
 /// What of a map is shown: all of it, of a large one the blocks around what is known, so that the
 /// picture does not change its size with every cell.
-CellBox shown_cells(const grid::Layer& height_m) {
+eval::ShownPart shown_part(const grid::GridGeometry& geometry, const grid::Layer& height_m) {
     constexpr int kLarge = 512;
     constexpr int kBlock = 64;
-    const int nx = height_m.width();
-    const int ny = height_m.height();
-    if (nx <= kLarge && ny <= kLarge) return {0, 0, nx, ny};
-    CellBox known{nx, ny, 0, 0};
+    const int nx = geometry.nx;
+    const int ny = geometry.ny;
+    if (nx <= kLarge && ny <= kLarge) return {geometry, 0, 0};
+    int x = nx;
+    int y = ny;
+    int x_end = 1;
+    int y_end = 1;
     for (int iy = 0; iy < ny; ++iy) {
         for (int ix = 0; ix < nx; ++ix) {
             if (std::isnan(height_m.at(ix, iy))) continue;
-            known = {std::min(known.x, ix),
-                     std::min(known.y, iy),
-                     std::max(known.x_end, ix + 1),
-                     iy + 1};
+            x = std::min(x, ix);
+            y = std::min(y, iy);
+            x_end = std::max(x_end, ix + 1);
+            y_end = iy + 1;
         }
     }
-    if (known.x_end == 0) return {0, 0, std::min(nx, kBlock), std::min(ny, kBlock)};
+    if (x == nx) x = y = 0;  // nothing is known: the first block
+    const auto down = [](int first) { return first / kBlock * kBlock; };
     const auto up = [](int end) { return (end + kBlock - 1) / kBlock * kBlock; };
-    return {known.x / kBlock * kBlock,
-            known.y / kBlock * kBlock,
-            std::min(up(known.x_end), nx),
-            std::min(up(known.y_end), ny)};
+    eval::ShownPart part{geometry, down(x), down(y)};
+    part.geometry.nx = std::min(up(x_end), nx) - part.first_ix;
+    part.geometry.ny = std::min(up(y_end), ny) - part.first_iy;
+    part.geometry.origin_m += geometry.resolution_m * Eigen::Vector2d(part.first_ix, part.first_iy);
+    return part;
 }
 
 void copy_layers(const pipeline::Pipeline& pipeline,
@@ -90,22 +91,17 @@ void copy_layers(const pipeline::Pipeline& pipeline,
                  std::vector<page::PageLayer>& out) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     auto layers = layers_of(pipeline);
-    const CellBox box = shown_cells(layers.front());
-    const bool whole = box.x_end - box.x == geometry.nx && box.y_end - box.y == geometry.ny;
+    const eval::ShownPart part = shown_part(geometry, layers.front());
+    const bool whole = part.geometry.nx == geometry.nx && part.geometry.ny == geometry.ny;
     std::uint16_t index = 0;
     for (grid::Layer& values : layers) {
         if (values.width() == geometry.nx && values.height() == geometry.ny) {
-            grid::Layer shown(box.x_end - box.x, box.y_end - box.y);
-            for (int iy = box.y; iy < box.y_end && !whole; ++iy) {
-                for (int ix = box.x; ix < box.x_end; ++ix)
-                    shown.at(ix - box.x, iy - box.y) = values.at(ix, iy);
-            }
             out.push_back({version,
-                           tenth_mm(geometry.origin_m.x() + box.x * geometry.resolution_m),
-                           tenth_mm(geometry.origin_m.y() + box.y * geometry.resolution_m),
+                           tenth_mm(part.geometry.origin_m.x()),
+                           tenth_mm(part.geometry.origin_m.y()),
                            static_cast<std::int32_t>(tenth_mm(geometry.resolution_m)),
                            index,
-                           whole ? std::move(values) : std::move(shown)});
+                           whole ? std::move(values) : part.of(values, std::nanf(""))});
         }
         ++index;
     }

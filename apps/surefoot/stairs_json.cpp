@@ -15,6 +15,7 @@ namespace surefoot::app {
 namespace {
 
 using wire::Json;
+using wire::number;
 
 Json classes_json(const stairs::GroundClasses& classes, double resolution_m) {
     const auto counts = stairs::count_classes(classes);
@@ -142,15 +143,11 @@ stairs::Edge edge_of(ListReader& reader, const Json& object) {
     return edge;
 }
 
-Json or_null(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json figures_json(const eval::MatchErrors& figures) {
     return {{"count", figures.count},
-            {"mean_m", or_null(figures.mean_m)},
-            {"std_m", or_null(figures.std_m)},
-            {"max_abs_m", or_null(figures.max_abs_m)}};
+            {"mean_m", number(figures.mean_m)},
+            {"std_m", number(figures.std_m)},
+            {"max_abs_m", number(figures.max_abs_m)}};
 }
 
 Json poses_json(const std::vector<stairs::FeaturePose>& poses) {
@@ -165,8 +162,8 @@ Json kind_json(const eval::KindErrors& errors, const char* height) {
     return {{"truth", errors.truth},
             {"found", errors.found},
             {"matched", errors.matched},
-            {"recall", or_null(errors.recall())},
-            {"precision", or_null(errors.precision())},
+            {"recall", number(errors.recall())},
+            {"precision", number(errors.precision())},
             {"across", figures_json(errors.across)},
             {height, figures_json(errors.height)},
             {"missed", poses_json(errors.missed)},

@@ -35,6 +35,16 @@ stairs::LineFeature line(double height_m) {
     return line;
 }
 
+stairs::Edge edge() {
+    stairs::Edge edge;
+    edge.from_m = {1.0, 2.0};
+    edge.to_m = {3.0, 4.0};
+    edge.upper_m = 0.5;
+    edge.lower_m = -0.25;
+    edge.height_sigma_m = 0.125;
+    return edge;
+}
+
 std::string pose_text() {
     return R"("pose":[1.5,-0.5,0.25,0.125])";
 }
@@ -159,13 +169,7 @@ TEST(StairsJson, DoorsEdgesAndWhatWasAssumed) {
     door.sill_m = 0.25;
     door.clearance_m = 2.0;
     features.doors = {door};
-    stairs::Edge edge;
-    edge.from_m = {1.0, 2.0};
-    edge.to_m = {3.0, 4.0};
-    edge.upper_m = 0.5;
-    edge.lower_m = -0.25;
-    edge.height_sigma_m = 0.125;
-    features.edges = {edge};
+    features.edges = {edge()};
     EXPECT_NE(
         packed(json_of(features, {"z is \"up\""}))
             .find(R"("doors":[{"width_m":0.75,"width_std_m":0.5,"sill_m":0.25,"clearance_m":2.0,)" +
@@ -197,12 +201,7 @@ TEST(StairsJson, WhatIsWrittenIsRead) {
     door.sill_m = 0.0;
     door.clearance_m = kNan;
     features.doors = {door};
-    stairs::Edge edge;
-    edge.from_m = {1.0, 2.0};
-    edge.to_m = {3.0, 4.0};
-    edge.upper_m = 0.5;
-    edge.lower_m = -0.25;
-    features.edges = {edge};
+    features.edges = {edge()};
     const auto read = parse_stairs(json_of(features, {}), "stairs.json");
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->lists.size(), 6U);
@@ -230,8 +229,8 @@ TEST(StairsJson, WhatIsWrittenIsRead) {
     EXPECT_EQ(again.doors[0].sill_m, 0.0);
     EXPECT_EQ(again.doors[0].pose.yaw_rad, -0.25);
     ASSERT_EQ(again.edges.size(), 1U);
-    EXPECT_EQ(again.edges[0].from_m, edge.from_m);
-    EXPECT_EQ(again.edges[0].to_m, edge.to_m);
+    EXPECT_EQ(again.edges[0].from_m, edge().from_m);
+    EXPECT_EQ(again.edges[0].to_m, edge().to_m);
     EXPECT_EQ(again.edges[0].upper_m, 0.5);
     EXPECT_EQ(again.edges[0].lower_m, -0.25);
     EXPECT_FALSE(again.edges[0].lower_seen);

@@ -10,13 +10,15 @@
 
 #include "eval/html_report.hpp"
 #include "io/file.hpp"
+#include "server/wire/json_text.hpp"
 #include "sim/expression.hpp"
 #include "sim/scenes.hpp"
 
 namespace surefoot::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using wire::Json;
+using wire::number;
 
 const ThesisRun& run_named(std::string_view name) {
     for (const ThesisRun& run : thesis_runs()) {
@@ -154,13 +156,9 @@ std::vector<std::string> groups_of(const std::vector<FilledRow>& rows) {
 Json figures_json(const ThesisFigures& figures) {
     Json object = Json::object();
     for (const auto& [name, value] : figures.all()) {
-        object[name] = std::isnan(value) ? Json(nullptr) : Json(value);
+        object[name] = number(value);
     }
     return object;
-}
-
-Json number(double value) {
-    return std::isnan(value) ? Json(nullptr) : Json(value);
 }
 
 std::string quoted(const std::string& text) {

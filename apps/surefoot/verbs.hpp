@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "eval/feature_errors.hpp"
+
 namespace surefoot::app {
 
 /// Exit codes of every verb; `gate` gives 2 for a wrong call only.
@@ -181,9 +183,7 @@ struct EvalStairsOptions {
     CommonOptions common;
     std::string found;  ///< stairs.json, or the folder of a run
     std::string truth;
-    double across_m = 0.15;
-    double along_m = 0.5;
-    double turn_deg = 20.0;
+    eval::FeatureMatch match;
 };
 int eval_stairs(const EvalStairsOptions& options);
 

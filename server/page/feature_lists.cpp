@@ -6,16 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "server/wire/json_text.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::page {
 namespace {
 
 using wire::Json;
-
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
+using wire::number;
 
 Json point_json(const Eigen::Vector2d& p_m) {
     return {number(p_m.x()), number(p_m.y())};

@@ -86,6 +86,10 @@ Result<Json> parse_json(std::string_view text, const JsonLimits& limits) {
     return Result<Json>(std::move(json));
 }
 
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
 std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

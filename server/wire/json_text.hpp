@@ -24,6 +24,9 @@ struct JsonLimits {
 /// finite; else the first problem in words.
 [[nodiscard]] Result<Json> parse_json(std::string_view text, const JsonLimits& limits);
 
+/// Null where it is none: JSON has no infinity and no NaN.
+[[nodiscard]] Json number(double value);
+
 /// On one line. Bytes that are no UTF-8 become U+FFFD: an answer is never lost for its text.
 [[nodiscard]] std::string dump(const Json& json);
 

@@ -12,10 +12,6 @@ constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr double kTenthMmPerM = 1e4;
 constexpr std::int64_t kOpenTenthMm = 0xffff;  // of Evidence::min_clearance_tenth_mm
 
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 // Divided, not multiplied by 1e-4: the quotient is the double that is nearest to the decimal
 // number, so that 0.2311 m is written as 0.2311.
 double metres(std::int64_t tenth_mm) {
