@@ -67,14 +67,16 @@ std::vector<Eigen::Vector3f> without_outliers(std::vector<Eigen::Vector3f> point
     return points_m;
 }
 
-/// Highest supported surface of a cell: the highest point with enough others closely below it; NaN
-/// without. What few points alone say may be strays. `z_m` is sorted here.
+/// Highest supported surface of a cell: the highest point with enough others closely below it.
+/// Fewer than three points, as far from a station, must agree among each other; NaN where none do.
+/// `z_m` is sorted here.
 float supported_height_m(std::span<float> z_m) {
     constexpr float kClose_m = 0.02F;
     constexpr std::size_t kFewest = 3;
     constexpr std::size_t kShare = 50;  // one in so many
+    if (z_m.empty()) return std::nanf("");
     std::sort(z_m.begin(), z_m.end(), std::greater<>());
-    const std::size_t enough = std::max(kFewest, z_m.size() / kShare);
+    const std::size_t enough = std::min(std::max(kFewest, z_m.size() / kShare), z_m.size());
     for (std::size_t i = 0; i + enough <= z_m.size(); ++i) {
         if (z_m[i] - z_m[i + enough - 1] <= kClose_m) return z_m[i];
     }

@@ -29,7 +29,7 @@ struct ScanArea {
 struct ScannedPlace {
     std::vector<Eigen::Vector3f> points_m;  ///< cleaned, in the world
     grid::GridGeometry geometry;
-    grid::Layer height_m;  ///< highest surface of each cell that three points agree on
+    grid::Layer height_m;  ///< highest surface of each cell that its points agree on
     int stations = 0;
     std::int64_t scanned = 0;  ///< points in the area, without strays
 };
