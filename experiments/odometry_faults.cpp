@@ -32,8 +32,8 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "experiments/scene_cases.hpp"
-#include "io/frame_watch.hpp"
 #include "sim/smooth_noise.hpp"
+#include "surefoot/camera/frame_watch.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/light.hpp"
@@ -351,7 +351,7 @@ std::vector<Fault> all_faults() {
 /// The recording with the fault; what was dropped leaves its inertial samples to the next frame.
 std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, Painter& painter) {
     Bench bench{clean, painter};
-    io::FrameWatch watch;
+    camera::FrameWatch watch;
     std::vector<Shown> out;
     std::vector<ImuSample> waiting;
     int dropped = 0;
@@ -370,7 +370,7 @@ std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, 
         shown.frame.imu.insert(shown.frame.imu.begin(), waiting.begin(), waiting.end());
         waiting.clear();
         shown.frame.arrival.dropped = std::exchange(dropped, 0);
-        if (fault.watched) watch.look(shown.frame);
+        if (fault.watched) shown.frame.arrival = watch.look(shown.frame);
         out.push_back(std::move(shown));
     }
     return out;

@@ -7,8 +7,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "io/fake_video_device.hpp"
-#include "io/frame_watch.hpp"
 #include "io/io_testing.hpp"
+#include "surefoot/camera/frame_watch.hpp"
 #include "surefoot/camera/test_rigs.hpp"
 
 namespace surefoot::io {
@@ -216,12 +216,12 @@ TEST(LiveCamera, RepeatedAndTornImagesAreFoundOut) {
     play(camera, frame_event(3));
     const auto live = opened(camera);
     ASSERT_NE(live, nullptr);
-    FrameWatch watch;
+    camera::FrameWatch watch;
     for (int i = 0; i < 4; ++i) {
         StereoFrame frame = next_of(*live);
-        watch.look(frame);
-        EXPECT_EQ(frame.arrival.repeated, i == 1 ? 1 : 0) << i;
-        EXPECT_EQ(frame.arrival.torn, i == 2) << i;
+        const FrameArrival arrival = watch.look(frame);
+        EXPECT_EQ(arrival.repeated, i == 1 ? 1 : 0) << i;
+        EXPECT_EQ(arrival.torn, i == 2) << i;
     }
 }
 

@@ -82,7 +82,6 @@ std::optional<StereoFrame> LiveSession::next() {
     }
     wait_for((*frame)->time_ns);
     arrivals_.note((*frame)->time_ns, exposed_ns((*frame)->time_ns));
-    watch_.look(**frame);
     return std::move(frame).value();
 }
 

@@ -9,7 +9,6 @@
 
 #include "apps/surefoot/eyes_check.hpp"
 #include "apps/surefoot/settings.hpp"
-#include "io/frame_watch.hpp"
 #include "server/wire/snapshot_channel.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/core/frame.hpp"
@@ -37,8 +36,8 @@ class Arrivals {
 };
 
 /// Drives a pipeline over a source and publishes a snapshot after every frame, until the source
-/// ends, the user interrupts, or the gate asks for a beginning anew. Repeated and torn images are
-/// found here (io::FrameWatch); exchanged eyes are an error. Keeps nothing of what was.
+/// ends, the user interrupts, or the gate asks for a beginning anew. Exchanged eyes are an
+/// error. Keeps nothing of what was.
 class LiveSession {
   public:
     /// Called before each frame of the source is asked for; false ends the session.
@@ -79,7 +78,6 @@ class LiveSession {
     std::uint64_t config_hash_;
     SteadyClock clock_;
     EyesCheck eyes_;
-    io::FrameWatch watch_;
     std::unique_ptr<grid::MapSnapshot> snapshot_;
     Arrivals arrivals_;
     double speed_ = 0.0;

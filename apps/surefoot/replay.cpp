@@ -13,7 +13,6 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/frame_watch.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/pipeline/start.hpp"
@@ -66,14 +65,12 @@ Status play(const ReplayOptions& options,
             pipeline::Pipeline& pipeline,
             std::vector<FrameReport>& seen) {
     Status ended;
-    io::FrameWatch watch;
     const pipeline::NextFrame next = [&]() -> std::optional<StereoFrame> {
         if (interrupted()) ended = Error{ErrorCode::interrupted, "interrupted by the user"};
         Result<std::optional<StereoFrame>> frame = std::optional<StereoFrame>();
         if (ended) frame = source.next();
         if (!frame) ended = frame.error();
         if (!frame || !frame->has_value()) return std::nullopt;
-        watch.look(**frame);
         return std::move(frame).value();
     };
     const auto process = [&](const StereoFrame& frame, Work work) {

@@ -85,10 +85,7 @@ std::optional<StereoFrame> RunSession::next_frame() {
         record_.error = Error{ErrorCode::interrupted,
                               "interrupted by the user; the results up to here are kept"};
     }
-    if (frame->has_value()) {
-        watch_.look(**frame);
-        truth_.remember_depth(**frame);
-    }
+    if (frame->has_value()) truth_.remember_depth(**frame);
     return std::move(frame).value();
 }
 

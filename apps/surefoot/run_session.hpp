@@ -11,7 +11,6 @@
 #include "apps/surefoot/place_session.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/sim_truth.hpp"
-#include "io/frame_watch.hpp"
 #include "io/machine_file.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
@@ -67,7 +66,6 @@ class RunSession {
     camera::FrameSource& source_;
     int depth_every_;
     eval::EvalMapsConfig maps_;
-    io::FrameWatch watch_;
     EyesCheck eyes_;
     bool quiet_ = false;
     SimTruth truth_;

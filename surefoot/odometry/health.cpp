@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "surefoot/core/time.hpp"
+
 namespace surefoot::odometry {
 namespace {
 
@@ -46,6 +48,7 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
     if (e.residual_px > config.ok_residual_px)
         return {Health::degraded, because(HealthReason::large_residual)};
     if (gap) return {Health::degraded, HealthReason::time_gap};
+    if (e.torn_lately) return {Health::degraded, HealthReason::torn_image};
     if (e.was_unsure) return {Health::degraded, HealthReason::recovered};
     if (e.imu_disagrees) return {Health::degraded, HealthReason::imu_disagreement};
     if (e.machine_disagrees) return {Health::degraded, HealthReason::machine_disagreement};
@@ -58,6 +61,22 @@ Matrix6 lost_covariance(const OdometryConfig& config, double before_s, double af
     variance.head<3>().setConstant(config.lost_speed_m_s * config.lost_speed_m_s * squares);
     variance.tail<3>().setConstant(config.lost_turn_rad_s * config.lost_turn_rad_s * squares);
     return variance.asDiagonal();
+}
+
+MotionEstimate unseen_motion(const OdometryConfig& config,
+                             const MotionEstimate& last,
+                             std::int64_t time_ns,
+                             const FrameArrival& arrival) {
+    MotionEstimate motion = last;
+    motion.time_ns = time_ns;
+    motion.T_previous_body = Pose{};
+    motion.relative_covariance =
+        lost_covariance(config, 0.0, seconds_from_ns(time_ns - last.time_ns));
+    motion.health = Health::lost;
+    motion.reason = arrival.torn ? HealthReason::torn_image : HealthReason::repeated_image;
+    motion.tracks = motion.inliers = 0;
+    motion.residual_px = 0.0;
+    return motion;
 }
 
 }  // namespace surefoot::odometry

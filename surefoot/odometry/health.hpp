@@ -20,8 +20,9 @@ struct HealthEvidence {
     double gap_s = 0.0;        ///< since the previous frame
     double usual_gap_s = 0.0;  ///< the gap before that; 0 = unknown
     bool stamp_grows = true;
-    bool was_unsure = false;           ///< the previous frame gave no pose, or measured no depth
-    double sharpness_ratio = 1.0;      ///< to the last good frame, see ImagePyramid::sharpness
+    bool was_unsure = false;       ///< no pose in the previous frame, or too little depth lately
+    bool torn_lately = false;      ///< an image shortly before was torn
+    double sharpness_ratio = 1.0;  ///< to the last good frame, see ImagePyramid::sharpness
     double translation_sigma_m = 0.0;  ///< weakest direction
     double rotation_sigma_rad = 0.0;   ///< weakest direction
     double scene_depth_m = 0.0;        ///< median of the inliers; 0 = unknown
@@ -38,11 +39,12 @@ struct HealthVerdict {
 
 /// Lost without a pose, with fewer than `min_inliers`, or when points agree in one direction only,
 /// or when a right image shows something but not what the left one does (eyes exchanged).
-/// The first frame after that, or after one of which too few depths were measured, is degraded:
-/// what it finds again may lie elsewhere than the poses meanwhile said (by the baseline, where the
-/// eyes were exchanged).
-/// The reason is the cause where one is known: a time gap, then blur, then what the points say.
-/// A gap of the IMU costs no accuracy as long as enough is seen: OK, with that reason.
+/// The first frame after that, and those within half a second of too few measured depths, are
+/// degraded: what they find again may lie elsewhere than the poses meanwhile said (by the baseline,
+/// where the eyes were exchanged). For a second after a torn image frames are degraded: more of
+/// them may be torn. The reason is the cause where one is known: a time gap, then blur, then what
+/// the points say. A gap of the IMU costs no accuracy as long as enough is seen: OK, with that
+/// reason.
 [[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);
 
 /// Covariance of the unseen motion between `before_s` and `after_s` seconds after the camera was
@@ -50,5 +52,12 @@ struct HealthVerdict {
 [[nodiscard]] Matrix6 lost_covariance(const OdometryConfig& config,
                                       double before_s,
                                       double after_s);
+
+/// What is said of a frame at `time_ns` that shows nothing new (`arrival`), after `last`: the pose
+/// then, LOST, with the motion that may have gone unseen since.
+[[nodiscard]] MotionEstimate unseen_motion(const OdometryConfig& config,
+                                           const MotionEstimate& last,
+                                           std::int64_t time_ns,
+                                           const FrameArrival& arrival);
 
 }  // namespace surefoot::odometry

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/camera/frame_watch.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/odometry/front_end.hpp"
 #include "surefoot/odometry/health.hpp"
@@ -25,7 +26,12 @@ constexpr double kKeyframeParallax =
     0.035;                                ///< or when they moved by this share of the image width
 constexpr int kKeyframePeriod = 12;       ///< or after so many frames of motion
 constexpr double kLeastNewErrors = 1e-3;  ///< of poses a moment apart
-constexpr double kFewFollowed = 0.5;      ///< share below which points are followed a second time
+/// After a torn image the next ones are suspect: of those torn one after the other only the first
+/// is known by its rows, the others lack what never came.
+constexpr double kTearing_s = 1.0;
+/// Too little depth may be exchanged eyes, of which now and then enough wrong points agree.
+constexpr double kDepthAgain_s = 0.5;
+constexpr double kFewFollowed = 0.5;  ///< share below which points are followed a second time
 
 FrontEndConfig front_end_config(const OdometryConfig& config, const camera::RectifiedRig& rig) {
     FrontEndConfig front;
@@ -43,6 +49,10 @@ LandmarkMapConfig map_config(const OdometryConfig& config) {
     map.window_keyframes = config.window_keyframes;
     map.bundle.sigma_px = config.sigma_px;
     return map;
+}
+
+bool is_shortly_after(const std::optional<std::int64_t>& event_ns, std::int64_t now_ns, double s) {
+    return event_ns && std::abs(seconds_from_ns(now_ns - *event_ns)) <= s;
 }
 
 /// One sigma in the weakest direction.
@@ -108,6 +118,7 @@ struct Odometry::Impl {
 
     OdometryConfig config;
     const camera::Rectifier& rectifier;
+    camera::FrameWatch watch;
     FrontEnd images;
     PointFrontEnd points;
     Tracks* front = nullptr;  ///< the one of these two that the odometry is fed by
@@ -127,8 +138,11 @@ struct Odometry::Impl {
     Pose T_odom_good;                             ///< camera pose then
     double sharpness = 0.0;                       ///< of the image then
     double usual_gap_s = 0.0;                     ///< between the two frames before the present one
-    bool was_unsure = false;                      ///< the previous frame: lost, or without depth
+    bool was_unsure = false;                      ///< the previous frame gave no pose
     bool without_depth = false;                   ///< the present frame measured too little
+    std::optional<std::int64_t> torn_ns;          ///< the last torn image
+    std::optional<std::int64_t> shallow_ns;       ///< the last frame that measured too little depth
+    MotionEstimate last;
     bool started = false;
     int frames = 0;
     int frames_since_keyframe = 0;
@@ -148,6 +162,13 @@ void Odometry::start_at(const Pose& T_odom_body) {
 }
 
 MotionEstimate Odometry::update(const StereoFrame& frame, Executor& executor) {
+    const FrameArrival arrival = impl_->watch.look(frame);
+    if (arrival.is_new_and_whole()) return update_whole(frame, executor);
+    skip(frame, arrival);
+    return unseen_motion(impl_->config, impl_->last, frame.time_ns, arrival);
+}
+
+MotionEstimate Odometry::update_whole(const StereoFrame& frame, Executor& executor) {
     impl_->feed_by(impl_->images);
     static_cast<void>(impl_->images.load(frame, executor));
     impl_->machine.advance(frame.machine_motion);
@@ -161,10 +182,11 @@ MotionEstimate Odometry::update(const PointFrame& frame) {
     return impl_->update(frame.time_ns, frame.imu, serial());
 }
 
-void Odometry::skip(const StereoFrame& frame) {
+void Odometry::skip(const StereoFrame& frame, const FrameArrival& arrival) {
     if (impl_->inertial) impl_->inertial->keep(frame.imu);
     impl_->machine.advance(frame.machine_motion);
     impl_->was_unsure = impl_->started;
+    if (arrival.torn) impl_->torn_ns = frame.time_ns;
 }
 
 /// The landmarks of another source mean nothing to this one.
@@ -187,9 +209,11 @@ MotionEstimate Odometry::Impl::update(std::int64_t now_ns,
     MotionEstimate estimate = follow(now_ns, executor);
     estimate.time_ns = now_ns;
     usual_gap_s = frames > 0 ? std::max(seconds_from_ns(now_ns - time_ns), 0.0) : 0.0;
-    was_unsure = estimate.health == Health::lost || without_depth;
+    was_unsure = estimate.health == Health::lost;
+    if (without_depth) shallow_ns = now_ns;
     time_ns = now_ns;
     frames += 1;
+    last = estimate;
     return estimate;
 }
 
@@ -285,7 +309,8 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     evidence.gap_s = seconds_from_ns(now_ns - time_ns);
     evidence.usual_gap_s = usual_gap_s;
     evidence.stamp_grows = now_ns > time_ns;
-    evidence.was_unsure = was_unsure;
+    evidence.was_unsure = was_unsure || is_shortly_after(shallow_ns, now_ns, kDepthAgain_s);
+    evidence.torn_lately = is_shortly_after(torn_ns, now_ns, kTearing_s);
     evidence.right_shows_something = front->right_shows_something();
     evidence.sharpness_ratio = front->sharpness() / std::max(sharpness, 1e-9);
     evidence.imu_disagrees = inertial && inertial->disagrees();

@@ -79,14 +79,17 @@ class Odometry {
 
     /// Pose of base_link at the first frame (gravity aligned); call before the first update.
     void start_at(const Pose& T_odom_body);
-    /// Follows the frame. Never throws, never jumps; health and reason say what happened.
+    /// Follows the frame. Never throws, never jumps; health and reason say what happened. A frame
+    /// whose images were there before, or are torn, is LOST and skipped (camera::FrameWatch).
     [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
+    /// The same for a frame that was found to be new and whole already.
+    [[nodiscard]] MotionEstimate update_whole(const StereoFrame& frame, Executor& executor);
     /// The same by points that were found elsewhere: all of them are used, `sigma_px` is their
     /// noise. A change between images and points costs one LOST frame, which seeds new landmarks.
     [[nodiscard]] MotionEstimate update(const PointFrame& frame);
-    /// Instead of `update` for a frame whose images are not worth it (repeated, torn): keeps its
-    /// inertial samples for the next one.
-    void skip(const StereoFrame& frame);
+    /// Instead of `update_whole` for a frame whose images are not worth it, as its `arrival` says:
+    /// keeps its inertial samples for the next one.
+    void skip(const StereoFrame& frame, const FrameArrival& arrival);
 
   private:
     struct Impl;

@@ -2,11 +2,13 @@
 // What the pipeline does with frames whose image is repeated or torn. (Hazards H1 and H2.)
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
 #include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/core/rng.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 
 namespace surefoot::pipeline {
@@ -149,6 +151,41 @@ TEST_P(Arrival, ABadImageIsNeitherTrackedNorFused) {
         (next.motion.T_odom_body.translation_m - good.motion.T_odom_body.translation_m).norm(),
         0.1,
         1e-9);
+}
+
+/// Nothing is marked: the pipeline compares the images itself.
+TEST(Watching, AnOldImageIsSeenByThePipeline) {
+    Serial serial;
+    auto pipeline = Pipeline::make({}, small_rig(), serial);
+    ASSERT_TRUE(pipeline.ok()) << pipeline.error().message;
+    Rng rng(5);
+    const auto exposed = [&](int index) {
+        StereoFrame frame = moving_frame(index, 0.02);
+        frame.left = frame.right = GreyImage(kWidth, kHeight);
+        for (int v = 0; v < kHeight; ++v)
+            for (int u = 0; u < kWidth; ++u)
+                frame.left.at(u, v) = frame.right.at(u, v) =
+                    static_cast<std::uint8_t>(60 + rng.below(90));
+        return frame;
+    };
+    const StereoFrame first = exposed(0);
+    pipeline->align({&first, 1});
+    EXPECT_EQ(pipeline->process(first, Work::full).arrival.repeated, 0);
+    for (int i = 1; i <= 2; ++i) {
+        StereoFrame frozen = moving_frame(i, 0.02);
+        frozen.left = first.left;
+        frozen.right = first.right;
+        const FrameReport report = pipeline->process(frozen, Work::full);
+        EXPECT_EQ(report.arrival.repeated, i);
+        EXPECT_EQ(report.motion.reason, HealthReason::repeated_image);
+        EXPECT_EQ(report.fusion.points, 0);
+    }
+    StereoFrame torn = exposed(3);
+    std::copy_n(first.left.row(0), kWidth * kHeight / 2, torn.left.row(0));
+    const FrameReport report = pipeline->process(torn, Work::full);
+    EXPECT_TRUE(report.arrival.torn);
+    EXPECT_EQ(report.motion.reason, HealthReason::torn_image);
+    EXPECT_TRUE(pipeline->process(exposed(4), Work::full).arrival.is_new_and_whole());
 }
 
 INSTANTIATE_TEST_SUITE_P(RepeatedAndTorn, Arrival, ::testing::Bool());

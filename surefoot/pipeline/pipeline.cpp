@@ -208,14 +208,15 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     report.time_ns = frame.time_ns;
     report.index = frame.index;
     report.work = work;
-    report.arrival = frame.arrival;
+    report.arrival = watch_.look(frame);
     const Light light = light_of(frame);
-    camera_monitor_.add(frame.arrival, light);
+    camera_monitor_.add(report.arrival, light);
     report.camera = camera_state();
-    if (!frame.arrival.is_new_and_whole()) {
+    if (!report.arrival.is_new_and_whole()) {
         report.work = Work::odometry;
-        odometry_.skip(frame);
-        report.motion = unseen(frame);
+        odometry_.skip(frame, report.arrival);
+        report.motion =
+            odometry::unseen_motion(config_.odometry, last_motion_, frame.time_ns, report.arrival);
         report.known_cells = map_.known_cells();
         return report;
     }
@@ -251,23 +252,10 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     return report;
 }
 
-MotionEstimate Pipeline::unseen(const StereoFrame& frame) const {
-    MotionEstimate motion = last_motion_;
-    motion.time_ns = frame.time_ns;
-    motion.T_previous_body = Pose{};
-    const double gap_s = seconds_from_ns(frame.time_ns - last_motion_.time_ns);
-    motion.relative_covariance = odometry::lost_covariance(config_.odometry, 0.0, gap_s);
-    motion.health = Health::lost;
-    motion.reason = frame.arrival.torn ? HealthReason::torn_image : HealthReason::repeated_image;
-    motion.tracks = motion.inliers = 0;
-    motion.residual_px = 0.0;
-    return motion;
-}
-
 MotionEstimate Pipeline::track(const StereoFrame& frame,
                                odometry::Odometry& odometry,
                                const Pose& T_odom_first) {
-    if (!frame.known_motion) return odometry.update(frame, *executor_);
+    if (!frame.known_motion) return odometry.update_whole(frame, *executor_);
     MotionEstimate motion = *frame.known_motion;
     motion.T_odom_body = T_odom_first * motion.T_odom_body;
     return motion;

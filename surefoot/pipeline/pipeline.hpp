@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "surefoot/camera/depth_image.hpp"
+#include "surefoot/camera/frame_watch.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/report.hpp"
@@ -35,7 +36,7 @@ using Clock = std::int64_t (*)();
 
 /// Stereo frames in, rated map of the ground out: one frame is one call of `process`. Frames that
 /// bring depth or motion with them (`known_depth`, on a rectified rig, `known_motion`) keep them.
-/// Frames with a repeated or torn image (`StereoFrame::arrival`) are reported, and nothing else:
+/// Frames with a repeated or torn image (camera::FrameWatch) are reported, and nothing else:
 /// the odometry would take a frozen picture for a machine that stands still. The snapshot keeps the
 /// stamps of the last good frame, so that the gate sees it grow old, and says what is wrong with
 /// the camera when there are several in a row.
@@ -108,8 +109,6 @@ class Pipeline {
     bool see_with(const camera::StereoRig& rig);
     void trim_right_eye(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
-    /// The last pose, with the motion that may have happened unseen since then.
-    [[nodiscard]] MotionEstimate unseen(const StereoFrame& frame) const;
     /// The frame's own motion, or what the odometry says; `T_odom_first`: the first base_link.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
                                        odometry::Odometry& odometry,
@@ -133,6 +132,7 @@ class Pipeline {
     camera::StereoRig nominal_rig_;
     std::optional<stereo::PairTrim> trim_;
     std::unique_ptr<camera::Rectifier> rectifier_;  // the odometry refers to it: address must stay
+    camera::FrameWatch watch_;
     odometry::Odometry odometry_;
     std::unique_ptr<stereo::Matcher> matcher_;
     elevation::ElevationMap map_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "surefoot/camera/frame_watch.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/pipeline/light.hpp"
 
@@ -28,6 +29,7 @@ class Window {
             if (!frame) return false;
             last_ns_ = frame->time_ns;
             if (!first_ns_) first_ns_ = frame->time_ns;
+            frame->arrival = watch_.look(*frame);
             lit_in_a_row_ = light_of(*frame) == Light::lit ? lit_in_a_row_ + 1 : 0;
             if (frames_.size() == Pipeline::kAlignmentFrames) let_go(1);
             frames_.push_back(std::move(*frame));
@@ -49,6 +51,7 @@ class Window {
   private:
     const AlignmentConfig& config_;
     const NextFrame& next_;
+    camera::FrameWatch watch_;
     std::vector<StereoFrame> frames_;
     std::size_t lit_in_a_row_ = 0;
     std::optional<std::int64_t> first_ns_;

@@ -7,14 +7,15 @@
 
 #include "surefoot/core/frame.hpp"
 
-namespace surefoot::io {
+namespace surefoot::camera {
 
 /// Finds out whether a frame shows something new: the evidence for hazards H1 (frozen camera) and
 /// H2 (half-updated frame). One watch per source; frames in the order in which they came.
 ///
 /// Every image row is hashed and compared with the rows of the last few frames, because a ring of
 /// buffers that is overwritten too early shows the frame of one round ago, not the previous one.
-/// * Repeated: every row of every image of the frame equals that of one earlier frame.
+/// * Repeated: every row of every image of the frame equals that of one earlier frame, and one of
+///   them shows something: black or saturated images are alike without being old.
 /// * Torn: in one image the first or last rows equal those of an earlier frame and all others do
 ///   not; or one eye is an earlier one and the other eye new.
 /// Sensor noise makes two exposures differ in every row that has any structure, even when nothing
@@ -26,8 +27,9 @@ namespace surefoot::io {
 /// Cost: one pass over the pixels. Not thread-safe.
 class FrameWatch {
   public:
-    /// Fills `repeated` and `torn` of `frame.arrival`.
-    void look(StereoFrame& frame);
+    /// The frame's arrival with `repeated` and `torn` filled. Where the source says one of them
+    /// already, it is believed and nothing is compared.
+    [[nodiscard]] FrameArrival look(const StereoFrame& frame);
 
     /// ASSUMPTION: capture rings have no more buffers than this (V4L2 programs ask for 3 to 8).
     static constexpr std::size_t kMemory = 8;
@@ -50,6 +52,7 @@ class FrameWatch {
 
     template <typename Pixel>
     static void hash_rows(const Image<Pixel>& image, Rows& rows);
+    [[nodiscard]] static bool shows_something(const Seen& seen);
     [[nodiscard]] static bool equal(const Seen& a, const Seen& b);
     [[nodiscard]] static Likeness compare(const Rows& now, const Rows& before);
     [[nodiscard]] static bool torn(const Seen& now, const Seen& before);
@@ -60,4 +63,4 @@ class FrameWatch {
     int repeated_ = 0;
 };
 
-}  // namespace surefoot::io
+}  // namespace surefoot::camera

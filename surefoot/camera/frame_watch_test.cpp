@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/frame_watch.hpp"
+#include "surefoot/camera/frame_watch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "surefoot/core/rng.hpp"
 
-namespace surefoot::io {
+namespace surefoot::camera {
 namespace {
 
 constexpr int kWidth = 64;
@@ -39,17 +39,11 @@ GreyImage spliced(const GreyImage& top, const GreyImage& bottom, int rows) {
     return image;
 }
 
-FrameArrival looked_at(FrameWatch& watch, const StereoFrame& frame) {
-    StereoFrame copy = frame;
-    watch.look(copy);
-    return copy.arrival;
-}
-
 TEST(FrameWatch, NoiseAloneMakesAStillSceneNew) {
     Rng rng(1);
     FrameWatch watch;
     for (int i = 0; i < 200; ++i) {
-        const FrameArrival arrival = looked_at(watch, exposed(rng));
+        const FrameArrival arrival = watch.look(exposed(rng));
         EXPECT_TRUE(arrival.is_new_and_whole()) << "frame " << i;
     }
 }
@@ -58,18 +52,18 @@ TEST(FrameWatch, CountsRepeatedFramesInARow) {
     Rng rng(2);
     FrameWatch watch;
     const StereoFrame frozen = exposed(rng);
-    for (int i = 0; i < 20; ++i) EXPECT_EQ(looked_at(watch, frozen).repeated, i);
-    EXPECT_EQ(looked_at(watch, exposed(rng)).repeated, 0);
-    EXPECT_EQ(looked_at(watch, frozen).repeated, 1) << "an older buffer comes once more";
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(watch.look(frozen).repeated, i);
+    EXPECT_EQ(watch.look(exposed(rng)).repeated, 0);
+    EXPECT_EQ(watch.look(frozen).repeated, 1) << "an older buffer comes once more";
 }
 
 TEST(FrameWatch, ForgetsWhatIsLongAgo) {
     Rng rng(3);
     FrameWatch watch;
     const StereoFrame first = exposed(rng);
-    (void)looked_at(watch, first);
-    for (std::size_t i = 0; i < FrameWatch::kMemory; ++i) (void)looked_at(watch, exposed(rng));
-    EXPECT_EQ(looked_at(watch, first).repeated, 0);
+    (void)watch.look(first);
+    for (std::size_t i = 0; i < FrameWatch::kMemory; ++i) (void)watch.look(exposed(rng));
+    EXPECT_EQ(watch.look(first).repeated, 0);
 }
 
 TEST(FrameWatch, FindsATearAtAnyRow) {
@@ -84,8 +78,8 @@ TEST(FrameWatch, FindsATearAtAnyRow) {
                                     : spliced(before.left, after.left, rows);
             frame.right = new_on_top ? spliced(after.right, before.right, rows)
                                      : spliced(before.right, after.right, rows);
-            (void)looked_at(watch, before);
-            const FrameArrival arrival = looked_at(watch, frame);
+            (void)watch.look(before);
+            const FrameArrival arrival = watch.look(frame);
             const int old_rows = new_on_top ? kHeight - rows : rows;
             EXPECT_EQ(arrival.repeated, old_rows == kHeight ? 1 : 0) << rows;
             EXPECT_EQ(arrival.torn,
@@ -100,21 +94,21 @@ TEST(FrameWatch, FindsTheFrameOfOneRoundOfBuffersAgo) {
     Rng rng(5);
     FrameWatch watch;
     const StereoFrame old = exposed(rng);
-    (void)looked_at(watch, old);
-    for (int i = 0; i < 4; ++i) EXPECT_FALSE(looked_at(watch, exposed(rng)).torn);
+    (void)watch.look(old);
+    for (int i = 0; i < 4; ++i) EXPECT_FALSE(watch.look(exposed(rng)).torn);
     StereoFrame frame = exposed(rng);
     frame.left = spliced(frame.left, old.left, kHeight / 2);
-    EXPECT_TRUE(looked_at(watch, frame).torn);
+    EXPECT_TRUE(watch.look(frame).torn);
 }
 
 TEST(FrameWatch, OneOldEyeIsATornPair) {
     Rng rng(6);
     FrameWatch watch;
     const StereoFrame before = exposed(rng);
-    (void)looked_at(watch, before);
+    (void)watch.look(before);
     StereoFrame frame = exposed(rng);
     frame.right = before.right;
-    const FrameArrival arrival = looked_at(watch, frame);
+    const FrameArrival arrival = watch.look(frame);
     EXPECT_TRUE(arrival.torn);
     EXPECT_EQ(arrival.repeated, 0);
 }
@@ -127,7 +121,7 @@ TEST(FrameWatch, SaturatedRowsAreNoTear) {
         for (GreyImage* image : {&frame.left, &frame.right}) {
             std::fill(image->row(kHeight / 2), image->data() + image->size(), std::uint8_t{255});
         }
-        EXPECT_TRUE(looked_at(watch, frame).is_new_and_whole());
+        EXPECT_TRUE(watch.look(frame).is_new_and_whole());
     }
 }
 
@@ -135,14 +129,14 @@ TEST(FrameWatch, ATearHasOneSeam) {
     Rng rng(11);
     FrameWatch watch;
     const StereoFrame before = exposed(rng);
-    (void)looked_at(watch, before);
+    (void)watch.look(before);
     StereoFrame frame = before;  // video that copies what stands still, and a band that moves
     for (GreyImage* image : {&frame.left, &frame.right}) {
         for (int u = 0; u < kWidth; ++u) {
             for (int v = 16; v < 32; ++v) image->at(u, v) = static_cast<std::uint8_t>(5 * u + v);
         }
     }
-    EXPECT_TRUE(looked_at(watch, frame).is_new_and_whole());
+    EXPECT_TRUE(watch.look(frame).is_new_and_whole());
 }
 
 TEST(FrameWatch, ACoveredEyeIsNoTornPair) {
@@ -151,7 +145,7 @@ TEST(FrameWatch, ACoveredEyeIsNoTornPair) {
     for (int i = 0; i < 10; ++i) {
         StereoFrame frame = exposed(rng);
         frame.right.fill(0);
-        EXPECT_TRUE(looked_at(watch, frame).is_new_and_whole());
+        EXPECT_TRUE(watch.look(frame).is_new_and_whole());
     }
 }
 
@@ -161,27 +155,48 @@ TEST(FrameWatch, NewDepthUnderAnOldImageIsNotRepeated) {
     StereoFrame frame = exposed(rng);
     frame.right = {};
     frame.depth_m = Image<float>(kWidth, kHeight, std::nanf(""));
-    (void)looked_at(watch, frame);
-    EXPECT_EQ(looked_at(watch, frame).repeated, 1) << "NaN is compared by its bits";
+    (void)watch.look(frame);
+    EXPECT_EQ(watch.look(frame).repeated, 1) << "NaN is compared by its bits";
     frame.depth_m.at(3, 4) = 1.25F;
-    EXPECT_EQ(looked_at(watch, frame).repeated, 0);
+    EXPECT_EQ(watch.look(frame).repeated, 0);
 }
 
 TEST(FrameWatch, ModelledFramesWithoutImagesAreAlwaysNew) {
     FrameWatch watch;
-    for (int i = 0; i < 3; ++i) EXPECT_TRUE(looked_at(watch, StereoFrame{}).is_new_and_whole());
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(watch.look(StereoFrame{}).is_new_and_whole());
 }
 
 TEST(FrameWatch, AnotherSizeIsNew) {
     Rng rng(10);
     FrameWatch watch;
-    (void)looked_at(watch, exposed(rng));
-    StereoFrame tiny;
-    tiny.left = GreyImage(1, 1, 7);
-    tiny.right = tiny.left;
-    EXPECT_TRUE(looked_at(watch, tiny).is_new_and_whole());
-    EXPECT_EQ(looked_at(watch, tiny).repeated, 1);
+    (void)watch.look(exposed(rng));
+    StereoFrame small;
+    small.left = GreyImage(32, 1);
+    for (int u = 0; u < 32; ++u) small.left.at(u, 0) = static_cast<std::uint8_t>(u);
+    small.right = small.left;
+    EXPECT_TRUE(watch.look(small).is_new_and_whole());
+    EXPECT_EQ(watch.look(small).repeated, 1);
+}
+
+TEST(FrameWatch, DarknessIsNotOld) {
+    FrameWatch watch;
+    StereoFrame dark;
+    dark.left = GreyImage(kWidth, kHeight, 0);
+    dark.right = dark.left;
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(watch.look(dark).is_new_and_whole()) << i;
+}
+
+TEST(FrameWatch, WhatTheSourceSaysIsBelieved) {
+    Rng rng(11);
+    FrameWatch watch;
+    StereoFrame told = exposed(rng);
+    told.arrival.torn = true;
+    told.arrival.dropped = 2;
+    EXPECT_TRUE(watch.look(told).torn);
+    EXPECT_EQ(watch.look(told).dropped, 2);
+    told.arrival.torn = false;
+    EXPECT_TRUE(watch.look(told).is_new_and_whole()) << "it was not looked at before";
 }
 
 }  // namespace
-}  // namespace surefoot::io
+}  // namespace surefoot::camera

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/frame_watch.hpp"
+#include "surefoot/camera/frame_watch.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
-namespace surefoot::io {
+namespace surefoot::camera {
 namespace {
 
 /// Eight bytes at a time through the multiply and rotate of xxHash's rounds (Collet, XXH64); the
@@ -55,6 +55,12 @@ bool FrameWatch::equal(const Seen& a, const Seen& b) {
     return true;
 }
 
+bool FrameWatch::shows_something(const Seen& seen) {
+    return std::any_of(seen.images.begin(), seen.images.end(), [](const Rows& rows) {
+        return std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.structured; });
+    });
+}
+
 FrameWatch::Likeness FrameWatch::compare(const Rows& now, const Rows& before) {
     if (now.size() != before.size()) return Likeness::different;
     int same = 0;
@@ -84,23 +90,24 @@ bool FrameWatch::torn(const Seen& now, const Seen& before) {
            (left == Likeness::different && right == Likeness::same);
 }
 
-void FrameWatch::look(StereoFrame& frame) {
-    frame.arrival.repeated = 0;
-    frame.arrival.torn = false;
-    if (frame.left.empty() && frame.right.empty()) return;
+FrameArrival FrameWatch::look(const StereoFrame& frame) {
+    FrameArrival arrival = frame.arrival;
+    if (!arrival.is_new_and_whole() || (frame.left.empty() && frame.right.empty())) return arrival;
     hash_rows(frame.left, now_.images[0]);
     hash_rows(frame.right, now_.images[1]);
     hash_rows(frame.depth_m, now_.images[2]);
     const auto end = memory_.begin() + static_cast<std::ptrdiff_t>(std::min(seen_, kMemory));
     const bool repeated =
+        shows_something(now_) &&
         std::any_of(memory_.begin(), end, [&](const Seen& before) { return equal(now_, before); });
     repeated_ = repeated ? repeated_ + 1 : 0;
-    frame.arrival.repeated = repeated_;
-    if (repeated) return;  // nothing to remember that is not there already
-    frame.arrival.torn =
+    arrival.repeated = repeated_;
+    if (repeated) return arrival;  // nothing to remember that is not there already
+    arrival.torn =
         std::any_of(memory_.begin(), end, [&](const Seen& before) { return torn(now_, before); });
     std::swap(memory_[seen_ % kMemory], now_);
     ++seen_;
+    return arrival;
 }
 
-}  // namespace surefoot::io
+}  // namespace surefoot::camera
