@@ -35,6 +35,7 @@ enum class HealthReason : std::uint8_t {
     time_gap,              ///< the source skipped frames, or its stamps do not grow
     repeated_image,        ///< the same image once more: nothing was seen at this instant
     torn_image,            ///< parts of two images in one
+    eyes_exchanged,        ///< each eye shows what the other one should
     imu_disagreement,      ///< the IMU contradicts what is seen; vision goes on alone
     machine_disagreement,  ///< what the machine says of its motion contradicts what is seen
     beyond_machine,        ///< faster than the machine can move: not believed

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/odometry/front_end.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -16,6 +17,13 @@ constexpr double kFollowedNoise = 2.5;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int kGiveUpAfter = 12;    ///< failures in a row before a landmark is forgotten
 constexpr double kBorder_px = 8.0;  ///< patches need this much image around them
+
+/// With a depth at fewer tracks than this share it is asked whether the eyes are exchanged.
+constexpr double kHardlyAnyDepth = 0.2;
+/// So many corners must tell whose they are, and this share of them be the other eye's. In proper
+/// images 1 to 6 % are, in exchanged ones 85 to 98 %.
+constexpr double kEnoughTell = 20.0;
+constexpr double kExchangedShare = 0.7;
 
 /// Share of the left image's structure that makes a right image worth to be looked at.
 constexpr double kRightStructure = 0.3;
@@ -55,6 +63,7 @@ bool FrontEnd::load(const StereoFrame& frame, Executor& executor) {
     static_cast<void>(executor);
     const auto& rig = rectifier_.rig();
     tracks_.clear();
+    eyes_exchanged_ = false;
     loaded_ = frame.left.width() == rig.width && frame.left.height() == rig.height;
     if (!loaded_) return false;
     left_.build(frame.left.view());
@@ -142,6 +151,10 @@ void FrontEnd::align(LandmarkMap& map, const Pose& T_odom_camera, Executor& exec
             map.remove(jobs[i].slot);
     }
     drop_removed(map);
+    if (!hardly_any_depth()) return;
+    std::vector<Eigen::Vector2d> raw_px;
+    for (const Track& track : tracks_) raw_px.push_back(track.raw_px);
+    eyes_exchanged_ = are_exchanged(raw_px, executor);
 }
 
 /// The aligned track; slot -1 when the landmark is not there.
@@ -203,6 +216,8 @@ int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
     std::vector<Eigen::Vector2d> corners;
     const auto left = left_.image();
     detect_corners(left, occupied, config_.corners, executor, corners);
+    eyes_exchanged_ = hardly_any_depth() && are_exchanged(corners, executor);
+    if (eyes_exchanged_) return 0;
     std::vector<std::optional<StereoPixel>> pixels(corners.size());
     executor.parallel_for(static_cast<int>(corners.size()), [&](int index) {
         const auto i = static_cast<std::size_t>(index);
@@ -223,6 +238,30 @@ int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
         added += 1;
     }
     return added;
+}
+
+bool FrontEnd::hardly_any_depth() const {
+    const auto measured = std::count_if(tracks_.begin(), tracks_.end(), [](const Track& track) {
+        return std::isfinite(track.pixel_px.z());
+    });
+    return static_cast<double>(measured) <= kHardlyAnyDepth * static_cast<double>(tracks_.size());
+}
+
+bool FrontEnd::are_exchanged(std::span<const Eigen::Vector2d> raw_left_px,
+                             Executor& executor) const {
+    if (rgbd() || !right_shows_something_) return false;
+    std::vector<int> eyes(raw_left_px.size());
+    executor.parallel_for(static_cast<int>(eyes.size()), [&](int index) {
+        const auto i = static_cast<std::size_t>(index);
+        eyes[i] = eye_of_corner(rectifier_,
+                                left_.image(),
+                                std::as_const(right_).view(),
+                                raw_left_px[i],
+                                config_.stereo);
+    });
+    const auto proper = static_cast<double>(std::count(eyes.begin(), eyes.end(), 1));
+    const auto exchanged = static_cast<double>(std::count(eyes.begin(), eyes.end(), -1));
+    return proper + exchanged >= kEnoughTell && exchanged > kExchangedShare * (proper + exchanged);
 }
 
 void FrontEnd::keep() {

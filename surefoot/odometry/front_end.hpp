@@ -33,7 +33,8 @@ class FrontEnd final : public Tracks {
     /// Aligns the patches of the followed tracks, of tracks that were lost, and of landmarks that
     /// should be in view again, in both eyes.
     void align(LandmarkMap& map, const Pose& T_odom_camera, Executor& executor) override;
-    /// Renews the patches that were not found, then looks for corners between the tracks.
+    /// Renews the patches that were not found, then looks for corners between the tracks. None
+    /// where the eyes are exchanged.
     int seed(LandmarkMap& map, Executor& executor) override;
     /// `left()` is the older image afterwards.
     void keep() override;
@@ -41,6 +42,7 @@ class FrontEnd final : public Tracks {
     [[nodiscard]] double sharpness() const override { return left_.sharpness(); }
     [[nodiscard]] const ImagePyramid& left() const noexcept { return left_; }
     [[nodiscard]] bool right_shows_something() const override { return right_shows_something_; }
+    [[nodiscard]] bool eyes_exchanged() const override { return eyes_exchanged_; }
 
   private:
     struct Job;
@@ -51,6 +53,9 @@ class FrontEnd final : public Tracks {
                        const Eigen::Vector2d& shift_px,
                        Track& track) const;
     void collect_jobs(const LandmarkMap& map, const Pose& T, std::vector<Job>& jobs);
+    [[nodiscard]] bool hardly_any_depth() const;
+    [[nodiscard]] bool are_exchanged(std::span<const Eigen::Vector2d> raw_left_px,
+                                     Executor& executor) const;
     [[nodiscard]] bool rgbd() const noexcept { return !depth_m_.empty(); }
 
     FrontEndConfig config_;
@@ -61,7 +66,8 @@ class FrontEnd final : public Tracks {
     std::vector<KltRequest> requests_;
     std::vector<KltResult> results_;
     bool right_shows_something_ = false;
-    int next_attempt_ = 0;  ///< slot from which landmarks are looked for again
+    bool eyes_exchanged_ = false;  ///< asked of frames that show hardly any depth
+    int next_attempt_ = 0;         ///< slot from which landmarks are looked for again
 };
 
 }  // namespace surefoot::odometry

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
+#include "surefoot/core/rng.hpp"
 #include "surefoot/odometry/synthetic_for_test.hpp"
 
 namespace surefoot::odometry {
@@ -117,6 +120,57 @@ TEST(StereoPoints, MatchedDepthIsTheDepthOfTheScene) {
     EXPECT_GE(close, matched * 95 / 100);  // the rest lies across a crease of two walls
 }
 
+TEST(StereoPoints, CornersTellWhichEyeSawThem) {
+    const auto rectifier = small_rectifier();
+    const StereoFrame frame = render_frame(testing::small_rig(), Pose{}, 0, 1.0);
+    const auto left = frame.left.view();
+    const auto right = frame.right.view();
+    Serial serial;
+    const auto count = [&](ImageView<const std::uint8_t> image,
+                           ImageView<const std::uint8_t> other) {
+        std::vector<Eigen::Vector2d> corners;
+        detect_corners(image, {}, {}, serial, corners);
+        std::map<int, int> eyes;
+        for (const auto& corner : corners)
+            eyes[eye_of_corner(rectifier, image, other, corner, {})] += 1;
+        return eyes;
+    };
+    auto proper = count(left, right);
+    EXPECT_GT(proper[1], 100);
+    EXPECT_LT(proper[-1], proper[1] / 10);
+    auto exchanged = count(right, left);
+    EXPECT_GT(exchanged[-1], 100);
+    EXPECT_LT(exchanged[1], exchanged[-1] / 10);
+    EXPECT_EQ(eye_of_corner(rectifier, left, right, {1.0, 1.0}, {}), 0) << "no window around it";
+    GreyImage noise(frame.right.width(), frame.right.height());
+    Rng rng(1);
+    for (int v = 0; v < noise.height(); ++v)
+        for (int u = 0; u < noise.width(); ++u)
+            noise.at(u, v) = static_cast<std::uint8_t>(256.0 * rng.uniform());
+    EXPECT_EQ(count(left, std::as_const(noise).view()).size(), 1U) << "none of them tells";
+}
+
+TEST(FrontEnd, MakesNothingOfExchangedEyes) {
+    const auto rectifier = small_rectifier();
+    Serial serial;
+    for (const bool exchanged : {false, true}) {
+        StereoFrame frame = render_frame(testing::small_rig(), Pose{}, 0, 1.0);
+        if (exchanged) std::swap(frame.left, frame.right);
+        LandmarkMap map({}, rectifier);
+        map.add_keyframe(Pose{});
+        FrontEnd front({}, rectifier);
+        ASSERT_TRUE(front.load(frame, serial));
+        const int added = front.seed(map, serial);
+        EXPECT_EQ(front.eyes_exchanged(), exchanged);
+        EXPECT_EQ(front.tracks().size(), static_cast<std::size_t>(added));
+        if (exchanged) {
+            EXPECT_EQ(added, 0);
+        } else {
+            EXPECT_GT(added, 80);
+        }
+    }
+}
+
 TEST(StereoPoints, RowsThatDifferAreNoMatch) {
     const auto rectifier = small_rectifier();
     const Eigen::Vector3d p(0.2, 0.1, 2.0);
@@ -144,6 +198,10 @@ TEST(StereoPoints, RepeatingTextureIsRefused) {
                          {}))
             matched += 1;
     EXPECT_EQ(matched, 0);
+    for (int u = 150; u < 250; u += 5) {
+        const auto view = std::as_const(stripes).view();
+        EXPECT_EQ(eye_of_corner(rectifier, view, view, Eigen::Vector2d(u, 110.0), {}), 0) << u;
+    }
 }
 
 TEST(StereoPoints, DepthEdgesAndHolesAreRefused) {

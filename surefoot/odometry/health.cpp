@@ -33,6 +33,7 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
     const double weakness =
         std::max(e.translation_sigma_m / (kDegradedDepthShare * e.scene_depth_m),
                  e.rotation_sigma_rad / kDegradedRotation_rad);
+    if (e.eyes_exchanged) return {Health::lost, HealthReason::eyes_exchanged};
     if (!e.pose_found || e.inliers < config.min_inliers)
         return {Health::lost, because(HealthReason::few_tracks)};
     if (e.beyond_machine) return {Health::lost, HealthReason::beyond_machine};

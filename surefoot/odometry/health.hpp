@@ -15,6 +15,7 @@ struct HealthEvidence {
     /// Inliers of which the depth was measured in this frame: seen by both eyes.
     int depth_inliers = 0;
     bool right_shows_something = false;  ///< the right image is neither missing nor dark
+    bool eyes_exchanged = false;         ///< each eye shows what the other one should
     /// Points that disagree with the pose, but agree among each other on another one.
     int other_motion = 0;
     double gap_s = 0.0;        ///< since the previous frame
@@ -38,13 +39,13 @@ struct HealthVerdict {
 };
 
 /// Lost without a pose, with fewer than `min_inliers`, or when points agree in one direction only,
-/// or when a right image shows something but not what the left one does (eyes exchanged).
-/// The first frame after that, and those within half a second of too few measured depths, are
-/// degraded: what they find again may lie elsewhere than the poses meanwhile said (by the baseline,
-/// where the eyes were exchanged). For a second after a torn image frames are degraded: more of
-/// them may be torn. The reason is the cause where one is known: a time gap, then blur, then what
-/// the points say. A gap of the IMU costs no accuracy as long as enough is seen: OK, with that
-/// reason.
+/// or when a right image shows something but not what the left one does, or the eyes are
+/// exchanged. The first frame after that, and those within half a second of too few measured
+/// depths, are degraded: what they find again may lie elsewhere than the poses meanwhile said (by
+/// the baseline, where the eyes were exchanged). For a second after a torn image frames are
+/// degraded: more of them may be torn. The reason is the cause where one is known: a time gap, then
+/// blur, then what the points say. A gap of the IMU costs no accuracy as long as enough is seen:
+/// OK, with that reason.
 [[nodiscard]] HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& evidence);
 
 /// Covariance of the unseen motion between `before_s` and `after_s` seconds after the camera was

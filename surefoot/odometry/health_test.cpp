@@ -67,6 +67,9 @@ TEST(Health, EveryReasonHasItsCause) {
     e.beyond_machine = true;
     expect(e, Health::lost, HealthReason::beyond_machine);
     e = good();
+    e.eyes_exchanged = true;
+    expect(e, Health::lost, HealthReason::eyes_exchanged);
+    e = good();
     e.sharpness_ratio = 0.2;
     expect(e, Health::degraded, HealthReason::blur);
     e.pose_found = false;

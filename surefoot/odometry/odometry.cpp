@@ -239,8 +239,10 @@ MotionEstimate Odometry::Impl::begin(std::int64_t now_ns, Executor& executor) {
     MotionEstimate estimate = publish(T_odom_camera, Matrix6::Zero(), Matrix6::Zero());
     estimate.tracks = front->kept();
     estimate.health = seeded ? Health::degraded : Health::lost;
-    const HealthReason without = front == &images ? HealthReason::blur : HealthReason::few_tracks;
-    estimate.reason = seeded ? HealthReason::first_frame : without;
+    estimate.reason = seeded                    ? HealthReason::first_frame
+                      : front->eyes_exchanged() ? HealthReason::eyes_exchanged
+                      : front == &images        ? HealthReason::blur
+                                                : HealthReason::few_tracks;
     return estimate;
 }
 
@@ -312,6 +314,7 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     evidence.was_unsure = was_unsure || is_shortly_after(shallow_ns, now_ns, kDepthAgain_s);
     evidence.torn_lately = is_shortly_after(torn_ns, now_ns, kTearing_s);
     evidence.right_shows_something = front->right_shows_something();
+    evidence.eyes_exchanged = front->eyes_exchanged();
     evidence.sharpness_ratio = front->sharpness() / std::max(sharpness, 1e-9);
     evidence.imu_disagrees = inertial && inertial->disagrees();
     evidence.imu_gap = inertial && inertial->gap();
@@ -469,12 +472,14 @@ MotionEstimate Odometry::Impl::lost(std::int64_t now_ns,
     }
     covariance_camera.setZero();
     MotionEstimate estimate = publish(T, Matrix6::Zero(), unseen);
-    const HealthVerdict verdict = judge(config, evidence);
     estimate.health = Health::lost;
-    estimate.reason = verdict.reason;
+    estimate.reason = judge(config, evidence).reason;
     estimate.tracks = evidence.tracks;
     estimate.inliers = evidence.inliers;
-    if ((after_s > config.bridge_s || map.empty()) && front->loaded()) seed_landmarks(executor);
+    if ((after_s > config.bridge_s || map.empty()) && front->loaded()) {
+        seed_landmarks(executor);
+        if (front->eyes_exchanged()) estimate.reason = HealthReason::eyes_exchanged;
+    }
     return estimate;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/odometry/stereo_points.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -54,17 +55,23 @@ double correlation(const Window& a, const Window& b) {
     return static_cast<double>(sum / (a.norm * b.norm));
 }
 
-/// Raw right pixels at disparities 0, 1, 2 ... of one rectified left pixel, by linear pieces.
-std::vector<std::optional<Eigen::Vector2d>> epipolar_curve(const camera::Rectifier& rectifier,
-                                                           const Eigen::Vector2d& left_px,
-                                                           double max_disparity_px) {
+using Curve = std::vector<std::optional<Eigen::Vector2d>>;
+
+/// Raw pixels in the other eye at disparities 0, 1, 2 ... of one rectified pixel of this `eye`, by
+/// linear pieces.
+Curve epipolar_curve(const camera::Rectifier& rectifier,
+                     camera::Side eye,
+                     const Eigen::Vector2d& px,
+                     double max_disparity_px) {
     const auto& rig = rectifier.rig();
+    const bool is_left = eye == camera::Side::left;
     const auto knot = [&](double disparity) {
+        const double u_left = is_left ? px.x() : px.x() + disparity;
         // Disparity 0 is infinitely far: as good as a very small one.
-        return rectifier.raw_from_point(
-            camera::Side::right, rig.point(left_px.x(), left_px.y(), std::max(disparity, 1e-3)));
+        return rectifier.raw_from_point(is_left ? camera::Side::right : camera::Side::left,
+                                        rig.point(u_left, px.y(), std::max(disparity, 1e-3)));
     };
-    std::vector<std::optional<Eigen::Vector2d>> curve;
+    Curve curve;
     auto from = knot(0.0);
     for (double d = 0.0; d < max_disparity_px; d += kKnot_px) {
         const auto to = knot(d + kKnot_px);
@@ -79,23 +86,28 @@ std::vector<std::optional<Eigen::Vector2d>> epipolar_curve(const camera::Rectifi
     return curve;
 }
 
+/// Correlation with each place of the curve, -1 where there is no image.
+std::vector<double> scores_along(ImageView<const std::uint8_t> right,
+                                 const Window& patch,
+                                 const Curve& curve) {
+    std::vector<double> score(curve.size(), -1.0);
+    Window window;
+    for (std::size_t d = 0; d < curve.size(); ++d)
+        if (curve[d] && read_nearest(right, *curve[d], window))
+            score[d] = correlation(patch, window);
+    return score;
+}
+
 /// Start of the refinement: the best place, if it is better than any other.
 std::optional<Eigen::Vector2d> best_place(ImageView<const std::uint8_t> right,
                                           const Window& patch,
-                                          const std::vector<std::optional<Eigen::Vector2d>>& curve,
+                                          const Curve& curve,
                                           double uniqueness) {
-    std::vector<double> score(curve.size(), -1.0);
-    int best = -1;
-    Window window;
-    for (std::size_t d = 0; d < curve.size(); ++d) {
-        if (!curve[d] || !read_nearest(right, *curve[d], window)) continue;
-        score[d] = correlation(patch, window);
-        if (best < 0 || score[d] > score[static_cast<std::size_t>(best)])
-            best = static_cast<int>(d);
-    }
-    if (best < 0) return std::nullopt;
-    const double top = score[static_cast<std::size_t>(best)];
-    if (top < kCoarseCorrelation) return std::nullopt;
+    const std::vector<double> score = scores_along(right, patch, curve);
+    const auto top_at = std::max_element(score.begin(), score.end());
+    if (top_at == score.end() || *top_at < kCoarseCorrelation) return std::nullopt;
+    const double top = *top_at;
+    const int best = static_cast<int>(top_at - score.begin());
     for (int d = 0; d < static_cast<int>(score.size()); ++d) {
         const double other = score[static_cast<std::size_t>(d)];
         if (std::abs(d - best) > kSamePeak_px &&
@@ -129,7 +141,8 @@ std::optional<StereoPixel> match_corner(const camera::Rectifier& rectifier,
     const auto host = cut_patch(left, raw_left_px);
     Window patch;
     if (!left_px || !host || !read_nearest(left, raw_left_px, patch)) return std::nullopt;
-    const auto curve = epipolar_curve(rectifier, *left_px, config.max_disparity_px);
+    const auto curve =
+        epipolar_curve(rectifier, camera::Side::left, *left_px, config.max_disparity_px);
     const auto start = best_place(right, patch, curve, config.uniqueness);
     if (!start) return std::nullopt;
     // Lenses of one rig are alike: locally the eyes differ by a shift.
@@ -138,6 +151,29 @@ std::optional<StereoPixel> match_corner(const camera::Rectifier& rectifier,
     const auto aligned = align_patch(*warped, right, *start, kRefineShift_px);
     if (!aligned || aligned->correlation < config.min_correlation) return std::nullopt;
     return stereo_pixel(rectifier, raw_left_px, aligned->raw_px, config);
+}
+
+int eye_of_corner(const camera::Rectifier& rectifier,
+                  ImageView<const std::uint8_t> image,
+                  ImageView<const std::uint8_t> other,
+                  const Eigen::Vector2d& raw_px,
+                  const StereoPointConfig& config) {
+    Window patch;
+    if (!read_nearest(image, raw_px, patch)) return 0;
+    const auto best_as = [&](camera::Side eye) {
+        const auto px = rectifier.rectified_from_raw(eye, raw_px);
+        if (!px) return -1.0;
+        const auto score = scores_along(
+            other, patch, epipolar_curve(rectifier, eye, *px, config.max_disparity_px));
+        // What is far lies the same way for both.
+        const auto near = score.begin() + std::min<std::ptrdiff_t>(kSamePeak_px, std::ssize(score));
+        return near == score.end() ? -1.0 : *std::max_element(near, score.end());
+    };
+    const double as_left = best_as(camera::Side::left);
+    const double as_right = best_as(camera::Side::right);
+    if (std::max(as_left, as_right) < kCoarseCorrelation) return 0;
+    if (std::abs(as_left - as_right) < kCorrelationNoise) return 0;
+    return as_left > as_right ? 1 : -1;
 }
 
 std::optional<StereoPixel> depth_pixel(const camera::Rectifier& rectifier,

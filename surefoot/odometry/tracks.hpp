@@ -50,6 +50,8 @@ class Tracks {
     [[nodiscard]] virtual double sharpness() const = 0;
     /// The right eye sees about as much as the left one in the present frame.
     [[nodiscard]] virtual bool right_shows_something() const = 0;
+    /// Each eye sees what the other one should, as `align` or `seed` found in the present frame.
+    [[nodiscard]] virtual bool eyes_exchanged() const { return false; }
 
     /// Drops the tracks that are not marked.
     void select(std::span<const std::uint8_t> inlier);

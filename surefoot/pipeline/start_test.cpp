@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/core/rng.hpp"
 
 namespace surefoot::pipeline {
 namespace {
@@ -53,6 +54,7 @@ struct Script {
     int frames = 0;
     std::function<std::uint8_t(int)> grey_dn;
     std::function<bool(int)> floor;
+    std::function<void(int, GreyImage&)> paint = [](int, GreyImage&) {};
 };
 
 struct Outcome {
@@ -70,7 +72,9 @@ Outcome start_of(const Script& script, const PipelineConfig& config) {
         StereoFrame frame;
         frame.index = next++;
         frame.time_ns = 1'000'000'000 + frame.index * 100'000'000LL;
-        frame.left = frame.right = GreyImage(kWidth, kHeight, script.grey_dn(frame.index));
+        frame.left = GreyImage(kWidth, kHeight, script.grey_dn(frame.index));
+        script.paint(frame.index, frame.left);
+        frame.right = frame.left;
         frame.known_depth = depth_of(pipeline->rig(), script.floor(frame.index));
         MotionEstimate standing;
         standing.time_ns = frame.time_ns;
@@ -97,6 +101,26 @@ TEST(Start, TheFirstFramesServeWhereTheyAreGood) {
     EXPECT_EQ(outcome.start.frames.front().index, 0);
     ASSERT_TRUE(outcome.alignment.has_ground) << outcome.alignment.reason;
     EXPECT_NEAR(outcome.alignment.ground_height_m, kHeight_m, 1e-3);
+}
+
+/// Nobody has looked at these frames before; the pipeline believes what it finds on them.
+TEST(Start, AnOldImageIsMarked) {
+    const auto noise = [](int index, GreyImage& image) {
+        const bool old = index == 3 || index == 4;
+        Rng rng(mix_seed(7, static_cast<std::uint64_t>(old ? 2 : index)));
+        for (int v = 0; v < image.height(); ++v)
+            for (int u = 0; u < image.width(); ++u)
+                image.at(u, v) = static_cast<std::uint8_t>(100.0 + 50.0 * rng.uniform());
+    };
+    const Outcome outcome = start_of({30, mid_grey, always, noise}, {});
+    ASSERT_EQ(outcome.start.frames.size(), Pipeline::kAlignmentFrames);
+    for (const StereoFrame& frame : outcome.start.frames) {
+        EXPECT_EQ(frame.arrival.repeated,
+                  frame.index == 3   ? 1
+                  : frame.index == 4 ? 2
+                                     : 0)
+            << frame.index;
+    }
 }
 
 TEST(Start, OverexposedFramesAreWaitedOut) {
