@@ -25,8 +25,8 @@ constexpr double kHardlyAnyDepth = 0.2;
 constexpr double kEnoughTell = 20.0;
 constexpr double kExchangedShare = 0.7;
 
-/// Share of the left image's structure that makes a right image worth to be looked at.
-constexpr double kRightStructure = 0.3;
+/// Share of the other image's structure that makes an image worth to be looked at.
+constexpr double kOtherStructure = 0.3;
 
 /// Mean square difference of pixels two columns apart, in every eighth row.
 double structure_of(ImageView<const std::uint8_t> image) {
@@ -69,8 +69,10 @@ bool FrontEnd::load(const StereoFrame& frame, Executor& executor) {
     left_.build(frame.left.view());
     const bool right_fits = frame.right.width() == rig.width && frame.right.height() == rig.height;
     right_ = right_fits ? frame.right : GreyImage();
-    right_shows_something_ = right_fits && structure_of(std::as_const(right_).view()) >
-                                               kRightStructure * structure_of(frame.left.view());
+    const double left_structure = structure_of(frame.left.view());
+    const double right_structure = right_fits ? structure_of(std::as_const(right_).view()) : 0.0;
+    right_shows_something_ = right_structure > kOtherStructure * left_structure;
+    left_shows_something_ = left_structure > kOtherStructure * right_structure;
     const bool depth_fits =
         frame.depth_m.width() == rig.width && frame.depth_m.height() == rig.height;
     depth_m_ = depth_fits ? frame.depth_m : Image<float>();
@@ -249,7 +251,7 @@ bool FrontEnd::hardly_any_depth() const {
 
 bool FrontEnd::are_exchanged(std::span<const Eigen::Vector2d> raw_left_px,
                              Executor& executor) const {
-    if (rgbd() || !right_shows_something_) return false;
+    if (rgbd() || !right_shows_something_ || !left_shows_something_) return false;
     std::vector<int> eyes(raw_left_px.size());
     executor.parallel_for(static_cast<int>(eyes.size()), [&](int index) {
         const auto i = static_cast<std::size_t>(index);

@@ -66,6 +66,7 @@ class FrontEnd final : public Tracks {
     std::vector<KltRequest> requests_;
     std::vector<KltResult> results_;
     bool right_shows_something_ = false;
+    bool left_shows_something_ = false;
     bool eyes_exchanged_ = false;  ///< asked of frames that show hardly any depth
     int next_attempt_ = 0;         ///< slot from which landmarks are looked for again
 };

@@ -25,6 +25,9 @@ constexpr double kOffset_m = 0.15;
 constexpr double kWallNoise_m = 0.25;
 /// Where a cell holds the foot of a wall and floor, a matcher puts it between them.
 constexpr double kFoot_m = 0.1;
+/// Behind a sill a matcher comes down to the ground over so much more than what the sill hides.
+constexpr double kShadowPerHeight = 5.0;
+constexpr double kLongestShadow_m = 0.25;
 constexpr double kBin_m = 0.025;
 constexpr double kSample_m = 0.05;
 constexpr double kHalfProfile_m = 0.8;
@@ -460,8 +463,17 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
     const double front_m = opening.front_m - kCorner_m;
     const double back_m = opening.back_m + kCorner_m;
     const GroundLine before = ground_line(opening, front_m, front_m - kGround_m);
-    const GroundLine behind = ground_line(opening, back_m, back_m + kGround_m);
-    if (!before.known || !behind.known) return std::nullopt;
+    if (!before.known) return std::nullopt;
+    double top_m = 0.0;
+    for (std::size_t i = 0; i + 1 < profile_.size(); ++i) {
+        const double along_m = static_cast<double>(i + 1) * bin_m - kHalfProfile_m;
+        if (along_m < front_m || along_m > back_m || profile_[i].count == 0) continue;
+        top_m = std::max(top_m, profile_[i].mean_m() - before.height_at(along_m));
+    }
+    // What a sill hides a matcher fills from the sill on.
+    const double seen_m = back_m + std::min(kShadowPerHeight * top_m, kLongestShadow_m);
+    const GroundLine behind = ground_line(opening, seen_m, seen_m + kGround_m);
+    if (!behind.known) return std::nullopt;
     Sill sill;
     sill.sigma_m = std::sqrt(std::max(before.point_var_m2, behind.point_var_m2) +
                              0.5 * (before.var_m2 + behind.var_m2));
@@ -477,7 +489,7 @@ std::optional<DoorFinder::Sill> DoorFinder::sill(const Opening& opening) {
         const Bin& b = profile_[i + 1];
         const double along_m = static_cast<double>(i + 1) * bin_m - kHalfProfile_m;
         if (along_m < front_m || along_m > back_m || a.count == 0 || b.count == 0) continue;
-        const double share = (along_m - front_m) / (back_m - front_m);
+        const double share = (along_m - front_m) / (seen_m - front_m);
         const double line_m = (1.0 - share) * before.height_m + share * behind.height_m;
         const double base_m = step ? before.height_at(along_m) : line_m;
         const double high_m = step ? std::max(base_m, behind.height_at(along_m)) : line_m;

@@ -318,6 +318,25 @@ TEST(Doors, SillsOf20mmAreFoundInNoiseAndFloorsHaveNone) {
     EXPECT_EQ(found_sills, kSeeds);
 }
 
+/// A matcher comes down to the floor behind a sill over 0.2 m and more.
+TEST(Doors, ASillIsOneWhateverAMatcherMakesOfTheGroundBehindIt) {
+    for (const double reach_m : {0.1, 0.2}) {
+        DoorPlan plan;
+        plan.sill_m = 0.04;
+        World world;
+        add_door(world, plan);
+        world.each([&](const Vector2d& p_m, float& z_m) {
+            const double behind_m = p_m.x() - 0.5 * plan.depth_m;
+            if (behind_m > 0.0 && z_m < 0.02F)
+                z_m = static_cast<float>(plan.sill_m * std::max(0.0, 1.0 - behind_m / reach_m));
+        });
+        const Found found = find(world);
+        ASSERT_EQ(found.sills.size(), 1U) << reach_m;
+        EXPECT_NEAR(found.sills[0].height_m, plan.sill_m, 0.003) << reach_m;
+        EXPECT_NEAR(found.doors[0].sill_m, plan.sill_m, 0.003) << reach_m;
+    }
+}
+
 /// A floor that lies higher behind the door is no sill, but it is what a foot meets.
 TEST(Doors, AStepInADoorIsNoSill) {
     for (const double step_m : {0.06, -0.06}) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "surefoot/stairs/edge_place.hpp"
+#include "surefoot/stairs/edge_relations.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -79,7 +80,7 @@ std::optional<double> cost_of(const EdgeTrack& track, const Edge& seen) {
     const double angle_rad = std::abs(angle_between(edge, seen));
     if (!(angle_rad <= angle_gate_rad)) return std::nullopt;
     const double shorter_m = std::min(edge.length_m(), seen.length_m());
-    if (!(shared_length_m(edge, seen) >= kMinOverlap * shorter_m)) return std::nullopt;
+    if (!(overlap_m(edge, seen) >= kMinOverlap * shorter_m)) return std::nullopt;
     const double across_gate_m =
         gate(std::hypot(track.across.sigma(), seen.across_sigma_m), kAcross_m, kMaxAcross_m);
     const double across_m = std::abs(edge.below_m(shared_middle_m(edge, seen)));
@@ -149,13 +150,6 @@ void take_height(const Edge& look, double old_height_m, double most_looks, EdgeT
 }
 
 }  // namespace
-
-double shared_length_m(const Edge& a, const Edge& b) {
-    const Vector2d along = a.along();
-    const double from_m = (b.from_m - a.from_m).dot(along);
-    const double to_m = (b.to_m - a.from_m).dot(along);
-    return std::min(a.length_m(), std::max(from_m, to_m)) - std::max(0.0, std::min(from_m, to_m));
-}
 
 const EdgeTrack* EdgeFollower::find(std::uint32_t id) const {
     for (const EdgeTrack& track : tracks_)
@@ -232,7 +226,7 @@ void EdgeFollower::take_pieces(std::span<const SeenEdge> seen) {
         const Edge& taken = seen[static_cast<std::size_t>(other)].edge;
         EdgeTrack& track = tracks_[pair.track];
         const double shorter_m = std::min(piece.length_m(), taken.length_m());
-        if (shared_length_m(taken, piece) > kMinOverlap * shorter_m) continue;  // one beside it
+        if (overlap_m(taken, piece) > kMinOverlap * shorter_m) continue;  // one beside it
         if (std::abs(track.edge.below_m(piece.middle_m())) > kPieceAcross_m) continue;
         grow(piece, track.edge);
         if (seen[pair.seen].drop) {
@@ -371,7 +365,7 @@ bool EdgeFollower::is_now_another(const EdgeTrack& track) {
         if (!edge.followed.seen_now) continue;
         if (std::abs(edge.upper_m - track.edge.upper_m) > kHeight_m ||
             std::abs(angle_between(edge, track.edge)) > kMaxAngle_rad ||
-            shared_length_m(track.edge, edge) < kCovered * track.edge.length_m() ||
+            overlap_m(track.edge, edge) < kCovered * track.edge.length_m() ||
             std::abs(edge.below_m(shared_middle_m(track.edge, edge))) > kDouble_m)
             continue;
         other.drop = other.drop || track.drop;

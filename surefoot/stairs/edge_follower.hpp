@@ -105,7 +105,4 @@ class EdgeFollower {
     std::vector<std::uint32_t> id_of_seen_;
 };
 
-/// Length that two edges share, along the first; negative = the gap between them.
-[[nodiscard]] double shared_length_m(const Edge& a, const Edge& b);
-
 }  // namespace surefoot::stairs

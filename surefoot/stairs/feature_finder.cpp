@@ -5,74 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/stairs/edge_relations.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
 using Eigen::Vector2d;
 
 constexpr double kStance_m = 0.3;
-
-bool same_ground(const Edge& a, const Edge& b) {
-    constexpr double kSame_m = 0.04;
-    return std::abs(a.upper_m - b.upper_m) <= kSame_m && std::abs(a.lower_m - b.lower_m) <= kSame_m;
-}
-
-/// A piece of the same edge, or what a ragged edge looks like beside it.
-bool is_part_of(const Edge& piece, const Edge& edge) {
-    constexpr double kNear_m = 0.1;
-    constexpr double kLeastCosine = 0.77;  // 40 deg
-    if (piece.along().dot(edge.along()) < kLeastCosine) return false;
-    const double near_m = (same_ground(piece, edge) ? 2.0 : 1.0) * kNear_m;
-    if (std::abs(edge.below_m(piece.middle_m())) > near_m) return false;
-    const double t_m = (piece.middle_m() - edge.from_m).dot(edge.along());
-    return t_m >= -kNear_m && t_m <= edge.length_m() + kNear_m;
-}
-
-/// What is left of the edges of a flight whose far end is seen badly: among its steps, as high as
-/// they are, leading the same way. `chain`: from below.
-bool is_among(const Edge& edge, std::span<const Edge> chain) {
-    constexpr double kBeyond_m = 0.3;
-    constexpr double kLevel_m = 0.05;
-    constexpr double kLeastCosine = 0.77;  // 40 deg
-    const Edge& first = chain.front();
-    const Edge& last = chain.back();
-    const Vector2d middle_m = edge.middle_m();
-    const double along_m = (middle_m - first.from_m).dot(first.along());
-    return chain.size() > 1 && edge.along().dot(first.along()) >= kLeastCosine && along_m >= 0.0 &&
-           along_m <= first.length_m() && first.below_m(middle_m) < 0.0 &&
-           last.below_m(middle_m) > -kBeyond_m && edge.lower_m >= first.upper_m - kLevel_m &&
-           edge.upper_m <= last.upper_m + kLevel_m;
-}
-
-/// Two pieces of one straight line.
-bool goes_on(const Edge& edge, const Edge& piece, double max_gap_m) {
-    constexpr double kLeastCosine = 0.996;  // 5 deg
-    constexpr double kNear_m = 0.06;
-    if (edge.along().dot(piece.along()) < kLeastCosine) return false;
-    if (std::abs(edge.below_m(piece.from_m)) > kNear_m ||
-        std::abs(edge.below_m(piece.to_m)) > kNear_m)
-        return false;
-    const double from_m = (piece.from_m - edge.from_m).dot(edge.along());
-    const double to_m = (piece.to_m - edge.from_m).dot(edge.along());
-    return from_m <= edge.length_m() + max_gap_m && to_m >= -max_gap_m;
-}
-
-/// The line through both, as long as both; all else is what the first says.
-Edge joined(Edge edge, const Edge& piece) {
-    const double a_m = edge.length_m();
-    const double b_m = piece.length_m();
-    const Vector2d middle_m = (a_m * edge.middle_m() + b_m * piece.middle_m()) / (a_m + b_m);
-    const Vector2d along = (a_m * edge.along() + b_m * piece.along()).normalized();
-    double from_m = 0.0, to_m = 0.0;
-    for (const Vector2d& end_m : {edge.from_m, edge.to_m, piece.from_m, piece.to_m}) {
-        const double t_m = (end_m - middle_m).dot(along);
-        from_m = std::min(from_m, t_m);
-        to_m = std::max(to_m, t_m);
-    }
-    edge.from_m = middle_m + from_m * along;
-    edge.to_m = middle_m + to_m * along;
-    return edge;
-}
 
 }  // namespace
 
@@ -100,6 +40,7 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     see_faces(terrain, out.edges);
     see_steps_down(terrain, out.edges);
     join_pieces(out.edges);
+    for (std::vector<Edge>& chain : chains_) flight_finder_.lengthen(chain, out.edges);
     for (const std::vector<Edge>& chain : chains_)
         std::erase_if(out.edges, [&](const Edge& edge) { return is_among(edge, chain); });
     reachability_.reach(terrain.geometry, terrain.height_m, terrain.stance_m, walk_step_m_);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "surefoot/stairs/edge_relations.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
@@ -21,23 +23,17 @@ constexpr double kUnevenRiser_m = 0.01;
 constexpr double kUnevenGoing_m = 0.015;
 constexpr double kMaxSigma_m = 0.03;  ///< of the height of a single step
 constexpr double kLeastStand_m = 0.08;
+constexpr double kBeside_m = 0.25;
 /// No level of a map is known better: errors that its cells share.
 constexpr double kTreadSigma_m = 0.001;
 /// Less than so much of a tread is a strip near the height of the camera, some 30 mm too low.
 constexpr double kStrip = 0.5;
 constexpr double kStripSigma_m = 0.03;
+constexpr double kAlike = 0.2;  ///< goings of a flight differ by no more, as they are measured
 constexpr double kParallel_rad = 10.0 * kRadPerDeg;
 
 double cross(const Vector2d& a, const Vector2d& b) {
     return a.x() * b.y() - a.y() * b.x();
-}
-
-/// Length that two edges share, along the first.
-double overlap_m(const Edge& a, const Edge& b) {
-    const Vector2d along = a.along();
-    const double from_m = (b.from_m - a.from_m).dot(along);
-    const double to_m = (b.to_m - a.from_m).dot(along);
-    return std::min(a.length_m(), std::max(from_m, to_m)) - std::max(0.0, std::min(from_m, to_m));
 }
 
 struct Line {
@@ -121,6 +117,38 @@ double FlightFinder::going_to(const Edge& edge, const Edge& next) const {
     return going_m;
 }
 
+/// `edge` is the next step below or above the chain, as far from it as its steps are from each
+/// other.
+bool FlightFinder::is_next(const Edge& edge, std::span<const Edge> chain, bool below) const {
+    const Edge& end = below ? chain.front() : chain.back();
+    if (chain.size() < 2 || !may_be_step(edge) || !is_parallel(edge, end)) return false;
+    const double mean_m =
+        -chain.front().below_m(chain.back().middle_m()) / static_cast<double>(chain.size() - 1);
+    const double going_m = below ? going_to(edge, end) : going_to(end, edge);
+    return std::abs(going_m - mean_m) <= kAlike * mean_m;
+}
+
+void FlightFinder::lengthen(std::vector<Edge>& chain, std::vector<Edge>& edges) const {
+    for (Edge& step : chain) {
+        std::erase_if(edges, [&](const Edge& edge) {
+            const bool same = is_part_of(edge, step) || is_part_of(step, edge);
+            if (!same || !same_ground(edge, step) || !is_parallel(edge, step)) return false;
+            step = joined(step, edge);
+            return true;
+        });
+    }
+    for (std::size_t i = 0; i < edges.size();) {
+        const bool below = is_next(edges[i], chain, true);
+        if (!below && !is_next(edges[i], chain, false)) {
+            ++i;
+            continue;
+        }
+        chain.insert(below ? chain.begin() : chain.end(), edges[i]);
+        edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(i));
+        i = 0;  // another one may be next now
+    }
+}
+
 void FlightFinder::find(std::span<const Edge> edges,
                         const Vector2d& stance_m,
                         std::vector<Flight>& flights,
@@ -177,7 +205,7 @@ bool FlightFinder::add_chain(std::span<const Edge> from_below,
     return flights.size() > before;
 }
 
-/// A single step is one if one can walk to it, and towards it, and stand on it.
+/// A single step is one if one can walk to it, straight towards it, and stand on it.
 bool FlightFinder::is_step_ahead(const Edge& edge,
                                  FlightKind kind,
                                  const Vector2d& stance_m) const {
@@ -187,6 +215,9 @@ bool FlightFinder::is_step_ahead(const Edge& edge,
     if ((up ? edge.upper_depth_m : edge.lower_depth_m) < kLeastStand_m ||
         edge.height_sigma_m > kMaxSigma_m)
         return false;
+    // The way straight on meets it, or nearly: the side of a ramp is no stair.
+    const double along_m = (stance_m - edge.from_m).dot(edge.along());
+    if (along_m < -kBeside_m || along_m > edge.length_m() + kBeside_m) return false;
     const Vector2d way = up ? Vector2d(-edge.down()) : edge.down();
     const Vector2d to_m = edge.middle_m() - stance_m;
     return to_m.dot(way) >= std::cos(config_.max_facing_deg * kRadPerDeg) * to_m.norm();

@@ -25,11 +25,15 @@ class FlightFinder {
     bool add_chain(std::span<const Edge> from_below,
                    const Eigen::Vector2d& stance_m,
                    std::vector<Flight>& flights) const;
+    /// Takes those edges into a chain from below that belong to it, though they were not placed
+    /// with it: pieces of its steps, and the next steps at its ends.
+    void lengthen(std::vector<Edge>& chain, std::vector<Edge>& edges) const;
 
   private:
     [[nodiscard]] bool may_be_step(const Edge& edge) const;
     /// How far `next` lies above and behind `edge` [m]; infinite if it is not its next step.
     [[nodiscard]] double going_to(const Edge& edge, const Edge& next) const;
+    [[nodiscard]] bool is_next(const Edge& edge, std::span<const Edge> chain, bool below) const;
     void add_flight(std::span<const Edge> from_below,
                     FlightKind kind,
                     const Eigen::Vector2d& stance_m,
