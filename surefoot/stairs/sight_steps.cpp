@@ -19,6 +19,7 @@ constexpr float kMostCost = 3.0F;   ///< of one bin: between two treads is neith
 constexpr int kLeastSupport = 3;    ///< 1.5 pixels
 constexpr double kFirst_m = 0.08;   ///< the first nose lies so near to the known edge
 constexpr double kUneven_m = 0.03;  ///< risers and goings of a flight are alike
+constexpr std::size_t kPlain = 3;   ///< so many regular steps need no further search
 constexpr double kNose_bins = 1.0;  ///< one sigma of where a depth changes
 /// Depths on both sides blur a strip: this over its bins is one sigma of its depth.
 constexpr double kBlur_m = 0.1;
@@ -146,6 +147,44 @@ std::size_t SightSteps::regular_steps() const {
     return steps;
 }
 
+std::size_t SightSteps::as_even_flight(std::span<const SightBin> bins,
+                                       double height_m,
+                                       std::size_t steps) {
+    const Nose first = noses_.front();
+    const auto flight = even_.fit(bins, height_m, first.run_m);
+    if (!flight || static_cast<std::size_t>(flight->steps) <= steps) return steps;
+    const double top_m = levels_.front().depth_m;
+    levels_.assign(1, {.begin = 0, .end = 0, .depth_m = top_m});
+    std::size_t k = 0;
+    for (std::size_t bin = 0; bin < bins.size(); ++bin) {
+        const auto end_m = [&] { return first.run_m + static_cast<double>(k) * flight->going_m; };
+        while (k < static_cast<std::size_t>(flight->steps) &&
+               (height_m + static_cast<double>(k) * flight->riser_m) / bins[bin].steepness >
+                   end_m()) {
+            ++k;
+            levels_.push_back({.begin = static_cast<int>(bin),
+                               .end = static_cast<int>(bin),
+                               .depth_m = static_cast<double>(k) * flight->riser_m});
+        }
+        levels_.back().end = static_cast<int>(bin) + 1;
+    }
+    std::size_t seen = 0;
+    for (; seen < levels_.size(); ++seen) {
+        measure(bins, levels_[seen]);
+        if (levels_[seen].support < kLeastSupport) break;
+    }
+    levels_.resize(seen);
+    if (seen < 2) return 0;
+    noses_.clear();
+    for (std::size_t i = 0; i + 1 < seen; ++i) {
+        const double run_m = first.run_m + static_cast<double>(i) * flight->going_m;
+        const double below_m = height_m + levels_[i].depth_m;
+        const double per_bin_m = (run_m * run_m + below_m * below_m) / below_m * bin_rad_;
+        noses_.push_back({run_m, std::hypot(kNose_bins * per_bin_m, first.sigma_m)});
+    }
+    return seen - 1;
+}
+
 /// The map holds the highest of what is in a cell, and of a low step what the matcher smears.
 Edge SightSteps::with_lower(Edge edge, std::size_t step) const {
     const Level& upper = levels_[step];
@@ -173,7 +212,10 @@ void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::
     const double distance_m = -first.below_m(camera_m.head<2>());
     find_noses(bins, height_m);
     if (std::abs(noses_.front().run_m - distance_m) > kFirst_m) return;
-    const std::size_t steps = regular_steps();
+    std::size_t steps = regular_steps();
+    // More levels than steps: the matcher blurred one of them.
+    if (steps < kPlain && levels_.size() > steps + 1)
+        steps = as_even_flight(bins, height_m, steps);
     if (steps < known.size()) return;
 
     out.assign(known.begin(), known.end());

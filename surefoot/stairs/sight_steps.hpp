@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "surefoot/stairs/features.hpp"
+#include "surefoot/stairs/sight_flight.hpp"
 #include "surefoot/stairs/sight_profile.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stairs/terrain.hpp"
@@ -16,7 +17,7 @@ namespace surefoot::stairs {
 /// the depths (dynamic programming, Viterbi 1967), of which so many steps are kept as are regular.
 class SightSteps {
   public:
-    explicit SightSteps(const StairsConfig& config) : config_(config) {}
+    explicit SightSteps(const StairsConfig& config) : config_(config), even_(config) {}
     /// Edges of the flight whose upper ones are `known` (at least one), from the top down: those,
     /// with what is seen of the ground below the last of them, and the further ones. Empty if
     /// fewer are seen than are known.
@@ -41,10 +42,16 @@ class SightSteps {
                                          const Level& lower);
     void find_noses(std::span<const SightBin> bins, double height_m);
     [[nodiscard]] std::size_t regular_steps() const;
+    /// Levels and noses of the even flight that explains the bins; how many steps of it are seen.
+    /// Nothing changes where there is none of more than `steps`.
+    [[nodiscard]] std::size_t as_even_flight(std::span<const SightBin> bins,
+                                             double height_m,
+                                             std::size_t steps);
     [[nodiscard]] Edge with_lower(Edge edge, std::size_t step) const;
 
     StairsConfig config_;
     SightProfile profile_;
+    SightFlight even_;
     double bin_rad_ = 0.0;
     std::vector<float> cost_;
     std::vector<float> cheapest_;  ///< of a level at or above this one

@@ -56,6 +56,21 @@ TEST(SightSteps, treads_in_sight_as_strips_of_a_few_pixels_are_steps) {
     }
 }
 
+/// A matcher comes down from tread to tread over 0.15 m of the second one.
+TEST(SightSteps, a_blurred_tread_ends_no_flight) {
+    std::vector<Tread> treads = flight(6, 0.17, 0.27);
+    treads.insert(treads.begin() + 1, {0.19, 0.26});
+    treads[2] = {0.34, 0.34};
+    Scene scene(treads, 0.8, 0.05);
+    scene.add_noise(0.3, 23);
+    const std::vector<Edge> found = scene.find();
+    ASSERT_GE(found.size(), 4U);
+    for (std::size_t k = 0; k < 4; ++k) {
+        EXPECT_NEAR(found[k].height_m(), 0.17, 0.012) << k;
+        EXPECT_NEAR(found[k].middle_m().x(), 0.27 * static_cast<double>(k), 0.03) << k;
+    }
+}
+
 TEST(SightSteps, a_kerb_is_as_high_as_the_camera_sees_it) {
     Scene scene({{0.0, 0.12}}, 1.2, 6.0 * kRadPerDeg);
     scene.add_noise(0.3, 22);

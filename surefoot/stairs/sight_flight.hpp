@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "surefoot/stairs/sight_profile.hpp"
+#include "surefoot/stairs/stairs_config.hpp"
+
+namespace surefoot::stairs {
+
+/// A flight down with steps that are all alike, as far as it is in sight.
+struct EvenFlight {
+    int steps = 0;
+    double riser_m = 0.0;
+    double going_m = 0.0;
+    double cost = 0.0;  ///< sum over the bins of what they leave it by, in sigma, each at most 3
+};
+
+/// The even flight that explains best what is seen behind an edge: rise, going and number of steps
+/// that are tried one by one, then finer. One tread alone may be blurred by a matcher until it is
+/// none; what all treads and the floor below them say together is not.
+class SightFlight {
+  public:
+    explicit SightFlight(const StairsConfig& config) : config_(config) {}
+    /// `height_m`: of the camera above the ground above the first nose, which is `first_run_m` from
+    /// it. Nothing where steps explain it no better than a slope or one fall does.
+    [[nodiscard]] std::optional<EvenFlight> fit(std::span<const SightBin> bins,
+                                                double height_m,
+                                                double first_run_m);
+
+  private:
+    /// A bin that tells, by the run at which its line of sight meets the ground above.
+    struct Point {
+        double run_per_m = 0.0;  ///< run over fall
+        double depth_m = 0.0;
+        double per_sigma = 0.0;
+    };
+    [[nodiscard]] double cost(const EvenFlight& flight, double most) const;
+    [[nodiscard]] double cost_of_no_flight() const;
+    void refine(EvenFlight& best) const;
+
+    StairsConfig config_;
+    double height_m_ = 0.0;
+    double first_run_m_ = 0.0;
+    std::vector<Point> points_;
+};
+
+}  // namespace surefoot::stairs
