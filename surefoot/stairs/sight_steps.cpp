@@ -214,8 +214,7 @@ void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::
     if (std::abs(noses_.front().run_m - distance_m) > kFirst_m) return;
     std::size_t steps = regular_steps();
     // More levels than steps: the matcher blurred one of them.
-    if (steps < kPlain && levels_.size() > steps + 1)
-        steps = as_even_flight(bins, height_m, steps);
+    if (steps < kPlain && levels_.size() > steps + 1) steps = as_even_flight(bins, height_m, steps);
     if (steps < known.size()) return;
 
     out.assign(known.begin(), known.end());
