@@ -22,7 +22,7 @@ struct TrackerConfig {
     /// The last keyframes show what the present one shows; recognising them tells nothing.
     int recent_keyframes = 10;
     /// Keyframes after each other that must name the same T_map_odom before it is believed.
-    int confirmations = 3;
+    int confirmations = 2;
     int max_misses = 1;  ///< keyframes in a row, in between, that may say nothing
     double agree_m = 0.15;
     double agree_deg = 2.5;

@@ -22,10 +22,10 @@ struct ComparisonConfig {
     double min_scale = 0.6;     ///< seen from nearer or farther than this it is not asked
     int part_columns = 4;       ///< parts of the image that are asked one by one
     int part_rows = 3;
-    int min_asked = 8;                ///< features of a part that can say anything
-    double min_agreeing = 0.25;       ///< share of a part's features, below which it says no
-    double min_agreeing_all = 0.35;   ///< the same of all features asked
-    double max_parts_against = 0.25;  ///< share of the parts asked that may say no
+    int min_asked = 8;               ///< features of a part that can say anything
+    double min_agreeing = 0.25;      ///< share of a part's features, below which it says no
+    double min_agreeing_all = 0.35;  ///< the same of all features asked
+    double max_parts_against = 0.2;  ///< share of the parts asked that may say no
     // Features off the level surface on which most agree (the floor) must agree on their own.
     int min_asked_off_floor = 15;          ///< fewer cannot say yes
     double min_agreeing_off_floor = 0.15;  ///< share of them; where the floor has moved: hardly any
