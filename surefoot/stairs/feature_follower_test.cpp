@@ -450,6 +450,39 @@ TEST(FeatureFollower, the_number_of_steps_does_not_flicker_but_follows_what_stay
     EXPECT_EQ(looks.out().flights.at(0).edges.size(), 6U);
 }
 
+/// Looks often break a flight where it is seen worst.
+TEST(FeatureFollower, the_far_end_of_a_flight_is_no_flight_of_its_own) {
+    const auto told = [](double beyond_m, double turn_m, int near_steps = 4) {
+        const Flight near = flight_up(near_steps);
+        Flight far = flight_up(2, 1.0 + 4 * 0.3 + beyond_m);
+        far.pose.p_m.z() = 4 * 0.18;
+        for (Edge& edge : far.edges) {
+            edge.upper_m += 4 * 0.18;
+            edge.lower_m += 4 * 0.18;
+            edge.from_m.x() += turn_m;
+            edge.to_m.x() -= turn_m;
+        }
+        TerrainFeatures found = flight_found(near);
+        found.edges.insert(found.edges.end(), far.edges.begin(), far.edges.end());
+        found.flights.push_back(far);
+        Looks looks;
+        looks.look_at_nothing();
+        for (int k = 0; k < 4; ++k) looks.look(found);
+        std::vector<int> steps;
+        for (const Flight& flight : looks.out().flights) {
+            EXPECT_EQ(flight.edges.size(), static_cast<std::size_t>(flight.steps));
+            steps.push_back(flight.steps);
+        }
+        return steps;
+    };
+    EXPECT_EQ(told(0.0, 0.0), std::vector<int>({6}));
+    EXPECT_EQ(told(0.1, 0.02), std::vector<int>({6}));
+    EXPECT_EQ(told(0.0, 0.0, 5), std::vector<int>({6})) << "both have its fifth step";
+    EXPECT_EQ(told(0.0, 0.0, 3), std::vector<int>({3, 2})) << "nobody has its fourth step";
+    EXPECT_EQ(told(0.6, 0.0), std::vector<int>({4, 2})) << "a landing between them";
+    EXPECT_EQ(told(0.0, 0.3), std::vector<int>({4, 2})) << "another way";
+}
+
 TEST(FeatureFollower, a_flight_is_as_its_best_looks_say) {
     Looks looks;
     Flight far = flight_up(4, 1.0, 0.195);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "surefoot/stairs/edge_place.hpp"
+#include "surefoot/stairs/edge_relations.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -16,6 +17,8 @@ using Eigen::Vector2d;
 constexpr double kWidthSigma_m = 0.05;  ///< ends of edges in noise and shadow; the same for all
 /// So many more votes than the shown number of steps has: two that take turns do not change it.
 constexpr float kLead = 1.0F;
+/// What lies so many risers beside where a flight leads is another one, behind a landing.
+constexpr double kFarEnd_risers = 1.5;
 
 int common_edges(const Flight& a, const Flight& b) {
     int common = 0;
@@ -80,6 +83,35 @@ int refresh(const EdgeFollower& edges, Flight& flight) {
     }
     if (!flight.edges.empty()) place(flight);
     return left;
+}
+
+/// What is seen of the far end of a flight, apart from it, begins where the flight leads: after how
+/// many of its steps. 0 = it is another flight.
+int steps_before(const Flight& end, const Flight& flight) {
+    if (end.kind != flight.kind || flight.steps < 2 || !(flight.going_m > 0.0)) return 0;
+    const Edge& first = flight.edges.front();
+    const Edge& begin = end.edges.front();
+    const double way = flight.kind == FlightKind::up ? 1.0 : -1.0;
+    const double behind_m = -way * first.below_m(begin.middle_m());
+    const double rise_m = way * (end.pose.p_m.z() - flight.pose.p_m.z());
+    const double foretold_m = flight.riser_m * behind_m / flight.going_m;
+    const bool leads_there =
+        behind_m > 0.5 * flight.going_m && is_parallel(first, begin) &&
+        overlap_m(first, begin) >= 0.5 * std::min(first.length_m(), begin.length_m()) &&
+        std::abs(rise_m - foretold_m) <= kFarEnd_risers * flight.riser_m;
+    if (!leads_there) return 0;
+    const auto steps = static_cast<int>(std::lround(rise_m / flight.riser_m));
+    return steps <= static_cast<int>(flight.edges.size()) ? std::max(steps, 0) : 0;
+}
+
+/// The flight with what was seen of its far end instead of its own steps there.
+void take_far_end(const Flight& end, int steps_before, Flight& flight) {
+    flight.edges.resize(static_cast<std::size_t>(steps_before));
+    flight.edges.insert(flight.edges.end(), end.edges.begin(), end.edges.end());
+    flight.steps = steps_before + end.steps;
+    flight.landing_m = end.landing_m;
+    flight.cut = end.cut;
+    place(flight);
 }
 
 }  // namespace
@@ -198,8 +230,24 @@ bool FlightFollower::is_over(int edges_left, const Terrain& terrain, FlightTrack
 
 void FlightFollower::write(const Vector2d& stance_m, std::vector<Flight>& out) {
     order_.clear();
-    for (std::size_t t = 0; t < tracks_.size(); ++t)
-        if (tracks_[t].shown) order_.push_back(t);
+    far_ends_.clear();
+    const auto holds = [&](std::size_t host, std::size_t end) {
+        return tracks_[host].shown && steps_before(tracks_[end].flight, tracks_[host].flight) > 0;
+    };
+    const auto is_end = [&](std::size_t t) {
+        for (std::size_t host = 0; host < tracks_.size(); ++host)
+            if (holds(host, t)) return true;
+        return false;
+    };
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+        if (!tracks_[t].shown) continue;
+        std::size_t host = 0;
+        while (host < tracks_.size() && (!holds(host, t) || is_end(host))) ++host;
+        if (host == tracks_.size())
+            order_.push_back(t);
+        else
+            far_ends_.push_back({t, host});
+    }
     std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
         const double a_m = distance_m(tracks_[a].flight, stance_m);
         const double b_m = distance_m(tracks_[b].flight, stance_m);
@@ -218,7 +266,15 @@ void FlightFollower::write(const Vector2d& stance_m, std::vector<Flight>& out) {
             spare_flights_.pop_back();
         }
     }
-    for (std::size_t i = 0; i < order_.size(); ++i) out[i] = tracks_[order_[i]].flight;
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+        out[i] = tracks_[order_[i]].flight;
+        for (const FarEnd& end : far_ends_) {
+            const Flight& seen = tracks_[end.track].flight;
+            if (end.host != order_[i]) continue;
+            if (const int steps = steps_before(seen, out[i]); steps > 0)
+                take_far_end(seen, steps, out[i]);
+        }
+    }
 }
 
 }  // namespace surefoot::stairs

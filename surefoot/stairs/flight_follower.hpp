@@ -42,7 +42,8 @@ class FlightFollower {
                 bool first,
                 IdCounter& ids);
     void forget();
-    /// Those that are shown, nearest first; `out` keeps its memory.
+    /// Those that are shown, nearest first; `out` keeps its memory. What was seen of a flight's far
+    /// end apart from it is a part of it.
     void write(const Eigen::Vector2d& stance_m, std::vector<Flight>& out);
 
   private:
@@ -50,6 +51,12 @@ class FlightFollower {
         int common = 0;
         std::size_t track = 0;
         std::size_t seen = 0;
+    };
+
+    /// A track that is the far end of another one's flight.
+    struct FarEnd {
+        std::size_t track = 0;
+        std::size_t host = 0;
     };
 
     void pair_up(std::span<const Flight> seen);
@@ -67,6 +74,7 @@ class FlightFollower {
     std::vector<int> track_of_seen_;
     std::vector<bool> track_seen_;
     std::vector<std::size_t> order_;
+    std::vector<FarEnd> far_ends_;
 };
 
 }  // namespace surefoot::stairs
