@@ -27,14 +27,8 @@ constexpr int kRefinements = 4;         ///< each halves the steps
 double SightFlight::cost(const EvenFlight& flight, double most) const {
     double sum = 0.0;
     for (const Point& point : points_) {
-        // The first tread whose end lies behind where the line of sight comes down to it.
-        double depth_m = 0.0;
-        double end_m = first_run_m_;
-        for (int k = 0; k < flight.steps; ++k) {
-            if ((height_m_ + depth_m) * point.run_per_m <= end_m) break;
-            depth_m += flight.riser_m;
-            end_m += flight.going_m;
-        }
+        const double depth_m =
+            flight.steps_to(point.run_per_m, height_m_, first_run_m_) * flight.riser_m;
         sum += std::min(std::abs(point.depth_m - depth_m) * point.per_sigma, kMostCost);
         if (sum >= most) return most;
     }

@@ -16,6 +16,14 @@ struct EvenFlight {
     double riser_m = 0.0;
     double going_m = 0.0;
     double cost = 0.0;  ///< sum over the bins of what they leave it by, in sigma, each at most 3
+
+    /// After how many steps a line of sight meets it, `run_per_m` of run over fall: from a camera
+    /// `height_m` above the ground above the first nose, which is `first_run_m` away.
+    [[nodiscard]] int steps_to(double run_per_m, double height_m, double first_run_m) const {
+        int k = 0;
+        while (k < steps && (height_m + k * riser_m) * run_per_m > first_run_m + k * going_m) ++k;
+        return k;
+    }
 };
 
 /// The even flight that explains best what is seen behind an edge: rise, going and number of steps

@@ -104,6 +104,11 @@ double SightSteps::nose_bin(std::span<const SightBin> bins,
     return lower.begin - 0.5;
 }
 
+/// A pixel's angle moves the place by range^2 / height.
+double SightSteps::nose_sigma_m(double run_m, double below_m) const {
+    return kNose_bins * (run_m * run_m + below_m * below_m) / below_m * bin_rad_;
+}
+
 /// `height_m`: of the camera above the ground above the edge.
 void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
     const auto steepness_at = [&](double bin) {
@@ -117,10 +122,8 @@ void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
         const double below_m = height_m + levels_[k].depth_m;
         const double steepness = steepness_at(nose_bin(bins, levels_[k], levels_[k + 1]));
         const double run_m = below_m / steepness;
-        // A pixel's angle moves the place by range^2 / height.
-        const double per_bin_m = (run_m * run_m + below_m * below_m) / below_m * bin_rad_;
         noses_.push_back(
-            {run_m, std::hypot(kNose_bins * per_bin_m, levels_[k].sigma_m / steepness)});
+            {run_m, std::hypot(nose_sigma_m(run_m, below_m), levels_[k].sigma_m / steepness)});
     }
 }
 
@@ -153,18 +156,15 @@ std::size_t SightSteps::as_even_flight(std::span<const SightBin> bins,
     const Nose first = noses_.front();
     const auto flight = even_.fit(bins, height_m, first.run_m);
     if (!flight || static_cast<std::size_t>(flight->steps) <= steps) return steps;
-    const double top_m = levels_.front().depth_m;
-    levels_.assign(1, {.begin = 0, .end = 0, .depth_m = top_m});
-    std::size_t k = 0;
+    levels_.resize(1);
+    levels_[0] = {.begin = 0, .end = 0, .depth_m = levels_[0].depth_m};
     for (std::size_t bin = 0; bin < bins.size(); ++bin) {
-        const auto end_m = [&] { return first.run_m + static_cast<double>(k) * flight->going_m; };
-        while (k < static_cast<std::size_t>(flight->steps) &&
-               (height_m + static_cast<double>(k) * flight->riser_m) / bins[bin].steepness >
-                   end_m()) {
-            ++k;
+        const auto tread = static_cast<std::size_t>(
+            flight->steps_to(1.0 / bins[bin].steepness, height_m, first.run_m));
+        while (levels_.size() <= tread) {
             levels_.push_back({.begin = static_cast<int>(bin),
                                .end = static_cast<int>(bin),
-                               .depth_m = static_cast<double>(k) * flight->riser_m});
+                               .depth_m = static_cast<double>(levels_.size()) * flight->riser_m});
         }
         levels_.back().end = static_cast<int>(bin) + 1;
     }
@@ -178,9 +178,8 @@ std::size_t SightSteps::as_even_flight(std::span<const SightBin> bins,
     noses_.clear();
     for (std::size_t i = 0; i + 1 < seen; ++i) {
         const double run_m = first.run_m + static_cast<double>(i) * flight->going_m;
-        const double below_m = height_m + levels_[i].depth_m;
-        const double per_bin_m = (run_m * run_m + below_m * below_m) / below_m * bin_rad_;
-        noses_.push_back({run_m, std::hypot(kNose_bins * per_bin_m, first.sigma_m)});
+        noses_.push_back(
+            {run_m, std::hypot(nose_sigma_m(run_m, height_m + levels_[i].depth_m), first.sigma_m)});
     }
     return seen - 1;
 }

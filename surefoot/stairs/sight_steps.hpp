@@ -40,6 +40,8 @@ class SightSteps {
     [[nodiscard]] static double nose_bin(std::span<const SightBin> bins,
                                          const Level& upper,
                                          const Level& lower);
+    /// Of a nose so far from the camera and so far below it, by the pixels alone.
+    [[nodiscard]] double nose_sigma_m(double run_m, double below_m) const;
     void find_noses(std::span<const SightBin> bins, double height_m);
     [[nodiscard]] std::size_t regular_steps() const;
     /// Levels and noses of the even flight that explains the bins; how many steps of it are seen.
