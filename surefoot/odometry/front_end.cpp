@@ -252,7 +252,7 @@ bool FrontEnd::hardly_any_depth() const {
 bool FrontEnd::are_exchanged(std::span<const Eigen::Vector2d> raw_left_px,
                              Executor& executor) const {
     if (rgbd() || !right_shows_something_ || !left_shows_something_) return false;
-    std::vector<int> eyes(raw_left_px.size());
+    std::vector<std::optional<camera::Side>> eyes(raw_left_px.size());
     executor.parallel_for(static_cast<int>(eyes.size()), [&](int index) {
         const auto i = static_cast<std::size_t>(index);
         eyes[i] = eye_of_corner(rectifier_,
@@ -261,8 +261,11 @@ bool FrontEnd::are_exchanged(std::span<const Eigen::Vector2d> raw_left_px,
                                 raw_left_px[i],
                                 config_.stereo);
     });
-    const auto proper = static_cast<double>(std::count(eyes.begin(), eyes.end(), 1));
-    const auto exchanged = static_cast<double>(std::count(eyes.begin(), eyes.end(), -1));
+    const auto of = [&](camera::Side eye) {
+        return static_cast<double>(std::count(eyes.begin(), eyes.end(), eye));
+    };
+    const double proper = of(camera::Side::left);
+    const double exchanged = of(camera::Side::right);
     return proper + exchanged >= kEnoughTell && exchanged > kExchangedShare * (proper + exchanged);
 }
 

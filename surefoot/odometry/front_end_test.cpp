@@ -130,18 +130,18 @@ TEST(StereoPoints, CornersTellWhichEyeSawThem) {
                            ImageView<const std::uint8_t> other) {
         std::vector<Eigen::Vector2d> corners;
         detect_corners(image, {}, {}, serial, corners);
-        std::map<int, int> eyes;
+        std::map<std::optional<camera::Side>, int> eyes;
         for (const auto& corner : corners)
             eyes[eye_of_corner(rectifier, image, other, corner, {})] += 1;
         return eyes;
     };
     auto proper = count(left, right);
-    EXPECT_GT(proper[1], 100);
-    EXPECT_LT(proper[-1], proper[1] / 10);
+    EXPECT_GT(proper[camera::Side::left], 100);
+    EXPECT_LT(proper[camera::Side::right], proper[camera::Side::left] / 10);
     auto exchanged = count(right, left);
-    EXPECT_GT(exchanged[-1], 100);
-    EXPECT_LT(exchanged[1], exchanged[-1] / 10);
-    EXPECT_EQ(eye_of_corner(rectifier, left, right, {1.0, 1.0}, {}), 0) << "no window around it";
+    EXPECT_GT(exchanged[camera::Side::right], 100);
+    EXPECT_LT(exchanged[camera::Side::left], exchanged[camera::Side::right] / 10);
+    EXPECT_FALSE(eye_of_corner(rectifier, left, right, {1.0, 1.0}, {})) << "no window around it";
     GreyImage noise(frame.right.width(), frame.right.height());
     Rng rng(1);
     for (int v = 0; v < noise.height(); ++v)
@@ -200,7 +200,7 @@ TEST(StereoPoints, RepeatingTextureIsRefused) {
     EXPECT_EQ(matched, 0);
     for (int u = 150; u < 250; u += 5) {
         const auto view = std::as_const(stripes).view();
-        EXPECT_EQ(eye_of_corner(rectifier, view, view, Eigen::Vector2d(u, 110.0), {}), 0) << u;
+        EXPECT_FALSE(eye_of_corner(rectifier, view, view, Eigen::Vector2d(u, 110.0), {})) << u;
     }
 }
 

@@ -153,13 +153,13 @@ std::optional<StereoPixel> match_corner(const camera::Rectifier& rectifier,
     return stereo_pixel(rectifier, raw_left_px, aligned->raw_px, config);
 }
 
-int eye_of_corner(const camera::Rectifier& rectifier,
-                  ImageView<const std::uint8_t> image,
-                  ImageView<const std::uint8_t> other,
-                  const Eigen::Vector2d& raw_px,
-                  const StereoPointConfig& config) {
+std::optional<camera::Side> eye_of_corner(const camera::Rectifier& rectifier,
+                                          ImageView<const std::uint8_t> image,
+                                          ImageView<const std::uint8_t> other,
+                                          const Eigen::Vector2d& raw_px,
+                                          const StereoPointConfig& config) {
     Window patch;
-    if (!read_nearest(image, raw_px, patch)) return 0;
+    if (!read_nearest(image, raw_px, patch)) return std::nullopt;
     const auto best_as = [&](camera::Side eye) {
         const auto px = rectifier.rectified_from_raw(eye, raw_px);
         if (!px) return -1.0;
@@ -171,9 +171,9 @@ int eye_of_corner(const camera::Rectifier& rectifier,
     };
     const double as_left = best_as(camera::Side::left);
     const double as_right = best_as(camera::Side::right);
-    if (std::max(as_left, as_right) < kCoarseCorrelation) return 0;
-    if (std::abs(as_left - as_right) < kCorrelationNoise) return 0;
-    return as_left > as_right ? 1 : -1;
+    if (std::max(as_left, as_right) < kCoarseCorrelation) return std::nullopt;
+    if (std::abs(as_left - as_right) < kCorrelationNoise) return std::nullopt;
+    return as_left > as_right ? camera::Side::left : camera::Side::right;
 }
 
 std::optional<StereoPixel> depth_pixel(const camera::Rectifier& rectifier,
