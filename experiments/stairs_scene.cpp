@@ -200,8 +200,11 @@ class Run {
             pipeline->process(frame, Work::full);
             const Pose T_world_body = true_pose(truth.trajectory, frame.time_ns);
             ++processed;
-            if (is_look(processed, static_cast<int>(truth.trajectory.size()), T_world_body))
-                add_look(processed, truth.scene, *pipeline, T_world_body);
+            if (is_look(processed, static_cast<int>(truth.trajectory.size()), T_world_body)) {
+                add_look(processed, *pipeline, T_world_body);
+                if (now_.every > 0 || done_)
+                    measure_noise(truth.scene, *pipeline, T_world_body, executor_, looks_.back());
+            }
         };
         const auto start = [&] {
             pipeline->align(first, T_odom_world_ * truth.trajectory.front().T_world_body);
@@ -230,11 +233,10 @@ class Run {
         const Eigen::Vector2d ahead(std::cos(world_.yaw_rad), std::sin(world_.yaw_rad));
         if (world_.kind == TrueKind::door && to_go_m.dot(ahead) < kBeforeDoor_m) done_ = true;
         if (processed == frames) done_ = true;
-        return done_;
+        return true;
     }
 
     void add_look(int processed,
-                  const sim::Scene& scene,
                   const pipeline::Pipeline& pipeline,
                   const Pose& T_world_body) {
         Look look;
@@ -259,7 +261,6 @@ class Run {
         look.view = pipeline.view();
         look.disparity_px = pipeline.depth().disparity_px;
         look.disparity_sigma_px = pipeline.depth().sigma_px;
-        measure_noise(scene, pipeline, T_world_body, executor_, look);
         looks_.push_back(std::move(look));
     }
 

@@ -19,7 +19,9 @@ struct StairsCase {
     /// `zed` with as much noise that our matcher errs by about N px, see `put_into`; images_xF:
     /// with its noise times F.
     std::string mode;
-    int every = 0;  ///< look at every n-th frame; 0 = at the last one only
+    /// Looks at every n-th frame. 0: at every one until the end of the way, which alone is judged;
+    /// the noise of the others is not measured.
+    int every = 0;
 
     /// A usage error names a mode that is none.
     [[nodiscard]] Status put_into(sim::SceneOptions& options) const;

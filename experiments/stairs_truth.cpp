@@ -6,11 +6,13 @@
 //   stairs_truth out/false.csv floor,room 80001 5 images_0.25,images_0.5 5
 //
 // Modes, and what the seed draws beside the scene: see stairs_scene.hpp. Poses are true ones unless
-// settings say sim.known_motion=false. EVERY: the map is looked at after so many frames; 0 = at the
-// end of the way. MAPS: a folder that keeps what the finder is given; what it has is not simulated
-// again ('-' = none). Given alone, all that is in it is judged.
+// settings say sim.known_motion=false. EVERY: the map is looked at after so many frames; 0 = after
+// each, of which the last is judged. MAPS: a folder that keeps what the finder is given; what it has
+// is not simulated again ('-' = none). Given alone, all that is in it is judged, each by itself.
 //
-// One line a look. Lengths in mm, angles in deg; empty or nan = not found:
+// Two lines a look: what it finds alone, and what is told of it and those before it. Lengths in mm,
+// angles in deg; empty or nan = not found:
+//   way                look, or told: by FeatureFollower
 //   noise_px, bias_px, said_px   scatter and mean of disparity errors on level floor, stated sigma
 //   kind, steps, riser, going, width, sill, ahead   what is true; ahead: from the left camera
 //   found              the flight whose first edge lies within 0.1 m of the true one, within 10 deg
@@ -45,6 +47,7 @@
 #include "experiments/stairs_scene.hpp"
 #include "io/text.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
+#include "surefoot/stairs/feature_follower.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -133,42 +136,75 @@ std::string door_columns(const stairs::TerrainFeatures& features, const TrueFeat
 }
 
 constexpr const char* kHeader =
-    "scene,seed,mode,frame,noise_px,bias_px,said_px,kind,steps,riser,going,width,sill,ahead,"
+    "scene,seed,mode,way,frame,noise_px,bias_px,said_px,kind,steps,riser,going,width,sill,ahead,"
     "found,found_steps,found_riser,riser_sigma,found_going,going_sigma,found_width,"
     "cut,across,turn,flights,of_2,drop,drop_across,drop_height,drop_sigma,bottom_seen,drops,"
     "door,door_width,door_width_sigma,door_sill,sill_height,find_us\n";
 
-std::string row(const Look& look, stairs::FeatureFinder& finder) {
-    const TrueFeature& truth = look.truth;
-    const stairs::Terrain terrain = look.terrain();
-    stairs::TerrainFeatures features;
-    std::int64_t took_ns = std::numeric_limits<std::int64_t>::max();
-    for (int call = 0; call < kCalls; ++call) {  // the first one of a size allocates
-        const std::int64_t start_ns = steady_now_ns();
-        finder.find(terrain, features);
-        took_ns = std::min(took_ns, steady_now_ns() - start_ns);
+/// Looks of one run, one after the other.
+class Judge {
+  public:
+    explicit Judge(const stairs::StairsConfig& config) : finder_(config), follower_(config.follow) {}
+
+    void look(const Look& look) { (void)look_once(look); }
+
+    /// The two lines of a look.
+    std::string rows(const Look& look) {
+        const std::int64_t first_ns = look_once(look);
+        std::int64_t took_ns = first_ns;
+        for (int call = 1; call < kCalls; ++call) {  // the first one of a size allocates
+            const std::int64_t start_ns = steady_now_ns();
+            finder_.find(look.terrain(), found_);
+            took_ns = std::min(took_ns, steady_now_ns() - start_ns);
+        }
+        return row(look, "look", found_, took_ns) + row(look, "told", told_, took_ns);
     }
-    return fmt::format(
-        "{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.2f},{:.1f},{:.1f},{:.1f}{}{}{},{}\n",
-        look.scene,
-        look.seed,
-        look.mode,
-        look.frame,
-        look.noise_px,
-        look.bias_px,
-        look.said_px,
-        experiments::kTrueKindNames[static_cast<int>(truth.kind)],
-        truth.steps,
-        mm(truth.riser_m),
-        mm(truth.going_m),
-        mm(truth.width_m),
-        mm(truth.sill_m),
-        mm(truth.ahead_m),
-        flight_columns(features.flights, truth),
-        drop_columns(features.drops, truth),
-        door_columns(features, truth),
-        took_ns / 1000);
-}
+
+  private:
+    std::int64_t look_once(const Look& look) {
+        constexpr std::int64_t kFrame_ns = 100'000'000;
+        const stairs::Terrain terrain = look.terrain();
+        const std::int64_t start_ns = steady_now_ns();
+        finder_.find(terrain, found_);
+        const std::int64_t took_ns = steady_now_ns() - start_ns;
+        follower_.follow(found_, terrain, {look.frame * kFrame_ns, {}}, told_);
+        return took_ns;
+    }
+
+    static std::string row(const Look& look,
+                           const char* way,
+                           const stairs::TerrainFeatures& features,
+                           std::int64_t took_ns) {
+        const TrueFeature& truth = look.truth;
+        return fmt::format(
+            "{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.2f},{:.1f},{:.1f},{:.1f}{}{}{},{}"
+            "\n",
+            look.scene,
+            look.seed,
+            look.mode,
+            way,
+            look.frame,
+            look.noise_px,
+            look.bias_px,
+            look.said_px,
+            experiments::kTrueKindNames[static_cast<int>(truth.kind)],
+            truth.steps,
+            mm(truth.riser_m),
+            mm(truth.going_m),
+            mm(truth.width_m),
+            mm(truth.sill_m),
+            mm(truth.ahead_m),
+            flight_columns(features.flights, truth),
+            drop_columns(features.drops, truth),
+            door_columns(features, truth),
+            took_ns / 1000);
+    }
+
+    stairs::FeatureFinder finder_;
+    stairs::FeatureFollower follower_;
+    stairs::TerrainFeatures found_;
+    stairs::TerrainFeatures told_;
+};
 
 struct Done {
     std::string rows;
@@ -228,17 +264,21 @@ Result<std::vector<Look>> looks_of(const StairsCase& now,
 Done judge(const StairsCase& now, const std::string& maps, const Settings& settings) {
     const auto looks = looks_of(now, maps, settings);
     if (!looks) return {{}, looks.error()};
-    stairs::FeatureFinder finder(settings.pipeline.stairs);
+    Judge judge(settings.pipeline.stairs);
     Done done;
-    for (const Look& look : *looks) done.rows += row(look, finder);
+    for (const Look& look : *looks) {
+        if (now.every > 0 || &look == &looks->back())
+            done.rows += judge.rows(look);
+        else
+            judge.look(look);
+    }
     return done;
 }
 
 Done judge_saved(const std::string& folder, const Settings& settings) {
     const auto look = experiments::read_look(folder);
     if (!look) return {{}, look.error()};
-    stairs::FeatureFinder finder(settings.pipeline.stairs);
-    return {row(*look, finder), {}};
+    return {Judge(settings.pipeline.stairs).rows(*look), {}};
 }
 
 std::vector<StairsCase> cases_of(const std::vector<std::string>& words) {

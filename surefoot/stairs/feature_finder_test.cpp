@@ -408,6 +408,26 @@ TEST(FeatureFinder, points_on_a_riser_place_its_edge_where_cells_before_it_hold_
     EXPECT_NEAR(found.flights[0].going_m, 0.31, 0.002);
 }
 
+TEST(FeatureFinder, a_step_whose_face_is_seen_raggedly_between_two_others_is_one) {
+    const TestFlight flight{.steps = 5, .riser_m = 0.18, .going_m = 0.31};
+    constexpr double kRaggedStep_m = 2 * 0.31;
+    const auto ground = [&](double x_m, double y_m) {
+        // To one side its face is found too near, to the other too far.
+        const bool near = std::abs(x_m - kRaggedStep_m) < 0.12;
+        const double way = std::abs(y_m) < 0.12 ? 0.0 : y_m > 0.0 ? 0.11 : -0.11;
+        return flight.at(near ? x_m + way : x_m, y_m);
+    };
+    for (const double yaw_deg : kYaws_deg) {
+        const TestMap map(ground, yaw_deg * kRadPerDeg, {0.0, 0.0});
+        const TerrainFeatures found = find(map.terrain());
+        SCOPED_TRACE(::testing::Message() << yaw_deg << " deg");
+        ASSERT_EQ(found.flights.size(), 1U);
+        EXPECT_EQ(found.flights[0].steps, 5);
+        EXPECT_NEAR(found.flights[0].riser_m, 0.18, 0.003);
+        EXPECT_NEAR(found.flights[0].going_m, 0.31, 0.015);
+    }
+}
+
 TEST(FeatureFinder, the_same_map_gives_the_same_features) {
     const TestFlight flight{.steps = 4};
     TestMap map(ground_of(flight), 0.7, {0.0, 0.0});

@@ -501,6 +501,24 @@ TEST(FeatureFollower, a_flight_is_as_its_best_looks_say) {
     EXPECT_EQ(told.followed.looks, 36);
 }
 
+TEST(FeatureFollower, goings_that_scatter_are_a_mean_of_many_looks) {
+    double square = 0.0;
+    constexpr int kRuns = 40;
+    for (int run = 0; run < kRuns; ++run) {
+        Rng rng(static_cast<std::uint64_t>(100 + run));
+        Looks looks;
+        for (int k = 0; k < 40; ++k) {
+            Flight flight = flight_up(4);
+            flight.going_sigma_m = 0.008;
+            flight.going_m = 0.3 + flight.going_sigma_m * rng.normal();
+            looks.look(flight_found(flight));
+        }
+        square += std::pow(looks.out().flights.at(0).going_m - 0.3, 2) / kRuns;
+    }
+    // A mean whose newest look weighs 1 / n scatters by 1 / sqrt(2 n - 1) of a look: n = 15.
+    EXPECT_NEAR(std::sqrt(square), 0.008 / std::sqrt(29.0), 0.0004);
+}
+
 TEST(FeatureFollower, a_flight_comes_with_its_second_look_and_stays_when_it_is_out_of_sight) {
     Looks looks;
     looks.look_at_nothing();

@@ -198,7 +198,7 @@ void FlightFollower::take(const Flight& seen, std::int64_t time_ns, FlightTrack&
     double going_m = flight.going_m;
     double width_m = flight.width_m;
     take_mean(seen.riser_m, seen.riser_sigma_m, config_.mean_looks, track.riser, riser_m);
-    take_mean(seen.going_m, seen.going_sigma_m, config_.mean_looks, track.going, going_m);
+    take_mean(seen.going_m, seen.going_sigma_m, config_.going_looks, track.going, going_m);
     take_mean(seen.width_m, kWidthSigma_m, config_.mean_looks, track.width, width_m);
     if (vote(steps_of(seen), config_.steps_looks, track) || before.looks == 0) flight = seen;
     flight.riser_m = riser_m;

@@ -20,6 +20,8 @@ constexpr double kLevel_m = 0.015;  ///< neighbouring slices of a tread differ b
 constexpr double kNear_m = 0.07;
 constexpr double kFar_m = 0.1;   ///< the face of a riser lies nearer to where its tread ends
 constexpr double kSide_m = 0.4;  ///< a step may be so much wider than the seed, on either side
+/// A step that shows less than so much of what both its neighbours show is as long as they are.
+constexpr double kRagged = 0.5;
 /// Ground that the seed was measured on.
 constexpr double kTread_m = 0.03;
 /// Steps of a flight differ by 5 mm by the code (NZ D1/AS1), by more where they are badly made.
@@ -212,6 +214,18 @@ void StepFitter::measure_extents(const grid::GridGeometry& grid) {
             longest_run(borders_, static_cast<int>(k), steps_[k].at_m, kNear_m, config_.max_gap_m);
         steps_[k].from_m = extent.from_m - 0.5 * grid.resolution_m;
         steps_[k].to_m = extent.to_m + 0.5 * grid.resolution_m;
+    }
+    // Between two steps the treads prove one, however ragged what is seen of its face.
+    for (std::size_t k = 1; k + 1 < steps_.size(); ++k) {
+        const Step& above = steps_[k - 1];
+        const Step& below = steps_[k + 1];
+        const double from_m = std::max(above.from_m, below.from_m);
+        const double to_m = std::min(above.to_m, below.to_m);
+        Step& step = steps_[k];
+        if (step.to_m - step.from_m >= kRagged * (to_m - from_m)) continue;
+        step.from_m = from_m;
+        step.to_m = to_m;
+        step.rms_m = std::max(step.rms_m, kNear_m);
     }
 }
 
