@@ -236,9 +236,7 @@ class Run {
         return true;
     }
 
-    void add_look(int processed,
-                  const pipeline::Pipeline& pipeline,
-                  const Pose& T_world_body) {
+    void add_look(int processed, const pipeline::Pipeline& pipeline, const Pose& T_world_body) {
         Look look;
         look.scene = now_.scene;
         look.seed = now_.seed;

@@ -7,8 +7,9 @@
 //
 // Modes, and what the seed draws beside the scene: see stairs_scene.hpp. Poses are true ones unless
 // settings say sim.known_motion=false. EVERY: the map is looked at after so many frames; 0 = after
-// each, of which the last is judged. MAPS: a folder that keeps what the finder is given; what it has
-// is not simulated again ('-' = none). Given alone, all that is in it is judged, each by itself.
+// each, of which the last is judged. MAPS: a folder that keeps what the finder is given; what it
+// has is not simulated again ('-' = none). Given alone, all that is in it is judged, each by
+// itself.
 //
 // Two lines a look: what it finds alone, and what is told of it and those before it. Lengths in mm,
 // angles in deg; empty or nan = not found:
@@ -144,7 +145,8 @@ constexpr const char* kHeader =
 /// Looks of one run, one after the other.
 class Judge {
   public:
-    explicit Judge(const stairs::StairsConfig& config) : finder_(config), follower_(config.follow) {}
+    explicit Judge(const stairs::StairsConfig& config)
+        : finder_(config), follower_(config.follow) {}
 
     void look(const Look& look) { (void)look_once(look); }
 

@@ -10,8 +10,8 @@ struct FollowConfig {
     /// A mean is one of at most so many looks. The map has averaged already: more make places no
     /// steadier, and lag behind what comes nearer.
     double mean_looks = 4.0;
-    /// The same of a flight's going. It hangs on where the last look sees faces, whose errors change
-    /// from look to look, and neither drifts nor lags.
+    /// The same of a flight's going. It hangs on where each look sees the faces, whose errors
+    /// change from look to look, and neither drifts nor lags.
     double going_looks = 15.0;
     int level_looks = 5;    ///< in a row that see level ground where a drop was, until it is gone
     int missed_looks = 10;  ///< in a row that do not find what they see, drops excepted
