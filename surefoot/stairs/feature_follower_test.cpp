@@ -515,8 +515,7 @@ TEST(FeatureFollower, goings_that_scatter_are_a_mean_of_many_looks) {
         }
         square += std::pow(looks.out().flights.at(0).going_m - 0.3, 2) / kRuns;
     }
-    // A mean whose newest look weighs 1 / n scatters by 1 / sqrt(2 n - 1) of a look: n = 15.
-    EXPECT_NEAR(std::sqrt(square), 0.008 / std::sqrt(29.0), 0.0004);
+    EXPECT_NEAR(std::sqrt(square), 0.008 / std::sqrt(RobustMean::kMostLooks), 0.0004);
 }
 
 TEST(FeatureFollower, a_flight_comes_with_its_second_look_and_stays_when_it_is_out_of_sight) {

@@ -15,6 +15,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kWidthSigma_m = 0.05;  ///< ends of edges in noise and shadow; the same for all
+/// One sigma of what all looks at a going have in common: a texture draws the matcher in each.
+constexpr double kGoingShared_m = 0.0015;
 /// So many more votes than the shown number of steps has: two that take turns do not change it.
 constexpr float kLead = 1.0F;
 /// What lies so many risers beside where a flight leads is another one, behind a landing.
@@ -195,18 +197,21 @@ void FlightFollower::take(const Flight& seen, std::int64_t time_ns, FlightTrack&
     Flight& flight = track.flight;
     const Followed before = flight.followed;
     double riser_m = flight.riser_m;
-    double going_m = flight.going_m;
     double width_m = flight.width_m;
     take_mean(seen.riser_m, seen.riser_sigma_m, config_.mean_looks, track.riser, riser_m);
-    take_mean(seen.going_m, seen.going_sigma_m, config_.going_looks, track.going, going_m);
     take_mean(seen.width_m, kWidthSigma_m, config_.mean_looks, track.width, width_m);
+    if (std::isfinite(seen.going_m) && seen.going_sigma_m > 0.0)
+        track.going.add(seen.going_m, seen.going_sigma_m, config_.going_looks);
     if (vote(steps_of(seen), config_.steps_looks, track) || before.looks == 0) flight = seen;
     flight.riser_m = riser_m;
     flight.riser_sigma_m = track.riser.sigma();
     flight.width_m = width_m;
-    flight.going_m = going_m;
-    flight.going_sigma_m = track.going.sigma();
-    if (flight.steps == 1) flight.going_m = flight.going_sigma_m = std::nan("");
+    flight.going_m = flight.going_sigma_m = std::nan("");
+    if (flight.steps > 1 && !track.going.empty()) {
+        const RobustMean::Mean going = track.going.mean(kGoingShared_m);
+        flight.going_m = going.value;
+        flight.going_sigma_m = going.sigma;
+    }
     flight.followed = {
         .id = before.id, .looks = before.looks + 1, .last_seen_ns = time_ns, .seen_now = true};
     track.shown = track.shown || flight.followed.looks >= 2;

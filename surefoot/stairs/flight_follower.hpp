@@ -10,6 +10,7 @@
 #include "surefoot/stairs/features.hpp"
 #include "surefoot/stairs/follow_config.hpp"
 #include "surefoot/stairs/look_weight.hpp"
+#include "surefoot/stairs/robust_mean.hpp"
 #include "surefoot/stairs/terrain.hpp"
 
 namespace surefoot::stairs {
@@ -21,7 +22,7 @@ struct FlightTrack {
     /// As the last look that found `flight.steps` steps has it, with the means of all looks.
     Flight flight;
     LookWeight riser;
-    LookWeight going;
+    RobustMean going;
     LookWeight width;
     /// How often each number of steps was found, the last looks counting most.
     std::array<float, kMaxSteps + 1> votes{};

@@ -6,8 +6,11 @@ namespace surefoot::stairs {
 void FollowConfig::describe(ConfigVisitor& visitor) {
     visitor.number(
         "mean_looks", mean_looks, 1.0, 100.0, "looks that places are a mean of, at most");
-    visitor.number(
-        "going_looks", going_looks, 1.0, 1000.0, "looks that goings are a mean of, at most");
+    visitor.integer("going_looks",
+                    going_looks,
+                    1,
+                    RobustMean::kMostLooks,
+                    "looks that the going of a flight is a mean of, at most");
     visitor.integer("level_looks",
                     level_looks,
                     1,

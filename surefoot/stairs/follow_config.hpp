@@ -2,6 +2,7 @@
 #pragma once
 
 #include "surefoot/core/config.hpp"
+#include "surefoot/stairs/robust_mean.hpp"
 
 namespace surefoot::stairs {
 
@@ -10,9 +11,9 @@ struct FollowConfig {
     /// A mean is one of at most so many looks. The map has averaged already: more make places no
     /// steadier, and lag behind what comes nearer.
     double mean_looks = 4.0;
-    /// The same of a flight's going. It hangs on where each look sees the faces, whose errors
+    /// A flight's going is one of more: it hangs on where each look sees the faces, whose errors
     /// change from look to look, and neither drifts nor lags.
-    double going_looks = 15.0;
+    int going_looks = RobustMean::kMostLooks;
     int level_looks = 5;    ///< in a row that see level ground where a drop was, until it is gone
     int missed_looks = 10;  ///< in a row that do not find what they see, drops excepted
     int first_looks = 3;    ///< the same for what was found once only
