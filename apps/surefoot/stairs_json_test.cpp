@@ -92,13 +92,16 @@ TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
     flight.turn_rad = 2.75;
     flight.cut = true;
     flight.open = true;
+    flight.left = {stairs::SideKind::wall, 0.0};
+    flight.right = {stairs::SideKind::open, 0.875};
     stairs::TerrainFeatures features;
     features.flights = {flight};
     EXPECT_NE(packed(json_of(features, {}))
                   .find(R"({"flights":[{"kind":"down","steps":3,"riser_m":0.25,"riser_std_m":0.5,)"
                         R"("riser_spread_m":0.75,"going_m":1.25,"going_std_m":1.5,)"
                         R"("going_spread_m":1.75,"width_m":2.25,"landing_m":2.5,"turn_rad":2.75,)"
-                        R"("cut":true,"open":true,)" +
+                        R"("cut":true,"open":true,"left":{"kind":"wall","rail_m":null},)"
+                        R"("right":{"kind":"open","rail_m":0.875},)" +
                         pose_text() + "}],"),
               std::string::npos)
         << json_of(features, {});

@@ -31,6 +31,15 @@ std::string place_text(const stairs::FeaturePose& pose) {
                        pose.yaw_rad * 180.0 / std::numbers::pi);
 }
 
+std::string side_remark(const char* name, const stairs::FlightSide& side) {
+    constexpr const char* kWords[] = {"", "a wall", "level", "open"};
+    std::string text;
+    if (side.kind != stairs::SideKind::unknown)
+        text = fmt::format("; {} {}", name, kWords[static_cast<std::size_t>(side.kind)]);
+    if (side.rail_m > 0.0) text += fmt::format("; rail on the {}, {:.2f} m high", name, side.rail_m);
+    return text;
+}
+
 std::string flight_remarks(const stairs::Flight& flight) {
     std::string text = fmt::format("landing {:.2f} m", flight.landing_m);
     if (flight.steps > 2) {
@@ -42,6 +51,7 @@ std::string flight_remarks(const stairs::Flight& flight) {
     if (std::abs(flight.turn_rad) > kStraight_rad)
         text += fmt::format("; turns by {:.0f} deg", flight.turn_rad * 180.0 / std::numbers::pi);
     if (flight.open) text += "; boards without risers";
+    text += side_remark("left", flight.left) + side_remark("right", flight.right);
     if (flight.cut) text += "; may go on beyond what is known";
     return text;
 }

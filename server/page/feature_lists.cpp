@@ -32,6 +32,12 @@ Json followed_json(Json json, const stairs::Followed& followed, std::int64_t now
     return json;
 }
 
+Json side_json(const stairs::FlightSide& side) {
+    constexpr const char* kKinds[] = {"unknown", "wall", "level", "open"};
+    return {{"kind", kKinds[static_cast<std::size_t>(side.kind)]},
+            {"rail_m", side.rail_m > 0.0 ? number(side.rail_m) : Json()}};
+}
+
 Json flight_json(const stairs::Flight& flight, std::int64_t now_ns) {
     const Json json = {{"kind", flight.kind == stairs::FlightKind::up ? "up" : "down"},
                        {"steps", flight.steps},
@@ -46,6 +52,8 @@ Json flight_json(const stairs::Flight& flight, std::int64_t now_ns) {
                        {"turn_rad", number(flight.turn_rad)},
                        {"cut", flight.cut},
                        {"open", flight.open},
+                       {"left", side_json(flight.left)},
+                       {"right", side_json(flight.right)},
                        {"pose", pose_json(flight.pose)}};
     return followed_json(json, flight.followed, now_ns);
 }

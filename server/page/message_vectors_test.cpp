@@ -146,6 +146,8 @@ stairs::TerrainFeatures features() {
     flight.going_spread_m = 0.008;
     flight.width_m = 1.5;
     flight.landing_m = 0.75;
+    flight.left = {stairs::SideKind::wall, 0.0};
+    flight.right = {stairs::SideKind::open, 0.95};
     flight.followed = followed;
     features.flights.push_back(flight);
     stairs::Flight step = flight;  // of one step: no going

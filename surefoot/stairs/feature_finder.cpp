@@ -56,6 +56,7 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
         return (a.pose.p_m.head<2>() - terrain.stance_m).norm() <
                (b.pose.p_m.head<2>() - terrain.stance_m).norm();
     });
+    for (Flight& flight : out.flights) flight_sides_.find(terrain, flight);
     name_lines(terrain, out);
     door_finder_.find(terrain, out.doors, out.sills);
 }

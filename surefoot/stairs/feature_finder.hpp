@@ -9,6 +9,7 @@
 #include "surefoot/stairs/edge_points.hpp"
 #include "surefoot/stairs/edge_profile.hpp"
 #include "surefoot/stairs/features.hpp"
+#include "surefoot/stairs/flight_sides.hpp"
 #include "surefoot/stairs/flights.hpp"
 #include "surefoot/stairs/sight_faces.hpp"
 #include "surefoot/stairs/sight_steps.hpp"
@@ -55,6 +56,7 @@ class FeatureFinder {
     SightFaces sight_faces_;
     SightSteps sight_steps_;
     FlightFinder flight_finder_;
+    FlightSides flight_sides_;
     DoorFinder door_finder_;
     traversability::Reachability reachability_;
     grid::Layer walk_step_m_;  ///< NaN = not to be walked to

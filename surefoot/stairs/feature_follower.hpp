@@ -36,7 +36,9 @@ struct Moment {
 /// - All else is reported from the second look on: a wrong match has the sigma of a right one, but
 ///   not twice the same place. (In the first look after nothing there was none to ask.) It goes
 ///   when looks see its place and do not find it, `missed_looks` times in a row.
-/// - A flight has as many steps as most of the last looks say.
+/// - A flight has as many steps as most of the last looks say. Its going hangs on where each look
+///   sees the faces of risers; those errors change, and the mean of many looks is surer than any
+///   (RobustMean).
 ///
 /// Kerbs and drops have the ids of their edges. Ids are never used twice, not even after `forget`.
 /// Looks of one place and size allocate nothing after the first few. Not thread-safe.

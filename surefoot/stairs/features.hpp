@@ -74,6 +74,14 @@ struct LineFeature {
 
 enum class FlightKind : std::uint8_t { up, down };
 
+/// What lies beside the steps of a flight.
+enum class SideKind : std::uint8_t { unknown, wall, level, open };
+
+struct FlightSide {
+    SideKind kind = SideKind::unknown;
+    double rail_m = 0.0;  ///< a rail runs so high above the line of the noses; 0 = none was seen
+};
+
 /// Steps one behind the other, as seen from the stance.
 struct Flight {
     FlightKind kind = FlightKind::up;
@@ -94,6 +102,8 @@ struct Flight {
     double turn_rad = 0.0;  ///< how far the way turns from the first edge to the last: spirals
     bool cut = false;       ///< it may go on beyond what is known
     bool open = false;      ///< boards without risers, as far as half of its steps or more show it
+    FlightSide left;        ///< as seen from the stance, along the way that it leads
+    FlightSide right;
     Followed followed;
 };
 

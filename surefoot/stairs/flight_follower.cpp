@@ -202,10 +202,14 @@ void FlightFollower::take(const Flight& seen, std::int64_t time_ns, FlightTrack&
     take_mean(seen.width_m, kWidthSigma_m, config_.mean_looks, track.width, width_m);
     if (std::isfinite(seen.going_m) && seen.going_sigma_m > 0.0)
         track.going.add(seen.going_m, seen.going_sigma_m, config_.going_looks);
+    const FlightSide left = seen.left.kind == SideKind::unknown ? flight.left : seen.left;
+    const FlightSide right = seen.right.kind == SideKind::unknown ? flight.right : seen.right;
     if (vote(steps_of(seen), config_.steps_looks, track) || before.looks == 0) flight = seen;
     flight.riser_m = riser_m;
     flight.riser_sigma_m = track.riser.sigma();
     flight.width_m = width_m;
+    flight.left = left;
+    flight.right = right;
     flight.going_m = flight.going_sigma_m = std::nan("");
     if (flight.steps > 1 && !track.going.empty()) {
         const RobustMean::Mean going = track.going.mean(kGoingShared_m);

@@ -8,7 +8,7 @@ from surefoot_cli import CliTest, png_of, read_asc, surefoot
 
 NAMES = {
     "flights": "kind steps riser_m riser_std_m riser_spread_m going_m going_std_m going_spread_m width_m landing_m "
-               "turn_rad cut open pose",
+               "turn_rad cut open left right pose",
     "drops": "pose height_m length_m sigma_m bottom_seen",
     "kerbs": "kind pose height_m length_m sigma_m bottom_seen",
     "sills": "pose height_m length_m sigma_m bottom_seen",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Door, Feature, Flight, Kerb, LineFeature, Stairs } from "./messages.ts";
+import type { Door, Feature, Flight, FlightSide, Kerb, LineFeature, Stairs } from "./messages.ts";
 import type { Place } from "./store.ts";
 
 /// What of the ground is told by its name, in the words of tables, labels and sentences. Knows no browser.
@@ -54,6 +54,11 @@ function seenWords({ looks, last_seen_s }: Feature, passed_s: number): string {
   return `${when}, ${looks} look${looks === 1 ? "" : "s"}`;
 }
 
+function sideWords(name: string, { kind, rail_m }: FlightSide): string[] {
+  const words = kind === "unknown" ? [] : [`${name} ${kind === "wall" ? "a wall" : kind}`];
+  return rail_m === null ? words : [...words, `rail on the ${name}, ${metres(rail_m)} high`];
+}
+
 function flightRemarks(flight: Flight): string {
   const said: string[] = [];
   if (flight.landing_m !== null) said.push(`landing ${metres(flight.landing_m)}`);
@@ -64,6 +69,7 @@ function flightRemarks(flight: Flight): string {
   if (flight.turn_rad !== null && Math.abs(flight.turn_rad) > 0.1)
     said.push(`turns by ${((flight.turn_rad * 180) / Math.PI).toFixed(0)}°`);
   if (flight.open) said.push("boards without risers");
+  said.push(...sideWords("left", flight.left), ...sideWords("right", flight.right));
   if (flight.cut) said.push("may go on beyond what is known");
   return said.join("; ");
 }

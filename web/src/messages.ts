@@ -350,6 +350,11 @@ export interface Feature {
   looks?: number;
   last_seen_s?: number;
 }
+/// What lies beside the steps of a flight.
+export interface FlightSide {
+  kind: "unknown" | "wall" | "level" | "open";
+  rail_m: number | null;
+}
 export interface Flight extends Feature {
   kind: "up" | "down";
   steps: number;
@@ -364,6 +369,8 @@ export interface Flight extends Feature {
   turn_rad: number | null;
   cut: boolean;
   open: boolean;
+  left: FlightSide;
+  right: FlightSide;
 }
 export interface LineFeature extends Feature {
   height_m: number | null;

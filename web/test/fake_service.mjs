@@ -245,6 +245,8 @@ export function stairs(riser_m = 0.18) {
         turn_rad: 0,
         cut: true,
         open: false,
+        left: { kind: "wall", rail_m: null },
+        right: { kind: "unknown", rail_m: 0.95 },
         pose: [-0.4, -1.15, 0, -1.5708],
         ...seen,
       },

@@ -270,7 +270,9 @@ test("each thing on the ground is a row with its measures", () => {
     width: "1.20 m",
     place: "-0.40, -1.15 m; -90°",
     seen: "now, 12 looks",
-    remarks: "landing 0.80 m; single ones scatter by 4 and 7 mm; may go on beyond what is known",
+    remarks:
+      "landing 0.80 m; single ones scatter by 4 and 7 mm; left a wall; rail on the right, 0.95 m high; " +
+      "may go on beyond what is known",
   });
   assert.equal(rows[1].height, "170 ± 6 mm or more");
   assert.match(rows[1].remarks, /bottom was not seen/);
@@ -285,12 +287,14 @@ test("each thing on the ground is a row with its measures", () => {
     going_m: null,
     turn_rad: 0.5,
     open: true,
+    left: { kind: "open", rail_m: null },
+    right: { kind: "level", rail_m: null },
     id: undefined,
     looks: undefined,
   };
   const [row] = featureRows({ ...stairs(), flights: [once] });
   assert.deepEqual([row.what, row.going, row.seen], ["flight, one step up", "-", "-"]);
-  assert.match(row.remarks, /turns by 29°; boards without risers/);
+  assert.match(row.remarks, /turns by 29°; boards without risers; left open; right level/);
 });
 
 test("labels say riser by going, and lie on the thing", () => {
