@@ -9,6 +9,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "eval/classes_picture.hpp"
+#include "eval/html_report.hpp"
 #include "eval/stairs_picture.hpp"
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
@@ -32,24 +33,30 @@ eval::Overlays stance_of(const TerrainMap& map) {
     return drawn;
 }
 
-std::string as_png(const eval::Picture& picture) {
-    const auto png = eval::encode_png(picture);
-    return {png.begin(), png.end()};
-}
-
+/// stairs.png, classes.png and a page with both and the table of what was found.
 Status write_pictures(const StairsOptions& options, const TerrainMap& map, const Found& found) {
     const eval::Overlays drawn = stance_of(map);
+    const auto stairs_png = eval::encode_png(eval::render_features(
+        map.geometry, map.height_m, found.features, drawn, {"Edges and stairs", options.map}));
+    const auto classes_png = eval::encode_png(eval::render_classes(
+        map.geometry, map.height_m, found.classes, drawn, {"What the ground is", options.map}));
+    eval::ReportContent content;
+    content.title = fmt::format("Surefoot: stairs of {}", options.map);
+    content.summary.push_back(features_count_text(found.features));
+    for (const std::string& sentence : map.assumed)
+        content.summary.push_back("assumed: " + sentence);
+    content.sections.push_back({"What the ground is",
+                                {{"Edges, flights, drops, kerbs and doors", stairs_png},
+                                 {"The class of each cell", classes_png}},
+                                {features_table(found.features)}});
+    content.footer = "The same for programs: stairs.json; the settings: config.yaml.";
+    const auto as_text = [](const std::vector<std::uint8_t>& bytes) {
+        return std::string(bytes.begin(), bytes.end());
+    };
     Writes writes;
-    writes += io::write_file(
-        options.out_dir + "/stairs.png",
-        as_png(eval::render_features(
-            map.geometry, map.height_m, found.features, drawn, {"Edges and stairs", options.map})));
-    writes += io::write_file(options.out_dir + "/classes.png",
-                             as_png(eval::render_classes(map.geometry,
-                                                         map.height_m,
-                                                         found.classes,
-                                                         drawn,
-                                                         {"What the ground is", options.map})));
+    writes += io::write_file(options.out_dir + "/stairs.png", as_text(stairs_png));
+    writes += io::write_file(options.out_dir + "/classes.png", as_text(classes_png));
+    writes += io::write_file(options.out_dir + "/report.html", eval::render_html(content));
     return writes.first();
 }
 
@@ -76,7 +83,8 @@ void print_text(const StairsOptions& options,
     fmt::print("{}{}\n", features_text(features), features_count_text(features));
     for (const std::string& sentence : map.assumed) fmt::print("assumed: {}\n", sentence);
     if (!options.out_dir.empty())
-        fmt::print("stairs.json, stairs.png, classes.png and treads.asc in {}/\n", options.out_dir);
+        fmt::print("stairs.json, treads.asc, stairs.png, classes.png and report.html in {}/\n",
+                   options.out_dir);
 }
 
 }  // namespace

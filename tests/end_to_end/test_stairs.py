@@ -88,6 +88,9 @@ class Stairs(CliTest):
         for picture in ("stairs.png", "classes.png"):
             self.assertTrue((self.dir / "out" / picture).read_bytes().startswith(b"\x89PNG"))
         self.assertTrue((self.dir / "out" / "config.yaml").exists())
+        page = (self.dir / "out" / "report.html").read_text()
+        self.assertIn("flight up, 3 steps", page)
+        self.assertEqual(page.count("data:image/png;base64,"), 2)
         cells = {name: of["cells"] for name, of in answer["classes"].items()}
         print(f"cells: {cells}")
         self.assertEqual(sum(cells.values()), 160 * 60)
