@@ -74,15 +74,36 @@ struct Reader {
     }
 };
 
-bool has_sound_size(const MapSnapshot& s) noexcept {
-    return s.nx >= 1 && s.ny >= 1 && s.nx <= MapSnapshot::kMaxSide &&
-           s.ny <= MapSnapshot::kMaxSide && s.edge_count >= 0 &&
-           s.edge_count <= MapSnapshot::kMaxEdges;
-}
-
 std::size_t cells_of(const MapSnapshot& s) {
     return static_cast<std::size_t>(s.nx) * static_cast<std::size_t>(s.ny);
 }
+
+/// Bytes of what a snapshot has for each cell and each edge, in the file.
+constexpr std::size_t kCellBytes = sizeof(std::int32_t) + 4 * sizeof(std::uint16_t) + 2;
+constexpr std::size_t kEdgeBytes = 8 * sizeof(std::int32_t);
+
+/// What stands of the header before nx, ny and the number of edges: of these alone a file of wrong
+/// length is known, before a megabyte is taken for it.
+constexpr std::size_t kBeforeSizes =
+    sizeof(MapSnapshot::magic) + sizeof(MapSnapshot::layout) + sizeof(MapSnapshot::version) +
+    sizeof(MapSnapshot::config_hash) + sizeof(MapSnapshot::frame_time_ns) +
+    sizeof(MapSnapshot::pose_time_ns) + sizeof(MapSnapshot::resolution_tenth_mm);
+
+struct Sizes {
+    std::int32_t nx = 0;
+    std::int32_t ny = 0;
+    std::int32_t edge_count = 0;
+
+    [[nodiscard]] bool are_possible() const {
+        return nx >= 1 && ny >= 1 && nx <= MapSnapshot::kMaxSide && ny <= MapSnapshot::kMaxSide &&
+               edge_count >= 0 && edge_count <= MapSnapshot::kMaxEdges;
+    }
+    /// Of cells, edges and checksum; there is a header before them.
+    [[nodiscard]] std::size_t bytes() const {
+        return static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) * kCellBytes +
+               static_cast<std::size_t>(edge_count) * kEdgeBytes + sizeof(MapSnapshot::checksum);
+    }
+};
 
 Error damaged(const std::string& file, std::string_view what) {
     return input_error(fmt::format("{}: {}; make the map again", file, what));
@@ -140,21 +161,37 @@ Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
                                    layout,
                                    MapSnapshot::kLayout));
     }
-    auto snapshot = std::make_unique<MapSnapshot>();  // a megabyte: not for every wrong file
-    snapshot->magic = magic;
-    snapshot->layout = layout;
-    grid::for_each_header_field(*snapshot, [&](const char*, auto& field) { reader(field); });
-    if (!reader.complete) return damaged(file, "truncated map snapshot: its header is cut off");
-    if (!has_sound_size(*snapshot)) {
+    if (bytes.size() < kBeforeSizes + sizeof(Sizes))
+        return damaged(file, "truncated map snapshot: its header is cut off");
+    Reader ahead{bytes.substr(kBeforeSizes)};
+    Sizes sizes;
+    ahead(sizes.nx);
+    ahead(sizes.ny);
+    ahead(sizes.edge_count);
+    if (!sizes.are_possible()) {
         return damaged(file,
                        fmt::format("map snapshot of {} x {} cells and {} edges; 1 to {} cells a "
                                    "side and 0 to {} edges are possible",
-                                   snapshot->nx,
-                                   snapshot->ny,
-                                   snapshot->edge_count,
+                                   sizes.nx,
+                                   sizes.ny,
+                                   sizes.edge_count,
                                    MapSnapshot::kMaxSide,
                                    MapSnapshot::kMaxEdges));
     }
+    const auto wrong_length = [&](const char* what) {
+        return damaged(file,
+                       fmt::format("{} map snapshot: {} bytes for {} x {} cells",
+                                   what,
+                                   bytes.size(),
+                                   sizes.nx,
+                                   sizes.ny));
+    };
+    if (bytes.size() < kBeforeSizes + sizeof(Sizes) + sizes.bytes())
+        return wrong_length("truncated");
+    auto snapshot = std::make_unique<MapSnapshot>();
+    snapshot->magic = magic;
+    snapshot->layout = layout;
+    grid::for_each_header_field(*snapshot, [&](const char*, auto& field) { reader(field); });
     grid::for_each_snapshot_layer(*snapshot, [&](auto& layer) {
         std::for_each_n(layer.begin(), cells_of(*snapshot), [&](auto& cell) { reader(cell); });
     });
@@ -164,14 +201,8 @@ Result<std::unique_ptr<MapSnapshot>> parse_snapshot(std::string_view bytes,
     }
     std::uint64_t checksum = 0;
     reader(checksum);
-    if (!reader.complete || !reader.rest.empty()) {
-        return damaged(file,
-                       fmt::format("{} map snapshot: {} bytes for {} x {} cells",
-                                   reader.complete ? "too long a" : "truncated",
-                                   bytes.size(),
-                                   snapshot->nx,
-                                   snapshot->ny));
-    }
+    if (!reader.complete) return wrong_length("truncated");
+    if (!reader.rest.empty()) return wrong_length("too long a");
     grid::seal(*snapshot);
     if (!reader.known_values || snapshot->checksum != checksum || !grid::is_sealed(*snapshot)) {
         return damaged(file, "damaged map snapshot: its checksum or header is wrong");
