@@ -501,6 +501,20 @@ TEST(FeatureFollower, a_flight_is_as_its_best_looks_say) {
     EXPECT_EQ(told.followed.looks, 36);
 }
 
+TEST(FeatureFollower, what_a_look_does_not_see_beside_a_flight_stays_as_it_was) {
+    Looks looks;
+    Flight flight = flight_up(4);
+    flight.left = {SideKind::wall, 0.0};
+    flight.right = {SideKind::open, 0.95};
+    looks.look(flight_found(flight));
+    flight.left = {SideKind::unknown, 0.0};
+    flight.right = {SideKind::level, 0.0};
+    looks.look(flight_found(flight));
+    EXPECT_EQ(looks.out().flights.at(0).left.kind, SideKind::wall);
+    EXPECT_EQ(looks.out().flights.at(0).right.kind, SideKind::level);
+    EXPECT_EQ(looks.out().flights.at(0).right.rail_m, 0.0);
+}
+
 TEST(FeatureFollower, goings_that_scatter_are_a_mean_of_many_looks) {
     double square = 0.0;
     constexpr int kRuns = 40;
