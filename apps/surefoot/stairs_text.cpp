@@ -36,7 +36,8 @@ std::string side_remark(const char* name, const stairs::FlightSide& side) {
     std::string text;
     if (side.kind != stairs::SideKind::unknown)
         text = fmt::format("; {} {}", name, kWords[static_cast<std::size_t>(side.kind)]);
-    if (side.rail_m > 0.0) text += fmt::format("; rail on the {}, {:.2f} m high", name, side.rail_m);
+    if (side.rail_m > 0.0)
+        text += fmt::format("; rail on the {}, {:.2f} m high", name, side.rail_m);
     return text;
 }
 

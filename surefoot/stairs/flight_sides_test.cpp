@@ -18,8 +18,8 @@ using testing::TestFlight;
 using testing::TestMap;
 
 constexpr double kHalfWidth_m = 0.6;
-const double kYaws_deg[] = {0.0, 31.0, 90.0, 200.0};
-const TestFlight kUp{.steps = 4, .riser_m = 0.18, .going_m = 0.31};
+constexpr double kYaws_deg[] = {0.0, 31.0, 90.0, 200.0};
+constexpr TestFlight kUp{.steps = 4, .riser_m = 0.18, .going_m = 0.31};
 
 /// The one with all four steps: what stands beside it may end in steps too.
 Flight flight_of(const Terrain& terrain) {
