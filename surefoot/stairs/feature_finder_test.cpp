@@ -408,6 +408,22 @@ TEST(FeatureFinder, points_on_a_riser_place_its_edge_where_cells_before_it_hold_
     EXPECT_NEAR(found.flights[0].going_m, 0.31, 0.002);
 }
 
+TEST(FeatureFinder, a_last_step_unlike_the_others_joins_their_flight) {
+    // Of three alike steps that are placed together and of a lower one, whose tread soon ends.
+    const TestFlight flight{.steps = 3, .riser_m = 0.18, .going_m = 0.31};
+    const auto ground = [&](double x_m, double y_m) {
+        if (std::abs(y_m) > 0.6 || x_m < 3 * 0.31) return flight.at(x_m, y_m);
+        return x_m < 3 * 0.31 + 0.4 ? 3 * 0.18 + 0.12 : 2.0;
+    };
+    for (const double yaw_deg : kYaws_deg) {
+        const TestMap map(ground, yaw_deg * kRadPerDeg, {0.0, 0.0});
+        const TerrainFeatures found = find(map.terrain());
+        SCOPED_TRACE(::testing::Message() << yaw_deg << " deg");
+        ASSERT_EQ(found.flights.size(), 1U);
+        EXPECT_EQ(found.flights[0].steps, 4);
+    }
+}
+
 TEST(FeatureFinder, a_step_whose_face_is_seen_raggedly_between_two_others_is_one) {
     const TestFlight flight{.steps = 5, .riser_m = 0.18, .going_m = 0.31};
     constexpr double kRaggedStep_m = 2 * 0.31;
