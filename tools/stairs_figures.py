@@ -104,7 +104,7 @@ def required(folder):
     def share(what, mine, is_good, least_percent):
         if mine:
             good = sum(map(is_good, mine))
-            figures.append((what, wilson(good, len(mine)), f"{least_percent} %", good >= 0.01 * least_percent * len(mine)))
+            figures.append((what, wilson(good, len(mine)), f"{least_percent} %", 100 * good >= least_percent * len(mine)))
 
     def sizes(mode, riser_mm, going_mm):
         mine = [r for r in rows["up", mode] if r["found"] == "1"]
@@ -126,7 +126,7 @@ def required(folder):
         share(f"kerbs down of 75-150 mm, 0.67-1.5 m ahead, {px}: flagged as a drop", rows["kerbs", mode], lambda r: r["drop"] == "1", 99)
         if mine := rows["none", mode]:
             false = sum(r["flights"] != "0" for r in mine)
-            figures.append((f"frames without stairs in which a flight is told, {px}", wilson(false, len(mine)), "1 %", false <= 0.01 * len(mine)))
+            figures.append((f"frames without stairs in which a flight is told, {px}", wilson(false, len(mine)), "1 %", 100 * false <= len(mine)))
     for scene, what in (("demo_stairs", "demonstration stairs"), ("flight_20_up", "flight of 20 steps"), ("up_glass", "carpet between glass"),
                         ("up_open", "steep, boards without risers")):
         share(f"thesis, {what}, images 0.25 px: riser within 5 mm, steps exact, the first found",

@@ -42,21 +42,21 @@ void SightSteps::find_levels(std::span<const SightBin> bins) {
             cheapest_[i] = better ? cost_[i] : cheapest_[i - 1];
             cheapest_level_[i] = better ? static_cast<std::int16_t>(d) : cheapest_level_[i - 1];
         }
-        for (int d = kDepths - 1; d >= 0; --d) {
-            const auto i = static_cast<std::size_t>(d);
-            from[d] = static_cast<std::int16_t>(d);
-            if (d < kLeastRise || k == 0) continue;
-            const auto above = static_cast<std::size_t>(d - kLeastRise);
-            if (cheapest_[above] + kStepCost >= cost_[i]) continue;
-            cost_[i] = cheapest_[above] + kStepCost;
-            from[d] = cheapest_level_[above];
+        for (int d = 0; d < kDepths; ++d) from[d] = static_cast<std::int16_t>(d);
+        float* const cost = cost_.data();
+        const float* const cheapest = cheapest_.data();
+        const std::int16_t* const level = cheapest_level_.data();
+        for (int d = kLeastRise; d < kDepths && k > 0; ++d) {
+            const float stepped = cheapest[d - kLeastRise] + kStepCost;
+            const bool better = stepped < cost[d];
+            cost[d] = better ? stepped : cost[d];
+            from[d] = better ? level[d - kLeastRise] : from[d];
         }
         if (!(bins[k].depth_m == bins[k].depth_m)) continue;
         const auto per_sigma = static_cast<float>(kGrid_m / bins[k].sigma_m);
         const auto at = static_cast<float>((bins[k].depth_m - kHighest_m) / kGrid_m);
         for (int d = 0; d < kDepths; ++d)
-            cost_[static_cast<std::size_t>(d)] +=
-                std::min(std::abs(at - static_cast<float>(d)) * per_sigma, kMostCost);
+            cost[d] += std::min(std::abs(at - static_cast<float>(d)) * per_sigma, kMostCost);
     }
     auto depth = static_cast<int>(std::min_element(cost_.begin(), cost_.end()) - cost_.begin());
     int end = static_cast<int>(count);
