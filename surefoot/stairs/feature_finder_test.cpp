@@ -101,7 +101,11 @@ TEST(FeatureFinder, noise_of_3_mm_changes_a_riser_by_less_than_1_mm) {
         EXPECT_EQ(found.flights[0].steps, 4) << "seed " << seed;
         EXPECT_NEAR(found.flights[0].riser_m, 0.15, 1e-3) << "seed " << seed;
         EXPECT_NEAR(found.flights[0].going_m, 0.28, 0.006) << "seed " << seed;
+        // Levels share errors that no cell states; a map without any variance has none.
+        EXPECT_GE(found.flights[0].riser_sigma_m, 0.001) << "seed " << seed;
     }
+    const TestMap exact(ground_of(flight), 0.3, {0.0, 0.0});
+    EXPECT_LT(find(exact.terrain()).flights.at(0).riser_sigma_m, 0.0005);
 }
 
 TEST(FeatureFinder, a_first_step_almost_level_with_the_floor_is_a_step) {

@@ -26,6 +26,9 @@ constexpr double kLeastStand_m = 0.08;
 constexpr double kBeside_m = 0.25;
 /// No level of a map is known better: errors that its cells share.
 constexpr double kTreadSigma_m = 0.001;
+/// One sigma of what all treads of a flight share, as a rise between two: a matcher's errors change
+/// slowly over the image. Maps that are exact have none.
+constexpr double kRiserShared_m = 0.001;
 /// Less than so much of a tread is a strip near the height of the camera, some 30 mm too low.
 constexpr double kStrip = 0.5;
 constexpr double kStripSigma_m = 0.03;
@@ -331,7 +334,9 @@ void FlightFinder::measure_risers(Flight& flight) {
     const std::size_t count = steady(levels, sigmas, kUnevenRiser_m);
     const Line line = regress(levels.first(count), sigmas.first(count));
     flight.riser_m = line.slope;
-    flight.riser_sigma_m = line.slope_sigma;
+    const bool exact = std::all_of(
+        edges.begin(), edges.end(), [](const Edge& edge) { return !(edge.height_sigma_m > 0.0); });
+    flight.riser_sigma_m = std::hypot(line.slope_sigma, exact ? 0.0 : kRiserShared_m);
     risers_m.resize(std::min(risers_m.size(), count - 1 + (odd_first ? 1 : 0)));
     flight.riser_spread_m = scatter_of(risers_m);
 }
