@@ -93,6 +93,11 @@ Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes) 
     return content;
 }
 
+Status write_file(const std::string& path, std::span<const std::uint8_t> bytes) {
+    return write_file(path,
+                      std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
 Status write_file(const std::string& path, std::string_view bytes) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);

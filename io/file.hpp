@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,7 @@ inline constexpr std::uint64_t kMaxFileBytes = 4ULL << 30;
 /// pipe) is written to directly. On failure (disk full, no permission) the old file stays as it
 /// was.
 [[nodiscard]] Status write_file(const std::string& path, std::string_view bytes);
+[[nodiscard]] Status write_file(const std::string& path, std::span<const std::uint8_t> bytes);
 /// Removes a file; one that is not there is no error.
 [[nodiscard]] Status remove_file(const std::string& path);
 

@@ -82,7 +82,7 @@ Status write_from_above(const std::string& path,
     }
     const auto png =
         eval::encode_png(eval::render_layer(grid->geometry, builder.heights_m(), style, {}));
-    return io::write_file(path, std::string(png.begin(), png.end()));
+    return io::write_file(path, png);
 }
 
 Status write_histogram(const std::string& path,

@@ -21,7 +21,7 @@ namespace {
 
 Status write_picture(const std::string& path, const eval::Picture& picture) {
     const auto png = eval::encode_png(picture);
-    return io::write_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
+    return io::write_file(path, png);
 }
 
 /// Trusted points in the left optical frame, with their grey value and the sigma of their depth.

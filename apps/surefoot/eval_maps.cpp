@@ -104,7 +104,7 @@ Status write_pictures(const EvalMapsOptions& options,
         overlays.trajectory_m.push_back(pose.T_world_body.translation_m.head<2>());
     const auto write = [&](const char* name, const eval::Picture& picture) {
         const auto png = eval::encode_png(picture);
-        return io::write_file(options.out_dir + "/" + name, std::string(png.begin(), png.end()));
+        return io::write_file(options.out_dir + "/" + name, png);
     };
     Writes writes;
     writes += write("confusion.png",

@@ -58,7 +58,7 @@ Status write_plot(const EvalTrajectoryOptions& options,
     const auto over_time = eval::render_error_over_time(
         samples, {"Position error over time", fmt::format("ATE {:.4f} m rmse", errors.ate_rmse_m)});
     const auto png = eval::encode_png(eval::stacked(above, over_time));
-    return io::write_file(options.plot_file, std::string(png.begin(), png.end()));
+    return io::write_file(options.plot_file, png);
 }
 
 void print_errors(const EvalTrajectoryOptions& options,

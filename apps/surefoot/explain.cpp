@@ -135,7 +135,7 @@ Status write_explanation(const std::string& file,
     eval::LayerStyle style = eval::elevation_style();
     style.text = {fmt::format("Command {}: {}", query.command, to_string(verdict.decision)), text};
     const auto png = encode_png(render_layer(view.geometry, view.height_m, style, overlays));
-    return io::write_file(file, std::string(png.begin(), png.end()));
+    return io::write_file(file, png);
 }
 
 }  // namespace surefoot::app

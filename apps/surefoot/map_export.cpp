@@ -101,7 +101,7 @@ struct Export {
         overlays.T_odom_body = region.T_frame_body;
         const auto png =
             eval::encode_png(eval::render_layer(region.geometry(), values, style, overlays));
-        add(name, io::write_file(io::join_path(folder, name), std::string(png.begin(), png.end())));
+        add(name, io::write_file(io::join_path(folder, name), png));
     }
 };
 

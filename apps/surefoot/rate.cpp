@@ -46,7 +46,7 @@ Status write_sheet(const RateOptions& options,
                                      4,
                                      {fmt::format("Rated: {}", options.dem), ""},
                                      {});
-    return io::write_file(options.out_dir + "/layers.png", std::string(png.begin(), png.end()));
+    return io::write_file(options.out_dir + "/layers.png", png);
 }
 
 }  // namespace
@@ -81,8 +81,7 @@ int rate(const RateOptions& options) {
             dem->geometry, layer, style_of(name, settings->maps.safe_threshold), eval::Overlays{}));
         writes += io::write_esri_grid(
             fmt::format("{}/{}.asc", options.out_dir, name), dem->geometry, layer);
-        writes += io::write_file(fmt::format("{}/{}.png", options.out_dir, name),
-                                 std::string(png.begin(), png.end()));
+        writes += io::write_file(fmt::format("{}/{}.png", options.out_dir, name), png);
     }
     writes += write_sheet(options, *settings, *dem, outputs);
     if (!writes.first()) return report(writes.first().error());

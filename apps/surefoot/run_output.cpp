@@ -179,7 +179,7 @@ Status write_results(const RunOptions& options,
                                          3,
                                          {fmt::format("All layers: {}", record.source.path), ""},
                                          overlays_of(machine, record));
-        writes += io::write_file(out + "/layers.png", std::string(png.begin(), png.end()));
+        writes += io::write_file(out + "/layers.png", png);
     }
     writes += io::write_ply(out + "/map.ply", map_cloud(pipeline));
     const stairs::GroundClasses classes = pipeline.ground_classes();

@@ -216,14 +216,11 @@ Status write_pictures_and_report(const RunOptions& options,
     content.footer =
         fmt::format("surefoot {}; peak memory {:.0f} MB", SUREFOOT_VERSION, peak_memory_mb());
 
-    const auto as_text = [](const std::vector<std::uint8_t>& bytes) {
-        return std::string(bytes.begin(), bytes.end());
-    };
     Writes writes;
-    writes += io::write_file(options.out_dir + "/elevation.png", as_text(elevation_png));
-    writes += io::write_file(options.out_dir + "/traversability.png", as_text(rating_png));
-    writes += io::write_file(options.out_dir + "/stairs.png", as_text(stairs_png));
-    writes += io::write_file(options.out_dir + "/classes.png", as_text(classes_png));
+    writes += io::write_file(options.out_dir + "/elevation.png", elevation_png);
+    writes += io::write_file(options.out_dir + "/traversability.png", rating_png);
+    writes += io::write_file(options.out_dir + "/stairs.png", stairs_png);
+    writes += io::write_file(options.out_dir + "/classes.png", classes_png);
     writes += io::write_file(options.out_dir + "/report.html", eval::render_html(content));
     return writes.first();
 }

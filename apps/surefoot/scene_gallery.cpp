@@ -24,7 +24,7 @@ sim::Lattice surroundings() {
 
 Status write_png(const std::string& path, const eval::Picture& picture) {
     const auto png = eval::encode_png(picture);
-    return io::write_file(path, {reinterpret_cast<const char*>(png.data()), png.size()});
+    return io::write_file(path, png);
 }
 
 /// When a scene shows what it is about: half-way; on a walk before the machine turns, for the first

@@ -50,12 +50,9 @@ Status write_pictures(const StairsOptions& options, const TerrainMap& map, const
                                  {"The class of each cell", classes_png}},
                                 {features_table(found.features)}});
     content.footer = "The same for programs: stairs.json; the settings: config.yaml.";
-    const auto as_text = [](const std::vector<std::uint8_t>& bytes) {
-        return std::string(bytes.begin(), bytes.end());
-    };
     Writes writes;
-    writes += io::write_file(options.out_dir + "/stairs.png", as_text(stairs_png));
-    writes += io::write_file(options.out_dir + "/classes.png", as_text(classes_png));
+    writes += io::write_file(options.out_dir + "/stairs.png", stairs_png);
+    writes += io::write_file(options.out_dir + "/classes.png", classes_png);
     writes += io::write_file(options.out_dir + "/report.html", eval::render_html(content));
     return writes.first();
 }
