@@ -32,10 +32,12 @@ std::string place_text(const stairs::FeaturePose& pose) {
 }
 
 std::string side_remark(const char* name, const stairs::FlightSide& side) {
-    constexpr const char* kWords[] = {"", "a wall", "level", "open"};
+    using stairs::SideKind;
     std::string text;
-    if (side.kind != stairs::SideKind::unknown)
-        text = fmt::format("; {} {}", name, kWords[static_cast<std::size_t>(side.kind)]);
+    if (side.kind != SideKind::unknown) {
+        const char* const article = side.kind == SideKind::wall ? "a " : "";
+        text = fmt::format("; {} {}{}", name, article, to_string(side.kind));
+    }
     if (side.rail_m > 0.0)
         text += fmt::format("; rail on the {}, {:.2f} m high", name, side.rail_m);
     return text;

@@ -33,8 +33,7 @@ Json followed_json(Json json, const stairs::Followed& followed, std::int64_t now
 }
 
 Json side_json(const stairs::FlightSide& side) {
-    constexpr const char* kKinds[] = {"unknown", "wall", "level", "open"};
-    return {{"kind", kKinds[static_cast<std::size_t>(side.kind)]},
+    return {{"kind", to_string(side.kind)},
             {"rail_m", side.rail_m > 0.0 ? number(side.rail_m) : Json()}};
 }
 

@@ -2,8 +2,14 @@
 #include "surefoot/stairs/features.hpp"
 
 #include <cmath>
+#include <cstddef>
 
 namespace surefoot::stairs {
+
+const char* to_string(SideKind kind) {
+    constexpr const char* kNames[] = {"unknown", "wall", "level", "open"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
 
 LineFeature line_feature(const Edge& edge, bool goes_down) {
     const Eigen::Vector2d way = goes_down ? edge.down() : Eigen::Vector2d(-edge.down());

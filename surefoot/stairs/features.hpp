@@ -77,6 +77,9 @@ enum class FlightKind : std::uint8_t { up, down };
 /// What lies beside the steps of a flight.
 enum class SideKind : std::uint8_t { unknown, wall, level, open };
 
+/// "wall", as in stairs.json.
+[[nodiscard]] const char* to_string(SideKind kind);
+
 struct FlightSide {
     SideKind kind = SideKind::unknown;
     double rail_m = 0.0;  ///< a rail runs so high above the line of the noses; 0 = none was seen

@@ -11,7 +11,7 @@ namespace surefoot::stairs {
 /// About the weighted median (weights 1 / sigma) those looks count that lie within three of their
 /// sigmas, as they are sure: the mean of least variance. One bad look does not move it, and five in
 /// thirty hardly do. Unlike LookWeight it is surer than its looks: its sigma is the larger one of
-/// what theirs leave and of what their scatter leaves, never below what all looks share.
+/// what theirs leave and of what their scatter leaves, with what all looks share beside it.
 class RobustMean {
   public:
     static constexpr int kMostLooks = 31;
