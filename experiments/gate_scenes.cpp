@@ -12,7 +12,7 @@
 // gate_scenes again SCRATCH KIND SCENE_SEED: one hazard of `maps` again, by the seed in its line;
 // what the gate says, and again.csv with the cells of each map.
 //
-// SCENES hazards and as many safe scenes (maps: a tenth, depth: a fifth) of each kind (KINDS: names
+// SCENES hazards and as many safe scenes (maps: a tenth, runs: a fifth) of each kind (KINDS: names
 // with commas between), from the number FROM on. Each has one movement that the oracle (sim::judge)
 // calls clearly dangerous or clearly safe; scenes that are neither are drawn again. Every hundredth
 // scene (of runs: every one) is asked all 26 movements too.
@@ -64,8 +64,8 @@ namespace {
 
 constexpr int kMostDraws = 40;
 constexpr int kAllEvery = 100;
-constexpr int kSafeEvery = 10;        ///< on maps
-constexpr int kSafeEveryOfDepth = 5;  ///< a run lasts seconds
+constexpr int kSafeEvery = 10;       ///< on maps
+constexpr int kSafeEveryOfRuns = 5;  ///< which last seconds
 
 /// A gate to be asked, and the errors of the map that it is asked about.
 struct Variant {
@@ -379,7 +379,7 @@ class Campaign {
   private:
     [[nodiscard]] std::uint64_t safe_every() const {
         if (tier_ == "maps") return kSafeEvery;
-        return tier_ == "depth" ? kSafeEveryOfDepth : 1;
+        return tier_ == "depth" || tier_ == "images" ? kSafeEveryOfRuns : 1;
     }
     [[nodiscard]] Status ask_on_map(
         Hazard kind, bool relief_only, std::uint64_t seed, std::uint64_t index, Tally& tally) {
@@ -422,8 +422,7 @@ class Campaign {
         if (question.draws == 0) return {};
         const Look look = tier_ == "depth" ? Look::analytic : Look::images;
         const auto run = run_chain(question.scene, look, 1.0, folder_, serial_);
-        // A run that was stopped says nothing; a map that cannot be made is a result.
-        if (!run && run.error().code == ErrorCode::interrupted) return run.error();
+        // A map that cannot be made is a result.
         if (!run) {
             fmt::print(stderr,
                        "{} {}: {}\n",
