@@ -27,6 +27,7 @@
 //     a hazard; danger:NAME the first danger of each hazard; drawn (scenes, with those drawn again)
 //   KIND_SEED_FROM.misses.csv  each hazard that was allowed: how to make the scene again, the
 //     movement, what the oracle says
+//   KIND_SEED_FROM.refused.txt  of runs: what the gate says of each safe movement that it refused
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -133,6 +134,7 @@ class Tally {
         "kind,thing,relief_only,seed,variant,command,relief_mm,x_m,y_m,yaw_rad,edge_x_m,edge_y_m,"
         "normal_x,normal_y,"
         "danger,value_m,limit_m,danger_x_m,danger_y_m,sentence\n";
+    std::string refused;
 
   private:
     std::map<std::pair<std::string, std::string>, int> counts_;
@@ -257,6 +259,11 @@ void ask_own(const Question& question, const AskedMap& map, const Variant& varia
             tally.misses +=
                 missed_line(question, variant.name, command, map.T_odom_body, question.truth);
     }
+    if (question.truth.safe && verdict.decision != gate::Decision::ok)
+        tally.refused += fmt::format(
+            "{}: {}\n",
+            question.scene_seed,
+            gate::text_of(verdict, query_of(command, map.T_odom_body), variant.machine));
     const bool thesis =
         app::thesis_allows(variant.machine, map.geometry, map.rating, map.T_odom_body, command);
     if (thesis != question.truth.safe)
@@ -370,6 +377,11 @@ class Campaign {
         }
         if (auto written = io::write_file(stem + ".misses.csv", tally.misses); !written)
             return written;
+        const bool is_run = tier_ == "depth" || tier_ == "images";
+        if (is_run && !tally.refused.empty()) {
+            if (auto written = io::write_file(stem + ".refused.txt", tally.refused); !written)
+                return written;
+        }
         if (auto written = io::write_file(stem + ".part", tally.csv(kind)); !written)
             return written;
         std::filesystem::rename(stem + ".part", stem + ".csv");
