@@ -48,6 +48,19 @@ TEST(Gate, a_default_verdict_query_and_health_inhibit) {
                  Reason::internal);
 }
 
+TEST(Gate, what_nobody_filled_in_names_no_movement_nobody_and_no_area) {
+    const Query query;
+    EXPECT_EQ(query.command, 0);
+    EXPECT_EQ(query.connection, 0U);
+    EXPECT_EQ(query.sequence, 0U);
+    const VouchedArea& area = query.vouched;
+    EXPECT_FALSE(area.active);
+    EXPECT_EQ(area.center_x_tenth_mm, 0);
+    EXPECT_EQ(area.center_y_tenth_mm, 0);
+    EXPECT_EQ(area.radius_tenth_mm, 0);  // switched on alone it covers nothing
+    EXPECT_EQ(area.height_tenth_mm, 0);
+}
+
 TEST(Gate, given_a_flat_known_floor_then_every_configured_movement_is_ok) {
     Terrain floor;
     const auto map = floor.snapshot();

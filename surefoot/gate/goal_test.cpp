@@ -24,6 +24,16 @@ TEST(Goal, level_ground_carries_and_is_still_no_permission) {
         EXPECT_FALSE(verdict.allows_step(kNowNs + later));
 }
 
+TEST(Goal, one_that_nobody_filled_in_is_the_origin_without_a_heading) {
+    const GoalPose goal;
+    EXPECT_EQ(goal.x_tenth_mm, 0);
+    EXPECT_EQ(goal.y_tenth_mm, 0);
+    Terrain floor;
+    const auto map = floor.snapshot();
+    const Verdict verdict = judge_goal(rex(), query_at_body(0, *map), goal, *map, kReady, kNowNs);
+    EXPECT_EQ(verdict.primary, Reason::bad_number) << words(verdict);
+}
+
 TEST(Goal, a_table_top_is_level_and_out_of_reach) {
     Terrain table;
     table.box(0.8, 2.6, -1.6, 0.2, 0.72);
@@ -32,6 +42,9 @@ TEST(Goal, a_table_top_is_level_and_out_of_reach) {
     EXPECT_EQ(verdict.decision, Decision::not_traversable) << words(verdict);
     EXPECT_EQ(verdict.primary, Reason::disconnected) << words(verdict);
     EXPECT_TRUE(verdict.evidence.has_worst_cell);
+    EXPECT_EQ(verdict.evidence.value_tenth_mm,
+              0);  // a surface is joined or not: no number says how far
+    EXPECT_EQ(verdict.evidence.limit_tenth_mm, 0);
     EXPECT_EQ(point_at(*map, -1.5, 1.0).decision, Decision::ok);
 }
 

@@ -67,6 +67,18 @@ TEST(Readiness, nothing_is_allowed_before_the_self_test_and_the_whole_warm_up) {
     EXPECT_TRUE(station.ask().reasons.contains(Reason::warmup));
 }
 
+/// docs/safety.md and surefoot/gate/README.md promise these; the other tests read them.
+TEST(Readiness, the_times_are_those_that_are_promised) {
+    const ReadinessLimits limits;
+    EXPECT_EQ(limits.warmup_ns, 2 * kSecondNs);
+    EXPECT_EQ(limits.warmup_frames, 20);
+    EXPECT_EQ(limits.warmup_timeout_ns, 60 * kSecondNs);
+    EXPECT_EQ(limits.recover_ns, kSecondNs);
+    EXPECT_EQ(limits.recover_frames, 10);
+    EXPECT_EQ(limits.degraded_timeout_ns, 10 * kSecondNs);
+    EXPECT_EQ(limits.clock_gap_ns, 100 * kMs);
+}
+
 TEST(Readiness, ground_that_is_not_where_the_soles_are_is_no_ground) {
     for (const auto& [height_m, believed] : {std::pair{0.0, true},
                                              {0.099, true},  // a step of 20 mm and 80 mm of knee
