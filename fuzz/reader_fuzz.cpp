@@ -194,7 +194,7 @@ void must_come_back(std::string_view bytes) {
     must_explain(snapshot);
     if (snapshot && !grid::is_intact(**snapshot)) std::abort();
     // A checksum hides all that lies behind it from a search; it costs 0.9 MB of hashing, too.
-    constexpr std::size_t kSeldom = 8;
+    constexpr std::size_t kSeldom = 16;
     if (!bytes.empty() && static_cast<std::uint8_t>(bytes.front()) % kSeldom == 0)
         must_come_back(bytes.substr(1));
 }
