@@ -306,7 +306,7 @@ def lines_of(found):
               f"| latency p50, p99, p99.9, most [ms] | " + ", ".join(number(latency[k]) for k in latency) + " |",
               f"| **missed deadlines** | {sum(found['missed'].values())}" +
               "".join(f", {what}: {times}" for what, times in found["missed"].items()) + " |",
-              f"| perception stopped or killed while OK was said: first inhibit at most [ms] | "
+              f"| perception stopped or killed while OK was said: first inhibit at most, asked ten times a second [ms] | "
               f"{number(found['first_inhibit_ms']['max'])} ({found['first_inhibit_ms']['n']} times) |",
               f"| killed gate: longest silence [s] | {number(found['silence_after_gate_kill_s']['max'], 2)} |",
               "| handles of the gate with no client, at the begin and at the end | "
