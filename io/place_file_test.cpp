@@ -179,13 +179,15 @@ TEST(PlaceFile, APlaceThatCannotBeReadIsNotWritten) {
     const auto bytes = format_place(place);
     ASSERT_FALSE(bytes);
     EXPECT_TRUE(contains(bytes.error().message, "keyframe 0 has a baseline of -1 m"));
-    const std::string path = ::testing::TempDir() + "/not_written.place";
+    const testing::TemporaryFolder folder;
+    const std::string path = folder / "not_written.place";
     EXPECT_FALSE(write_place(path, place));
     EXPECT_FALSE(is_file(path));
 }
 
 TEST(PlaceFile, GoesThroughAFile) {
-    const std::string path = ::testing::TempDir() + "/home.place";
+    const testing::TemporaryFolder folder;
+    const std::string path = folder / "home.place";
     const auto place = random_place(3, 10, 9);
     ASSERT_TRUE(write_place(path, place));
     const auto read = read_place(path);

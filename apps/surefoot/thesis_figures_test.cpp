@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "io/file.hpp"
+#include "io/io_testing.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -14,14 +14,12 @@ namespace {
 class ThesisFiguresTest : public ::testing::Test {
   protected:
     void SetUp() override {
-        folder_ = ::testing::TempDir() + "/thesis_figures_test";
-        std::filesystem::remove_all(folder_);
-        ASSERT_TRUE(io::make_folder(folder_).ok());
         figures_.set("riser_m", 0.18);
         figures_.set("going_m", std::nan(""));
         figures_.set("risers", 3);
     }
-    std::string folder_;
+    io::testing::TemporaryFolder own_folder_;
+    const std::string& folder_ = own_folder_.path();
     ThesisFigures figures_;
 };
 
