@@ -18,14 +18,13 @@ class ThesisFiguresTest : public ::testing::Test {
         figures_.set("going_m", std::nan(""));
         figures_.set("risers", 3);
     }
-    io::testing::TemporaryFolder own_folder_;
-    const std::string& folder_ = own_folder_.path();
+    io::testing::TemporaryFolder folder_;
     ThesisFigures figures_;
 };
 
 TEST_F(ThesisFiguresTest, AFinishedPartIsReadBack) {
-    ASSERT_TRUE(write_figures(folder_, 7, figures_).ok());
-    const auto read = read_figures(folder_, 7);
+    ASSERT_TRUE(write_figures(folder_.path(), 7, figures_).ok());
+    const auto read = read_figures(folder_.path(), 7);
     ASSERT_TRUE(read) << read.error().message;
     ASSERT_TRUE(*read);
     EXPECT_EQ((*read)->get("riser_m"), 0.18);
@@ -36,9 +35,9 @@ TEST_F(ThesisFiguresTest, AFinishedPartIsReadBack) {
 }
 
 TEST_F(ThesisFiguresTest, WhatWasDoneUnderOtherConditionsIsDoneAgain) {
-    EXPECT_FALSE(*read_figures(folder_, 7)) << "nothing is there";
-    ASSERT_TRUE(write_figures(folder_, 7, figures_).ok());
-    EXPECT_FALSE(*read_figures(folder_, 8));
+    EXPECT_FALSE(*read_figures(folder_.path(), 7)) << "nothing is there";
+    ASSERT_TRUE(write_figures(folder_.path(), 7, figures_).ok());
+    EXPECT_FALSE(*read_figures(folder_.path(), 8));
 }
 
 TEST_F(ThesisFiguresTest, ADamagedFileIsNamedWithItsLine) {
@@ -47,8 +46,8 @@ TEST_F(ThesisFiguresTest, ADamagedFileIsNamedWithItsLine) {
           "riser_m,0.18\n",
           "# surefoot thesis figures 1 0000000000000007\nname,value\nriser",
           "# surefoot thesis figures 1 0000000000000007\nname,value\nriser_m,0.1x\n"}) {
-        ASSERT_TRUE(io::write_file(folder_ + "/figures.csv", text).ok());
-        const auto read = read_figures(folder_, 7);
+        ASSERT_TRUE(io::write_file(folder_ / "figures.csv", text).ok());
+        const auto read = read_figures(folder_.path(), 7);
         ASSERT_FALSE(read) << text;
         EXPECT_NE(read.error().message.find("figures.csv: '"), std::string::npos);
     }

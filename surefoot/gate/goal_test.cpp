@@ -42,8 +42,8 @@ TEST(Goal, a_table_top_is_level_and_out_of_reach) {
     EXPECT_EQ(verdict.decision, Decision::not_traversable) << words(verdict);
     EXPECT_EQ(verdict.primary, Reason::disconnected) << words(verdict);
     EXPECT_TRUE(verdict.evidence.has_worst_cell);
-    EXPECT_EQ(verdict.evidence.value_tenth_mm,
-              0);  // a surface is joined or not: no number says how far
+    // A surface is joined or not: no number says how far.
+    EXPECT_EQ(verdict.evidence.value_tenth_mm, 0);
     EXPECT_EQ(verdict.evidence.limit_tenth_mm, 0);
     EXPECT_EQ(point_at(*map, -1.5, 1.0).decision, Decision::ok);
 }
