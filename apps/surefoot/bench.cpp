@@ -21,10 +21,8 @@
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "server/wire/audit_log.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/camera/reproject.hpp"
-#include "surefoot/grid/snapshot_builder.hpp"
 
 namespace surefoot::app {
 
@@ -32,20 +30,28 @@ std::int64_t cpu_now_ns() {
     return static_cast<std::int64_t>(std::clock()) * (1'000'000'000 / CLOCKS_PER_SEC);
 }
 
-Timing timed(int repeats, const std::function<void()>& work) {
+Timing timed(int repeats, const std::function<void()>& work, const std::function<void()>& before) {
     work();  // warm-up: allocations, caches
     std::vector<double> times_ms;
     std::vector<double> cpu_ms;
     for (int i = 0; i < repeats; ++i) {
-        const std::int64_t start_ns = steady_now_ns();
-        const std::clock_t start_cpu = std::clock();
-        work();
-        cpu_ms.push_back(1000.0 * static_cast<double>(std::clock() - start_cpu) / CLOCKS_PER_SEC);
-        times_ms.push_back(static_cast<double>(steady_now_ns() - start_ns) * 1e-6);
+        if (before) before();
+        const Timing once = timed_once(work);
+        times_ms.push_back(once.median_ms);
+        cpu_ms.push_back(*once.least_cpu_ms);
     }
     const Percentiles p = percentiles(std::move(times_ms));
     const double least_ms = *std::min_element(cpu_ms.begin(), cpu_ms.end());
     return {p.median, p.p99, least_ms, percentiles(std::move(cpu_ms)).median};
+}
+
+Timing timed_once(const std::function<void()>& work) {
+    const std::int64_t start_ns = steady_now_ns();
+    const std::clock_t start_cpu = std::clock();
+    work();
+    const double cpu_ms = 1000.0 * static_cast<double>(std::clock() - start_cpu) / CLOCKS_PER_SEC;
+    const double ms = static_cast<double>(steady_now_ns() - start_ns) * 1e-6;
+    return {ms, ms, cpu_ms, cpu_ms};
 }
 
 namespace {
@@ -188,70 +194,6 @@ Result<std::vector<BenchResult>> bench_camera(const CommonOptions&, Executor&) {
         results.back().peer =
             timed(kRepeats, [&] { cv::reprojectImageTo3D(disparity, points, Q); });
     }
-    return results;
-}
-
-/// A disk that takes everything and keeps nothing.
-class NoDisk final : public wire::AuditDisk {
-  public:
-    Result<std::vector<Entry>> list() override { return std::vector<Entry>{}; }
-    Status create(const std::string&) override { return {}; }
-    Written write(std::string_view bytes) override { return {bytes.size(), 0}; }
-    Status truncate(std::uint64_t) override { return {}; }
-    Status sync() override { return {}; }
-    void close() override {}
-    Status remove(const std::string&) override { return {}; }
-};
-
-/// What the audit log costs the thread that decides.
-Result<BenchResult> bench_audit_push(const Machine& machine, const wire::AuditedVerdict& audited) {
-    constexpr int kRepeats = 2000;
-    wire::AuditConfig config;
-    config.memory_bytes = 128U << 20U;  // all of them: a full ring would be no copy
-    wire::AuditLog log(machine, std::make_unique<NoDisk>(), config);
-    if (auto status = log.start(); !status) return status.error();
-    const BenchResult result{"gate/audit_push", timed(kRepeats, [&] { log.push(audited); })};
-    log.stop();
-    if (log.report().lost > 0)
-        return input_error("bench gate: verdicts were lost; the timing would mean nothing");
-    return result;
-}
-
-Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
-    const auto machine = load_machine("rex");
-    if (!machine) return machine.error();
-    constexpr int kSide = 240;
-    const grid::Layer floor_m(kSide, kSide, 0.0F);
-    const grid::Layer variance_m2(kSide, kSide, 9e-6F);
-    const grid::Layer drift_m(kSide, kSide, 0.001F);
-    grid::SnapshotInput input;
-    input.geometry = {0.025, kSide, kSide, {-3.0, -3.0}};
-    input.height_m = floor_m.view();
-    input.variance_m2 = variance_m2.view();
-    input.drift_m = drift_m.view();
-    input.T_odom_body.translation_m.z() = 0.99;
-    input.gravity_source = grid::GravitySource::plane;
-    input.health = grid::SnapshotHealth::ok;
-    input.camera = CameraState::ok;
-    const auto snapshot = std::make_unique<grid::MapSnapshot>();
-    if (auto status = grid::build_snapshot(input, *snapshot); !status) return status.error();
-    gate::GateHealth health;
-    health.state = gate::GateState::ready;
-    constexpr std::uint8_t kForward = 9;
-    const gate::Query query = gate::query_at_body(kForward, *snapshot);
-    gate::Verdict verdict;
-    std::vector<BenchResult> results{
-        {"gate/decide", timed(2000, [&] {
-             verdict = gate::decide(
-                 machine->value().machine, query, *snapshot, health, snapshot->frame_time_ns);
-         })}};
-    if (verdict.decision != gate::Decision::ok) {
-        return input_error("bench gate: the flat floor was not OK; the timing would mean nothing");
-    }
-    auto audit_push = bench_audit_push(
-        machine->value().machine, {query, health, snapshot->frame_time_ns, *snapshot, verdict});
-    if (!audit_push) return audit_push.error();
-    results.push_back(std::move(audit_push).value());
     return results;
 }
 

@@ -32,8 +32,17 @@ struct BenchResult {
 /// Processor time of the process, all its threads [ns].
 [[nodiscard]] std::int64_t cpu_now_ns();
 
-/// Times `work`, after one call that warms up.
-[[nodiscard]] Timing timed(int repeats, const std::function<void()>& work);
+/// Times `work`, after one call that warms up. `before`: runs before each call and is not timed.
+[[nodiscard]] Timing timed(int repeats,
+                           const std::function<void()>& work,
+                           const std::function<void()>& before = {});
+/// Times one call; nothing warms it up.
+[[nodiscard]] Timing timed_once(const std::function<void()>& work);
+
+/// The gate's verdicts on level ground for all movements: the first of the process, warm, with all
+/// caches lost, on ground that has drifted, and what the audit log costs.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_gate(const CommonOptions& common,
+                                                          Executor& executor);
 
 /// Frames of a moving camera of 752x480 pixels through the odometry.
 [[nodiscard]] Result<std::vector<BenchResult>> bench_odometry(const CommonOptions& common,

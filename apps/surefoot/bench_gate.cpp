@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "apps/surefoot/bench_result.hpp"
+#include "apps/surefoot/source.hpp"
+#include "server/wire/audit_log.hpp"
+#include "surefoot/grid/snapshot_builder.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// A disk that takes everything and keeps nothing.
+class NoDisk final : public wire::AuditDisk {
+  public:
+    Result<std::vector<Entry>> list() override { return std::vector<Entry>{}; }
+    Status create(const std::string&) override { return {}; }
+    Written write(std::string_view bytes) override { return {bytes.size(), 0}; }
+    Status truncate(std::uint64_t) override { return {}; }
+    Status sync() override { return {}; }
+    void close() override {}
+    Status remove(const std::string&) override { return {}; }
+};
+
+/// What the audit log costs the thread that decides.
+Result<BenchResult> bench_audit_push(const Machine& machine, const wire::AuditedVerdict& audited) {
+    constexpr int kRepeats = 2000;
+    wire::AuditConfig config;
+    config.memory_bytes = 128U << 20U;  // all of them: a full ring would be no copy
+    wire::AuditLog log(machine, std::make_unique<NoDisk>(), config);
+    if (auto status = log.start(); !status) return status.error();
+    const BenchResult result{"gate/audit_push", timed(kRepeats, [&] { log.push(audited); })};
+    log.stop();
+    if (log.report().lost > 0)
+        return input_error("bench gate: verdicts were lost; the timing would mean nothing");
+    return result;
+}
+
+/// Level ground of 6x6 m, all of it known and sure to 3 mm.
+Result<std::unique_ptr<grid::MapSnapshot>> level_ground(float drift_m) {
+    constexpr int kSide = 240;
+    const grid::Layer height_m(kSide, kSide, 0.0F);
+    const grid::Layer variance_m2(kSide, kSide, 9e-6F);
+    const grid::Layer drifts_m(kSide, kSide, drift_m);
+    grid::SnapshotInput input;
+    input.geometry = {0.025, kSide, kSide, {-3.0, -3.0}};
+    input.height_m = height_m.view();
+    input.variance_m2 = variance_m2.view();
+    input.drift_m = drifts_m.view();
+    input.T_odom_body.translation_m.z() = 0.99;
+    input.gravity_source = grid::GravitySource::plane;
+    input.health = grid::SnapshotHealth::ok;
+    input.camera = CameraState::ok;
+    auto snapshot = std::make_unique<grid::MapSnapshot>();
+    if (auto status = grid::build_snapshot(input, *snapshot); !status) return status.error();
+    return snapshot;
+}
+
+/// Asks for one movement after the other, over and over. All must be OK: such a verdict has looked
+/// at all the ground that its movement needs.
+class Asking {
+  public:
+    Asking(const Machine& machine, const grid::MapSnapshot& map) : machine_(machine), map_(map) {
+        health_.state = gate::GateState::ready;
+        for (std::size_t code = 1; code < machine.movements.size(); ++code) {
+            const Movement& movement = machine.movements[code];
+            const auto movement_class = static_cast<std::size_t>(movement.movement_class);
+            if (movement.configured && machine.limits.step[movement_class].enabled)
+                codes_.push_back(static_cast<std::uint8_t>(code));
+        }
+    }
+
+    [[nodiscard]] const std::vector<std::uint8_t>& codes() const noexcept { return codes_; }
+    void ask(std::uint8_t code) noexcept {
+        query_ = gate::query_at_body(code, map_);
+        verdict_ = gate::decide(machine_, query_, map_, health_, map_.frame_time_ns);
+        if (verdict_.decision != gate::Decision::ok) ++refused_;
+    }
+    void ask_next() noexcept { ask(codes_[next_++ % codes_.size()]); }
+    [[nodiscard]] std::int64_t refused() const noexcept { return refused_; }
+    [[nodiscard]] wire::AuditedVerdict last() const noexcept {
+        return {query_, health_, map_.frame_time_ns, map_, verdict_};
+    }
+
+  private:
+    const Machine& machine_;
+    const grid::MapSnapshot& map_;
+    gate::GateHealth health_;
+    std::vector<std::uint8_t> codes_;
+    std::size_t next_ = 0;
+    std::int64_t refused_ = 0;
+    gate::Query query_;
+    gate::Verdict verdict_;
+};
+
+Timing slower(const Timing& a, const Timing& b) noexcept {
+    return a.median_ms < b.median_ms ? b : a;
+}
+
+/// Leaves nothing of the gate in the caches, as when all cores have worked on images in between.
+class OtherMemory {
+  public:
+    void read() noexcept {
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < words_.size(); i += kLineWords) sum += words_[i]++;
+        sum_ = sum;
+    }
+
+  private:
+    static constexpr std::size_t kLineWords = 64 / sizeof(std::uint64_t);
+    std::vector<std::uint64_t> words_ = std::vector<std::uint64_t>((128U << 20U) / 8U, 1);
+    volatile std::uint64_t sum_ = 0;
+};
+
+}  // namespace
+
+Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
+    constexpr int kQuestions = 5200;  // 200 of each movement of the REX
+    constexpr int kOfOne = 500;
+    constexpr int kCold = 260;
+    const auto loaded = load_machine("rex");
+    if (!loaded) return loaded.error();
+    const Machine& machine = (*loaded)->machine;
+    const auto sharp = level_ground(0.001F);
+    if (!sharp) return sharp.error();
+    // As far as is allowed: every question is asked once more, of wider regions.
+    const auto drifted = level_ground(1e-4F * static_cast<float>(machine.limits.drift_tenth_mm));
+    if (!drifted) return drifted.error();
+    Asking asking(machine, **sharp);
+    Asking drifting(machine, **drifted);
+
+    std::vector<BenchResult> results;
+    results.push_back({"gate/decide_first", timed_once([&] { asking.ask_next(); })});
+    results.push_back({"gate/decide", timed(kQuestions, [&] { asking.ask_next(); })});
+    Timing slowest;
+    for (const std::uint8_t code : asking.codes())
+        slowest = slower(slowest, timed(kOfOne, [&] { asking.ask(code); }));
+    results.push_back({"gate/decide_slowest_movement", slowest});
+    results.push_back({"gate/decide_drifted", timed(kQuestions, [&] { drifting.ask_next(); })});
+    OtherMemory other;
+    results.push_back({"gate/decide_cold",
+                       timed(
+                           kCold, [&] { asking.ask_next(); }, [&] { other.read(); })});
+    if (const auto refused = asking.refused() + drifting.refused(); refused > 0) {
+        return input_error(fmt::format(
+            "bench gate: {} verdicts on level ground were not OK; the timing would mean nothing",
+            refused));
+    }
+    auto audit_push = bench_audit_push(machine, asking.last());
+    if (!audit_push) return audit_push.error();
+    results.push_back(std::move(audit_push).value());
+    return results;
+}
+
+}  // namespace surefoot::app
