@@ -143,7 +143,10 @@ int serve(const Options& options, const io::MachineFile& file) {
     wire::WebsocketServer* running = nullptr;
     const auto tick = [&](std::int64_t now_ns) {
         keeper.poll(now_ns, clock_ns(CLOCK_BOOTTIME));
-        if (!word_given && keeper.report(now_ns).health.state == gate::GateState::ready) {
+        const gate::GateState state = keeper.report(now_ns).health.state;
+        // Whoever started the gate answered for where the machine stood then.
+        if (state == gate::GateState::fault) word_given = true;
+        if (!word_given && state == gate::GateState::ready) {
             word_given = true;
             if (const auto given = keeper.vouch(0, options.vouch_radius_m, now_ns); !given)
                 fmt::print(stderr, "surefoot-gate: {}\n", given.error().message);

@@ -41,12 +41,11 @@ View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
             const int mx = ix0 + ix;
             const int my = iy0 + iy;
             if (mx < 0 || my < 0 || mx >= map.nx || my >= map.ny) continue;
-            const std::int32_t height = map.height_tenth_mm[static_cast<std::size_t>(my) *
-                                                                static_cast<std::size_t>(map.nx) +
-                                                            static_cast<std::size_t>(mx)];
-            if (height != grid::MapSnapshot::kUnknownHeight) {
-                view.height_m.at(ix, iy) = static_cast<float>(kTenthMm_m * height);
-            }
+            const auto cell = static_cast<std::size_t>(my) * static_cast<std::size_t>(map.nx) +
+                              static_cast<std::size_t>(mx);
+            if (map.is_measured(cell))
+                view.height_m.at(ix, iy) =
+                    static_cast<float>(kTenthMm_m * map.height_tenth_mm[cell]);
         }
     }
     return view;

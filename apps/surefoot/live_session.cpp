@@ -55,10 +55,10 @@ void LiveSession::pace(double speed) noexcept {
 }
 
 /// When a frame that came now was exposed. What waited in a driver or on the wire is older than its
-/// arrival, and a stamp from the future is none.
+/// arrival. A stamp from the future stays one: nobody knows how old its image is, and the gate
+/// refuses it.
 std::int64_t LiveSession::exposed_ns(std::int64_t stamp_ns) const {
-    const std::int64_t now_ns = clock_();
-    return source_.info().steady_stamps ? std::min(stamp_ns, now_ns) : now_ns;
+    return source_.info().steady_stamps ? stamp_ns : clock_();
 }
 
 std::optional<StereoFrame> LiveSession::next() {

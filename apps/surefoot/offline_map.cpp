@@ -68,7 +68,7 @@ std::vector<std::int64_t> heights_around(const gate::Query& query,
         for (int ix = 0; ix < map.nx; ++ix) {
             const auto cell = static_cast<std::size_t>(iy) * static_cast<std::size_t>(map.nx) +
                               static_cast<std::size_t>(ix);
-            if (map.height_tenth_mm[cell] == grid::MapSnapshot::kUnknownHeight) continue;
+            if (!map.is_measured(cell)) continue;
             const std::int64_t half = map.resolution_tenth_mm / 2;
             const std::int64_t dx =
                 map.origin_x_tenth_mm + ix * map.resolution_tenth_mm + half - query.x_tenth_mm;

@@ -37,6 +37,7 @@ struct Service {
         frame.map.resolution_tenth_mm = 250;
         frame.map.nx = frame.map.ny = side;
         std::fill_n(frame.map.height_tenth_mm.begin(), side * side, 5);
+        std::fill_n(frame.map.source.begin(), side * side, grid::EvidenceSource::measured);
         frame.images_time_ns = with_image ? frame.pose.time_ns : 0;
         if (with_image) frame.left = GreyImage(64, 48, 128);
         feed.hand_over();

@@ -44,7 +44,7 @@ PageCell cell_of(const grid::MapSnapshot& snapshot,
                  const ColourLimits& limits) noexcept {
     const std::size_t i = element(ix, iy, snapshot.nx);
     PageCell cell;
-    if (snapshot.height_tenth_mm[i] != grid::MapSnapshot::kUnknownHeight) {
+    if (snapshot.is_measured(i)) {
         cell.height_mm = height_mm(snapshot.height_tenth_mm[i], base_tenth_mm);
         const std::int64_t sigma_mm =
             (snapshot.sigma_tenth_mm[i] + kTenthsPerMm - 1) / kTenthsPerMm;
@@ -169,8 +169,8 @@ GroundState ground_state(const grid::MapSnapshot& snapshot,
                          int iy,
                          const ColourLimits& limits) noexcept {
     const std::size_t i = element(ix, iy, snapshot.nx);
+    if (!snapshot.is_measured(i)) return GroundState::unknown;
     const std::int64_t height = snapshot.height_tenth_mm[i];
-    if (height == grid::MapSnapshot::kUnknownHeight) return GroundState::unknown;
     if (snapshot.sigma_tenth_mm[i] > limits.cell_sigma_tenth_mm) return GroundState::unsure;
     if (snapshot.drop_evidence[i] >= limits.drop_evidence) return GroundState::unsafe;
     struct Step {
@@ -181,10 +181,10 @@ GroundState ground_state(const grid::MapSnapshot& snapshot,
         const int y = iy + step.y;
         if (x < 0 || y < 0 || x >= snapshot.nx || y >= snapshot.ny) continue;
         const std::size_t neighbour = element(x, y, snapshot.nx);
-        const std::int64_t other = snapshot.height_tenth_mm[neighbour];
-        if (other == grid::MapSnapshot::kUnknownHeight ||
+        if (!snapshot.is_measured(neighbour) ||
             snapshot.sigma_tenth_mm[neighbour] > limits.cell_sigma_tenth_mm)
             continue;
+        const std::int64_t other = snapshot.height_tenth_mm[neighbour];
         if (other - height > limits.up_tenth_mm || height - other > limits.down_tenth_mm)
             return GroundState::unsafe;
     }

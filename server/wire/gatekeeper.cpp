@@ -59,7 +59,9 @@ void Gatekeeper::open_channel(std::int64_t now_ns) {
     if (reader_ || now_ns < next_open_ns_) return;
     next_open_ns_ = now_ns + kOpenEvery_ns;
     auto reader = SnapshotReader::open(channel_path_);
-    if (reader) reader_.emplace(std::move(*reader));
+    if (!reader) return;
+    reader_.emplace(std::move(*reader));
+    readiness_.resume_fault(reader_->kept_faults());
 }
 
 void Gatekeeper::fetch(std::int64_t now_ns) {
@@ -79,7 +81,9 @@ void Gatekeeper::fetch(std::int64_t now_ns) {
         vouching_.observe(*map_);
     }
     readiness_.tick(now_ns);
-    if (readiness_.state() == gate::GateState::fault) vouching_.revoke();
+    if (readiness_.state() != gate::GateState::fault) return;
+    vouching_.revoke();
+    if (reader_) reader_->keep_faults(readiness_.latched().bits());
 }
 
 void Gatekeeper::ask_canary(std::int64_t now_ns) {
@@ -186,12 +190,17 @@ GateReport Gatekeeper::report(std::int64_t now_ns) {
 }
 
 Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
+    if (!canaries_->judge_all().passed)
+        return Error{ErrorCode::usage,
+                     "the gate fails its self-test: it answers a known question wrongly and must "
+                     "not be used; start it anew, and if that does not help, install it anew"};
     if (!readiness_.rearm(now_ns))
         return Error{ErrorCode::usage,
                      "there is nothing to re-arm: the gate is in no fault, or in one that only a "
                      "restart with a valid configuration ends"};
     vouching_.revoke();
     if (reader_) {  // the map that a fault left behind is not believed again
+        reader_->keep_faults(0);
         reader_->want_restart();
         given_up_ = reader_->writer();
     }

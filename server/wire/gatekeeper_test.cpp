@@ -193,6 +193,42 @@ TEST_F(GatekeeperTest, after_re_arming_the_old_map_is_not_believed) {
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << gate::testing::words(ask().verdict);
 }
 
+TEST_F(GatekeeperTest, a_fault_outlives_the_process_that_found_it) {
+    become_ready();
+    map_->body_x_tenth_mm += 3'000;  // a jump
+    run(1.0);
+    ASSERT_EQ(keeper_->report(now_ns_).why, Reason::pose_jump);
+    keep();  // killed, and started again
+    run(5.0);
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
+    EXPECT_EQ(keeper_->report(now_ns_).why, Reason::pose_jump);
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+    ASSERT_TRUE(keeper_->rearm(1, now_ns_).ok());
+    EXPECT_TRUE(writer_->restart_wanted()) << "its map is not believed again";
+    writer_->begin_anew();
+    map_->version = 0;
+    run(3.0);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << gate::testing::words(ask().verdict);
+    keep();
+    run(3.0);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << "and it is over";
+}
+
+TEST_F(GatekeeperTest, a_gate_that_fails_its_self_test_cannot_be_re_armed) {
+    Machine machine = gate::testing::rex();
+    for (Movement& movement : machine.movements)  // next to no step: one canary finds no new ground
+        movement.forward_tenth_mm = movement.left_tenth_mm = movement.forward_tenth_mm / 20;
+    ASSERT_FALSE(std::make_unique<gate::Canaries>(machine)->judge_all().passed);
+    keeper_ = std::make_unique<Gatekeeper>(machine, gate::ReadinessLimits{}, path_);
+    start_perception();
+    run(20.0);  // every single canary has been asked
+    ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
+    const Status refused = keeper_->rearm(1, now_ns_);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("self-test"), std::string::npos);
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
+}
+
 TEST_F(GatekeeperTest, an_operators_word_lasts_until_the_machine_has_left_or_a_fault) {
     gate::testing::Terrain blind;
     blind.box(-0.7, 0.7, -0.7, 0.7, std::nan(""));

@@ -79,7 +79,7 @@ CellBox query_zone(const Machine& machine,
                                              start,
                                              machine.movements[query.command],
                                              gate::drift_margin(machine.limits, drift));
-    const gate::Extent bounds = gate::Ground(map, query).zone_of(sweep);
+    const gate::Extent bounds = gate::Ground(map, query, machine.limits).zone_of(sweep);
     const std::int64_t side = map.resolution_tenth_mm;
     const Range x = cells_between(bounds.low.x, bounds.high.x, map.origin_x_tenth_mm, side, map.nx);
     const Range y = cells_between(bounds.low.y, bounds.high.y, map.origin_y_tenth_mm, side, map.ny);

@@ -17,7 +17,7 @@ namespace surefoot::wire {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x4c4e484354465253;  // "SRFTCHNL"
-constexpr std::uint32_t kLayout = 1;
+constexpr std::uint32_t kLayout = 2;
 constexpr std::uint64_t kSlots = 3;
 using Atomic = std::atomic<std::uint64_t>;
 static_assert(Atomic::is_always_lock_free, "the other process would not see the lock");
@@ -41,6 +41,7 @@ struct ChannelMemory {
     Atomic writer;          ///< number of the present writer, 0 while it begins
     Atomic published;       ///< snapshots so far; the newest lies in slot published % 3
     Atomic restart_wanted;  ///< number of the writer that shall begin anew
+    Atomic faults;          ///< of the gate, until an operator re-arms it; 0 = none
     std::array<Slot, kSlots> slots;
 };
 
@@ -122,6 +123,7 @@ Result<SnapshotWriter> SnapshotWriter::create(const std::string& path) {
     m.magic = kMagic;
     m.layout = kLayout;
     m.snapshot_bytes = sizeof(grid::MapSnapshot);
+    m.faults.store(0, std::memory_order_seq_cst);
     SnapshotWriter writer(std::move(*mapping));
     writer.begin_anew();
     return writer;
@@ -191,6 +193,14 @@ SnapshotReader::Read SnapshotReader::read(grid::MapSnapshot& out) noexcept {
         return Read::fresh;
     }
     return Read::torn;
+}
+
+void SnapshotReader::keep_faults(std::uint64_t bits) noexcept {
+    mapping_.memory()->faults.store(bits, std::memory_order_release);
+}
+
+std::uint64_t SnapshotReader::kept_faults() const noexcept {
+    return mapping_.memory()->faults.load(std::memory_order_acquire);
 }
 
 void SnapshotReader::want_restart() noexcept {

@@ -72,6 +72,10 @@ class SnapshotReader {
     [[nodiscard]] std::uint64_t writer() const noexcept { return writer_; }
     /// Asks the present writer to begin anew.
     void want_restart() noexcept;
+    /// What has to outlive the gate's process: bits that mean something to the gate, 0 = nothing.
+    /// They stay until they are set anew or perception is started again.
+    void keep_faults(std::uint64_t bits) noexcept;
+    [[nodiscard]] std::uint64_t kept_faults() const noexcept;
 
   private:
     explicit SnapshotReader(ChannelMapping mapping) : mapping_(std::move(mapping)) {}

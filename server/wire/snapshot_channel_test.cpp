@@ -111,6 +111,27 @@ TEST_F(SnapshotChannel, a_writer_that_is_asked_to_begins_anew) {
     EXPECT_EQ(reader->read(*out_), Read::fresh) << "the same version of another map";
 }
 
+TEST_F(SnapshotChannel, faults_of_the_gate_outlive_its_process_but_not_a_new_start_of_perception) {
+    auto writer = SnapshotWriter::create(path_);
+    ASSERT_TRUE(writer.ok());
+    {
+        auto gate = SnapshotReader::open(path_);
+        ASSERT_TRUE(gate.ok());
+        EXPECT_EQ(gate->kept_faults(), 0U);
+        gate->keep_faults(0x1234'5678'9abc'def0);
+    }
+    auto next = SnapshotReader::open(path_);
+    ASSERT_TRUE(next.ok());
+    EXPECT_EQ(next->kept_faults(), 0x1234'5678'9abc'def0);
+    writer->begin_anew();
+    EXPECT_EQ(next->kept_faults(), 0x1234'5678'9abc'def0) << "nobody re-armed the gate";
+    next->keep_faults(0);
+    EXPECT_EQ(next->kept_faults(), 0U);
+    next->keep_faults(7);
+    ASSERT_TRUE(SnapshotWriter::create(path_).ok());
+    EXPECT_EQ(next->kept_faults(), 0U);
+}
+
 TEST_F(SnapshotChannel, what_is_no_channel_is_refused_in_words) {
     const auto missing = SnapshotReader::open(path_);
     ASSERT_FALSE(missing.ok());

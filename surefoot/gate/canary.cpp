@@ -23,7 +23,7 @@ struct Setting {
     Query& query;
     GateHealth& health;
     std::int64_t& now_ns;
-    const Sweep& sweep;
+    const FootSweep& foot;  ///< under which the ground is changed
 };
 
 /// Level ground, known, fresh and healthy, with the machine in its middle. Whether it is large
@@ -59,7 +59,7 @@ void make_level(grid::MapSnapshot& map) noexcept {
     map.edges.fill({});
 }
 
-/// Well inside the landing left foot and as far from where it stands as can be: with a short step
+/// Well inside a landing foot and as far from where it stands as can be: with a short step
 /// the middle would be ground that carries already.
 grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
     const grid::FixedPoint center = foot.landing_center;
@@ -81,7 +81,7 @@ grid::FixedPoint new_ground(const FootSweep& foot) noexcept {
 /// fails, and says so.
 template <typename Change>
 void change_one_cell(const Setting& s, Change&& change) noexcept {
-    const grid::FixedPoint place = new_ground(s.sweep.feet[0]);
+    const grid::FixedPoint place = new_ground(s.foot);
     const auto index = [&](std::int64_t at, std::int64_t origin) {
         const std::int64_t i = grid::floor_div(at - origin, s.map.resolution_tenth_mm);
         return i < 0 ? 0 : i >= s.map.nx ? std::int64_t{s.map.nx} - 1 : i;
@@ -112,7 +112,7 @@ struct Fault {
     void (*happen)(const Setting&);
 };
 
-constexpr auto kFaultList = std::to_array<Fault>({
+constexpr auto kFaults = std::to_array<Fault>({
     // What perception says of itself, and of time.
     {Reason::frame_stale,
      [](const Setting& s) { s.map.frame_time_ns -= s.machine.limits.frame_age_ns + 1; }},
@@ -137,13 +137,30 @@ constexpr auto kFaultList = std::to_array<Fault>({
     {Reason::clock, [](const Setting& s) { s.now_ns = -1; }},
     {Reason::unknown_command, [](const Setting& s) { s.query.command = 0; }},
     {Reason::bad_number, [](const Setting& s) { s.query.cos_yaw *= 2.0; }},
-    // The ground.
+});
+
+/// Under each foot.
+constexpr auto kGroundFaults = std::to_array<Fault>({
     {Reason::unknown_cells,
      [](const Setting& s) {
          change_one_cell(s, [&](std::size_t i) {
              s.map.height_tenth_mm[i] = grid::MapSnapshot::kUnknownHeight;
              s.map.source[i] = grid::EvidenceSource::unknown;
          });
+     }},
+    // An operator's word for ground that was seen to lie lower.
+    {Reason::unknown_cells,
+     [](const Setting& s) {
+         const GateLimits& limits = s.machine.limits;
+         change_one_cell(s, [&](std::size_t i) {
+             s.map.height_tenth_mm[i] = -limits.drop_tenth_mm - 1;
+             s.map.source[i] = grid::EvidenceSource::unknown;
+         });
+         s.query.vouched = {limits.vouch_radius_tenth_mm > 0,
+                            s.query.x_tenth_mm,
+                            s.query.y_tenth_mm,
+                            limits.vouch_radius_tenth_mm,
+                            0};
      }},
     {Reason::not_resolvable,
      [](const Setting& s) {
@@ -188,6 +205,31 @@ constexpr auto kFaultList = std::to_array<Fault>({
      }},
 });
 
+/// What happens to a map that was sealed already.
+constexpr auto kDamages = std::to_array<Fault>({
+    {Reason::internal,
+     [](const Setting& s) {
+         change_one_cell(s, [&](std::size_t i) { ++s.map.sigma_tenth_mm[i]; });
+     }},
+});
+
+constexpr std::size_t kFaultCount = kFaults.size() + 2 * kGroundFaults.size() + kDamages.size();
+
+/// The index-th question with a broken rule: which one, under which foot, and whether the map was
+/// sealed before.
+struct Broken {
+    const Fault& fault;
+    std::size_t foot = 0;
+    bool sealed = false;
+};
+Broken broken_rule(std::size_t index) noexcept {
+    if (index < kFaults.size()) return {kFaults[index]};
+    index -= kFaults.size();
+    if (index < 2 * kGroundFaults.size())
+        return {kGroundFaults[index % kGroundFaults.size()], index / kGroundFaults.size()};
+    return {kDamages[index - 2 * kGroundFaults.size()], 0, true};
+}
+
 std::int64_t length_sq(const Movement& m) noexcept {
     return std::int64_t{m.forward_tenth_mm} * m.forward_tenth_mm +
            std::int64_t{m.left_tenth_mm} * m.left_tenth_mm;
@@ -208,7 +250,7 @@ bool is_usable(const Machine& machine, std::size_t code) noexcept {
 
 }  // namespace
 
-const int Canaries::kFaults = static_cast<int>(kFaultList.size());
+const int Canaries::kBrokenRules = static_cast<int>(kFaultCount);
 
 Canaries::Canaries(const Machine& machine) noexcept : machine_(machine) {
     if (machine.problem() != nullptr) return;  // no movement: every canary fails
@@ -235,15 +277,18 @@ Canaries::Outcome Canaries::judge(int index) noexcept {
     GateHealth health{GateState::ready, {}};
     std::int64_t now_ns = kNowNs;
     if (index >= first_fault_) {
-        const Fault& fault = kFaultList[static_cast<std::size_t>(index - first_fault_)];
+        const Broken broken = broken_rule(static_cast<std::size_t>(index - first_fault_));
         const Sweep sweep =
             sweep_of(machine_,
                      fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw),
                      machine_.movements[longest_]);
-        fault.happen({machine_, map_, query, health, now_ns, sweep});
-        outcome.expected = fault.expected;
+        if (broken.sealed) grid::seal(map_);
+        broken.fault.happen({machine_, map_, query, health, now_ns, sweep.feet[broken.foot]});
+        if (!broken.sealed) grid::seal(map_);
+        outcome.expected = broken.fault.expected;
+    } else {
+        grid::seal(map_);
     }
-    grid::seal(map_);
     const Verdict verdict = decide(machine_, query, map_, health, now_ns);
     outcome.name = to_string(outcome.expected);
     outcome.found = verdict.primary;

@@ -10,9 +10,9 @@
 namespace surefoot::gate {
 
 /// Maps whose verdicts are known: level ground for every movement of the machine, and for its
-/// longest movement one broken rule at a time. They go the way of every question, through decide(),
-/// so that a gate that has come to say OK (or nothing else) is noticed. Asked before the gate is
-/// armed, and one after the other while it runs.
+/// longest movement one broken rule at a time, those of the ground under either foot. They go the
+/// way of every question, through decide(), so that a gate that has come to say OK (or nothing
+/// else) is noticed. Asked before the gate is armed, and one after the other while it runs.
 ///
 /// Holds one map of 0.9 MB: belongs on the heap. Nothing is allocated afterwards; a canary costs
 /// less than a millisecond.
@@ -20,7 +20,7 @@ class Canaries {
   public:
     explicit Canaries(const Machine& machine) noexcept;
 
-    [[nodiscard]] int count() const noexcept { return first_fault_ + kFaults; }
+    [[nodiscard]] int count() const noexcept { return first_fault_ + kBrokenRules; }
     /// "level ground, movement 9", "unknown_cells".
     struct Outcome {
         bool passed = false;
@@ -35,7 +35,7 @@ class Canaries {
     [[nodiscard]] Outcome judge_all() noexcept;
 
   private:
-    static const int kFaults;
+    static const int kBrokenRules;
 
     Machine machine_;
     grid::MapSnapshot map_;

@@ -186,7 +186,15 @@ void check_step(const Landing& landing) noexcept {
     const std::int64_t worst = evidence.height_delta_tenth_mm;
     if ((rise < 0 ? -rise : rise) > (worst < 0 ? -worst : worst))
         evidence.height_delta_tenth_mm = rise;
-    check_rise(step_limits(landing.scene), landing.at(0.0, 0.0, rise, 0), landing.findings);
+    const StepLimits& limits = step_limits(landing.scene);
+    check_rise(limits, landing.at(0.0, 0.0, rise, 0), landing.findings);
+    // With one foot above the mean of both and the other below, each could change by twice the
+    // limit.
+    const Scene& scene = landing.scene;
+    const auto stood = scene.foot_stance_tenth_mm[landing.foot.foot == Foot::left ? 0 : 1];
+    if (!stood) return;
+    const std::int64_t own = rise + scene.stance_tenth_mm - *stood;
+    check_rise(limits, landing.at(0.0, 0.0, own, 0), landing.findings);
 }
 
 /// False when it denies, like check_patch().
@@ -240,7 +248,8 @@ bool check_patch(const Landing& landing, const PatchSums& patch) noexcept {
 struct FootCells {
     Sums all{};
     Patches patches;
-    std::int64_t grounds = 0;  ///< cells that do not stand alone
+    bool has_pebble = false;   ///< one of them stood alone
+    std::int64_t grounds = 0;  ///< the others
     Finding lowest{};          ///< of these; its value: the height over the stance
     Finding highest{};
 
@@ -258,7 +267,8 @@ struct FootCells {
 
 /// A single cell beyond the step limits while all eight around it are known and keep them, and no
 /// obstacle for a swinging foot nor a drop itself: a wrong match, or a pebble, of which the mean of
-/// its patch speaks. What a foot could stand on, a kerb or a sill, fills more than one cell.
+/// its patch speaks. What a foot could stand on, a kerb or a sill, fills more than one cell. One
+/// such cell is forgiven a foot: on many of them it would stand.
 bool stands_alone(const Scene& scene,
                   std::int64_t ix,
                   std::int64_t iy,
@@ -298,7 +308,10 @@ bool gather_cells(const Scene& scene,
             cells.add(scene.ground.doubled_center(ix, iy, foot.landing_center),
                       height,
                       cell.sigma_tenth_mm);
-            if (!stands_alone(scene, ix, iy, height)) cells.add_extreme(here, height);
+            if (!cells.has_pebble && stands_alone(scene, ix, iy, height))
+                cells.has_pebble = true;
+            else
+                cells.add_extreme(here, height);
             return true;
         });
 }

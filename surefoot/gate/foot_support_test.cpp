@@ -39,7 +39,7 @@ struct FootOnGround {
     }
     [[nodiscard]] Findings look() const {
         const Sweep all = sweep();
-        const Ground ground(*map, query);
+        const Ground ground(*map, query, machine.limits);
         const Scene scene{
             machine, machine.movements[query.command], ground, all, query.stance_height_tenth_mm};
         ReachableSurfaces reachable;
@@ -102,7 +102,7 @@ struct PlainFoot {
         std::vector<PlainPatch> patches(static_cast<std::size_t>(along * across));
         std::vector<Eigen::Vector3d> cells;
         const double side = on.map->resolution_tenth_mm;
-        const Ground ground(*on.map, on.query);
+        const Ground ground(*on.map, on.query, on.machine.limits);
         grid::for_each_overlapped_cell(
             foot.landing, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                 const auto at = static_cast<std::size_t>(iy * on.map->nx + ix);
@@ -348,7 +348,7 @@ TEST(FootSupport, the_first_cell_counts_like_every_other) {
         FootOnGround on;
         std::size_t first = 0;
         const Sweep sweep = on.sweep();
-        const Ground ground(*on.map, on.query);
+        const Ground ground(*on.map, on.query, on.machine.limits);
         grid::for_each_overlapped_cell(
             sweep.feet[0].landing, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                 first = static_cast<std::size_t>(iy * on.map->nx + ix);

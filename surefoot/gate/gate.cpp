@@ -149,7 +149,8 @@ bool stands_on_map(const Machine& machine, const grid::MapSnapshot& map) noexcep
         sweep_of(machine,
                  fixed_pose(here.x_tenth_mm, here.y_tenth_mm, here.cos_yaw, here.sin_yaw),
                  Movement{});
-    const std::optional<std::int64_t> ground = stance_height(Ground(map, here), here, standing);
+    const std::optional<std::int64_t> ground =
+        stance_heights(Ground(map, here, machine.limits), here, standing).both_tenth_mm;
     if (!ground) return true;
     std::int64_t step = 0;
     for (const StepLimits& limits : machine.limits.step) {
@@ -225,13 +226,19 @@ void judge_sweep(const Machine& machine,
     });
     if (!findings.reasons().empty()) return;  // of a damaged map nothing is said
     const Movement& movement = *movement_for(machine, query.command);
-    const std::optional<std::int64_t> stance = stance_height(ground, query, sweep);
-    const Scene scene{machine, movement, ground, sweep, stance.value_or(0)};
-    findings.evidence.stance_known = stance.has_value();
+    const StanceHeights stance = stance_heights(ground, query, sweep);
+    const Scene scene{machine,
+                      movement,
+                      ground,
+                      sweep,
+                      stance.both_tenth_mm.value_or(0),
+                      0,
+                      stance.feet_tenth_mm};
+    findings.evidence.stance_known = stance.both_tenth_mm.has_value();
     findings.evidence.stance_height_tenth_mm = scene.stance_tenth_mm;
 
     findings.prove(Proof::stance_known, [&] { check_stance(scene, findings); });
-    if (!stance) {  // no height to compare with: the unknown cells have been reported
+    if (!stance.both_tenth_mm) {  // no height to compare with: the unknown cells have been reported
         findings.deny(Reason::unknown_cells);
         return;
     }
@@ -249,7 +256,7 @@ void judge_terrain(const Machine& machine,
     const Movement& movement = *movement_for(machine, query.command);
     const FixedPose start =
         fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
-    const Ground ground(map, query);
+    const Ground ground(map, query, machine.limits);
     const Findings before = findings;
     judge_sweep(machine, query, ground, sweep_of(machine, start, movement), findings);
     // Cells that may lie far beside their place: all is asked again, as far as they may be.

@@ -554,12 +554,49 @@ TEST(Gate, one_cell_alone_above_or_below_the_step_is_no_step_but_two_are) {
         unseen.box(0.425, 0.45, 0.15, 0.175, kNaN);
         expect_refused(ask(unseen, kForward), Reason::unknown_cells);
     }
+    // On pegs in rows the whole foot would stand: one in a foot is a pebble, two are not.
+    Terrain pegs;
+    pegs.box(0.40, 0.425, 0.15, 0.175, 0.036);
+    expect_ok(ask(pegs, kForward));
+    pegs.box(0.50, 0.525, 0.15, 0.175, 0.036);
+    EXPECT_TRUE(ask(pegs, kForward).reasons.contains(Reason::step_too_high));
+    Terrain one_each;
+    one_each.box(0.40, 0.425, 0.15, 0.175, 0.036).box(0.40, 0.425, -0.175, -0.15, 0.036);
+    expect_ok(ask(one_each, kForward));
     Terrain post;
     post.box(0.40, 0.425, 0.15, 0.175, 0.041);
     EXPECT_TRUE(ask(post, kForward).reasons.contains(Reason::step_too_high));
     Terrain pit;
     pit.box(0.40, 0.425, 0.15, 0.175, -0.051);
     EXPECT_TRUE(ask(pit, kForward).reasons.contains(Reason::step_too_low));
+}
+
+// The height of the stance is the mean of both feet: each must keep the limits by itself, too.
+TEST(Gate, a_foot_that_stood_high_may_not_step_down_by_twice_the_limit) {
+    struct Case {
+        double left_m, right_m;            // where the feet stand
+        double left_then_m, right_then_m;  // where they land
+        Reason reason;
+    };
+    const Case cases[] = {{0.0, 0.0, 0.0, 0.0, Reason::none},
+                          {0.010, -0.010, 0.010, -0.010, Reason::none},
+                          {0.010, -0.010, -0.010, 0.010, Reason::none},
+                          {0.010, -0.010, -0.0099, -0.010, Reason::none},
+                          {0.010, -0.010, -0.0101, -0.010, Reason::step_too_low},
+                          {0.0, -0.030, -0.030, -0.030, Reason::step_too_low},
+                          {-0.015, 0.015, 0.015, -0.015, Reason::step_too_high}};
+    for (const Case& c : cases) {
+        Terrain floor;
+        floor.box(-1.0, 0.25, 0.0, 1.0, c.left_m).box(-1.0, 0.25, -1.0, 0.0, c.right_m);
+        floor.box(0.25, 1.0, 0.0, 1.0, c.left_then_m).box(0.25, 1.0, -1.0, 0.0, c.right_then_m);
+        const Verdict verdict = ask(floor, kForward);
+        EXPECT_EQ(verdict.decision == Decision::ok, c.reason == Reason::none)
+            << c.left_m << " " << c.left_then_m << words(verdict);
+        if (c.reason != Reason::none) {
+            EXPECT_TRUE(verdict.reasons.contains(c.reason))
+                << c.left_m << " " << c.left_then_m << words(verdict);
+        }
+    }
 }
 
 TEST(Gate, given_an_island_at_floor_height_then_disconnected) {

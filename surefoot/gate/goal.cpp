@@ -17,12 +17,12 @@ void check_joined(const Machine& machine,
                   const Sweep& there,
                   const grid::MapSnapshot& map,
                   Findings& findings) noexcept {
-    const Ground ground(map, here);
+    const Ground ground(map, here, machine.limits);
     const Movement stay;
     const Sweep sweep = sweep_of(
         machine, fixed_pose(here.x_tenth_mm, here.y_tenth_mm, here.cos_yaw, here.sin_yaw), stay);
     if (!ground.is_intact(ground.zone_of(sweep))) findings.deny(Reason::internal);
-    const std::optional<std::int64_t> stance = stance_height(ground, here, sweep);
+    const std::optional<std::int64_t> stance = stance_heights(ground, here, sweep).both_tenth_mm;
     if (!stance) {
         findings.deny(Reason::disconnected);
         return;

@@ -12,10 +12,11 @@ constexpr std::int64_t magnitude(std::int64_t x) noexcept {
 
 }  // namespace
 
-Ground::Ground(const grid::MapSnapshot& map, const Query& query) noexcept
+Ground::Ground(const grid::MapSnapshot& map, const Query& query, const GateLimits& limits) noexcept
     : map_(map),
       grid_{map.origin_x_tenth_mm, map.origin_y_tenth_mm, map.resolution_tenth_mm},
-      vouched_(query.vouched.active ? query.vouched : VouchedArea{}) {
+      vouched_(query.vouched.active ? query.vouched : VouchedArea{}),
+      drop_tenth_mm_(limits.drop_tenth_mm) {
     // The word is void as soon as base_link is outside of the area.
     const std::int64_t dx = query.x_tenth_mm - vouched_.center_x_tenth_mm;
     const std::int64_t dy = query.y_tenth_mm - vouched_.center_y_tenth_mm;
@@ -27,6 +28,34 @@ Ground::Ground(const grid::MapSnapshot& map, const Query& query) noexcept
 std::span<const grid::SnapshotEdge> Ground::edges() const noexcept {
     const auto count = std::clamp(map_.edge_count, 0, grid::MapSnapshot::kMaxEdges);
     return {map_.edges.data(), static_cast<std::size_t>(count)};
+}
+
+void Ground::take_word(std::size_t at,
+                       std::int64_t ix,
+                       std::int64_t iy,
+                       GroundCell& cell) const noexcept {
+    const bool measured = cell.knowledge == Knowledge::measured;
+    if ((measured && !is_unsure_but_agrees(cell)) || !is_vouched(ix, iy)) return;
+    if (!measured && is_proven_lower(at)) {
+        cell.drop_evidence = UINT8_MAX;
+        return;
+    }
+    cell.knowledge = Knowledge::vouched;
+    cell.height_tenth_mm = vouched_.height_tenth_mm;
+    cell.sigma_tenth_mm = 0;
+}
+
+bool Ground::is_unsure_but_agrees(const GroundCell& cell) const noexcept {
+    constexpr std::int32_t kUnsureTenthMm = 79;
+    constexpr std::int64_t kAgreesTenthMm = 150;
+    const std::int64_t off = cell.height_tenth_mm - vouched_.height_tenth_mm;
+    return cell.sigma_tenth_mm > kUnsureTenthMm && off >= -kAgreesTenthMm && off <= kAgreesTenthMm;
+}
+
+bool Ground::is_proven_lower(std::size_t at) const noexcept {
+    const std::int64_t bound = map_.height_tenth_mm[at];
+    return bound != grid::MapSnapshot::kUnknownHeight &&
+           bound < std::int64_t{vouched_.height_tenth_mm} - drop_tenth_mm_;
 }
 
 bool Ground::is_vouched(std::int64_t ix, std::int64_t iy) const noexcept {

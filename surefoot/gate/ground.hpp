@@ -35,10 +35,11 @@ struct GroundCell {
 /// known; a cell without a measurement has no other way than to lie wholly in the vouched area.
 /// There the word also stands for a measurement that decides nothing by itself and does not
 /// contradict it: it must not be worse to have looked than not to have looked. What hangs over such
-/// a cell and evidence of a drop stay.
+/// a cell and evidence of a drop stay, and where lines of sight passed below the vouched ground by
+/// a drop the word is wrong: such a cell is unknown and a drop.
 class Ground {
   public:
-    Ground(const grid::MapSnapshot& map, const Query& query) noexcept;
+    Ground(const grid::MapSnapshot& map, const Query& query, const GateLimits& limits) noexcept;
 
     [[nodiscard]] const grid::FixedGrid& grid() const noexcept { return grid_; }
     [[nodiscard]] std::span<const grid::SnapshotEdge> edges() const noexcept;
@@ -51,23 +52,15 @@ class Ground {
         }
         const auto at = static_cast<std::size_t>(iy * map_.nx + ix);
         cell.drop_evidence = map_.drop_evidence[at];
-        if (map_.source[at] == grid::EvidenceSource::measured &&
-            map_.height_tenth_mm[at] != grid::MapSnapshot::kUnknownHeight) {
+        if (map_.is_measured(at)) {
             cell.knowledge = Knowledge::measured;
             cell.component = map_.component[at];
             cell.sigma_tenth_mm = map_.sigma_tenth_mm[at];
             cell.drift_tenth_mm = map_.drift_tenth_mm[at];
             cell.clearance_tenth_mm = map_.clearance_tenth_mm[at];
             cell.height_tenth_mm = map_.height_tenth_mm[at];
-            if (vouching_ && is_unsure_but_agrees(cell) && is_vouched(ix, iy)) {
-                cell.knowledge = Knowledge::vouched;
-                cell.height_tenth_mm = vouched_.height_tenth_mm;
-                cell.sigma_tenth_mm = 0;
-            }
-        } else if (vouching_ && is_vouched(ix, iy)) {
-            cell.knowledge = Knowledge::vouched;
-            cell.height_tenth_mm = vouched_.height_tenth_mm;
         }
+        if (vouching_) take_word(at, ix, iy, cell);
         return cell;
     }
     /// The eight cells around one are known, and each passes `test(cell)`.
@@ -96,20 +89,22 @@ class Ground {
     [[nodiscard]] const VouchedArea& vouched() const noexcept { return vouched_; }
 
   private:
+    /// What an operator's word makes of a cell; not in the header, because few verdicts have one.
+    void take_word(std::size_t at,
+                   std::int64_t ix,
+                   std::int64_t iy,
+                   GroundCell& cell) const noexcept;
     /// Too unsure for the limits of a foot by itself, and nearer to the word than two of its sigma.
-    [[nodiscard]] bool is_unsure_but_agrees(const GroundCell& cell) const noexcept {
-        constexpr std::int32_t kUnsureTenthMm = 79;
-        constexpr std::int64_t kAgreesTenthMm = 150;
-        const std::int64_t off = cell.height_tenth_mm - vouched_.height_tenth_mm;
-        return cell.sigma_tenth_mm > kUnsureTenthMm && off >= -kAgreesTenthMm &&
-               off <= kAgreesTenthMm;
-    }
+    [[nodiscard]] bool is_unsure_but_agrees(const GroundCell& cell) const noexcept;
+    /// Of an unknown cell: there is no ground where somebody vouched for it.
+    [[nodiscard]] bool is_proven_lower(std::size_t at) const noexcept;
     /// Whole, in the area.
     [[nodiscard]] bool is_vouched(std::int64_t ix, std::int64_t iy) const noexcept;
 
     const grid::MapSnapshot& map_;
     grid::FixedGrid grid_;
     VouchedArea vouched_;
+    std::int32_t drop_tenth_mm_;
     bool vouching_ = false;
 };
 

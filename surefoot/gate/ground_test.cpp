@@ -30,7 +30,7 @@ TEST(Ground, an_unknown_cell_is_vouched_only_when_it_lies_wholly_in_the_circle) 
     Rng rng(6);
     for (int round = 0; round < 20; ++round) {
         const Query query = vouching(0.0, 0.0, rng.uniform(0.2, 0.9), 0.1, rng.uniform(-0.1, 0.1));
-        const Ground ground(*map, query);
+        const Ground ground(*map, query, rex().limits);
         for (std::int64_t iy = 0; iy < 240; ++iy) {
             for (std::int64_t ix = 0; ix < 240; ++ix) {
                 double farthest = 0.0;  // of the four corners from the centre, squared, 0.1 mm
@@ -53,6 +53,31 @@ TEST(Ground, an_unknown_cell_is_vouched_only_when_it_lies_wholly_in_the_circle) 
     }
 }
 
+TEST(Ground, nobodys_word_holds_where_lines_of_sight_passed_below_it_by_a_drop) {
+    Terrain nothing;
+    nothing.height.fill(kNaN);
+    const auto map = nothing.snapshot();
+    const Query query = vouching(0.0, 0.0, 0.5, 0.0, 0.0);  // of ground at -123
+    const Ground ground(*map, query, rex().limits);
+    const Ground nobody(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
+    const std::size_t at = cell_at(*map, 0.1, 0.1);
+    const auto cell_of = [&](const Ground& of) {
+        return of.cell(static_cast<std::int64_t>(at) % map->nx,
+                       static_cast<std::int64_t>(at) / map->nx);
+    };
+    for (const std::int32_t bound : {-623, -100, 5'000}) {
+        map->height_tenth_mm[at] = bound;
+        EXPECT_EQ(cell_of(ground).knowledge, Knowledge::vouched) << bound;
+        EXPECT_EQ(cell_of(ground).height_tenth_mm, -123) << bound;
+        EXPECT_EQ(cell_of(ground).drop_evidence, 0) << bound;
+        EXPECT_EQ(cell_of(nobody).knowledge, Knowledge::unknown) << bound;
+    }
+    map->height_tenth_mm[at] = -624;
+    EXPECT_EQ(cell_of(ground).knowledge, Knowledge::unknown);
+    EXPECT_EQ(cell_of(ground).drop_evidence, 255);
+    EXPECT_EQ(cell_of(nobody).drop_evidence, 0) << "below whom is not known";
+}
+
 TEST(Ground, the_word_is_void_once_base_link_is_outside_of_the_circle) {
     Terrain floor;
     const auto map = floor.snapshot();
@@ -69,18 +94,19 @@ TEST(Ground, the_word_is_void_once_base_link_is_outside_of_the_circle) {
                           {0.4, 0.4, false},
                           {90'000.0, 0.0, false}};
     for (const Case& c : cases)
-        EXPECT_EQ(Ground(*map, vouching(c.x_m, c.y_m, 0.5, 0.0, 0.0)).is_vouching(), c.holds)
+        EXPECT_EQ(Ground(*map, vouching(c.x_m, c.y_m, 0.5, 0.0, 0.0), rex().limits).is_vouching(),
+                  c.holds)
             << c.x_m << " " << c.y_m;
     Query inactive = vouching(0.0, 0.0, 0.5, 0.0, 0.0);
     inactive.vouched.active = false;
-    EXPECT_FALSE(Ground(*map, inactive).is_vouching() &&
-                 Ground(*map, inactive).vouched().radius_tenth_mm > 0);
+    EXPECT_FALSE(Ground(*map, inactive, rex().limits).is_vouching() &&
+                 Ground(*map, inactive, rex().limits).vouched().radius_tenth_mm > 0);
 }
 
 TEST(Ground, cells_are_known_by_measurement_only_and_outside_is_not_unknown) {
     Terrain floor;
     const auto map = floor.snapshot();
-    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0));
+    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
     EXPECT_EQ(ground.cell(0, 0).knowledge, Knowledge::measured);
     for (const auto& [ix, iy] : {std::pair{-1, 0}, {0, -1}, {240, 0}, {0, 240}})
         EXPECT_EQ(ground.cell(ix, iy).knowledge, Knowledge::outside) << ix << " " << iy;
@@ -110,7 +136,7 @@ TEST(Ground, a_zone_is_the_sweep_and_the_vouched_area_with_a_cell_beside_both) {
     const auto map = floor.snapshot();
     const auto zone_with = [&](const Query& query) {
         const Sweep sweep = sweep_of(rex(), FixedPose{}, rex().movements[kForward]);
-        return Ground(*map, query).zone_of(sweep);
+        return Ground(*map, query, rex().limits).zone_of(sweep);
     };
     const Query plain = make_query(kForward, 0.0, 0.0, 1.0, 0.0);
     const Extent without = zone_with(plain);
@@ -128,7 +154,7 @@ TEST(Ground, a_zone_is_the_sweep_and_the_vouched_area_with_a_cell_beside_both) {
 TEST(Ground, is_intact_where_nobody_changed_a_row_of_the_zone) {
     Terrain floor;
     const auto map = floor.snapshot();
-    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0));
+    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
     const Extent low{{-20'000, -25'000}, {20'000, -24'000}};
     const Extent high{{-20'000, 24'000}, {20'000, 25'000}};
     EXPECT_TRUE(ground.is_intact(low));
@@ -146,7 +172,7 @@ TEST(Ground, is_intact_where_nobody_changed_a_row_of_the_zone) {
 TEST(Ground, all_around_asks_the_eight_and_not_the_one) {
     Terrain floor;
     const auto map = floor.snapshot();
-    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0));
+    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
     const auto is_level = [](const GroundCell& cell) { return cell.height_tenth_mm == 0; };
     EXPECT_TRUE(ground.all_around(100, 100, is_level));
     map->height_tenth_mm[100 * 240 + 100] = 1;
@@ -185,7 +211,7 @@ TEST(Ground, a_cell_is_what_the_layers_say_of_it) {
     map->clearance_tenth_mm[at] = 44;
     map->component[at] = 55;
     map->drop_evidence[at] = 66;
-    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0));
+    const Ground ground(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
     const GroundCell cell = ground.cell(5, 7);
     EXPECT_EQ(cell.knowledge, Knowledge::measured);
     EXPECT_EQ(cell.height_tenth_mm, -11);
@@ -219,7 +245,7 @@ TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
     map->height_tenth_mm[lower + 3] = -123 + 401;
     map->source[lower + 4] = grid::EvidenceSource::unknown;
     ReachableSurfaces surfaces;
-    surfaces.add_beside_vouched(Ground(*map, query), 400);
+    surfaces.add_beside_vouched(Ground(*map, query, rex().limits), 400);
     for (std::size_t i = 0; i < 240UL * 240UL; ++i) {
         const double x = -3.0 + 0.025 * (static_cast<double>(i % 240) + 0.5) - 0.3;
         const double y = -3.0 + 0.025 * (static_cast<double>(i / 240) + 0.5) + 0.4;
@@ -230,12 +256,13 @@ TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
     // The middle of a cell lies as far away as is reached: on all four sides.
     const Query centred = vouching(0.3125, -0.4125, 0.5, 0.3125, -0.4125);
     ReachableSurfaces rim;
-    rim.add_beside_vouched(Ground(*map, centred), 400);
+    rim.add_beside_vouched(Ground(*map, centred, rex().limits), 400);
     for (const auto& [x, y] : {std::pair{0.525, 0.0}, {-0.525, 0.0}, {0.0, 0.525}, {0.0, -0.525}})
         EXPECT_TRUE(rim.contains(map->component[cell_at(*map, 0.3125 + x, -0.4125 + y)]))
             << x << " " << y;
     ReachableSurfaces none;
-    none.add_beside_vouched(Ground(*map, make_query(kForward, 0.3, -0.4, 1.0, 0.0)), 400);
+    none.add_beside_vouched(Ground(*map, make_query(kForward, 0.3, -0.4, 1.0, 0.0), rex().limits),
+                            400);
     EXPECT_FALSE(none.contains(map->component[lower + 1]));
 }
 
@@ -250,7 +277,7 @@ TEST(ReachableSurfaces, of_a_vouched_area_are_those_that_it_touches_at_its_heigh
     Query query = vouching(0.0, 0.0, 0.5, 0.0, 0.0);
     query.vouched.height_tenth_mm = 0;
     ReachableSurfaces surfaces;
-    surfaces.add_beside_vouched(Ground(*map, query), 400);
+    surfaces.add_beside_vouched(Ground(*map, query, rex().limits), 400);
     const auto contains = [&](double x, double y) {
         return surfaces.contains(map->component[cell_at(*map, x, y)]);
     };

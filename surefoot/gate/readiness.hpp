@@ -61,10 +61,14 @@ class Readiness {
     /// An operator's explicit act. False, and nothing changes, when there is no fault to leave, the
     /// self-test never passed or the configuration is wrong.
     [[nodiscard]] bool rearm(std::int64_t now_ns) noexcept;
+    /// `latched().bits()` of an earlier process of this gate that nobody re-armed, 0 = none: a
+    /// FAULT does not end because its process did.
+    void resume_fault(std::uint64_t bits) noexcept;
     /// For good: the process ends.
     void stop() noexcept;
 
     [[nodiscard]] GateState state() const noexcept { return state_; }
+    [[nodiscard]] ReasonSet latched() const noexcept { return latched_; }
     /// State and all that speaks against an OK now.
     [[nodiscard]] GateHealth health() const noexcept;
 

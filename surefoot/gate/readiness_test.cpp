@@ -366,6 +366,26 @@ TEST(Readiness, a_new_perception_means_a_new_warm_up) {
     EXPECT_EQ(station.readiness.state(), GateState::fault) << "a restart is no operator";
 }
 
+TEST(Readiness, a_fault_of_an_earlier_process_lasts_until_somebody_re_arms) {
+    Station station;
+    station.readiness.resume_fault(0);
+    EXPECT_EQ(station.readiness.state(), GateState::init) << "there was none";
+    station.readiness.self_tested(true, station.now_ns);
+    ReasonSet kept(Reason::pose_jump);
+    kept.add(Reason::clock);
+    station.readiness.resume_fault(kept.bits());
+    EXPECT_EQ(station.readiness.latched(), kept);
+    station.frames(5.0);
+    EXPECT_EQ(station.readiness.state(), GateState::fault);
+    EXPECT_TRUE(station.ask().reasons.contains(Reason::pose_jump));
+    ASSERT_TRUE(station.readiness.rearm(station.now_ns));
+    station.frames(3.0);
+    EXPECT_TRUE(station.allows());
+    Station damaged;
+    damaged.readiness.resume_fault(std::uint64_t{1} << 63U);  // nothing that this gate knows
+    EXPECT_EQ(damaged.readiness.latched(), ReasonSet(Reason::internal));
+}
+
 TEST(Readiness, rearming_needs_a_fault_a_self_test_and_a_valid_configuration) {
     Station station;
     EXPECT_FALSE(station.readiness.rearm(station.now_ns));

@@ -19,7 +19,7 @@ struct Place {
     Foot foot = Foot::none;
 };
 
-void count(const GroundCell& cell, Evidence& evidence) noexcept {
+[[gnu::always_inline]] inline void count(const GroundCell& cell, Evidence& evidence) noexcept {
     ++evidence.cells;
     if (!cell.known()) return;
     ++evidence.known_cells;
@@ -228,23 +228,12 @@ std::int64_t swing_height(const Scene& scene) noexcept {
 
 constexpr auto kNothing = [](const Place&) noexcept {};
 
-}  // namespace
-
-Finding finding_at(std::int64_t ix,
-                   std::int64_t iy,
-                   Foot foot,
-                   std::int64_t value_tenth_mm,
-                   std::int64_t limit_tenth_mm) noexcept {
-    return {ix, iy, value_tenth_mm, limit_tenth_mm, value_tenth_mm, foot};
-}
-
-std::optional<std::int64_t> stance_height(const Ground& ground,
-                                          const Query& query,
-                                          const Sweep& sweep) noexcept {
-    if (query.stance_source == StanceHeight::given) return query.stance_height_tenth_mm;
+/// Of the known cells under present feet.
+struct MeanHeight {
     std::int64_t sum = 0;
     std::int64_t known = 0;
-    for (const FootSweep& foot : sweep.feet) {
+
+    void add(const Ground& ground, const FootSweep& foot) noexcept {
         grid::for_each_overlapped_cell(
             foot.stance, ground.grid(), [&](std::int64_t ix, std::int64_t iy) {
                 const GroundCell cell = ground.cell(ix, iy);
@@ -255,8 +244,41 @@ std::optional<std::int64_t> stance_height(const Ground& ground,
                 return true;
             });
     }
-    if (known == 0) return std::nullopt;
-    return grid::floor_div(2 * sum + known, 2 * known);  // to nearest
+    void add(const MeanHeight& other) noexcept {
+        sum += other.sum;
+        known += other.known;
+    }
+    [[nodiscard]] std::optional<std::int64_t> height_tenth_mm() const noexcept {
+        if (known == 0) return std::nullopt;
+        return grid::floor_div(2 * sum + known, 2 * known);  // to nearest
+    }
+};
+
+}  // namespace
+
+Finding finding_at(std::int64_t ix,
+                   std::int64_t iy,
+                   Foot foot,
+                   std::int64_t value_tenth_mm,
+                   std::int64_t limit_tenth_mm) noexcept {
+    return {ix, iy, value_tenth_mm, limit_tenth_mm, value_tenth_mm, foot};
+}
+
+StanceHeights stance_heights(const Ground& ground,
+                             const Query& query,
+                             const Sweep& sweep) noexcept {
+    StanceHeights heights;
+    MeanHeight both;
+    for (std::size_t i = 0; i < sweep.feet.size(); ++i) {
+        MeanHeight mean;
+        mean.add(ground, sweep.feet[i]);
+        heights.feet_tenth_mm[i] = mean.height_tenth_mm();
+        both.add(mean);
+    }
+    heights.both_tenth_mm = query.stance_source == StanceHeight::given
+                                ? query.stance_height_tenth_mm
+                                : both.height_tenth_mm();
+    return heights;
 }
 
 ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {

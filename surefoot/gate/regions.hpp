@@ -19,6 +19,8 @@ struct Scene {
     const Sweep& sweep;
     std::int64_t stance_tenth_mm = 0;  ///< odom z of the ground under the present feet
     std::int64_t lift_tenth_mm = 0;    ///< how much higher the body stands at the target
+    /// The same as `stance_tenth_mm` under each foot by itself, where any of it is known.
+    std::array<std::optional<std::int64_t>, 2> foot_stance_tenth_mm{};
 };
 
 /// A finding at a cell.
@@ -28,11 +30,15 @@ struct Scene {
                                  std::int64_t value_tenth_mm,
                                  std::int64_t limit_tenth_mm) noexcept;
 
-/// Height of the ground under the present feet: told by the query, else the mean of all cells
-/// there. Nothing when no cell is known.
-[[nodiscard]] std::optional<std::int64_t> stance_height(const Ground& ground,
-                                                        const Query& query,
-                                                        const Sweep& sweep) noexcept;
+/// Heights of the ground under the present feet, the means of all known cells there; nothing where
+/// no cell is known.
+struct StanceHeights {
+    std::optional<std::int64_t> both_tenth_mm;  ///< told by the query, if it tells
+    std::array<std::optional<std::int64_t>, 2> feet_tenth_mm;
+};
+[[nodiscard]] StanceHeights stance_heights(const Ground& ground,
+                                           const Query& query,
+                                           const Sweep& sweep) noexcept;
 
 /// Surfaces under the present feet, as far as they lie at the height of the stance, and those that
 /// the vouched area touches.

@@ -43,7 +43,7 @@ struct Floor {
         const FixedPose start =
             fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw);
         const Sweep sweep = sweep_of(machine, start, movement);
-        const Ground ground(*map, query);
+        const Ground ground(*map, query, machine.limits);
         Findings findings;
         check(Scene{machine, movement, ground, sweep, query.stance_height_tenth_mm}, findings);
         return findings;
@@ -51,7 +51,7 @@ struct Floor {
     [[nodiscard]] std::optional<std::int64_t> stance() const {
         std::optional<std::int64_t> height;
         static_cast<void>(look([&](const Scene& scene, Findings&) {
-            height = stance_height(scene.ground, query, scene.sweep);
+            height = stance_heights(scene.ground, query, scene.sweep).both_tenth_mm;
         }));
         return height;
     }

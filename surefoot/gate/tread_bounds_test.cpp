@@ -49,7 +49,7 @@ struct OnTreads {
             sweep_of(machine,
                      fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw),
                      machine.movements[query.command]);
-        ground.emplace(*map, query);
+        ground.emplace(*map, query, machine.limits);
     }
     /// Anywhere within a cell, any way round, with an ankle anywhere and feet of two sizes.
     void place_anywhere(Rng& rng) {

@@ -25,7 +25,9 @@ void Vouching::observe(const grid::MapSnapshot& map) noexcept {
     const std::int64_t dy = map.body_y_tenth_mm - area_.center_y_tenth_mm;
     const std::int64_t radius = area_.radius_tenth_mm;
     const bool near = dx >= -radius && dx <= radius && dy >= -radius && dy <= radius;
-    if (!near || dx * dx + dy * dy > radius * radius) revoke();
+    const bool lost =
+        map.health != grid::SnapshotHealth::ok && map.health != grid::SnapshotHealth::degraded;
+    if (lost || !near || dx * dx + dy * dy > radius * radius) revoke();
 }
 
 }  // namespace surefoot::gate

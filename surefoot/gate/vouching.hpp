@@ -11,7 +11,8 @@ namespace surefoot::gate {
 
 /// An operator's word for the ground where the machine stands, as long as it holds. The camera
 /// cannot see that ground, and without a word the first step is refused. Off until somebody
-/// vouches; void for good once base_link has left the area, or when it is revoked.
+/// vouches; void for good once base_link has left the area or nobody knew where it was, or when it
+/// is revoked.
 class Vouching {
   public:
     /// Level ground under the soles, within `radius_tenth_mm` of base_link. False, and nothing is
@@ -20,7 +21,8 @@ class Vouching {
     [[nodiscard]] bool vouch(const Machine& machine,
                              const grid::MapSnapshot& map,
                              std::int64_t radius_tenth_mm) noexcept;
-    /// Looks where the machine is now.
+    /// Looks where the machine is now. A pose that was lost says nothing of that, and neither does
+    /// any later one.
     void observe(const grid::MapSnapshot& map) noexcept;
     /// After a fault, a restart, or on somebody's wish.
     void revoke() noexcept { area_ = VouchedArea{}; }

@@ -61,6 +61,45 @@ TEST(Vouching, is_void_for_good_once_the_machine_has_left) {
     EXPECT_FALSE(diagonal.area().active);
 }
 
+// Somebody wheels the machine away while the lens is covered: the pose that comes next is one of
+// another place.
+TEST(Vouching, is_void_for_good_once_nobody_knew_where_the_machine_was) {
+    const auto map = blind_zone();
+    const auto here = std::make_unique<grid::MapSnapshot>(*map);
+    Vouching vouching;
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+    here->health = grid::SnapshotHealth::degraded;
+    vouching.observe(*here);
+    EXPECT_TRUE(vouching.area().active);
+    for (const auto health : {grid::SnapshotHealth::lost, static_cast<grid::SnapshotHealth>(9)}) {
+        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+        here->health = health;
+        vouching.observe(*here);
+        EXPECT_FALSE(vouching.area().active);
+        here->health = grid::SnapshotHealth::ok;
+        vouching.observe(*here);
+        EXPECT_FALSE(vouching.area().active);
+    }
+}
+
+// The rim of a platform in the blind zone, 0.45 m ahead; the camera looks over it.
+TEST(Vouching, covers_no_drop_that_lines_of_sight_showed) {
+    Terrain edge;
+    edge.box(-3.0, 0.975, -3.0, 3.0, kNaN);
+    edge.box(0.975, 3.0, -3.0, 3.0, -1.0);
+    grid::Layer free_m(240, 240, kNaN);
+    edge.paint(free_m, 0.625, 0.975, -3.0, 3.0, -0.24);
+    edge.input.free_above_m = std::as_const(free_m).view();
+    const auto map = edge.snapshot();
+    Vouching vouching;
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+    const Verdict verdict = ask_with(vouching, *map);
+    EXPECT_EQ(verdict.decision, Decision::not_traversable);
+    EXPECT_TRUE(verdict.reasons.contains(Reason::drop_off)) << words(verdict);
+    EXPECT_TRUE(verdict.reasons.contains(Reason::unknown_cells)) << words(verdict);
+    EXPECT_TRUE(verdict.evidence.has_worst_cell);
+}
+
 TEST(Vouching, holds_up_to_the_rim_on_every_side) {
     const auto map = blind_zone();
     const auto here = std::make_unique<grid::MapSnapshot>(*map);

@@ -73,7 +73,9 @@ struct MapSnapshot {
     CameraState camera = CameraState::unknown;
     std::array<std::uint8_t, 5> padding{};
 
-    std::array<std::int32_t, kMaxCells> height_tenth_mm{};  ///< kUnknownHeight = never measured
+    /// Of a measured cell the ground; of an unknown one what lines of sight over it showed: ground
+    /// there lies lower. kUnknownHeight = nothing is known.
+    std::array<std::int32_t, kMaxCells> height_tenth_mm{};
     std::array<std::uint16_t, kMaxCells> sigma_tenth_mm{};  ///< one sigma of the height, saturated
     std::array<std::uint16_t, kMaxCells>
         drift_tenth_mm{};  ///< 1-sigma horizontal drift since last seen
@@ -91,6 +93,11 @@ struct MapSnapshot {
     /// it.
     std::array<std::uint64_t, kBlocks> block_checksum{};
     std::uint64_t checksum = 0;  ///< of the header, the edges and the checksums of the blocks
+
+    /// Ground was measured in a cell (element of the layers): its height is that of the ground.
+    [[nodiscard]] bool is_measured(std::size_t cell) const noexcept {
+        return source[cell] == EvidenceSource::measured && height_tenth_mm[cell] != kUnknownHeight;
+    }
 };
 static_assert(std::is_trivially_copyable_v<MapSnapshot>);
 

@@ -136,7 +136,12 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
                 : static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(evidence, 0.0, 1.0)));
     }
     const double height_m = value(input.height_m);
-    if (!(std::abs(height_m) <= kHighestM)) return;
+    if (!(std::abs(height_m) <= kHighestM)) {
+        const double free_m = input.free_above_m.empty() ? kHighestM : value(input.free_above_m);
+        if (std::abs(free_m) < kHighestM)
+            out.height_tenth_mm[at] = static_cast<std::int32_t>(std::ceil(free_m * kTenthMmPerM));
+        return;
+    }
     out.height_tenth_mm[at] = static_cast<std::int32_t>(tenth_mm(height_m));
     out.sigma_tenth_mm[at] = saturated_up(std::sqrt(value(input.variance_m2)));
     if (!input.drift_m.empty()) out.drift_tenth_mm[at] = saturated_up(value(input.drift_m));
@@ -236,9 +241,10 @@ class Labeller {
         }
     }
     void join(int from, int to, std::uint16_t label) {
+        if (!is_free(to)) return;
         const std::int32_t rise = map_.height_tenth_mm[static_cast<std::size_t>(to)] -
                                   map_.height_tenth_mm[static_cast<std::size_t>(from)];
-        if (is_free(to) && std::abs(rise) <= step_) push(to, label);
+        if (std::abs(rise) <= step_) push(to, label);
     }
 
     MapSnapshot& map_;
@@ -254,32 +260,8 @@ struct Line {
     int count = 0;
 };
 
-/// Heights that ground lies below at most: of known cells their own, of unknown ones that of the
-/// lines of sight over them; kUnknownHeight where nothing is known.
-class Ceilings {
-  public:
-    Ceilings(const SnapshotInput& input, const Window& window, const MapSnapshot& map)
-        : input_(input), window_(window), map_(map) {}
-    [[nodiscard]] std::int32_t at(std::ptrdiff_t cell) const {
-        const auto i = static_cast<std::size_t>(cell);
-        if (map_.source[i] == EvidenceSource::measured) return map_.height_tenth_mm[i];
-        if (input_.free_above_m.empty()) return MapSnapshot::kUnknownHeight;
-        const auto free_m = static_cast<double>(
-            input_.free_above_m.at(window_.x + static_cast<int>(cell % map_.nx),
-                                   window_.y + static_cast<int>(cell / map_.nx)));
-        if (!(std::abs(free_m) <= kHighestM)) return MapSnapshot::kUnknownHeight;
-        return static_cast<std::int32_t>(tenth_mm(free_m));
-    }
-
-  private:
-    const SnapshotInput& input_;
-    const Window& window_;
-    const MapSnapshot& map_;
-};
-
 /// Marks the upper cells of drops that begin along a line; see build_snapshot().
-void mark_drops_on_line(const Ceilings& ceilings,
-                        const Line& line,
+void mark_drops_on_line(const Line& line,
                         std::int32_t step_tenth_mm,
                         int reach_cells,
                         MapSnapshot& out) {
@@ -287,7 +269,8 @@ void mark_drops_on_line(const Ceilings& ceilings,
     int upper_i = 0;
     for (int i = 0; i < line.count; ++i) {
         const std::ptrdiff_t cell = line.first + i * line.stride;
-        const std::int32_t ceiling = ceilings.at(cell);
+        // Ground lies there, or lower.
+        const std::int32_t ceiling = out.height_tenth_mm[static_cast<std::size_t>(cell)];
         if (upper >= 0 && i - upper_i <= reach_cells && ceiling != MapSnapshot::kUnknownHeight &&
             ceiling - out.height_tenth_mm[static_cast<std::size_t>(upper)] < -step_tenth_mm) {
             out.drop_evidence[static_cast<std::size_t>(upper)] = 255;
@@ -298,20 +281,19 @@ void mark_drops_on_line(const Ceilings& ceilings,
     }
 }
 
-void mark_drops(const SnapshotInput& input, const Window& window, MapSnapshot& out) {
+void mark_drops(const SnapshotInput& input, MapSnapshot& out) {
     const auto step = static_cast<std::int32_t>(tenth_mm(input.drop_step_m));
     const int reach = std::max(
         1, static_cast<int>(std::lround(input.drop_reach_m / input.geometry.resolution_m)));
-    const Ceilings ceilings(input, window, out);
     const std::ptrdiff_t nx = out.nx;
     const std::ptrdiff_t ny = out.ny;
     for (std::ptrdiff_t iy = 0; iy < ny; ++iy) {
-        mark_drops_on_line(ceilings, {iy * nx, 1, out.nx}, step, reach, out);
-        mark_drops_on_line(ceilings, {iy * nx + nx - 1, -1, out.nx}, step, reach, out);
+        mark_drops_on_line({iy * nx, 1, out.nx}, step, reach, out);
+        mark_drops_on_line({iy * nx + nx - 1, -1, out.nx}, step, reach, out);
     }
     for (std::ptrdiff_t ix = 0; ix < nx; ++ix) {
-        mark_drops_on_line(ceilings, {ix, nx, out.ny}, step, reach, out);
-        mark_drops_on_line(ceilings, {ix + (ny - 1) * nx, -nx, out.ny}, step, reach, out);
+        mark_drops_on_line({ix, nx, out.ny}, step, reach, out);
+        mark_drops_on_line({ix + (ny - 1) * nx, -nx, out.ny}, step, reach, out);
     }
 }
 
@@ -331,7 +313,7 @@ Status build_snapshot(const SnapshotInput& input, MapSnapshot& out) {
         for (int u = window.x; u < window.x + window.nx; ++u) write_cell(input, u, v, out, at++);
     }
     Labeller(out, static_cast<std::int32_t>(tenth_mm(input.connect_step_m))).label_all();
-    mark_drops(input, window, out);
+    mark_drops(input, out);
     write_edges(input, out);
     seal(out);
     return {};

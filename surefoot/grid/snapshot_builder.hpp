@@ -22,7 +22,8 @@ struct SnapshotInput {
     /// assumption.
     ImageView<const float> drift_m;
     ImageView<const float> clearance_m;  ///< optional: free height above the cell
-    /// Optional, of unknown cells: lines of sight passed at this height, ground lies lower.
+    /// Optional, of unknown cells: lines of sight passed at this height, ground lies lower. Told
+    /// to the gate, which takes nobody's word for level ground there.
     ImageView<const float> free_above_m;
     ImageView<const float>
         drop_evidence;  ///< optional: 0..1 from rays that passed below the ground

@@ -332,6 +332,28 @@ TEST(SnapshotBuilder, lines_of_sight_show_drops_whose_ground_was_never_seen) {
             << ix;
 }
 
+TEST(SnapshotBuilder, what_lines_of_sight_left_for_unknown_ground_is_kept_and_is_no_measurement) {
+    TestMap map({"5???5"});
+    Layer free_m(5, 1, kNaN);
+    free_m.at(0, 0) = -1.0F;     // of a known cell: says nothing
+    free_m.at(1, 0) = 0.12341F;  // rounded up: ground lies lower
+    free_m.at(3, 0) = 2000.0F;   // no height of anything
+    SnapshotInput input = map.input();
+    input.free_above_m = std::as_const(free_m).view();
+    ASSERT_TRUE(build_snapshot(input, *map.out).ok());
+    const MapSnapshot& s = *map.out;
+    EXPECT_EQ(s.height_tenth_mm[0], 5000);
+    EXPECT_EQ(s.height_tenth_mm[1], 1235);
+    EXPECT_EQ(s.height_tenth_mm[2], MapSnapshot::kUnknownHeight);
+    EXPECT_EQ(s.height_tenth_mm[3], MapSnapshot::kUnknownHeight);
+    for (const std::size_t at : {0U, 4U}) EXPECT_TRUE(s.is_measured(at)) << at;
+    for (const std::size_t at : {1U, 2U, 3U}) {
+        EXPECT_FALSE(s.is_measured(at)) << at;
+        EXPECT_EQ(s.source[at], EvidenceSource::unknown) << at;
+        EXPECT_EQ(s.component[at], MapSnapshot::kNoComponent) << at;
+    }
+}
+
 TEST(SnapshotBuilder, drops_are_found_in_all_four_directions) {
     TestMap map({"00000",  //
                  "05550",  //
