@@ -294,9 +294,10 @@ void Service::remember_word(const LiveSession& session) {
         word_given_ = true;
         std::ignore = word_.vouch(machine_->machine,
                                   session.last(),
-                                  static_cast<std::int64_t>(1e4 * options_.vouch_radius_m));
+                                  static_cast<std::int64_t>(1e4 * options_.vouch_radius_m),
+                                  steady_now_ns());
     }
-    word_.observe(session.last());
+    word_.observe(session.last(), steady_now_ns());
 }
 
 void Service::draw(const AskedStep& step, const grid::MapSnapshot& map) {

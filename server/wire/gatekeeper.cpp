@@ -78,7 +78,7 @@ void Gatekeeper::fetch(std::int64_t now_ns) {
         std::swap(map_, incoming_);
         has_map_ = true;
         readiness_.observe(*map_, now_ns);
-        vouching_.observe(*map_);
+        vouching_.observe(*map_, now_ns);
     }
     readiness_.tick(now_ns);
     if (readiness_.state() != gate::GateState::fault) return;
@@ -219,7 +219,7 @@ Status Gatekeeper::vouch(std::uint64_t /*connection*/, double radius_m, std::int
     if (!(radius_m > 0.0 && radius_m <= limit_m))
         return refuse("the radius must be above 0 and at most " + std::to_string(limit_m) +
                       " m (vouch_radius_m of the machine file)");
-    if (!vouching_.vouch(machine_, *map_, tenth_mm(radius_m)))
+    if (!vouching_.vouch(machine_, *map_, tenth_mm(radius_m), now_ns))
         return refuse("the radius is too small");
     return {};
 }

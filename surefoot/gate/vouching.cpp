@@ -5,7 +5,8 @@ namespace surefoot::gate {
 
 bool Vouching::vouch(const Machine& machine,
                      const grid::MapSnapshot& map,
-                     std::int64_t radius_tenth_mm) noexcept {
+                     std::int64_t radius_tenth_mm,
+                     std::int64_t now_ns) noexcept {
     revoke();
     if (machine.problem() != nullptr || !grid::is_intact(map)) return false;
     if (!(radius_tenth_mm > 0 && radius_tenth_mm <= machine.limits.vouch_radius_tenth_mm))
@@ -16,18 +17,23 @@ bool Vouching::vouch(const Machine& machine,
     area_.radius_tenth_mm = static_cast<std::int32_t>(radius_tenth_mm);
     area_.height_tenth_mm =
         static_cast<std::int32_t>(map.body_z_tenth_mm - machine.sole_depth_tenth_mm);
+    longest_lost_ns_ = machine.limits.pose_age_ns;
+    known_ns_ = now_ns;
     return true;
 }
 
-void Vouching::observe(const grid::MapSnapshot& map) noexcept {
+void Vouching::observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept {
     if (!area_.active) return;
+    const bool lost =
+        map.health != grid::SnapshotHealth::ok && map.health != grid::SnapshotHealth::degraded;
+    const bool too_long = (lost || lost_) && now_ns - known_ns_ > longest_lost_ns_;
+    lost_ = lost;
+    if (!lost) known_ns_ = now_ns;
     const std::int64_t dx = map.body_x_tenth_mm - area_.center_x_tenth_mm;
     const std::int64_t dy = map.body_y_tenth_mm - area_.center_y_tenth_mm;
     const std::int64_t radius = area_.radius_tenth_mm;
     const bool near = dx >= -radius && dx <= radius && dy >= -radius && dy <= radius;
-    const bool lost =
-        map.health != grid::SnapshotHealth::ok && map.health != grid::SnapshotHealth::degraded;
-    if (lost || !near || dx * dx + dy * dy > radius * radius) revoke();
+    if (too_long || !near || dx * dx + dy * dy > radius * radius) revoke();
 }
 
 }  // namespace surefoot::gate

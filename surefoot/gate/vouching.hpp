@@ -20,16 +20,21 @@ class Vouching {
     /// use.
     [[nodiscard]] bool vouch(const Machine& machine,
                              const grid::MapSnapshot& map,
-                             std::int64_t radius_tenth_mm) noexcept;
-    /// Looks where the machine is now. A pose that was lost says nothing of that, and neither does
-    /// any later one.
-    void observe(const grid::MapSnapshot& map) noexcept;
+                             std::int64_t radius_tenth_mm,
+                             std::int64_t now_ns) noexcept;
+    /// Looks where the machine is now. A pose that is lost for longer than a pose may be old
+    /// (`pose_age` of the machine file) says nothing of that any more, and neither does any later
+    /// one.
+    void observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept;
     /// After a fault, a restart, or on somebody's wish.
-    void revoke() noexcept { area_ = VouchedArea{}; }
+    void revoke() noexcept { *this = Vouching{}; }
     [[nodiscard]] const VouchedArea& area() const noexcept { return area_; }
 
   private:
     VouchedArea area_;
+    std::int64_t longest_lost_ns_ = 0;
+    std::int64_t known_ns_ = 0;  ///< when the pose was known last
+    bool lost_ = false;
 };
 
 }  // namespace surefoot::gate

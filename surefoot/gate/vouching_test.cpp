@@ -25,7 +25,7 @@ TEST(Vouching, without_a_word_the_first_step_is_refused_and_with_it_allowed) {
     const auto map = blind_zone();
     Vouching vouching;
     EXPECT_EQ(ask_with(vouching, *map).primary, Reason::unknown_cells);
-    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000, kNowNs));
     EXPECT_TRUE(ask_with(vouching, *map).allows_step(kNowNs)) << words(ask_with(vouching, *map));
     vouching.revoke();
     EXPECT_EQ(ask_with(vouching, *map).primary, Reason::unknown_cells);
@@ -35,29 +35,29 @@ TEST(Vouching, is_void_for_good_once_the_machine_has_left) {
     const auto map = blind_zone();
     for (const int axis : {0, 1}) {
         Vouching vouching;
-        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000, kNowNs));
         const auto here = std::make_unique<grid::MapSnapshot>(*map);
         std::int64_t& place = axis == 0 ? here->body_x_tenth_mm : here->body_y_tenth_mm;
         place = -10'000;
-        vouching.observe(*here);
+        vouching.observe(*here, kNowNs);
         EXPECT_TRUE(vouching.area().active);
         place = -10'001;
-        vouching.observe(*here);
+        vouching.observe(*here, kNowNs);
         EXPECT_FALSE(vouching.area().active);
         place = 0;
-        vouching.observe(*here);
+        vouching.observe(*here, kNowNs);
         EXPECT_FALSE(vouching.area().active) << "coming back revives nothing";
     }
     Vouching diagonal;
-    ASSERT_TRUE(diagonal.vouch(rex(), *map, 10'000));
+    ASSERT_TRUE(diagonal.vouch(rex(), *map, 10'000, kNowNs));
     const auto here = std::make_unique<grid::MapSnapshot>(*map);
     here->body_x_tenth_mm = here->body_y_tenth_mm = 7'100;
-    diagonal.observe(*here);
+    diagonal.observe(*here, kNowNs);
     EXPECT_FALSE(diagonal.area().active);
     // Far away nothing overflows into "near".
-    ASSERT_TRUE(diagonal.vouch(rex(), *map, 10'000));
+    ASSERT_TRUE(diagonal.vouch(rex(), *map, 10'000, kNowNs));
     here->body_x_tenth_mm = std::int64_t{1} << 32;
-    diagonal.observe(*here);
+    diagonal.observe(*here, kNowNs);
     EXPECT_FALSE(diagonal.area().active);
 }
 
@@ -67,18 +67,36 @@ TEST(Vouching, is_void_for_good_once_nobody_knew_where_the_machine_was) {
     const auto map = blind_zone();
     const auto here = std::make_unique<grid::MapSnapshot>(*map);
     Vouching vouching;
-    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000, kNowNs));
     here->health = grid::SnapshotHealth::degraded;
-    vouching.observe(*here);
+    vouching.observe(*here, kNowNs);
     EXPECT_TRUE(vouching.area().active);
     for (const auto health : {grid::SnapshotHealth::lost, static_cast<grid::SnapshotHealth>(9)}) {
-        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+        const std::int64_t allowed_ns = rex().limits.pose_age_ns;
+        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000, kNowNs));
         here->health = health;
-        vouching.observe(*here);
+        vouching.observe(*here, kNowNs + allowed_ns);
+        EXPECT_TRUE(vouching.area().active) << "a frame or two";
+        here->health = grid::SnapshotHealth::ok;
+        vouching.observe(*here, kNowNs + allowed_ns);
+        here->health = health;
+        vouching.observe(*here, kNowNs + 2 * allowed_ns);
+        EXPECT_TRUE(vouching.area().active);
+        vouching.observe(*here, kNowNs + 2 * allowed_ns + 1);
         EXPECT_FALSE(vouching.area().active);
         here->health = grid::SnapshotHealth::ok;
-        vouching.observe(*here);
+        vouching.observe(*here, kNowNs + 3 * allowed_ns);
         EXPECT_FALSE(vouching.area().active);
+        // What was said while nothing came is not known either.
+        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000, kNowNs));
+        here->health = health;
+        vouching.observe(*here, kNowNs + 1);
+        here->health = grid::SnapshotHealth::ok;
+        vouching.observe(*here, kNowNs + allowed_ns + 1);
+        EXPECT_FALSE(vouching.area().active);
+        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000, kNowNs));
+        vouching.observe(*here, kNowNs + 100 * allowed_ns);
+        EXPECT_TRUE(vouching.area().active) << "silence alone is not a lost pose";
     }
 }
 
@@ -92,7 +110,7 @@ TEST(Vouching, covers_no_drop_that_lines_of_sight_showed) {
     edge.input.free_above_m = std::as_const(free_m).view();
     const auto map = edge.snapshot();
     Vouching vouching;
-    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000, kNowNs));
     const Verdict verdict = ask_with(vouching, *map);
     EXPECT_EQ(verdict.decision, Decision::not_traversable);
     EXPECT_TRUE(verdict.reasons.contains(Reason::drop_off)) << words(verdict);
@@ -123,10 +141,10 @@ TEST(Vouching, holds_up_to_the_rim_on_every_side) {
                           {0, std::int64_t{1} << 32, false}};
     for (const Case& c : cases) {
         Vouching vouching;
-        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000));
+        ASSERT_TRUE(vouching.vouch(rex(), *map, 10'000, kNowNs));
         here->body_x_tenth_mm = c.x;
         here->body_y_tenth_mm = c.y;
-        vouching.observe(*here);
+        vouching.observe(*here, kNowNs);
         EXPECT_EQ(vouching.area().active, c.holds) << c.x << " " << c.y;
     }
 }
@@ -136,41 +154,41 @@ TEST(Vouching, the_area_lies_around_the_machine_wherever_that_is) {
     floor.input.T_odom_body.translation_m = {0.5, -0.25, 1.19};
     const auto map = floor.snapshot();
     Vouching vouching;
-    ASSERT_TRUE(vouching.vouch(rex(), *map, 1));
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 1, kNowNs));
     EXPECT_TRUE(vouching.area().active);
     EXPECT_EQ(vouching.area().center_x_tenth_mm, 5'000);
     EXPECT_EQ(vouching.area().center_y_tenth_mm, -2'500);
     EXPECT_EQ(vouching.area().radius_tenth_mm, 1);
     EXPECT_EQ(vouching.area().height_tenth_mm, 2'000);
-    vouching.observe(*map);
+    vouching.observe(*map, kNowNs);
     EXPECT_TRUE(vouching.area().active);
     const auto away = std::make_unique<grid::MapSnapshot>(*map);
     away->body_y_tenth_mm = 2'500;  // as far from the origin of odom, but not here
-    vouching.observe(*away);
+    vouching.observe(*away, kNowNs);
     EXPECT_FALSE(vouching.area().active);
 }
 
 TEST(Vouching, nobody_can_vouch_for_more_than_the_machine_file_allows) {
     const auto map = blind_zone();
     Vouching vouching;
-    EXPECT_FALSE(vouching.vouch(rex(), *map, 10'001));
-    EXPECT_FALSE(vouching.vouch(rex(), *map, 0));
-    EXPECT_FALSE(vouching.vouch(rex(), *map, -5));
-    EXPECT_FALSE(vouching.vouch(Machine{}, *map, 10));
+    EXPECT_FALSE(vouching.vouch(rex(), *map, 10'001, kNowNs));
+    EXPECT_FALSE(vouching.vouch(rex(), *map, 0, kNowNs));
+    EXPECT_FALSE(vouching.vouch(rex(), *map, -5, kNowNs));
+    EXPECT_FALSE(vouching.vouch(Machine{}, *map, 10, kNowNs));
     Machine off = rex();
     off.limits.vouch_radius_tenth_mm = 0;
-    EXPECT_FALSE(vouching.vouch(off, *map, 1));
-    ASSERT_TRUE(vouching.vouch(rex(), *map, 5'000));
+    EXPECT_FALSE(vouching.vouch(off, *map, 1, kNowNs));
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 5'000, kNowNs));
     const auto damaged = std::make_unique<grid::MapSnapshot>(*map);
     ++damaged->body_z_tenth_mm;
-    EXPECT_FALSE(vouching.vouch(rex(), *damaged, 5'000));
+    EXPECT_FALSE(vouching.vouch(rex(), *damaged, 5'000, kNowNs));
     EXPECT_FALSE(vouching.area().active) << "a word that failed takes back the one before";
 }
 
 TEST(Vouching, the_ground_lies_under_the_soles) {
     const auto map = blind_zone();
     Vouching vouching;
-    ASSERT_TRUE(vouching.vouch(rex(), *map, 5'000));
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 5'000, kNowNs));
     EXPECT_EQ(vouching.area().height_tenth_mm, 0);
     EXPECT_EQ(vouching.area().radius_tenth_mm, 5'000);
 }
