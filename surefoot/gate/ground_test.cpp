@@ -78,6 +78,24 @@ TEST(Ground, nobodys_word_holds_where_lines_of_sight_passed_below_it_by_a_drop) 
     EXPECT_EQ(cell_of(nobody).drop_evidence, 0) << "below whom is not known";
 }
 
+TEST(Ground, a_word_stands_for_an_unsure_measurement_within_15_mm_of_its_own_height) {
+    Terrain unsure;
+    unsure.variance.fill(0.008F * 0.008F);
+    const auto map = unsure.snapshot();
+    const Ground ground(*map, vouching(0.0, 0.0, 0.5, 0.0, 0.0), rex().limits);  // at -123
+    const std::size_t at = cell_at(*map, 0.1, 0.1);
+    const auto knowledge = [&] {
+        return ground
+            .cell(static_cast<std::int64_t>(at) % map->nx, static_cast<std::int64_t>(at) / map->nx)
+            .knowledge;
+    };
+    for (const auto& [height, stands] :
+         {std::pair{27, true}, {28, false}, {-273, true}, {-274, false}, {-123, true}}) {
+        map->height_tenth_mm[at] = height;
+        EXPECT_EQ(knowledge(), stands ? Knowledge::vouched : Knowledge::measured) << height;
+    }
+}
+
 TEST(Ground, the_word_is_void_once_base_link_is_outside_of_the_circle) {
     Terrain floor;
     const auto map = floor.snapshot();

@@ -381,6 +381,12 @@ TEST(Readiness, a_fault_of_an_earlier_process_lasts_until_somebody_re_arms) {
     ASSERT_TRUE(station.readiness.rearm(station.now_ns));
     station.frames(3.0);
     EXPECT_TRUE(station.allows());
+    for (int i = 0; i < kReasonCount; ++i) {  // every one of them
+        const ReasonSet one(static_cast<Reason>(i));
+        Station again;
+        again.readiness.resume_fault(one.bits());
+        EXPECT_EQ(again.readiness.latched(), one) << to_string(static_cast<Reason>(i));
+    }
     Station damaged;
     damaged.readiness.resume_fault(std::uint64_t{1} << 63U);  // nothing that this gate knows
     EXPECT_EQ(damaged.readiness.latched(), ReasonSet(Reason::internal));
