@@ -143,13 +143,14 @@ int serve(const Options& options, const io::MachineFile& file) {
     wire::WebsocketServer* running = nullptr;
     const auto tick = [&](std::int64_t now_ns) {
         keeper.poll(now_ns, clock_ns(CLOCK_BOOTTIME));
-        const gate::GateState state = keeper.report(now_ns).health.state;
-        // Whoever started the gate answered for where the machine stood then.
-        if (state == gate::GateState::fault) word_given = true;
-        if (!word_given && state == gate::GateState::ready) {
-            word_given = true;
-            if (const auto given = keeper.vouch(0, options.vouch_radius_m, now_ns); !given)
-                fmt::print(stderr, "surefoot-gate: {}\n", given.error().message);
+        if (!word_given) {
+            const gate::GateState state = keeper.report(now_ns).health.state;
+            // After a fault none: who started the gate answered for where the machine stood then.
+            word_given = state == gate::GateState::ready || state == gate::GateState::fault;
+            if (state == gate::GateState::ready) {
+                if (const auto given = keeper.vouch(0, options.vouch_radius_m, now_ns); !given)
+                    fmt::print(stderr, "surefoot-gate: {}\n", given.error().message);
+            }
         }
         if (options.assured && audit != nullptr)
             keeper.set_log_failing(audit->state(now_ns) != wire::AuditState::ok);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/live_session.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>

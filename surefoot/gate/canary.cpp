@@ -57,6 +57,7 @@ void make_level(grid::MapSnapshot& map) noexcept {
     map.drop_evidence.fill(0);
     map.source.fill(grid::EvidenceSource::measured);
     map.edges.fill({});
+    grid::seal(map);
 }
 
 /// Well inside a landing foot and as far from where it stands as can be: with a short step
@@ -215,12 +216,12 @@ constexpr auto kDamages = std::to_array<Fault>({
 
 constexpr std::size_t kFaultCount = kFaults.size() + 2 * kGroundFaults.size() + kDamages.size();
 
-/// The index-th question with a broken rule: which one, under which foot, and whether the map was
-/// sealed before.
+/// The index-th question with a broken rule: which one, under which foot, and whether it happens to
+/// a map that stays sealed as it was.
 struct Broken {
     const Fault& fault;
     std::size_t foot = 0;
-    bool sealed = false;
+    bool after_sealing = false;
 };
 Broken broken_rule(std::size_t index) noexcept {
     if (index < kFaults.size()) return {kFaults[index]};
@@ -242,23 +243,18 @@ bool is_harder(const Movement& a, const Movement& b) noexcept {
     return length_sq(a) > length_sq(b);
 }
 
-bool is_usable(const Machine& machine, std::size_t code) noexcept {
-    const Movement& movement = machine.movements[code];
-    return movement.configured &&
-           machine.limits.step[static_cast<std::size_t>(movement.movement_class)].enabled;
-}
-
 }  // namespace
 
 const int Canaries::kBrokenRules = static_cast<int>(kFaultCount);
 
 Canaries::Canaries(const Machine& machine) noexcept : machine_(machine) {
     if (machine.problem() != nullptr) return;  // no movement: every canary fails
-    for (std::size_t code = 1; code < machine.movements.size(); ++code) {
-        if (!is_usable(machine, code)) continue;
+    for (std::size_t i = 1; i < machine.movements.size(); ++i) {
+        const auto code = static_cast<std::uint8_t>(i);
+        if (movement_for(machine, code) == nullptr) continue;
         ++first_fault_;
         if (longest_ == 0 || is_harder(machine.movements[code], machine.movements[longest_]))
-            longest_ = static_cast<std::uint8_t>(code);
+            longest_ = code;
     }
 }
 
@@ -268,9 +264,8 @@ Canaries::Outcome Canaries::judge(int index) noexcept {
     outcome.command = longest_;
     if (index < first_fault_) {  // the index-th movement on level ground
         int left = index;
-        std::size_t code = 1;
-        while (!is_usable(machine_, code) || left-- > 0) ++code;
-        outcome.command = static_cast<std::uint8_t>(code);
+        outcome.command = 1;
+        while (movement_for(machine_, outcome.command) == nullptr || left-- > 0) ++outcome.command;
     }
     make_level(map_);
     Query query = query_at_body(outcome.command, map_);
@@ -282,12 +277,9 @@ Canaries::Outcome Canaries::judge(int index) noexcept {
             sweep_of(machine_,
                      fixed_pose(query.x_tenth_mm, query.y_tenth_mm, query.cos_yaw, query.sin_yaw),
                      machine_.movements[longest_]);
-        if (broken.sealed) grid::seal(map_);
         broken.fault.happen({machine_, map_, query, health, now_ns, sweep.feet[broken.foot]});
-        if (!broken.sealed) grid::seal(map_);
+        if (!broken.after_sealing) grid::seal(map_);
         outcome.expected = broken.fault.expected;
-    } else {
-        grid::seal(map_);
     }
     const Verdict verdict = decide(machine_, query, map_, health, now_ns);
     outcome.name = to_string(outcome.expected);

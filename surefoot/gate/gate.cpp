@@ -109,17 +109,6 @@ void check_camera(CameraState camera, Findings& findings) noexcept {
         findings.deny(Reason::not_ready);
 }
 
-/// The movement behind a command code, or nullptr: code 0, codes beyond the table, codes without an
-/// entry and classes that are switched off all come out the same.
-const Movement* movement_for(const Machine& machine, std::uint8_t command) noexcept {
-    if (command == 0 || command >= Machine::kMovementCodes) return nullptr;
-    const Movement& movement = machine.movements[command];
-    const auto movement_class = static_cast<std::size_t>(movement.movement_class);
-    const bool usable = movement.configured && movement_class < machine.limits.step.size() &&
-                        machine.limits.step[movement_class].enabled;
-    return usable ? &movement : nullptr;
-}
-
 /// What perception delivered, whatever is asked of it; the cells are not looked at. `camera`: the
 /// map's, or better.
 void judge_snapshot(const GateLimits& limits,
@@ -227,13 +216,8 @@ void judge_sweep(const Machine& machine,
     if (!findings.reasons().empty()) return;  // of a damaged map nothing is said
     const Movement& movement = *movement_for(machine, query.command);
     const StanceHeights stance = stance_heights(ground, query, sweep);
-    const Scene scene{machine,
-                      movement,
-                      ground,
-                      sweep,
-                      stance.both_tenth_mm.value_or(0),
-                      0,
-                      stance.feet_tenth_mm};
+    const Scene scene{
+        machine, movement, ground, sweep, stance.both_tenth_mm.value_or(0), stance.feet_tenth_mm};
     findings.evidence.stance_known = stance.both_tenth_mm.has_value();
     findings.evidence.stance_height_tenth_mm = scene.stance_tenth_mm;
 
@@ -288,6 +272,15 @@ void seal(const Machine& machine,
 }
 
 }  // namespace
+
+const Movement* movement_for(const Machine& machine, std::uint8_t command) noexcept {
+    if (command == 0 || command >= Machine::kMovementCodes) return nullptr;
+    const Movement& movement = machine.movements[command];
+    const auto movement_class = static_cast<std::size_t>(movement.movement_class);
+    const bool usable = movement.configured && movement_class < machine.limits.step.size() &&
+                        machine.limits.step[movement_class].enabled;
+    return usable ? &movement : nullptr;
+}
 
 Query make_query(
     std::uint8_t command, double x_m, double y_m, double cos_yaw, double sin_yaw) noexcept {

@@ -43,6 +43,10 @@ struct Query {
     std::uint64_t sequence = 0;
 };
 
+/// The movement behind a command code, or nullptr: code 0, codes beyond the table, codes without an
+/// entry and classes that are switched off all come out the same.
+[[nodiscard]] const Movement* movement_for(const Machine& machine, std::uint8_t command) noexcept;
+
 /// Query from coordinates in m. A coordinate that is not finite or beyond 100 km leaves the pose
 /// invalid, and the gate answers BAD_NUMBER.
 [[nodiscard]] Query make_query(

@@ -23,6 +23,12 @@ Query vouching(double x_m, double y_m, double radius_m, double center_x_m, doubl
     return query;
 }
 
+/// The cell that holds a point.
+GroundCell cell_of(const Ground& ground, const grid::MapSnapshot& map, double x_m, double y_m) {
+    const auto at = static_cast<std::int64_t>(cell_at(map, x_m, y_m));
+    return ground.cell(at % map.nx, at / map.nx);
+}
+
 TEST(Ground, an_unknown_cell_is_vouched_only_when_it_lies_wholly_in_the_circle) {
     Terrain nothing;
     nothing.height.fill(kNaN);
@@ -61,21 +67,17 @@ TEST(Ground, nobodys_word_holds_where_lines_of_sight_passed_below_it_by_a_drop) 
     const Ground ground(*map, query, rex().limits);
     const Ground nobody(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
     const std::size_t at = cell_at(*map, 0.1, 0.1);
-    const auto cell_of = [&](const Ground& of) {
-        return of.cell(static_cast<std::int64_t>(at) % map->nx,
-                       static_cast<std::int64_t>(at) / map->nx);
-    };
     for (const std::int32_t bound : {-623, -100, 5'000}) {
         map->height_tenth_mm[at] = bound;
-        EXPECT_EQ(cell_of(ground).knowledge, Knowledge::vouched) << bound;
-        EXPECT_EQ(cell_of(ground).height_tenth_mm, -123) << bound;
-        EXPECT_EQ(cell_of(ground).drop_evidence, 0) << bound;
-        EXPECT_EQ(cell_of(nobody).knowledge, Knowledge::unknown) << bound;
+        EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).knowledge, Knowledge::vouched) << bound;
+        EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).height_tenth_mm, -123) << bound;
+        EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).drop_evidence, 0) << bound;
+        EXPECT_EQ(cell_of(nobody, *map, 0.1, 0.1).knowledge, Knowledge::unknown) << bound;
     }
     map->height_tenth_mm[at] = -624;
-    EXPECT_EQ(cell_of(ground).knowledge, Knowledge::unknown);
-    EXPECT_EQ(cell_of(ground).drop_evidence, 255);
-    EXPECT_EQ(cell_of(nobody).drop_evidence, 0) << "below whom is not known";
+    EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).knowledge, Knowledge::unknown);
+    EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).drop_evidence, 255);
+    EXPECT_EQ(cell_of(nobody, *map, 0.1, 0.1).drop_evidence, 0) << "below whom is not known";
 }
 
 TEST(Ground, a_word_stands_for_an_unsure_measurement_within_15_mm_of_its_own_height) {
@@ -84,15 +86,12 @@ TEST(Ground, a_word_stands_for_an_unsure_measurement_within_15_mm_of_its_own_hei
     const auto map = unsure.snapshot();
     const Ground ground(*map, vouching(0.0, 0.0, 0.5, 0.0, 0.0), rex().limits);  // at -123
     const std::size_t at = cell_at(*map, 0.1, 0.1);
-    const auto knowledge = [&] {
-        return ground
-            .cell(static_cast<std::int64_t>(at) % map->nx, static_cast<std::int64_t>(at) / map->nx)
-            .knowledge;
-    };
     for (const auto& [height, stands] :
          {std::pair{27, true}, {28, false}, {-273, true}, {-274, false}, {-123, true}}) {
         map->height_tenth_mm[at] = height;
-        EXPECT_EQ(knowledge(), stands ? Knowledge::vouched : Knowledge::measured) << height;
+        EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).knowledge,
+                  stands ? Knowledge::vouched : Knowledge::measured)
+            << height;
     }
 }
 

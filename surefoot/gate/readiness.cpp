@@ -206,7 +206,6 @@ bool Readiness::rearm(std::int64_t now_ns) noexcept {
 }
 
 void Readiness::resume_fault(std::uint64_t bits) noexcept {
-    if (bits == 0) return;
     for (int i = 0; i < kReasonCount; ++i) {
         if ((bits >> static_cast<unsigned>(i) & 1U) != 0) latch(static_cast<Reason>(i), now_ns_);
     }

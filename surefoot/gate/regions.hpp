@@ -18,9 +18,9 @@ struct Scene {
     const Ground& ground;
     const Sweep& sweep;
     std::int64_t stance_tenth_mm = 0;  ///< odom z of the ground under the present feet
-    std::int64_t lift_tenth_mm = 0;    ///< how much higher the body stands at the target
-    /// The same as `stance_tenth_mm` under each foot by itself, where any of it is known.
+    /// The same under each foot by itself, where any of it is known.
     std::array<std::optional<std::int64_t>, 2> foot_stance_tenth_mm{};
+    std::int64_t lift_tenth_mm = 0;  ///< how much higher the body stands at the target
 };
 
 /// A finding at a cell.

@@ -137,8 +137,8 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
     }
     const double height_m = value(input.height_m);
     if (!(std::abs(height_m) <= kHighestM)) {
-        const double free_m = input.free_above_m.empty() ? kHighestM : value(input.free_above_m);
-        if (std::abs(free_m) < kHighestM)
+        const double free_m = input.free_above_m.empty() ? std::nan("") : value(input.free_above_m);
+        if (std::abs(free_m) <= kHighestM)
             out.height_tenth_mm[at] = static_cast<std::int32_t>(std::ceil(free_m * kTenthMmPerM));
         return;
     }
