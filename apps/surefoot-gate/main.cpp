@@ -137,21 +137,15 @@ int serve(const Options& options, const io::MachineFile& file) {
                                 if (audit != nullptr)
                                     audit->push({j.query, j.health, j.now_ns, map, j.verdict});
                             });
+    if (options.vouch_radius_m > 0.0) {
+        if (auto status = keeper.vouch_when_ready(options.vouch_radius_m); !status)
+            return fail(status.error());
+    }
     const pid_t parent = ::getppid();
     std::int64_t orphan_since_ns = 0;
-    bool word_given = options.vouch_radius_m == 0.0;
     wire::WebsocketServer* running = nullptr;
     const auto tick = [&](std::int64_t now_ns) {
         keeper.poll(now_ns, clock_ns(CLOCK_BOOTTIME));
-        if (!word_given) {
-            const gate::GateState state = keeper.report(now_ns).health.state;
-            // After a fault none: who started the gate answered for where the machine stood then.
-            word_given = state == gate::GateState::ready || state == gate::GateState::fault;
-            if (state == gate::GateState::ready) {
-                if (const auto given = keeper.vouch(0, options.vouch_radius_m, now_ns); !given)
-                    fmt::print(stderr, "surefoot-gate: {}\n", given.error().message);
-            }
-        }
         if (options.assured && audit != nullptr)
             keeper.set_log_failing(audit->state(now_ns) != wire::AuditState::ok);
         if (options.orphan_ends && ::getppid() != parent && orphan_since_ns == 0)

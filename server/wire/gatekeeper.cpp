@@ -2,6 +2,7 @@
 #include "server/wire/gatekeeper.hpp"
 
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "surefoot/gate/goal.hpp"
@@ -26,6 +27,10 @@ std::unique_ptr<grid::MapSnapshot> nothing_seen() {
 
 std::int64_t tenth_mm(double length_m) {
     return std::llround(length_m * 1e4);
+}
+
+Status refuse_word(const std::string& why) {
+    return Error{ErrorCode::usage, "the ground cannot be vouched for: " + why};
 }
 
 }  // namespace
@@ -53,6 +58,7 @@ void Gatekeeper::poll(std::int64_t now_ns, std::int64_t boottime_ns) {
     fetch(now_ns);
     readiness_.clocks(now_ns, boottime_ns);
     ask_canary(now_ns);
+    give_starters_word(now_ns);
 }
 
 void Gatekeeper::open_channel(std::int64_t now_ns) {
@@ -208,21 +214,39 @@ Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
     return {};
 }
 
-Status Gatekeeper::vouch(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
-    fetch(now_ns);
-    const auto refuse = [](const std::string& why) {
-        return Status(Error{ErrorCode::usage, "the ground cannot be vouched for: " + why});
-    };
-    if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
-        return refuse("no healthy pose is known");
-    if (readiness_.state() == gate::GateState::fault) return refuse("the gate is in a fault");
+Status Gatekeeper::check_radius(double radius_m) const {
     const double limit_m = machine_.limits.vouch_radius_tenth_mm * 1e-4;
     if (!(radius_m > 0.0 && radius_m <= limit_m))
-        return refuse("the radius must be above 0 and at most " + std::to_string(limit_m) +
-                      " m (vouch_radius_m of the machine file)");
-    if (!vouching_.vouch(machine_, *map_, tenth_mm(radius_m), now_ns))
-        return refuse("the radius is too small");
+        return refuse_word("the radius must be above 0 and at most " + std::to_string(limit_m) +
+                           " m (vouch_radius_m of the machine file)");
     return {};
+}
+
+Status Gatekeeper::vouch(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
+    fetch(now_ns);
+    if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
+        return refuse_word("no healthy pose is known");
+    if (readiness_.state() == gate::GateState::fault) return refuse_word("the gate is in a fault");
+    if (auto status = check_radius(radius_m); !status) return status;
+    if (!vouching_.vouch(machine_, *map_, tenth_mm(radius_m), now_ns))
+        return refuse_word("the radius is too small");
+    return {};
+}
+
+Status Gatekeeper::vouch_when_ready(double radius_m) {
+    if (auto status = check_radius(radius_m); !status) return status;
+    starters_word_m_ = radius_m;
+    return {};
+}
+
+void Gatekeeper::give_starters_word(std::int64_t now_ns) {
+    if (starters_word_m_ == 0.0) return;
+    const gate::GateState state = readiness_.state();
+    if (state != gate::GateState::ready && state != gate::GateState::fault) return;
+    // Refused in a fault, and then it is over: the word was for where the machine stood at the
+    // start. `report` says whether it was given.
+    std::ignore = vouch(0, starters_word_m_, now_ns);
+    starters_word_m_ = 0.0;
 }
 
 }  // namespace surefoot::wire

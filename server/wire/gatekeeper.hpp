@@ -46,6 +46,9 @@ class Gatekeeper final : public StepGate {
     void poll(std::int64_t now_ns, std::int64_t boottime_ns);
     /// An assured gate gives no OK (Reason::audit) while its log cannot be written.
     void set_log_failing(bool failing) noexcept { log_failing_ = failing; }
+    /// Whoever starts the process answers for the ground: once, when the gate is first ready, and
+    /// after a fault not any more. Refuses a radius that could never be vouched for.
+    [[nodiscard]] Status vouch_when_ready(double radius_m);
     /// The process ends: nothing is OK any more.
     void stop() noexcept { readiness_.stop(); }
 
@@ -66,6 +69,8 @@ class Gatekeeper final : public StepGate {
     void fetch(std::int64_t now_ns);
     void open_channel(std::int64_t now_ns);
     void ask_canary(std::int64_t now_ns);
+    void give_starters_word(std::int64_t now_ns);
+    [[nodiscard]] Status check_radius(double radius_m) const;
     [[nodiscard]] gate::GateHealth health() const noexcept;
     [[nodiscard]] bool is_in_sequence(const StepQuestion& question);
     [[nodiscard]] Judgement judge(const StepQuestion& question,
@@ -90,6 +95,7 @@ class Gatekeeper final : public StepGate {
     std::int64_t next_canary_ns_ = 0;
     int canary_ = 0;
     std::map<std::uint64_t, std::uint64_t> sequences_;  ///< of each connection, the last one
+    double starters_word_m_ = 0.0;                      ///< radius that is still to be vouched for
     bool log_failing_ = false;
     std::uint64_t asked_ = 0;
     std::uint64_t allowed_ = 0;

@@ -268,6 +268,44 @@ TEST_F(GatekeeperTest, an_operators_word_lasts_until_the_machine_has_left_or_a_f
     EXPECT_FALSE(keeper_->report(now_ns_).vouching);
 }
 
+TEST_F(GatekeeperTest, whoever_starts_it_gives_their_word_once_and_after_a_fault_none) {
+    const auto start_with_word = [this] {
+        keep();
+        ASSERT_TRUE(keeper_->vouch_when_ready(1.0).ok());
+    };
+    EXPECT_FALSE(keeper_->vouch_when_ready(1.5).ok()) << "the machine file allows 1.0 m";
+    EXPECT_FALSE(keeper_->vouch_when_ready(-1.0).ok());
+    EXPECT_FALSE(keeper_->vouch_when_ready(std::nan("")).ok());
+    start_with_word();
+    start_perception();
+    run(0.5);
+    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "the gate warms up";
+    run(2.5);
+    ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
+    EXPECT_TRUE(keeper_->report(now_ns_).vouching);
+
+    map_->body_x_tenth_mm += 3'000;  // a jump
+    run(0.2);
+    const auto re_arm = [this] {
+        ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
+        ASSERT_TRUE(keeper_->rearm(1, now_ns_).ok());
+        writer_->begin_anew();
+        map_->version = 0;
+        run(3.0);
+        ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
+    };
+    re_arm();
+    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "it was given once";
+
+    start_with_word();
+    run(0.5);
+    map_->camera = CameraState::moved;  // before the gate is ready for the first time
+    run(0.2);
+    map_->camera = CameraState::ok;
+    re_arm();
+    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "where it stands now nobody answered for";
+}
+
 TEST_F(GatekeeperTest, goals_are_pictures_and_their_frame_must_be_known) {
     become_ready();
     const Answer good = keeper_->ask_goal({1, "odom", 1.0, -1.0, 0.3}, now_ns_);
