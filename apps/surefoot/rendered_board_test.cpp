@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <opencv2/core/utility.hpp>
 
 #include "apps/surefoot/rendered_boards.hpp"
 #include "io/file.hpp"
@@ -20,6 +21,14 @@ namespace {
 using calibration::Board;
 using calibration::BoardSighting;
 using calibration::BoardView;
+
+/// As in the program: threads are the executor's alone.
+class OpencvOnOneThread : public ::testing::Environment {
+  public:
+    void SetUp() override { cv::setNumThreads(1); }
+};
+const auto* const kOpencvOnOneThread =
+    ::testing::AddGlobalTestEnvironment(new OpencvOnOneThread);  // googletest deletes it
 
 constexpr int kPoses = 2;
 
