@@ -355,8 +355,8 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
             "--vouch",
             o.vouch_radius_m,
             "radius around base_link that an operator answers for where nothing was measured; 0 = "
-            "none; "
-            "without it the ground under the present feet is assumed, and listed in 'assumed'")
+            "none; without it a disc that reaches to the ends of the present feet is assumed, and "
+            "listed in 'assumed'")
         ->type_name("M")
         ->check(number_in(0.0, 2.0));
     verb->add_option("--audit",

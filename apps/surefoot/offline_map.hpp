@@ -23,7 +23,7 @@ struct OfflineMap {
 [[nodiscard]] Result<OfflineMap> load_offline_map(const std::string& folder);
 
 /// An operator's word for the ground around base_link, at the height that the map gives there. A
-/// negative radius means just the ground under the present feet. Adds a sentence to `assumed`; a
+/// negative radius means as far as the present feet reach. Adds a sentence to `assumed`; a
 /// usage error when the radius exceeds what the machine file allows.
 [[nodiscard]] Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
                                                         const gate::Query& query,

@@ -94,7 +94,7 @@ struct GateOptions {
     std::string command;  ///< a joystick code
     std::string machine = "rex";
     std::string explain_file;
-    double vouch_radius_m = -1.0;  ///< < 0: just the ground under the present feet
+    double vouch_radius_m = -1.0;  ///< < 0: as far as the present feet reach
     std::string audit_dir;         ///< folder of an audit log that gets the verdict; empty = none
 };
 int gate(const GateOptions& options);
