@@ -10,6 +10,7 @@
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
 #include "io/yaml_tree.hpp"
+#include "surefoot/camera/baseline.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -302,6 +303,10 @@ Result<RigFile> parse_ros_rig(const NamedText& left, const NamedText& right) {
             "calibration of single cameras; above 0 they are exchanged)",
             right.file,
             baseline_m));
+    }
+    if (const auto problem = camera::baseline_problem(baseline_m)) {
+        return input_error(fmt::format(
+            "{}: projection matrix: {} (element (0, 3) is -fx * baseline)", right.file, *problem));
     }
     RigFile out;
     out.format = RigFormat::ros;

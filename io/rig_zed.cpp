@@ -174,10 +174,13 @@ Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
                              baseline_mm,
                              *problem));
     }
-    const Eigen::Vector3d t_mm(-baseline_mm, value("TY"), value("TZ"));
+    const double y_mm = value("TY");  // one after the other: the first that is missing is named
+    const double z_mm = value("TZ");
+    const Eigen::Vector3d t_mm(-baseline_mm, y_mm, z_mm);
     const double convergence = zed.any_number(
         "STEREO", {fmt::format("CV_{}", mode), fmt::format("RY_{}", mode), "CV", "RY"});
-    const Eigen::Vector3d rotation(value("RX"), convergence, value("RZ"));
+    const double rx_rad = value("RX");
+    const Eigen::Vector3d rotation(rx_rad, convergence, value("RZ"));
     const Pose T_right_left{exp_so3(rotation), 1e-3 * t_mm};
     return T_right_left.inverse();
 }
