@@ -143,6 +143,21 @@ void must_be_sound(const Result<io::RigFile>& file) {
     must_explain(calibration);
     if (calibration) must_be_sound(io::kitti_rig(*calibration, 0, 1, {1226, 370}, "f"));
 }
+[[maybe_unused]] void fuzz_kitti_raw_rig(std::string_view bytes) {
+    must_be_sound(io::parse_kitti_raw_rig(bytes, "f"));
+    must_be_sound(io::parse_kitti_raw_rig(bytes, "f", io::ImageSize{1392, 512}));
+}
+[[maybe_unused]] void fuzz_middlebury_rig(std::string_view bytes) {
+    must_be_sound(io::parse_middlebury_rig(bytes, "f", io::ImageSize{640, 480}));
+}
+[[maybe_unused]] void fuzz_orbslam_rig(std::string_view bytes) {
+    must_be_sound(io::parse_orbslam_rig(bytes, "f"));
+}
+/// Any text: what it is recognised as must read it, or say why not.
+[[maybe_unused]] void fuzz_rig_file(std::string_view bytes) {
+    must_be_sound(io::parse_rig_file(std::string(bytes), "f", io::ImageSize{640, 480}));
+    must_explain(io::parse_rig_file(std::string(bytes), "f"));
+}
 [[maybe_unused]] void fuzz_euroc_camera(std::string_view bytes) {
     const auto camera = io::parse_euroc_camera(bytes, "f");
     must_explain(camera);
@@ -152,7 +167,11 @@ void must_be_sound(const Result<io::RigFile>& file) {
 [[maybe_unused]] void fuzz_machine(std::string_view bytes) {
     const auto machine = io::parse_machine(bytes, "f");
     must_explain(machine);
-    if (machine && machine->machine.problem() != nullptr) std::abort();  // accepted but not usable
+    if (!machine) return;
+    if (machine->machine.problem() != nullptr) std::abort();  // accepted but not usable
+    for (const io::Deviation& deviation : machine->deviations) {
+        if (deviation.signed_by.empty() || deviation.value == deviation.rated) std::abort();
+    }
 }
 [[maybe_unused]] void fuzz_model(std::string_view bytes) {
     const auto model = io::parse_model(bytes, "f");

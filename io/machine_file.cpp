@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "io/calibration_kind.hpp"
 #include "io/file.hpp"
 #include "io/text.hpp"
 #include "io/yaml_group.hpp"
@@ -134,7 +135,19 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.vouch_radius_tenth_mm = group.length("vouch_radius_m", 0.0, 2.0);
 }
 
-void read_document(Group& root, MachineFile& out) {
+/// What no gait of the class can do. A foot that is lifted by `swing_clearance` cannot land higher.
+void check_gait(Group& root, const GateLimits& limits) {
+    constexpr double kTenthMmPerMetre = 1e4;
+    const StepLimits& walk = limits.step[static_cast<std::size_t>(MovementClass::walk)];
+    if (!walk.enabled || walk.up_tenth_mm <= limits.swing_clearance_tenth_mm) return;
+    root.fail("limits",
+              fmt::format("walk.up_m {} is above swing_clearance_m {}: a foot of class walk is not "
+                          "lifted that high; make such movements of class stair",
+                          walk.up_tenth_mm / kTenthMmPerMetre,
+                          limits.swing_clearance_tenth_mm / kTenthMmPerMetre));
+}
+
+void read_document(YamlReader& reader, Group& root, MachineFile& out) {
     Machine& machine = out.machine;
     out.name = root.text("name", 60);
     machine.sole_depth_tenth_mm = root.length("sole_depth_m", 0.0001, 3.0);
@@ -154,6 +167,8 @@ void read_document(Group& root, MachineFile& out) {
         read_movement(movement, machine);
     });
     root.group("limits", [&](Group& limits) { read_limits(limits, machine.limits); });
+    check_gait(root, machine.limits);
+    out.deviations = read_deviations(reader, root);
     root.finish();
 }
 
@@ -164,8 +179,12 @@ Result<MachineFile> parse_machine(std::string_view yaml, const std::string& file
     if (!document) return usage_error(document.error().message);
     YamlReader reader(file, *document);
     MachineFile out;
+    const CalibrationKind kind = kind_of_document(*document);
+    if (kind != CalibrationKind::machine && kind != CalibrationKind::unknown)
+        return usage_error(
+            fmt::format("{}: this looks like {}, not like a machine file", file, title_of(kind)));
     Group root(reader, *document, "", "machine file");
-    read_document(root, out);
+    read_document(reader, root, out);
     if (reader.error()) return usage_error(reader.error()->message);
     if (const char* why = out.machine.problem()) return usage_error(file + ": " + why);
     out.hash = fnv1a(yaml);

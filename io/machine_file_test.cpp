@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "io/file.hpp"
 #include "io/io_testing.hpp"
@@ -144,6 +145,140 @@ TEST(MachineFile, every_mistake_is_named_with_file_line_and_key) {
         EXPECT_TRUE(contains(message, "m.yaml:" + std::to_string(line) + ":"))
             << message << " should name line " << line;
     }
+}
+
+const std::string kWalk = "walk: {enabled: true, up_m: 0.02, down_m: 0.02}";
+
+/// The REX file with a laxer limit and a line of `deviations` (none for an empty one).
+std::string signed_rex(const std::string& line) {
+    return rex_with("tilt_deg: 6.0", "tilt_deg: 8") +
+           (line.empty() ? "" : "deviations:\n  - " + line + "\n");
+}
+
+std::string message_of(const std::string& text) {
+    const auto file = parse_machine(text, "m.yaml");
+    return file.ok() ? "accepted" : file.error().message;
+}
+
+const std::string kSigned =
+    "{key: limits.tilt_deg, value: 8, reason: ramp trial with a spotter, signed: J. Doe, date: "
+    "2026-11-27}";
+
+TEST(MachineFile, the_rex_keeps_every_rated_limit) {
+    EXPECT_EQ(message_of(rex_text()), "accepted");
+    EXPECT_TRUE(parse_machine(rex_text(), "m.yaml")->deviations.empty());
+    EXPECT_EQ(rated_limits().size(), 24U)
+        << "a limit of the file without a rated value is never judged";
+}
+
+TEST(MachineFile, a_laxer_limit_must_be_signed_for) {
+    const std::string said = message_of(signed_rex(""));
+    EXPECT_TRUE(contains(said, "limits.tilt_deg: 8 is laxer than the rated limit 6")) << said;
+    EXPECT_TRUE(contains(said, "{key: limits.tilt_deg, value: 8, reason: WHY, signed: NAME"))
+        << said;
+    const auto file = parse_machine(signed_rex(kSigned), "m.yaml");
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    ASSERT_EQ(file->deviations.size(), 1U);
+    EXPECT_EQ(text_of(file->deviations[0]),
+              "limits.tilt_deg is 8 (rated 6), signed by J. Doe on 2026-11-27: ramp trial with a "
+              "spotter");
+    EXPECT_NEAR(file->machine.limits.min_normal_z, std::cos(8.0 * std::numbers::pi / 180.0), 1e-15);
+}
+
+TEST(MachineFile, every_limit_is_judged_in_its_own_direction) {
+    for (const RatedLimit& limit : rated_limits()) {
+        std::string key = limit.key;
+        key = key.substr(key.rfind('.') + 1);
+        if (key == "up_m" || key == "down_m") continue;  // below, by class
+        const std::string text = rex_text();
+        const std::size_t at = text.find("  " + key + ":");
+        ASSERT_NE(at, text.npos) << key;
+        const std::size_t value = text.find(':', at) + 2;
+        const std::size_t end = text.find_first_of(" \n", value);
+        const double old = std::stod(text.substr(value, end - value));
+        EXPECT_EQ(old, limit.rated) << key << ": the table says what rex.yaml has";
+        const bool whole = key.ends_with("_ms") || key == "patch_independent_cells";
+        const double step = whole ? 1.0 : 1e-3;
+        for (const bool laxer : {true, false}) {
+            const double changed = old + (laxer == limit.larger_allows_more ? step : -step);
+            std::string other = text;
+            other.replace(
+                value,
+                end - value,
+                whole ? std::to_string(static_cast<int>(changed)) : std::to_string(changed));
+            const std::string said = message_of(other);
+            EXPECT_EQ(contains(said, "nobody signed for it"), laxer) << key << ": " << said;
+        }
+    }
+}
+
+TEST(MachineFile, step_limits_belong_to_what_the_class_can_do) {
+    const auto walk = [](const std::string& limits) {
+        return message_of(rex_with(kWalk, "walk: {enabled: true, " + limits + "}"));
+    };
+    EXPECT_TRUE(
+        contains(walk("up_m: 0.3, down_m: 0.3"), "walk.up_m 0.3 is above swing_clearance_m 0.04"));
+    EXPECT_TRUE(contains(walk("up_m: 0.03, down_m: 0.02"), "limits.walk.up_m: 0.03 is laxer"));
+    EXPECT_TRUE(contains(walk("up_m: 0.02, down_m: 0.05"), "limits.walk.down_m: 0.05 is laxer"));
+    const std::string stair = "stair: {enabled: false, up_m: 0.18, down_m: 0.18}";
+    EXPECT_EQ(message_of(rex_with(stair, "stair: {enabled: false, up_m: 0.3, down_m: 0.3}")),
+              "accepted")
+        << "a class that is not enabled allows nothing";
+    EXPECT_TRUE(
+        contains(message_of(rex_with(stair, "stair: {enabled: true, up_m: 0.2, down_m: 0.18}")),
+                 "limits.stair.up_m: 0.2 is laxer than the rated limit 0.18"));
+    EXPECT_EQ(message_of(rex_with(stair, "stair: {enabled: true, up_m: 0.18, down_m: 0.18}")),
+              "accepted");
+}
+
+TEST(MachineFile, a_lax_machine_is_refused_with_all_its_limits) {
+    std::string text = rex_text();
+    for (const auto& [from, to] :
+         {std::pair<std::string, std::string>{"tilt_deg: 6.0", "tilt_deg: 11"},
+          {"patch_residual_m: 0.025", "patch_residual_m: 0.05"},
+          {"sigma_factor: 3.4", "sigma_factor: 3"},
+          {"swing_clearance_m: 0.04", "swing_clearance_m: 0.2"},
+          {"drop_band_m: 0.10", "drop_band_m: 0.05"},
+          {"verdict_ttl_ms: 300", "verdict_ttl_ms: 1000"}}) {
+        const std::size_t at = text.find(from);
+        ASSERT_NE(at, text.npos) << from;
+        text.replace(at, from.size(), to);
+    }
+    EXPECT_TRUE(contains(message_of(text),
+                         "So are 5 more: limits.patch_residual_m, limits.sigma_factor, "
+                         "limits.swing_clearance_m, limits.drop_band_m, limits.verdict_ttl_ms"))
+        << message_of(text);
+}
+
+TEST(MachineFile, a_signature_is_for_one_value_of_one_limit) {
+    const auto line = [](const std::string& from, const std::string& to) {
+        std::string text = kSigned;
+        const std::size_t at = text.find(from);
+        EXPECT_NE(at, text.npos) << from;
+        return message_of(signed_rex(text.replace(at, from.size(), to)));
+    };
+    EXPECT_TRUE(contains(line("value: 8", "value: 7"), "7 was signed, but limits.tilt_deg is 8"));
+    EXPECT_TRUE(
+        contains(line("tilt_deg", "tiltdeg"), "is no rated limit; did you mean 'limits.tilt_deg'?"));
+    EXPECT_TRUE(contains(line("limits.tilt_deg, value: 8", "limits.drop_m, value: 0.05"),
+                         "limits.drop_m is not beyond its rated limit 0.05: remove this line"));
+    EXPECT_TRUE(contains(line("2026-11-27", "27.11.2026"), "is no date YYYY-MM-DD"));
+    EXPECT_TRUE(contains(line("2026-11-27", "2026-13-27"), "is no date YYYY-MM-DD"));
+    EXPECT_TRUE(contains(line("ramp trial with a spotter", "trial"), "10 characters or more why"));
+    EXPECT_TRUE(
+        contains(line("signed: J. Doe, ", ""), "deviations[0].signed: this key is missing"));
+    EXPECT_TRUE(
+        contains(line("J. Doe", "''"), "deviations[0].signed: must have 1 to 80 characters"));
+    EXPECT_TRUE(contains(message_of(signed_rex(kSigned + "\n  - " + kSigned)), "is signed twice"));
+    EXPECT_TRUE(contains(message_of(rex_text() + "deviations: yes\n"), "expected a list"));
+    EXPECT_EQ(message_of(rex_text() + "deviations: []\n"), "accepted");
+}
+
+TEST(MachineFile, another_kind_of_file_is_called_by_its_name) {
+    EXPECT_EQ(message_of("resolution: [672, 376]\nfocal_px: 350\n"),
+              "m.yaml: this looks like a rig.yaml of Surefoot, not like a machine file");
+    EXPECT_EQ(message_of("Camera.fx: 1\n"),
+              "m.yaml: this looks like an ORB-SLAM settings file, not like a machine file");
 }
 
 TEST(MachineFile, an_empty_or_missing_file_is_refused) {

@@ -5,6 +5,7 @@
 
 #include "io/file.hpp"
 #include "io/rig_file.hpp"
+#include "io/rig_lens.hpp"
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
 
@@ -43,7 +44,8 @@ camera::CameraModel read_model(YamlReader& yaml) {
     if (distortion_node != nullptr) distortion = yaml.text(*distortion_node, "distortion_model");
     std::vector<double> coefficients;
     const YamlNode* list = root.find("distortion_coefficients");
-    if (list != nullptr) coefficients = yaml.any_numbers(*list, "distortion_coefficients", 8);
+    if (list != nullptr) coefficients = yaml.any_numbers(*list, "distortion_coefficients", 14);
+    drop_zero_tail(coefficients, distortion == "rational_polynomial" ? 8 : 4);
     const std::size_t count = coefficients.size();
     if (distortion == "equidistant") {
         if (count != 4 && distortion_node != nullptr) {
@@ -62,12 +64,14 @@ camera::CameraModel read_model(YamlReader& yaml) {
         return make_pinhole(k, coefficients);
     }
     if (distortion == "rational_polynomial") {  // our extension, with the name that ROS gave it
-        if (count != 8) {
+        if (count < 8) {
             yaml.fail(list != nullptr ? *list : *distortion_node,
                       "distortion_coefficients",
                       fmt::format("{} numbers; rational_polynomial has 8", count));
         }
-        return make_rational(k, coefficients);
+        if (yaml.error()) return {};
+        return lens_or_fail(
+            yaml, *list, "distortion_coefficients", pinhole_lens(k, std::move(coefficients)));
     }
     if (distortion != "none" && distortion_node != nullptr) {
         yaml.fail(*distortion_node,

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "io/calibration_kind.hpp"
 #include "io/file.hpp"
+#include "io/opencv_names.hpp"
 #include "io/rig_formats.hpp"
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
@@ -12,24 +14,12 @@
 namespace surefoot::io {
 namespace {
 
-bool has_any(const YamlNode& root, std::initializer_list<const char*> keys) {
-    for (const char* key : keys) {
-        if (root.find(key) != nullptr) return true;
-    }
-    return false;
-}
-
-bool is_opencv(const YamlNode& root) {
-    return has_any(root,
-                   {"M1", "K1", "D1", "cameraMatrix1", "camera_matrix_1", "camera_matrix_left"});
-}
-
 /// OpenCV's sample writes intrinsics.yml and extrinsics.yml; together they are one calibration.
-Result<camera::StereoRig> read_opencv(YamlNode root,
-                                      const std::string& path,
-                                      std::optional<ImageSize> size) {
+Result<RigFile> read_opencv(YamlNode root, const std::string& path, std::optional<ImageSize> size) {
     const std::string beside = join_path(folder_of(path), "extrinsics.yml");
-    if (has_any(root, {"R", "T"}) || !is_file(beside)) return opencv_rig(root, path, size);
+    const OpenCvNames names = find_opencv_names(root);
+    if (names.R.node != nullptr || names.T.node != nullptr || !is_file(beside))
+        return opencv_rig(root, path, size);
     const Result<std::string> text = read_file(beside);
     if (!text) return text.error();
     const Result<YamlNode> more = parse_yaml(*text, beside);
@@ -40,32 +30,42 @@ Result<camera::StereoRig> read_opencv(YamlNode root,
     return opencv_rig(root, path + " + extrinsics.yml", size);
 }
 
-Result<camera::StereoRig> read_kitti(const std::string& text,
-                                     const std::string& path,
-                                     std::optional<ImageSize> size) {
+Result<RigFile> with_format(Result<camera::StereoRig> rig,
+                            RigFormat format,
+                            const std::string& file) {
+    if (!rig) return rig.error();
+    return checked_file(RigFile{std::move(rig).value(), format, {}}, file);
+}
+
+Result<RigFile> parse_kitti(const std::string& text,
+                            const std::string& path,
+                            std::optional<ImageSize> size) {
     if (!size) {
         return input_error(fmt::format(
-            "{}: a KITTI calibration does not hold the image size; use it with its images", path));
+            "{}: a KITTI calibration does not hold the image size; use it with its images, or take "
+            "it into a rig.yaml with 'surefoot rig FILE --resolution WIDTHxHEIGHT --out rig.yaml'",
+            path));
     }
     const Result<KittiCalibration> calibration = parse_kitti_calibration(text, path);
     if (!calibration) return calibration.error();
-    return kitti_rig(*calibration, 0, 1, *size, path);
+    const bool colour = !calibration->P[0] && !calibration->P[1] && calibration->P[2];
+    return with_format(kitti_rig(*calibration, colour ? 2 : 0, colour ? 3 : 1, *size, path),
+                       RigFormat::kitti,
+                       path);
 }
 
-/// A Kalibr chain names its cameras cam0, cam1.
-bool is_kalibr(const YamlNode& root) {
-    const YamlNode* camera = root.find("cam0");
-    return camera != nullptr && camera->is_mapping();
-}
-
-bool is_ros(const YamlNode& root) {
-    return has_any(root, {"camera_matrix"}) &&
-           has_any(root, {"projection_matrix", "rectification_matrix", "camera_name"});
-}
-
-bool is_zed(const std::string& path, std::string_view text) {
-    if (extension_of(path) == ".conf") return true;
-    return lowercase(text.substr(0, text.find(']'))).find("[left_cam_") != std::string::npos;
+Result<std::string> read_ros_text(const std::string& file) {
+    Result<std::string> text = read_file(file);
+    if (!text) return text;
+    const Result<YamlNode> root = parse_yaml(*text, file);
+    if (!root) return root.error();
+    const CalibrationKind kind = kind_of_document(*root);
+    // A document that is nothing known may be a damaged one: its own reader names the key.
+    if (kind == CalibrationKind::ros || kind == CalibrationKind::unknown ||
+        kind == CalibrationKind::opencv_camera)
+        return text;
+    return input_error(fmt::format(
+        "{}: this looks like {}, not like one camera of a ROS pair", file, title_of(kind)));
 }
 
 Result<RigFile> read_ros(const std::string& left_file) {
@@ -76,12 +76,73 @@ Result<RigFile> read_ros(const std::string& left_file) {
                         "with 'left' in its name, and put the same name with 'right' beside it",
                         left_file));
     }
-    Result<std::string> left = read_file(left_file);
+    Result<std::string> left = read_ros_text(left_file);
     if (!left) return left.error();
-    Result<std::string> right = read_file(*right_file);
+    Result<std::string> right = read_ros_text(*right_file);
     if (!right) return right.error();
     return parse_ros_rig({std::move(left).value(), left_file},
                          {std::move(right).value(), *right_file});
+}
+
+/// ROS's pair, a calibration under its usual name, or an EuRoC recording.
+Result<RigFile> read_folder(const std::string& path, std::optional<ImageSize> size) {
+    const std::string left = join_path(path, "left.yaml");
+    if (is_file(left)) return read_ros(left);
+    for (const std::string& mav : {join_path(path, "mav0"), path}) {
+        if (is_folder(join_path(mav, "cam0")))
+            return with_format(read_euroc_rig(mav), RigFormat::euroc, mav);
+    }
+    for (const char* name : {"rig.yaml", "calib.txt", "calib_cam_to_cam.txt", "camchain.yaml"}) {
+        const std::string file = join_path(path, name);
+        if (is_file(file)) return read_rig_file(file, size);
+    }
+    return input_error(
+        fmt::format("{}: this folder holds no calibration: neither cam0/sensor.yaml and "
+                    "cam1/sensor.yaml (EuRoC), "
+                    "nor left.yaml and right.yaml (ROS), nor rig.yaml; give the file itself",
+                    path));
+}
+
+/// A YAML or JSON document of a recognised kind, but for the pairs of files.
+Result<RigFile> parse_document(const YamlNode& root,
+                               CalibrationKind kind,
+                               const std::string& text,
+                               const std::string& file,
+                               std::optional<ImageSize> size) {
+    switch (kind) {
+        case CalibrationKind::kalibr: return parse_kalibr_rig(text, file);
+        case CalibrationKind::orbslam: return parse_orbslam_rig(text, file);
+        case CalibrationKind::opencv: return opencv_rig(root, file, size);
+        case CalibrationKind::surefoot:
+            return with_format(parse_rig_yaml(text, file), RigFormat::surefoot, file);
+        case CalibrationKind::ros:
+            return input_error(file + ": ROS has a file for each camera; both are needed");
+        default: return input_error(fmt::format("{}: {}", file, why_no_rig(kind, &root)));
+    }
+}
+
+/// A text that is not YAML; nothing where it may be.
+std::optional<Result<RigFile>> parse_other(const std::string& text,
+                                           const std::string& file,
+                                           std::optional<ImageSize> size) {
+    const CalibrationKind kind =
+        extension_of(file) == ".conf" ? CalibrationKind::zed : kind_of_text(text);
+    switch (kind) {
+        case CalibrationKind::zed: return parse_zed_rig(text, file, size);
+        case CalibrationKind::kitti: return parse_kitti(text, file, size);
+        case CalibrationKind::kitti_raw: return parse_kitti_raw_rig(text, file, size);
+        case CalibrationKind::middlebury: return parse_middlebury_rig(text, file, size);
+        case CalibrationKind::unknown: return std::nullopt;
+        default:
+            return Result<RigFile>(
+                input_error(fmt::format("{}: {}", file, why_no_rig(kind, nullptr))));
+    }
+}
+
+Result<YamlNode> parse_mapping(const std::string& text, const std::string& file) {
+    Result<YamlNode> root = parse_yaml(text, file);
+    if (!root || root->is_mapping()) return root;
+    return input_error(fmt::format("{}: {}", file, why_no_rig(CalibrationKind::unknown, &*root)));
 }
 
 /// Into a folder as left.yaml and right.yaml, or beside each other.
@@ -103,43 +164,28 @@ Result<std::vector<std::string>> write_ros(const std::string& path, const RosTex
     return std::vector<std::string>{left, *right};
 }
 
-Result<RigFile> with_format(Result<camera::StereoRig> rig, RigFormat format) {
-    if (!rig) return rig.error();
-    return RigFile{std::move(rig).value(), format, {}};
-}
-
-Result<RigFile> read_yaml_rig(const std::string& text,
-                              const std::string& path,
-                              std::optional<ImageSize> size) {
-    const Result<YamlNode> root = parse_yaml(text, path);
-    if (!root) return root.error();
-    if (is_kalibr(*root)) return parse_kalibr_rig(text, path);
-    if (is_ros(*root)) return read_ros(path);
-    if (is_opencv(*root)) return with_format(read_opencv(*root, path, size), RigFormat::opencv);
-    if (has_any(*root, {"T_BS"})) {
-        return input_error(fmt::format(
-            "{}: this is one sensor of an EuRoC recording; give its folder (with cam0 and cam1)",
-            path));
-    }
-    return with_format(parse_rig_yaml(text, path), RigFormat::surefoot);
-}
-
 }  // namespace
 
+Result<RigFile> parse_rig_file(const std::string& text,
+                               const std::string& file,
+                               std::optional<ImageSize> size) {
+    if (auto other = parse_other(text, file, size)) return std::move(*other);
+    const Result<YamlNode> root = parse_mapping(text, file);
+    if (!root) return root.error();
+    return parse_document(*root, kind_of_document(*root), text, file, size);
+}
+
 Result<RigFile> read_rig_file(const std::string& path, std::optional<ImageSize> size) {
-    if (is_folder(path)) {
-        const std::string left = join_path(path, "left.yaml");
-        if (is_file(left)) return read_ros(left);
-        const std::string inner = join_path(path, "mav0");
-        return with_format(read_euroc_rig(is_folder(inner) ? inner : path), RigFormat::euroc);
-    }
+    if (is_folder(path)) return read_folder(path, size);
     const Result<std::string> text = read_file(path);
     if (!text) return text.error();
-    if (is_zed(path, *text)) return parse_zed_rig(*text, path, size);
-    if (text->starts_with("P0:")) {
-        return with_format(read_kitti(*text, path, size), RigFormat::kitti);
-    }
-    return read_yaml_rig(*text, path, size);
+    if (auto other = parse_other(*text, path, size)) return std::move(*other);
+    const Result<YamlNode> root = parse_mapping(*text, path);
+    if (!root) return root.error();
+    const CalibrationKind kind = kind_of_document(*root);
+    if (kind == CalibrationKind::ros) return read_ros(path);
+    if (kind == CalibrationKind::opencv) return read_opencv(*root, path, size);
+    return parse_document(*root, kind, *text, path, size);
 }
 
 Result<camera::StereoRig> read_rig(const std::string& path, std::optional<ImageSize> size) {
@@ -157,6 +203,9 @@ const char* name_of(RigFormat format) noexcept {
         case RigFormat::zed: return "zed";
         case RigFormat::euroc: return "euroc";
         case RigFormat::kitti: return "kitti";
+        case RigFormat::kitti_raw: return "kitti_raw";
+        case RigFormat::middlebury: return "middlebury";
+        case RigFormat::orbslam: return "orbslam";
     }
     return "?";
 }
@@ -191,9 +240,9 @@ Result<std::vector<std::string>> write_rig(const std::string& path,
         format == RigFormat::surefoot ? Result<std::string>(format_rig_yaml(rig))
         : format == RigFormat::opencv ? format_opencv_rig(rig)
         : format == RigFormat::kalibr ? format_kalibr_rig(rig)
-        : format == RigFormat::zed
-            ? format_zed_rig(rig)
-            : Result<std::string>(output_error("euroc and kitti are written with recordings"));
+        : format == RigFormat::zed    ? format_zed_rig(rig)
+                                      : Result<std::string>(output_error(fmt::format(
+                                         "{} files are read, not written", name_of(format))));
     if (!text) return output_error(fmt::format("{}: {}", path, text.error().message));
     if (Status status = write_file(path, *text); !status) return status.error();
     return Files{path};

@@ -70,18 +70,19 @@ struct KittiCalibration {
                                                   ImageSize size,
                                                   const std::string& file);
 
-/// OpenCV FileStorage YAML: camera matrices (M1, K1, cameraMatrix1 ...), distortion (D1 ...), R and
-/// T with x_right = R x_left + T [m], image size if the file has it. Four coefficients are a
-/// fisheye where the file says "fisheye: 1" or "model: fisheye".
+/// OpenCV FileStorage YAML or JSON: camera matrices and distortion under any of their usual names
+/// (io/opencv_names.hpp), R (or a rotation vector) and T with x_right = R x_left + T [m], image
+/// size if the file has it. Four coefficients are a fisheye where the file says "fisheye: 1" or
+/// "model: fisheye".
 [[nodiscard]] Result<camera::StereoRig> parse_opencv_rig(std::string_view text,
                                                          const std::string& file,
                                                          std::optional<ImageSize> size = {});
 
 /// Any of the above and of rig_formats.hpp: an EuRoC folder (with mav0 or inside it), a folder with
-/// ROS's left.yaml and right.yaml, calib.txt of KITTI, a ZED's .conf, or a YAML file that is told
-/// apart by its keys. `size` helps formats that do not know their image size, and picks the section
-/// of a ZED file; the rig of another file may still be for another size. An
-/// OpenCV intrinsics.yml without R and T takes them from extrinsics.yml beside it.
+/// ROS's left.yaml and right.yaml or with a rig.yaml, or a file that is told apart by its content.
+/// `size` helps formats that do not know their image size, and picks the section of a ZED file; the
+/// rig of another file may still be for another size. An OpenCV intrinsics.yml without R and T
+/// takes them from extrinsics.yml beside it. read_rig_file gives the notes too.
 [[nodiscard]] Result<camera::StereoRig> read_rig(const std::string& path,
                                                  std::optional<ImageSize> size = {});
 

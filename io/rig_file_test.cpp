@@ -119,10 +119,13 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
     EXPECT_TRUE(contains(bad("350.0", "-3"), "rig.yaml:5: focal_px: -3 is outside"));
     EXPECT_TRUE(contains(bad("350.0", "inf"), "focal_px: inf is outside"));
     EXPECT_TRUE(contains(bad("0.12", "'0,12'"), "rig.yaml:4: baseline_m: '0,12' is not a number"));
-    EXPECT_TRUE(contains(bad("0.12", "0"), "baseline_m: 0 is outside 0.001 .. 100"));
+    EXPECT_TRUE(contains(bad("0.12", "0"), "rig.yaml:4: baseline_m: baseline 0.000 mm is below"));
+    EXPECT_TRUE(
+        contains(bad("0.12", "120"), "baseline_m: baseline 120.000 m exceeds 5 m: is it in mm"));
     EXPECT_EQ(bad("[336.0, 188.0]", "[336.0]"),
               "rig.yaml:6: principal_px: 1 numbers; exactly 2 belong here");
-    EXPECT_TRUE(contains(bad("baseline_m: 0.12\n", ""), "key 'baseline_m' is missing"));
+    EXPECT_TRUE(
+        contains(bad("baseline_m: 0.12\n", ""), "baseline_m: this key is missing; a camera"));
     EXPECT_TRUE(
         contains(bad("[672, 376]", "[672, 0]"), "rig.yaml:2: resolution: 0 is no image side"));
     EXPECT_TRUE(contains(bad("side_by_side", "stacked"), "is none of side_by_side"));
@@ -134,7 +137,7 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
     };
     EXPECT_TRUE(contains(bad_full("model: pinhole", "model: fish"),
                          "none of pinhole | pinhole_rational | kannala_brandt"));
-    EXPECT_TRUE(contains(bad_full("coefficients: [", "coefficients: [1, 2, "), "at most 5 belong"));
+    EXPECT_TRUE(contains(bad_full("coefficients: [", "coefficients: [1, 2, "), "7 numbers; pinhole has 5"));
     EXPECT_TRUE(contains(bad_full("T_left_right: [", "T_left_right: [5"), "not a rigid motion"));
     EXPECT_TRUE(contains(bad_full("  focal_px", "  focal_length_px"),
                          "unknown key 'left.focal_length_px'"));
@@ -238,7 +241,8 @@ TEST(RigOpenCv, WhatIsMissingOrWrongIsNamed) {
         return message(parse_opencv_rig(replaced(kOpenCv, from, to), "s.yml"));
     };
     EXPECT_TRUE(contains(bad("\nT:", "\nQ:"), "key 'T' is missing"));
-    EXPECT_TRUE(contains(bad("-0.1, 0., 0.01", "-119.9, 0., 0.01"), "T must be in metres"));
+    EXPECT_TRUE(
+        contains(bad("-0.1, 0., 0.01", "-119.9, 0., 0.01"), "is it in mm (then 119.9 mm)?"));
     EXPECT_TRUE(contains(bad("5.3e+02", ".Nan"), "M1: nan is outside"));
     EXPECT_TRUE(contains(bad("5.3e+02", "-1."), "M1: focal lengths -1 and 540 must be above 0"));
     EXPECT_TRUE(contains(bad("0.8, 0., 0.6, 0.", "0.8, 0., 0.9, 0."), "R: not a rigid motion"));

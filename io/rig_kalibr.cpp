@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/rig_formats.hpp"
+#include "io/rig_lens.hpp"
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
 #include "io/yaml_tree.hpp"
@@ -10,17 +11,11 @@
 namespace surefoot::io {
 namespace {
 
-/// Kalibr does not write the rate of the IMU; a common one, only used to judge gaps.
-constexpr double kAssumedImuRate_hz = 200.0;
-
 camera::CameraModel read_lens(YamlReader& yaml, const YamlNode& node, const std::string& name) {
     const YamlNode* model = yaml.required(node, "camera_model");
     const YamlNode* intrinsics = yaml.required(node, "intrinsics");
     const YamlNode* distortion = yaml.required(node, "distortion_model");
-    const YamlNode* list = yaml.required(node, "distortion_coeffs");
-    if (model == nullptr || intrinsics == nullptr || distortion == nullptr || list == nullptr) {
-        return {};
-    }
+    if (model == nullptr || intrinsics == nullptr || distortion == nullptr) return {};
     const std::string model_name = yaml.text(*model, name + ".camera_model");
     if (model_name != "pinhole") {
         yaml.fail(*model,
@@ -34,14 +29,25 @@ camera::CameraModel read_lens(YamlReader& yaml, const YamlNode& node, const std:
     check_focal(yaml, *intrinsics, name + ".intrinsics", {k[0], 0, 0, 0, k[1]});
     const std::string kind = yaml.text(*distortion, name + ".distortion_model");
     if (kind == "none") return make_pinhole(k, {});
+    const YamlNode* list = yaml.required(node, "distortion_coeffs");
+    if (list == nullptr) return {};
     if (kind != "radtan" && kind != "equidistant") {
         yaml.fail(*distortion,
                   name + ".distortion_model",
                   quoted(kind) + " is none of radtan | equidistant | none");
         return {};
     }
-    std::vector<double> D = yaml.numbers(*list, name + ".distortion_coeffs", 4);
-    return kind == "radtan" ? make_pinhole(k, std::move(D)) : make_kannala_brandt(k, std::move(D));
+    const std::string key = name + ".distortion_coeffs";
+    std::vector<double> D = yaml.any_numbers(*list, key, 14);
+    drop_zero_tail(D, 4);
+    if (D.size() != 4)
+        yaml.fail(*list, key, fmt::format("{} numbers; exactly 4 belong here", D.size()));
+    if (yaml.error()) return {};
+    return lens_or_fail(
+        yaml,
+        *list,
+        key,
+        kind == "radtan" ? pinhole_lens(k, std::move(D)) : fisheye_lens(k, std::move(D)));
 }
 
 camera::Camera read_camera(YamlReader& yaml, const std::string& name) {
@@ -61,19 +67,42 @@ camera::Camera read_camera(YamlReader& yaml, const std::string& name) {
     return camera;
 }
 
-/// Pose of the IMU, where the chain has one.
-void read_imu(YamlReader& yaml, RigFile& out) {
-    const YamlNode* node = yaml.root().find("cam0");
-    const YamlNode* pose = node->find("T_cam_imu");
-    if (pose == nullptr) return;
-    out.rig.T_body_left = T_body_optical();
-    const Pose T_left_imu = read_pose(yaml, *pose, "cam0.T_cam_imu");
-    out.rig.imu = camera::ImuMount{*out.rig.T_body_left * T_left_imu, kAssumedImuRate_hz};
-    out.notes.push_back(
-        fmt::format("the file does not hold the rate of the IMU; {} Hz assumed, and base_link is "
-                    "the left camera turned to body axes",
-                    kAssumedImuRate_hz));
-    const YamlNode* shift = node->find("timeshift_cam_imu");
+/// Pose of the IMU in a camera: T_cam_imu of Kalibr, or the inverse, T_imu_cam, of OpenVINS.
+std::optional<Pose> read_imu_pose(YamlReader& yaml, const std::string& name) {
+    const YamlNode& node = *yaml.root().find(name);
+    if (const YamlNode* pose = node.find("T_cam_imu"); pose != nullptr)
+        return read_pose(yaml, *pose, name + ".T_cam_imu");
+    if (const YamlNode* pose = node.find("T_imu_cam"); pose != nullptr)
+        return read_pose(yaml, *pose, name + ".T_imu_cam").inverse();
+    return std::nullopt;
+}
+
+/// T_left_right from T_cn_cnm1, or from the poses of the IMU in both cameras.
+Pose read_extrinsics(YamlReader& yaml,
+                     const std::optional<Pose>& T_left_imu,
+                     const std::optional<Pose>& T_right_imu,
+                     RigFile& out) {
+    const YamlNode& cam1 = *yaml.root().find("cam1");
+    if (const YamlNode* pose = cam1.find("T_cn_cnm1"); pose != nullptr)
+        return read_pose(yaml, *pose, "cam1.T_cn_cnm1").inverse();
+    if (T_left_imu && T_right_imu) {
+        out.notes.emplace_back(
+            "cam1 has no T_cn_cnm1: the pose of the right camera follows from the poses of the IMU "
+            "in both cameras");
+        return *T_left_imu * T_right_imu->inverse();
+    }
+    yaml.fail(cam1,
+              "cam1",
+              "key 'T_cn_cnm1' is missing, and the cameras do not both have T_cam_imu: run "
+              "kalibr_calibrate_cameras with both topics in one call; its camchain holds the pose "
+              "between the cameras");
+    return {};
+}
+
+void read_imu(YamlReader& yaml, const std::optional<Pose>& T_left_imu, RigFile& out) {
+    if (!T_left_imu) return;
+    mount_imu(*T_left_imu, 0.0, out);
+    const YamlNode* shift = yaml.root().find("cam0")->find("timeshift_cam_imu");
     if (shift == nullptr) return;
     const double shift_s = yaml.number(*shift, "cam0.timeshift_cam_imu", -10.0, 10.0);
     if (shift_s == 0.0) return;
@@ -145,20 +174,15 @@ Result<RigFile> parse_kalibr_rig(std::string_view text, const std::string& file)
     out.rig.left = read_camera(yaml, "cam0");
     out.rig.right = read_camera(yaml, "cam1");
     if (yaml.error()) return *yaml.error();
-    const YamlNode& cam1 = *root->find("cam1");
-    if (const YamlNode* pose = yaml.required(cam1, "T_cn_cnm1"); pose != nullptr) {
-        out.rig.T_left_right = read_pose(yaml, *pose, "cam1.T_cn_cnm1").inverse();
-    }
-    read_imu(yaml, out);
+    const std::optional<Pose> T_left_imu = read_imu_pose(yaml, "cam0");
+    const std::optional<Pose> T_right_imu = read_imu_pose(yaml, "cam1");
+    out.rig.T_left_right = read_extrinsics(yaml, T_left_imu, T_right_imu, out);
+    read_imu(yaml, T_left_imu, out);
     if (root->find("cam2") != nullptr) {
         out.notes.emplace_back("more than two cameras; cam0 and cam1 are taken");
     }
     if (yaml.error()) return *yaml.error();
-    mark_if_rectified(out.rig);
-    Result<camera::StereoRig> rig = checked_rig(std::move(out.rig), file);
-    if (!rig) return rig.error();
-    out.rig = std::move(rig).value();
-    return out;
+    return checked_file(std::move(out), file);
 }
 
 Result<std::string> format_kalibr_rig(const camera::StereoRig& rig) {

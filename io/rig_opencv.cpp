@@ -3,113 +3,130 @@
 // {rows, cols, dt, data}; x_right = R x_left + T (stereoCalibrate).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "io/rig_file.hpp"
+#include "io/opencv_names.hpp"
 #include "io/rig_formats.hpp"
+#include "io/rig_lens.hpp"
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
+#include "surefoot/camera/baseline.hpp"
 
 namespace surefoot::io {
 namespace {
 
-/// A translation larger than this was certainly not given in metres.
-constexpr double kMaxBaseline_m = 5.0;
-
-struct Named {
-    const YamlNode* node = nullptr;
-    std::string key;
-};
-
-/// First of several spellings of a key.
-Named find_any(const YamlNode& root, std::initializer_list<const char*> keys) {
-    for (const char* key : keys) {
-        if (const YamlNode* node = root.find(key); node != nullptr) return {node, key};
-    }
-    return {};
-}
-
-Named require_any(YamlReader& yaml, std::initializer_list<const char*> keys) {
-    Named found = find_any(yaml.root(), keys);
-    if (found.node == nullptr)
-        yaml.required(yaml.root(), *keys.begin());  // reports the first spelling
-    return found;
+std::vector<double> row_major(const Eigen::Matrix3d& M) {
+    return {M(0, 0), M(0, 1), M(0, 2), M(1, 0), M(1, 1), M(1, 2), M(2, 0), M(2, 1), M(2, 2)};
 }
 
 bool is_fisheye(const YamlNode& root) {
-    const Named flag = find_any(root, {"fisheye", "model", "distortion_model", "camera_model"});
-    if (flag.node == nullptr) return false;
-    const std::string value = lowercase(flag.node->scalar);
-    return value == "1" || value == "true" || value == "fisheye" || value == "equidistant" ||
-           value == "kannala_brandt";
+    for (const char* key : {"fisheye", "model", "distortion_model", "camera_model"}) {
+        const YamlNode* flag = root.find(key);
+        if (flag == nullptr) continue;
+        const std::string value = lowercase(flag->scalar);
+        return value == "1" || value == "true" || value == "fisheye" || value == "equidistant" ||
+               value == "kannala_brandt";
+    }
+    return false;
 }
 
-camera::CameraModel read_lens(YamlReader& yaml, const Named& matrix, const Named& distortion) {
+/// A matrix that must be there; `other` is what the same thing is called for the other camera.
+bool require(YamlReader& yaml, const NamedNode& found, const char* what, const NamedNode& other) {
+    if (found.node != nullptr) return true;
+    yaml.fail(
+        yaml.root(),
+        what,
+        other.node != nullptr
+            ? fmt::format("not found; the other camera's is '{}': give both the same name but "
+                          "for 1 and 2, left and right, or l and r",
+                          other.key)
+            : "not found under any of its usual names");
+    return false;
+}
+
+camera::CameraModel read_lens(YamlReader& yaml,
+                              const NamedNode& matrix,
+                              const NamedNode& distortion) {
     const std::vector<double> K = read_matrix(yaml, *matrix.node, matrix.key, 9, 9);
-    std::vector<double> D = read_matrix(yaml, *distortion.node, distortion.key, 4, 14);
+    const std::vector<double> D = read_matrix(yaml, *distortion.node, distortion.key, 4, 14);
     if (yaml.error()) return {};
     check_focal(yaml, *matrix.node, matrix.key, K);
-    if (is_fisheye(yaml.root())) {
-        if (D.size() != 4)
-            yaml.fail(*distortion.node, distortion.key, "a fisheye has 4 coefficients");
-        return make_kannala_brandt({K[0], K[4], K[2], K[5]}, D);
+    const std::vector<double> k{K[0], K[4], K[2], K[5]};
+    return lens_or_fail(yaml,
+                        *distortion.node,
+                        distortion.key,
+                        is_fisheye(yaml.root()) ? fisheye_lens(k, D) : pinhole_lens(k, D));
+}
+
+/// cv::fisheye writes four coefficients and no name of its model, like cv::calibrateCamera without
+/// k3: the numbers do not tell one from the other.
+void note_unmarked_lens(YamlReader& yaml, const NamedNode& distortion, RigFile& out) {
+    const YamlNode& root = yaml.root();
+    for (const char* key : {"fisheye", "model", "distortion_model", "camera_model"}) {
+        if (root.find(key) != nullptr) return;
     }
-    for (std::size_t i = 8; i < D.size(); ++i) {
-        if (D[i] == 0.0) continue;
-        yaml.fail(*distortion.node,
-                  distortion.key,
-                  fmt::format("coefficient {} is {}; only k1 k2 p1 p2 k3 k4 k5 k6 are supported, "
-                              "calibrate without the thin-prism and tilt terms",
-                              i + 1,
-                              D[i]));
+    const std::vector<double> D = read_matrix(yaml, *distortion.node, distortion.key, 4, 14);
+    const auto is_zero = [](double value) { return value == 0.0; };
+    if (D.size() != 4 || std::all_of(D.begin(), D.end(), is_zero)) return;
+    out.notes.push_back(fmt::format(
+        "{}: four coefficients without the name of a lens model are taken as k1 k2 p1 p2 of a "
+        "pinhole; if cv::fisheye made them, add 'fisheye: 1' to the file",
+        distortion.key));
+}
+
+/// A rotation matrix, or a rotation vector as cv::Rodrigues takes it: 9 numbers.
+std::vector<double> read_rotation(YamlReader& yaml, const NamedNode& named, RigFile& out) {
+    std::vector<double> R = read_matrix(yaml, *named.node, named.key, 3, 9);
+    if (R.size() == 3) {
+        out.notes.push_back(
+            fmt::format("{}: three numbers are taken as a rotation vector", named.key));
+        return row_major(exp_so3({R[0], R[1], R[2]}).toRotationMatrix());
     }
-    return make_pinhole({K[0], K[4], K[2], K[5]}, D);
+    if (R.size() != 9) {
+        yaml.fail(
+            *named.node,
+            named.key,
+            fmt::format("{} numbers; a rotation matrix has 9, a rotation vector 3", R.size()));
+        R.resize(9, 0.0);
+    }
+    return R;
 }
 
 /// R and T turned into T_left_right = (R, T)^-1.
-Pose read_extrinsics(YamlReader& yaml) {
-    const Named R_node = require_any(yaml, {"R", "rotation", "R_stereo"});
-    const Named T_node = require_any(yaml, {"T", "translation", "T_stereo"});
+Pose read_extrinsics(YamlReader& yaml, const OpenCvNames& names, RigFile& out) {
+    if (names.R.node == nullptr) yaml.required(yaml.root(), "R");
+    if (names.T.node == nullptr) yaml.required(yaml.root(), "T");
     if (yaml.error()) return {};
-    const std::vector<double> R = read_matrix(yaml, *R_node.node, R_node.key, 9, 9);
-    const std::vector<double> T = read_matrix(yaml, *T_node.node, T_node.key, 3, 3);
+    const std::vector<double> R = read_rotation(yaml, names.R, out);
+    const std::vector<double> T = read_matrix(yaml, *names.T.node, names.T.key, 3, 3);
     if (yaml.error()) return {};
     const double length_m = std::sqrt(T[0] * T[0] + T[1] * T[1] + T[2] * T[2]);
-    if (length_m > kMaxBaseline_m) {
-        yaml.fail(
-            *T_node.node,
-            T_node.key,
-            fmt::format("a baseline of {:.3f} m exceeds {} m; T must be in metres (calibrate with "
-                        "the square size in metres)",
-                        length_m,
-                        kMaxBaseline_m));
+    if (const auto problem = camera::baseline_problem(length_m)) {
+        yaml.fail(*names.T.node,
+                  names.T.key,
+                  *problem + " (stereoCalibrate takes the unit of the board's squares)");
     }
-    const Pose T_right_left = pose_from_parts(yaml, *R_node.node, R_node.key, R, T);
-    return T_right_left.inverse();
+    return pose_from_parts(yaml, *names.R.node, names.R.key, R, T).inverse();
 }
 
-ImageSize find_size(YamlReader& yaml, std::optional<ImageSize> fallback) {
-    const YamlNode& root = yaml.root();
-    const Named width = find_any(root, {"image_width", "width"});
-    const Named height = find_any(root, {"image_height", "height"});
-    if (width.node != nullptr && height.node != nullptr) {
-        return {yaml.integer(*width.node, width.key, 1, kMaxRigSide_px),
-                yaml.integer(*height.node, height.key, 1, kMaxRigSide_px)};
+ImageSize find_size(YamlReader& yaml, const OpenCvNames& names, std::optional<ImageSize> fallback) {
+    if (names.width.node != nullptr && names.height.node != nullptr) {
+        return {yaml.integer(*names.width.node, names.width.key, 1, kMaxRigSide_px),
+                yaml.integer(*names.height.node, names.height.key, 1, kMaxRigSide_px)};
     }
-    const Named size = find_any(root, {"image_size", "imageSize", "size", "resolution"});
-    if (size.node != nullptr) {
-        const std::vector<double> sides = read_matrix(yaml, *size.node, size.key, 2, 2);
-        for (const double side : sides) {
-            if (side >= 1.0 && side <= kMaxRigSide_px) continue;
-            yaml.fail(*size.node, size.key, fmt::format("{} is no image side", side));
-            return {};
-        }
-        return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
+    if (names.size.node != nullptr) {
+        const YamlNode* data =
+            names.size.node->is_mapping() ? names.size.node->find("data") : nullptr;
+        return read_size(yaml, data != nullptr ? *data : *names.size.node, names.size.key);
     }
     if (!fallback) {
-        yaml.fail(root,
-                  "image_width",
-                  "the file does not hold the image size; add image_width and image_height");
+        yaml.fail(
+            yaml.root(),
+            "image size",
+            "the file does not hold the image size. Take it into a rig.yaml with 'surefoot rig "
+            "FILE --resolution WIDTHxHEIGHT --out rig.yaml', or add image_width and "
+            "image_height");
     }
     return fallback.value_or(ImageSize{});
 }
@@ -124,10 +141,6 @@ std::string format_matrix(std::string_view key,
                        rows,
                        cols,
                        format_list(data));
-}
-
-std::vector<double> row_major(const Eigen::Matrix3d& M) {
-    return {M(0, 0), M(0, 1), M(0, 2), M(1, 0), M(1, 1), M(1, 2), M(2, 0), M(2, 1), M(2, 2)};
 }
 
 std::string format_lens(char number, const camera::CameraModel& model) {
@@ -167,33 +180,35 @@ Result<camera::StereoRig> parse_opencv_rig(std::string_view text,
                                            std::optional<ImageSize> size) {
     const Result<YamlNode> root = parse_yaml(text, file);
     if (!root) return root.error();
-    return opencv_rig(*root, file, size);
+    Result<RigFile> out = opencv_rig(*root, file, size);
+    if (!out) return out.error();
+    return std::move(out->rig);
 }
 
-Result<camera::StereoRig> opencv_rig(const YamlNode& root,
-                                     const std::string& file,
-                                     std::optional<ImageSize> size) {
+Result<RigFile> opencv_rig(const YamlNode& root,
+                           const std::string& file,
+                           std::optional<ImageSize> size) {
     if (!root.is_mapping()) return input_error(file + ": not an OpenCV calibration file");
     YamlReader yaml(file, root);
-    camera::StereoRig rig;
-    rig.name = "opencv";
-    const ImageSize image = find_size(yaml, size);
-    const Named left_matrix =
-        require_any(yaml, {"M1", "K1", "cameraMatrix1", "camera_matrix_1", "camera_matrix_left"});
-    const Named right_matrix =
-        require_any(yaml, {"M2", "K2", "cameraMatrix2", "camera_matrix_2", "camera_matrix_right"});
-    const Named left_distortion =
-        require_any(yaml, {"D1", "distCoeffs1", "dist_coeffs_1", "dist_coeffs_left"});
-    const Named right_distortion =
-        require_any(yaml, {"D2", "distCoeffs2", "dist_coeffs_2", "dist_coeffs_right"});
+    const OpenCvNames names = find_opencv_names(root);
+    require(yaml, names.left_matrix, "camera matrix of the left camera", names.right_matrix);
+    require(yaml, names.right_matrix, "camera matrix of the right camera", names.left_matrix);
+    require(yaml, names.left_distortion, "distortion of the left camera", names.right_distortion);
+    require(yaml, names.right_distortion, "distortion of the right camera", names.left_distortion);
     if (yaml.error()) return *yaml.error();
-    rig.left = {read_lens(yaml, left_matrix, left_distortion), image.width, image.height};
-    rig.right =
-        camera::Camera{read_lens(yaml, right_matrix, right_distortion), image.width, image.height};
-    rig.T_left_right = read_extrinsics(yaml);
+    RigFile out;
+    out.format = RigFormat::opencv;
+    out.rig.name = "opencv";
+    const ImageSize image = find_size(yaml, names, size);
     if (yaml.error()) return *yaml.error();
-    mark_if_rectified(rig);
-    return checked_rig(std::move(rig), file);
+    out.rig.left = {
+        read_lens(yaml, names.left_matrix, names.left_distortion), image.width, image.height};
+    out.rig.right = camera::Camera{
+        read_lens(yaml, names.right_matrix, names.right_distortion), image.width, image.height};
+    out.rig.T_left_right = read_extrinsics(yaml, names, out);
+    if (yaml.error()) return *yaml.error();
+    note_unmarked_lens(yaml, names.left_distortion, out);
+    return checked_file(std::move(out), file);
 }
 
 }  // namespace surefoot::io

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/text.hpp"
+#include "surefoot/camera/baseline.hpp"
 #include "surefoot/camera/rectification.hpp"
 #include "surefoot/camera/rectifier.hpp"
 
@@ -220,11 +222,23 @@ std::vector<double> read_matrix(YamlReader& yaml,
     return values;
 }
 
+camera::CameraModel lens_or_fail(YamlReader& yaml,
+                                 const YamlNode& node,
+                                 std::string_view key,
+                                 const Result<camera::CameraModel>& lens) {
+    if (lens) return *lens;
+    yaml.fail(node, key, lens.error().message);
+    return {};
+}
+
 void check_focal(YamlReader& yaml,
                  const YamlNode& node,
                  std::string_view key,
                  const std::vector<double>& K) {
     if (K[0] > 0.0 && K[4] > 0.0) return;
+    if (std::all_of(K.begin(), K.end(), [](double value) { return value == 0.0; })) {
+        return yaml.fail(node, key, "all zero: this camera is not calibrated");
+    }
     yaml.fail(node, key, fmt::format("focal lengths {} and {} must be above 0 px", K[0], K[4]));
 }
 
@@ -238,6 +252,31 @@ Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const std::string& 
 Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const YamlReader& yaml) {
     if (yaml.error()) return *yaml.error();
     return checked_rig(std::move(rig), yaml.file());
+}
+
+Result<RigFile> checked_file(RigFile out, const std::string& file) {
+    if (!out.rig.rectified) mark_if_rectified(out.rig);
+    Result<camera::StereoRig> rig = checked_rig(std::move(out.rig), file);
+    if (!rig) return rig.error();
+    out.rig = std::move(rig).value();
+    if (!out.rig.right) return out;
+    if (auto warning = camera::baseline_warning(out.rig.T_left_right.translation_m.norm()))
+        out.notes.push_back(std::move(*warning));
+    return out;
+}
+
+void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out) {
+    // A common rate, only used to judge gaps.
+    constexpr double kAssumedImuRate_hz = 200.0;
+    out.rig.T_body_left = T_body_optical();
+    const bool known = rate_hz > 0.0;
+    out.rig.imu =
+        camera::ImuMount{*out.rig.T_body_left * T_left_imu, known ? rate_hz : kAssumedImuRate_hz};
+    out.notes.push_back(fmt::format(
+        "{}base_link is the left camera turned to body axes",
+        known ? ""
+              : fmt::format("the file does not hold the rate of the IMU; {} Hz assumed, and ",
+                            kAssumedImuRate_hz)));
 }
 
 void mark_if_rectified(camera::StereoRig& rig) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/rig_file.hpp"
+#include "io/rig_formats.hpp"
 #include "io/yaml_tree.hpp"
 
 /// Pieces that the rig formats share; private to them.
@@ -55,6 +56,11 @@ inline constexpr int kMaxRigSide_px = 1 << 15;
 /// The numbers of a matrix {rows, cols, data} or of a plain list: `min` to `max` of them.
 [[nodiscard]] std::vector<double> read_matrix(
     YamlReader& yaml, const YamlNode& node, std::string_view key, std::size_t min, std::size_t max);
+/// The lens, or a failure of the key that holds its coefficients.
+[[nodiscard]] camera::CameraModel lens_or_fail(YamlReader& yaml,
+                                               const YamlNode& node,
+                                               std::string_view key,
+                                               const Result<camera::CameraModel>& lens);
 /// Focal lengths of a camera matrix, 9 numbers row by row, must be above 0.
 void check_focal(YamlReader& yaml,
                  const YamlNode& node,
@@ -70,13 +76,19 @@ struct RectifiedMatrices {
 /// Our own rectification (see camera::Rectifier). `rig` must have two cameras and no problem().
 [[nodiscard]] RectifiedMatrices rectified_matrices(const camera::StereoRig& rig);
 
-/// parse_opencv_rig of a document that is parsed already.
-[[nodiscard]] Result<camera::StereoRig> opencv_rig(const YamlNode& root,
-                                                   const std::string& file,
-                                                   std::optional<ImageSize> size);
+/// parse_opencv_rig of a document that is parsed already, with its notes.
+[[nodiscard]] Result<RigFile> opencv_rig(const YamlNode& root,
+                                         const std::string& file,
+                                         std::optional<ImageSize> size);
+/// The IMU of a chain that knows its pose in the left camera: base_link becomes the left camera
+/// turned to body axes. A rate of 0 is not in the file; 200 Hz are assumed, and a note says so.
+void mount_imu(const Pose& T_left_imu, double rate_hz, RigFile& out);
 
 /// The rig, or the reader's error, or the rig's own problem with the file's name.
 [[nodiscard]] Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const YamlReader& yaml);
 [[nodiscard]] Result<camera::StereoRig> checked_rig(camera::StereoRig rig, const std::string& file);
+/// Where every file of another program ends: marks the rig as rectified where it is, checks it, and
+/// adds a note where its baseline is unusual.
+[[nodiscard]] Result<RigFile> checked_file(RigFile out, const std::string& file);
 
 }  // namespace surefoot::io

@@ -3,13 +3,25 @@
 
 #include "io/file.hpp"
 #include "io/rig_file.hpp"
+#include "io/rig_lens.hpp"
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
+#include "surefoot/camera/baseline.hpp"
 
 namespace surefoot::io {
 namespace {
 
-constexpr double kMaxBaseline_m = 100.0;
+/// Said where the keys of a second camera are missing: the file may be for one that measures depth.
+constexpr const char* kRgbdHint =
+    "; a camera that measures depth itself (RGB-D) needs 'layout: rgbd' and no second camera";
+
+/// A key of the second camera.
+const YamlNode* required_of_pair(YamlReader& yaml, const char* key) {
+    const YamlNode* node = yaml.root().find(key);
+    if (node == nullptr)
+        yaml.fail(yaml.root(), key, fmt::format("this key is missing{}", kRgbdHint));
+    return node;
+}
 
 const std::vector<std::string>& common_keys() {
     static const std::vector<std::string> keys{"name",
@@ -61,7 +73,8 @@ camera::Camera read_camera(YamlReader& yaml,
     std::vector<double> coefficients;
     if (const YamlNode* list = node.find("coefficients"); list != nullptr) {
         const std::size_t count = fisheye ? 4 : rational ? 8 : 5;
-        coefficients = yaml.any_numbers(*list, name + ".coefficients", count);
+        coefficients = yaml.any_numbers(*list, name + ".coefficients", 14);
+        drop_zero_tail(coefficients, count);
         const bool four = count == 5 && coefficients.size() == 4;  // without k3
         if (!coefficients.empty() && coefficients.size() != count && !four) {
             yaml.fail(*list,
@@ -98,9 +111,13 @@ void read_short_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::Stereo
     rig.rectified = true;
     if (rgbd) return;
     rig.right = rig.left;
-    const YamlNode* baseline = yaml.required(root, "baseline_m");
+    const YamlNode* baseline = required_of_pair(yaml, "baseline_m");
     if (baseline == nullptr) return;
-    rig.T_left_right.translation_m.x() = yaml.number(*baseline, "baseline_m", 1e-3, kMaxBaseline_m);
+    constexpr double kLargest = 1e12;  // of any unit: the next line judges
+    const double baseline_m = yaml.number(*baseline, "baseline_m", -kLargest, kLargest);
+    if (const auto problem = camera::baseline_problem(baseline_m))
+        yaml.fail(*baseline, "baseline_m", *problem);
+    rig.T_left_right.translation_m.x() = baseline_m;
 }
 
 void read_full_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::StereoRig& rig) {
@@ -116,7 +133,7 @@ void read_full_form(YamlReader& yaml, ImageSize size, bool rgbd, camera::StereoR
         rig.rectified = yaml.boolean(*rectified, "rectified");
     }
     if (rgbd) return;
-    const YamlNode* right = yaml.required(root, "right");
+    const YamlNode* right = required_of_pair(yaml, "right");
     const YamlNode* T_left_right = yaml.required(root, "T_left_right");
     if (right == nullptr || T_left_right == nullptr) return;
     rig.right = read_camera(yaml, *right, "right", size);

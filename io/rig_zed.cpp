@@ -8,8 +8,10 @@
 
 #include "io/ini.hpp"
 #include "io/rig_formats.hpp"
+#include "io/rig_lens.hpp"
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
+#include "surefoot/camera/baseline.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -28,11 +30,9 @@ constexpr std::array<Mode, 8> kModes{{{"2K", {2208, 1242}},
                                       {"4k", {3840, 2160}},
                                       {"QHDPLUS", {3200, 1800}}}};
 
-/// Baselines of their cameras reach from 18 to 120 mm: far outside, the unit is wrong.
-constexpr double kMinBaseline_mm = 5.0;
-constexpr double kMaxBaseline_mm = 2000.0;
-
 constexpr std::array<const char*, 8> kRationalKeys{"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+/// Thin-prism terms, which some of the newer files add.
+constexpr std::array<const char*, 4> kPrismKeys{"s1", "s2", "s3", "s4"};
 
 std::string size_text(ImageSize size) {
     return fmt::format("{}x{}", size.width, size.height);
@@ -57,7 +57,13 @@ class ZedReader {
         for (const std::string& key : keys) {
             if (ini_.find(section, key) != nullptr) return number(section, key);
         }
-        return number(section, *keys.begin());
+        fail(
+            fmt::format("[{0}] has no '{1}'. Older files leave it out and Stereolabs' programs "
+                        "take 0: download "
+                        "the file of this serial number anew, or add the line '{1} = 0'",
+                        section,
+                        *keys.begin()));
+        return 0.0;
     }
     void fail(const std::string& what) {
         if (!error_) error_ = input_error(fmt::format("{}: {}", ini_.name, what));
@@ -106,6 +112,14 @@ Result<Mode> choose_mode(const IniFile& ini, std::optional<ImageSize> size) {
                     fmt::join(found, ", ")));
 }
 
+camera::CameraModel lens_or_fail(ZedReader& zed,
+                                 const std::string& section,
+                                 const Result<camera::CameraModel>& lens) {
+    if (lens) return *lens;
+    zed.fail(fmt::format("[{}] {}", section, lens.error().message));
+    return {};
+}
+
 camera::CameraModel read_lens(ZedReader& zed,
                               const std::string& side,
                               const std::string& section,
@@ -125,11 +139,13 @@ camera::CameraModel read_lens(ZedReader& zed,
         return values;
     };
     if (has_all(zed.ini(), lens, kRationalKeys)) {
-        return make_pinhole(k, read(lens, kRationalKeys));
+        std::vector<double> D = read(lens, kRationalKeys);
+        for (const char* key : kPrismKeys) D.push_back(zed.number_or(lens, key, 0.0));
+        return lens_or_fail(zed, lens, pinhole_lens(k, std::move(D)));
     }
     static constexpr std::array<const char*, 4> kFisheyeKeys{"k1", "k2", "k3", "k4"};
     if (has_all(zed.ini(), lens, kFisheyeKeys) && zed.ini().find(lens)->size() == 4) {
-        return make_kannala_brandt(k, read(lens, kFisheyeKeys));
+        return lens_or_fail(zed, lens, fisheye_lens(k, read(lens, kFisheyeKeys)));
     }
     if (zed.ini().find(lens) != nullptr) {
         out.notes.push_back(fmt::format("[{}] is not complete and left out", lens));
@@ -148,18 +164,23 @@ Pose read_extrinsics(ZedReader& zed, const std::string& mode) {
         return zed.any_number("STEREO", {fmt::format("{}_{}", key, mode), key});
     };
     const double baseline_mm = zed.number("STEREO", "Baseline");
-    if (!zed.error() && !(baseline_mm >= kMinBaseline_mm && baseline_mm <= kMaxBaseline_mm)) {
-        zed.fail(
-            fmt::format("[STEREO] Baseline = {} must be {} .. {} mm: the distance of the "
-                        "cameras in millimetres, positive",
-                        baseline_mm,
-                        kMinBaseline_mm,
-                        kMaxBaseline_mm));
+    if (!zed.error() && !(baseline_mm > 0.0)) {
+        zed.fail(fmt::format(
+            "[STEREO] Baseline = {} must be above 0: the distance of the cameras in millimetres",
+            baseline_mm));
+    } else if (const auto problem = camera::baseline_problem(1e-3 * baseline_mm);
+               !zed.error() && problem) {
+        zed.fail(fmt::format("[STEREO] Baseline = {}, and this file counts in millimetres: {}",
+                             baseline_mm,
+                             *problem));
     }
-    const Eigen::Vector3d t_mm(-baseline_mm, value("TY"), value("TZ"));
+    const double y_mm = value("TY");  // one after the other: the first that is missing is named
+    const double z_mm = value("TZ");
+    const Eigen::Vector3d t_mm(-baseline_mm, y_mm, z_mm);
     const double convergence = zed.any_number(
         "STEREO", {fmt::format("CV_{}", mode), fmt::format("RY_{}", mode), "CV", "RY"});
-    const Eigen::Vector3d rotation(value("RX"), convergence, value("RZ"));
+    const double rx_rad = value("RX");
+    const Eigen::Vector3d rotation(rx_rad, convergence, value("RZ"));
     const Pose T_right_left{exp_so3(rotation), 1e-3 * t_mm};
     return T_right_left.inverse();
 }
@@ -236,11 +257,7 @@ Result<RigFile> parse_zed_rig(std::string_view text,
     out.rig.T_left_right = read_extrinsics(zed, mode->name);
     if (zed.error()) return *zed.error();
     note_unknown(*ini, out);
-    mark_if_rectified(out.rig);
-    Result<camera::StereoRig> rig = checked_rig(std::move(out.rig), file);
-    if (!rig) return rig.error();
-    out.rig = std::move(rig).value();
-    return out;
+    return checked_file(std::move(out), file);
 }
 
 Result<std::string> format_zed_rig(const camera::StereoRig& rig) {

@@ -72,11 +72,19 @@ struct Converter {
     }
 };
 
-/// OpenCV starts its files with "%YAML:1.0", which is no valid YAML directive; keeps line numbers.
+/// OpenCV starts its files with "%YAML:1.0", which is no valid YAML directive, and reads "data:[1,
+/// 2]" without the blank that YAML wants (ORB-SLAM2's examples have it). Keeps line numbers.
 std::string without_directives(std::string_view text) {
     std::string copy(text);
     if (copy.starts_with("\xef\xbb\xbf")) copy.erase(0, 3);
-    if (copy.starts_with("%YAML")) copy[0] = '#';
+    if (!copy.starts_with("%YAML")) return copy;
+    copy[0] = '#';
+    constexpr std::string_view kTight = "data:[";
+    for (std::size_t at = copy.find(kTight); at != copy.npos; at = copy.find(kTight, at + 1)) {
+        const char before = copy[at - 1];  // the directive comes first
+        if (before == ' ' || before == '\t' || before == '\n')
+            copy.insert(at + kTight.size() - 1, " ");
+    }
     return copy;
 }
 

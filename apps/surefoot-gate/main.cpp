@@ -23,7 +23,6 @@
 #include "server/wire/audit_log.hpp"
 #include "server/wire/gatekeeper.hpp"
 #include "server/wire/websocket_server.hpp"
-#include "surefoot/gate/canary.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -95,22 +94,6 @@ void ask_for_short_slices() {
     ::syscall(SYS_sched_setattr, 0, &wish, 0U);
 }
 
-/// With a machine that makes the gate fail its own questions it would never be ready: that is said
-/// before anybody waits for it.
-Status self_test(const std::string& name, const Machine& machine) {
-    const auto told = std::make_unique<gate::Canaries>(machine)->judge_all();
-    if (told.passed) return {};
-    return usage_error(
-        fmt::format("{}: with this machine the gate fails its self-test, the question {} with "
-                    "movement {}: {} is expected, {} was found; check feet, body, movements and "
-                    "limits",
-                    name,
-                    told.name,
-                    told.command,
-                    gate::to_string(told.expected),
-                    gate::to_string(told.found)));
-}
-
 /// The log of the process; none where nobody asked for one.
 Result<std::unique_ptr<wire::AuditLog>> open_log(const Options& options, const Machine& machine) {
     std::unique_ptr<wire::AuditLog> log;
@@ -168,10 +151,8 @@ int serve(const Options& options, const io::MachineFile& file) {
 int run(Options options) {
     const auto machine = find_machine(options.machine);
     if (!machine) return fail(machine.error());
-    if (const char* problem = machine->machine.problem())
-        return fail(usage_error(options.machine + ": " + problem));
-    if (auto status = self_test(options.machine, machine->machine); !status)
-        return fail(status.error());
+    for (const io::Deviation& deviation : machine->deviations)
+        fmt::print(stderr, "surefoot-gate: {}: {}\n", options.machine, io::text_of(deviation));
     if (!options.token_file.empty()) {
         auto token = read_token(options.token_file);
         if (!token) return fail(token.error());

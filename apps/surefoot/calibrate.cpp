@@ -128,15 +128,16 @@ Status check_found(const CalibrationRun& run) {
         return !view.left.ids.empty() || !view.right.ids.empty();
     });
     if (found || run.views.empty()) return {};
-    const bool squares = run.board.kind == calibration::BoardKind::chessboard ||
-                         run.board.kind == calibration::BoardKind::charuco;
-    return input_error(fmt::format(
-        "calibration: none of {} images shows the board '{}'; --board counts COLUMNSxROWS of {}, "
-        "and the board must be seen {}",
-        run.views.size(),
-        run.board_text,
-        squares ? "inner corners, one less than squares each way" : "circles",
-        run.board.kind == calibration::BoardKind::charuco ? "in focus" : "whole"));
+    return input_error(
+        fmt::format("calibration: none of {} images shows the board '{}' ({}); count it "
+                    "(COLUMNSxROWS are inner "
+                    "corners or circles; write COLUMNSxROWSsquares where you count squares), and "
+                    "show the board "
+                    "{}",
+                    run.views.size(),
+                    run.board_text,
+                    calibration::size_in_words(run.board),
+                    run.board.kind == calibration::BoardKind::charuco ? "in focus" : "whole"));
 }
 
 Status solve(calibration::LensKind kind, CalibrationRun& run) {
@@ -244,7 +245,8 @@ int calibrate(const CalibrateOptions& options) {
         return report(usage_error(
             fmt::format("--board '{}': expected KIND:COLUMNSxROWS:SPACING, for example "
                         "chessboard:9x6:0.025, circles:6x6:0.02, asymmetric_circles:4x11:0.04 or "
-                        "charuco:8x5:0.03:0.022[:DICT_5X5_100]",
+                        "charuco:8x5:0.03:0.022[:DICT_5X5_100] (inner corners), or "
+                        "charuco:9x6squares:0.03:0.022",
                         options.board)));
     }
     if (const Status status = calibration::check_detectable(*board); !status)
@@ -261,6 +263,7 @@ int calibrate(const CalibrateOptions& options) {
     run.source = options.source;
     run.board_text = options.board;
     run.board = *board;
+    log_info("board: " + calibration::size_in_words(*board));
     if (const Status status = find_boards(options, run); !status) return report(status.error());
     if (const Status status = check_found(run); !status) return report(status.error());
     advise(run);

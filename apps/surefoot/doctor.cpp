@@ -13,7 +13,6 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/file.hpp"
-#include "io/rig_file.hpp"
 #include "sim/rigs.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/stereo/confidence.hpp"
@@ -105,7 +104,7 @@ int doctor(const DoctorOptions& options) {
     const auto machine = load_machine(options.machine.empty() ? "rex" : options.machine);
     if (!machine) return report(machine.error());
     const auto rig =
-        options.rig_file.empty() ? sim::rig_preset("zed_vga") : io::read_rig(options.rig_file);
+        options.rig_file.empty() ? sim::rig_preset("zed_vga") : read_noted_rig(options.rig_file);
     if (!rig) return report(rig.error());
     const auto rectifier = camera::Rectifier::make(mounted_rig(*rig, *machine));
     if (!rectifier) return report(rectifier.error());

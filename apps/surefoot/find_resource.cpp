@@ -3,9 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <memory>
 
 #include "apps/surefoot/resources.hpp"
 #include "surefoot/core/nearest_names.hpp"
+#include "surefoot/gate/canary.hpp"
 
 namespace surefoot::app {
 
@@ -35,6 +37,26 @@ Result<std::string> find_resource(const std::vector<Resource>& among,
                     fmt::join(known, ", ")));
 }
 
+namespace {
+
+/// A gate that fails its own questions with this machine would never be ready, or would answer what
+/// it must not: no program of ours takes such a machine.
+Status self_test(const std::string& name, const Machine& machine) {
+    const auto outcome = std::make_unique<gate::Canaries>(machine)->judge_all();
+    if (outcome.passed) return {};
+    return usage_error(
+        fmt::format("{}: with this machine the gate fails its self-test, the question {} with "
+                    "movement {}: {} is expected, {} was found; check feet, body, movements and "
+                    "limits",
+                    name,
+                    outcome.name,
+                    outcome.command,
+                    gate::to_string(outcome.expected),
+                    gate::to_string(outcome.found)));
+}
+
+}  // namespace
+
 Result<io::MachineFile> find_machine(const std::string& path_or_name) {
     const auto read = [&]() -> Result<io::MachineFile> {
         if (std::filesystem::exists(path_or_name)) return io::read_machine(path_or_name);
@@ -44,6 +66,7 @@ Result<io::MachineFile> find_machine(const std::string& path_or_name) {
     };
     auto machine = read();
     if (!machine) return usage_error(machine.error().message);
+    if (Status status = self_test(path_or_name, machine->machine); !status) return status.error();
     return machine;
 }
 

@@ -94,6 +94,8 @@ int gate(const GateOptions& options) {
     std::vector<std::string> assumed = map->assumed;
     assumed.push_back("frame and pose are as fresh as when the map was written");
     assumed.push_back("perception was ready");
+    for (const io::Deviation& deviation : machine->value().deviations)
+        assumed.push_back("the machine file goes beyond a rated limit: " + io::text_of(deviation));
     if (options.vouch_radius_m != 0.0) {
         const auto vouched = vouch_for_start(
             machine->value().machine, query, *map->snapshot, options.vouch_radius_m, assumed);

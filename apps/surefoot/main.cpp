@@ -962,7 +962,8 @@ void add_rig(CLI::App& app, RigOptions& o, int& exit_code) {
             "file",
             o.file,
             "rig.yaml, OpenCV or Kalibr YAML, ROS camera_info (the left file or a folder), "
-            "ZED SN*.conf, KITTI calib.txt, EuRoC folder")
+            "ORB-SLAM settings, ZED SN*.conf, KITTI calib.txt or calib_cam_to_cam.txt, Middlebury "
+            "calib.txt, EuRoC folder")
         ->required()
         ->type_name("FILE");
     CLI::Option* out = verb->add_option("--out",
@@ -986,7 +987,8 @@ void add_calibration(CLI::App* verb, CalibrateOptions& o) {
                      o.board,
                      "KIND:COLUMNSxROWS:SPACING in metres: chessboard:9x6:0.025 (inner corners), "
                      "circles:6x6:0.02, asymmetric_circles:4x11:0.04 (their diameter is measured), "
-                     "charuco:8x5:0.03:0.022[:DICT_5X5_100]")
+                     "charuco:8x5:0.03:0.022[:DICT_5X5_100]; with counted squares: "
+                     "charuco:9x6squares:0.03:0.022")
         ->required()
         ->type_name("TEXT");
     verb->add_option("--model",

@@ -42,15 +42,15 @@ grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
 /// How far the ratings can be trusted.
 traversability::ConfidenceLayers rating_confidence(const pipeline::Pipeline& pipeline) {
     const auto& map = pipeline.map().layers();
+    const grid::Layer surface_m = pipeline.surface_m();
     const double resolution_m = pipeline.map().geometry().resolution_m;
     traversability::Traversability rater(pipeline.config().traversability.widened_to(resolution_m));
     traversability::TraversabilityLayers rating;
-    rater.rate(map.height_m.view(), resolution_m, serial(), rating);
+    rater.rate(surface_m.view(), resolution_m, serial(), rating);
     traversability::ConfidenceLayers confidence;
     traversability::RatingConfidence(rater.config(), resolution_m)
-        .compute(
-            {map.height_m.view(), map.height_var_m2.view(), rater.rated_step_heights(), rating},
-            confidence);
+        .compute({surface_m.view(), map.height_var_m2.view(), rater.rated_step_heights(), rating},
+                 confidence);
     return confidence;
 }
 
@@ -75,7 +75,7 @@ std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline) {
         const bool known = !std::isnan(map.height_m.data()[i]);
         count.data()[i] = known ? static_cast<float>(map.count.data()[i]) : std::nanf("");
     }
-    std::vector<NamedLayer> layers{{"elevation", map.height_m.copy()},
+    std::vector<NamedLayer> layers{{"elevation", pipeline.surface_m()},
                                    {"variance", map.height_var_m2.copy()},
                                    {"drift", map.horizontal_drift_m.copy()},
                                    {"confidence", map.confidence.copy()},

@@ -25,7 +25,7 @@ constexpr std::array kLayerNames{
 std::array<grid::Layer, kLayerNames.size()> layers_of(const pipeline::Pipeline& pipeline) {
     const auto& map = pipeline.map().layers();
     const auto& rating = pipeline.rating();
-    return {map.height_m.copy(),
+    return {pipeline.surface_m(),
             map.height_var_m2.copy(),
             rating.traversability,
             rating.slope,

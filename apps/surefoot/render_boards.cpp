@@ -4,12 +4,12 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/rendered_boards.hpp"
+#include "apps/surefoot/source.hpp"
 #include "apps/surefoot/thread_pool.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "io/file.hpp"
 #include "io/image_file.hpp"
-#include "io/rig_file.hpp"
 #include "sim/board_renderer.hpp"
 #include "sim/rigs.hpp"
 #include "surefoot/calibration/board_print.hpp"
@@ -27,7 +27,7 @@ sim::BoardLook room_look() {
 
 Result<camera::StereoRig> rig_of(const std::string& path_or_name) {
     if (const auto preset = sim::rig_preset(path_or_name)) return *preset;
-    return io::read_rig(path_or_name);
+    return read_noted_rig(path_or_name);
 }
 
 }  // namespace

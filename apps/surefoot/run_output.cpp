@@ -35,13 +35,14 @@ namespace {
 io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     const auto& layers = pipeline.map().layers();
+    const grid::Layer surface_m = pipeline.surface_m();
     const grid::Layer& rating = pipeline.rating().traversability;
     io::PointCloud cloud;
     io::CloudScalar variance{.name = "variance_m2", .values = {}};
     io::CloudScalar traversability{.name = "traversability", .values = {}};
     for (int iy = 0; iy < geometry.ny; ++iy) {
         for (int ix = 0; ix < geometry.nx; ++ix) {
-            const float z_m = layers.height_m.at(ix, iy);
+            const float z_m = surface_m.at(ix, iy);
             if (std::isnan(z_m)) continue;
             const Eigen::Vector2d center_m = geometry.center_m({ix, iy});
             cloud.points_m.emplace_back(center_m.x(), center_m.y(), z_m);
@@ -165,7 +166,7 @@ Status write_results(const RunOptions& options,
     writes += io::write_tum_trajectory(out + "/trajectory.tum", trajectory_of(record.frames));
     writes += io::write_tum_trajectory(out + "/trajectory_camera.tum",
                                        trajectory_of(record.frames, record.rig.body_from_left()));
-    writes += io::write_esri_grid(out + "/elevation.asc", geometry, layers.height_m.copy());
+    writes += io::write_esri_grid(out + "/elevation.asc", geometry, pipeline.surface_m());
     writes += io::write_esri_grid(out + "/variance.asc", geometry, layers.height_var_m2.copy());
     writes += io::write_esri_grid(out + "/traversability.asc",
                                   geometry,

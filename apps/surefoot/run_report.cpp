@@ -177,7 +177,7 @@ Status write_pictures_and_report(const RunOptions& options,
                                  const pipeline::Pipeline& pipeline,
                                  const RunRecord& record) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
-    const grid::Layer height_m = pipeline.map().layers().height_m.copy();
+    const grid::Layer height_m = pipeline.surface_m();
     const eval::Overlays drawn = overlays_of(machine, record);
     const auto elevation_png =
         eval::encode_png(eval::render_layer(geometry, height_m, eval::elevation_style(), drawn));

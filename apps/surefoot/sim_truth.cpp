@@ -161,7 +161,7 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     truth.trajectory.resize(std::min(truth.trajectory.size(), frames.size()));
     TruthFigures figures;
     const grid::GridGeometry& geometry = pipeline.map().geometry();
-    const grid::Layer live_m = pipeline.map().layers().height_m.copy();
+    const grid::Layer live_m = pipeline.surface_m();
     const sim::Lattice lattice = lattice_of(geometry);
 
     eval::MapPair maps;

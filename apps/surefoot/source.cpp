@@ -10,8 +10,9 @@
 #include "apps/surefoot/resources.hpp"
 #include "io/imu_stream.hpp"
 #include "io/recording.hpp"
-#include "io/rig_file.hpp"
+#include "io/rig_formats.hpp"
 #include "sim/rigs.hpp"
+#include "surefoot/camera/baseline.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -38,6 +39,24 @@ class LimitedSource final : public camera::FrameSource {
     int left_;
 };
 
+/// What the readers of calibrations have to say. A recording hands on its rig alone, so that the
+/// file of --rig is read once more, for the images' size; it is small.
+void log_rig_notes(const SourceRequest& request, const camera::StereoRig& rig) {
+    std::vector<std::string> notes;
+    if (!request.rig_file.empty()) {
+        const auto file =
+            io::read_rig_file(request.rig_file, io::ImageSize{rig.left.width, rig.left.height});
+        if (file) notes = file->notes;
+    } else if (rig.right) {
+        if (auto warning = camera::baseline_warning(rig.T_left_right.translation_m.norm()))
+            notes.push_back(std::move(*warning));
+    }
+    for (const std::string& note : notes) {
+        log_warning(fmt::format(
+            "{}: {}", request.rig_file.empty() ? request.source : request.rig_file, note));
+    }
+}
+
 Result<std::unique_ptr<camera::FrameSource>> open_live(const SourceRequest& request) {
     const auto address =
         io::parse_live_address(std::string_view(request.source).substr(kLivePrefix.size()));
@@ -53,7 +72,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_live(const SourceRequest& requ
         return usage_error(request.source +
                            ": a live camera needs its calibration: --rig rig.yaml");
     }
-    const auto rig = io::read_rig(request.rig_file);
+    const auto rig = read_noted_rig(request.rig_file);
     if (!rig) return rig.error();
     auto camera = io::LiveCamera::open(
         io::kernel_video_device(), *address, *rig, request.live, [] { return interrupted(); });
@@ -66,10 +85,19 @@ Result<std::unique_ptr<camera::FrameSource>> open_recording(const SourceRequest&
     if (!request.rig_file.empty()) options.rig_file = request.rig_file;
     if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
     options.first_frame = request.first_frame;
-    return io::open_source(request.source, options);
+    auto source = io::open_source(request.source, options);
+    if (source) log_rig_notes(request, (*source)->rig());
+    return source;
 }
 
 }  // namespace
+
+Result<camera::StereoRig> read_noted_rig(const std::string& path) {
+    Result<io::RigFile> file = io::read_rig_file(path);
+    if (!file) return file.error();
+    for (const std::string& note : file->notes) log_warning(path + ": " + note);
+    return std::move(file->rig);
+}
 
 Result<std::unique_ptr<sim::SceneSource>> open_simulation(const SourceRequest& request,
                                                           Executor& executor) {
@@ -81,7 +109,7 @@ Result<std::unique_ptr<sim::SceneSource>> open_simulation(const SourceRequest& r
     if (request.max_frames > 0) options.frames = request.max_frames;
     if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
     if (std::filesystem::exists(request.rig_file)) {
-        auto rig = io::read_rig(request.rig_file);
+        auto rig = read_noted_rig(request.rig_file);
         if (!rig) return rig.error();
         options.rig = *rig;
     } else if (!request.rig_file.empty()) {
@@ -111,7 +139,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const SourceRequest& re
 }
 
 Result<camera::StereoRig> load_rig(const std::string& path_or_name) {
-    if (std::filesystem::exists(path_or_name)) return io::read_rig(path_or_name);
+    if (std::filesystem::exists(path_or_name)) return read_noted_rig(path_or_name);
     return sim::rig_preset(path_or_name);
 }
 
@@ -119,6 +147,8 @@ Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_n
     if (path_or_name.empty()) return std::optional<io::MachineFile>{};
     auto machine = find_machine(path_or_name);
     if (!machine) return machine.error();
+    for (const io::Deviation& deviation : machine->deviations)
+        log_warning(path_or_name + ": " + io::text_of(deviation));
     return std::optional<io::MachineFile>(std::move(machine).value());
 }
 

@@ -40,6 +40,8 @@ inline constexpr std::string_view kLivePrefix = "v4l2:";
 [[nodiscard]] Result<std::unique_ptr<sim::SceneSource>> open_simulation(
     const SourceRequest& request, Executor& executor);
 
+/// A calibration from a file; what its reader has to say about it goes to the log.
+[[nodiscard]] Result<camera::StereoRig> read_noted_rig(const std::string& path);
 /// A calibration by path, or one of the simulator's rigs by its name.
 [[nodiscard]] Result<camera::StereoRig> load_rig(const std::string& path_or_name);
 

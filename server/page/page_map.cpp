@@ -37,6 +37,13 @@ std::int16_t height_mm(std::int32_t height_tenth_mm, std::int32_t base_tenth_mm)
     return static_cast<std::int16_t>(std::clamp(mm, -kHighest, kHighest));
 }
 
+/// Something stands on the ground of a cell or hangs over it, in the way of the machine's body.
+bool is_too_low(const grid::MapSnapshot& snapshot,
+                std::size_t i,
+                const ColourLimits& limits) noexcept {
+    return snapshot.clearance_tenth_mm[i] < limits.machine_height_tenth_mm;
+}
+
 PageCell cell_of(const grid::MapSnapshot& snapshot,
                  int ix,
                  int iy,
@@ -54,7 +61,7 @@ PageCell cell_of(const grid::MapSnapshot& snapshot,
         if (snapshot.drop_evidence[i] >= limits.drop_evidence) cell.state |= kDropBit;
     }
     if (snapshot.source[i] == grid::EvidenceSource::vouched) cell.state |= kVouchedBit;
-    if (snapshot.clearance_tenth_mm[i] < limits.machine_height_tenth_mm) cell.state |= kOverheadBit;
+    if (is_too_low(snapshot, i, limits)) cell.state |= kOverheadBit;
     return cell;
 }
 
@@ -173,6 +180,7 @@ GroundState ground_state(const grid::MapSnapshot& snapshot,
     const std::int64_t height = snapshot.height_tenth_mm[i];
     if (snapshot.sigma_tenth_mm[i] > limits.cell_sigma_tenth_mm) return GroundState::unsure;
     if (snapshot.drop_evidence[i] >= limits.drop_evidence) return GroundState::unsafe;
+    if (is_too_low(snapshot, i, limits)) return GroundState::unsafe;
     struct Step {
         int x, y;
     };

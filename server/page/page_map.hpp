@@ -55,9 +55,12 @@ struct ColourLimits {
 [[nodiscard]] ColourLimits colour_limits(const Machine& machine) noexcept;
 
 /// For the eye alone, and no permission: it judges a cell and its four neighbours, where the gate
-/// judges whole feet, their ways and the body. Never measured -> unknown; less sure than the gate
-/// wants a cell to be -> unsure; evidence of a drop, or a step to a neighbour that is sure enough,
-/// higher or lower than a walking machine steps -> unsafe; else free.
+/// judges whole feet, their ways and the body.
+/// - unknown: never measured.
+/// - unsure: less sure than the gate requires of a cell.
+/// - unsafe: evidence of a drop; something that stands on the cell or hangs over it lower than the
+///   machine is high; or a step to a neighbour, higher or lower than a walking machine steps.
+/// - free: all others.
 [[nodiscard]] GroundState ground_state(const grid::MapSnapshot& snapshot,
                                        int ix,
                                        int iy,

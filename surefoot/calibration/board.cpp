@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <string_view>
 
 namespace surefoot::calibration {
 namespace {
@@ -59,6 +60,40 @@ std::vector<Eigen::Vector3d> Board::points_m() const {
     return points;
 }
 
+namespace {
+
+bool has_squares(BoardKind kind) {
+    return kind == BoardKind::chessboard || kind == BoardKind::charuco;
+}
+
+/// "8x5" points, or "8x5squares", which have one row and one column of inner corners less.
+bool read_size(std::string text, Board& board) {
+    constexpr std::string_view kSquares = "squares";
+    const bool squares = text.ends_with(kSquares);
+    if (squares) text.resize(text.size() - kSquares.size());
+    const std::vector<std::string> size = split(text, 'x');
+    if (size.size() != 2 || !read(size[0], board.columns) || !read(size[1], board.rows))
+        return false;
+    if (!squares) return true;
+    constexpr int kMost = 1'000'000;  // problem() judges
+    if (board.columns < 1 || board.rows < 1 || board.columns > kMost || board.rows > kMost)
+        return false;
+    --board.columns;
+    --board.rows;
+    return has_squares(board.kind);
+}
+
+}  // namespace
+
+std::string size_in_words(const Board& board) {
+    if (!has_squares(board.kind)) return fmt::format("{} x {} circles", board.columns, board.rows);
+    return fmt::format("{} x {} squares = {} x {} inner corners",
+                       board.columns + 1,
+                       board.rows + 1,
+                       board.columns,
+                       board.rows);
+}
+
 std::optional<Board> parse_board(const std::string& text) {
     const std::vector<std::string> parts = split(text, ':');
     const auto kind =
@@ -66,11 +101,7 @@ std::optional<Board> parse_board(const std::string& text) {
     if (parts.size() < 3 || kind == std::end(kBoardKindNames)) return std::nullopt;
     Board board;
     board.kind = static_cast<BoardKind>(kind - std::begin(kBoardKindNames));
-    const std::vector<std::string> size = split(parts[1], 'x');
-    if (size.size() != 2 || !read(size[0], board.columns) || !read(size[1], board.rows) ||
-        !read(parts[2], board.spacing_m)) {
-        return std::nullopt;
-    }
+    if (!read_size(parts[1], board) || !read(parts[2], board.spacing_m)) return std::nullopt;
     if (board.kind != BoardKind::charuco)
         return parts.size() == 3 ? std::optional<Board>(board) : std::nullopt;
     if (parts.size() < 4 || parts.size() > 5 || !read(parts[3], board.marker_m))

@@ -34,8 +34,12 @@ struct Board {
 };
 
 /// "chessboard:9x6:0.025", "circles:6x6:0.02", "asymmetric_circles:4x11:0.04" or
-/// "charuco:8x5:0.03:0.022[:DICT_5X5_100]". Nothing if it cannot be read; see problem() too.
+/// "charuco:8x5:0.03:0.022[:DICT_5X5_100]". Shops and OpenCV count the squares of a ChArUco board:
+/// "charuco:8x5squares:..." and "chessboard:10x7squares:..." are boards of 7 x 4 and 9 x 6 inner
+/// corners. Nothing if it cannot be read; see problem() too.
 [[nodiscard]] std::optional<Board> parse_board(const std::string& text);
+/// "8 x 5 squares = 7 x 4 inner corners", or "6 x 6 circles": what to compare with the board.
+[[nodiscard]] std::string size_in_words(const Board& board);
 
 /// Points of a board as one image shows them.
 struct BoardView {

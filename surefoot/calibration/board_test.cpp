@@ -29,6 +29,26 @@ TEST(Board, IsReadFromItsText) {
     }
 }
 
+TEST(Board, SquaresAreOneMoreThanInnerCornersEachWay) {
+    const auto charuco = parse_board("charuco:8x5squares:0.03:0.022");
+    ASSERT_TRUE(charuco);
+    EXPECT_EQ(charuco->columns, 7);
+    EXPECT_EQ(charuco->rows, 4);
+    EXPECT_EQ(size_in_words(*charuco), "8 x 5 squares = 7 x 4 inner corners");
+    EXPECT_EQ(size_in_words(*parse_board("chessboard:9x6:0.025")),
+              "10 x 7 squares = 9 x 6 inner corners");
+    EXPECT_EQ(size_in_words(*parse_board("circles:6x5:0.02")), "6 x 5 circles");
+    EXPECT_EQ(parse_board("chessboard:10x7squares:0.025")->points_m(),
+              parse_board("chessboard:9x6:0.025")->points_m());
+    for (const char* text : {"circles:8x5squares:0.03",
+                             "charuco:0x5squares:0.03:0.02",
+                             "charuco:-2147483648x5squares:0.03:0.02",
+                             "charuco:squares:0.03:0.02",
+                             "charuco:8x5square:0.03:0.02"}) {
+        EXPECT_FALSE(parse_board(text)) << text;
+    }
+}
+
 TEST(Board, SaysWhyItCannotBe) {
     EXPECT_FALSE(Board{}.problem());
     EXPECT_TRUE(parse_board("chessboard:2x6:0.02")->problem());

@@ -5,13 +5,13 @@
 
 #include <cmath>
 
+#include "surefoot/camera/baseline.hpp"
+
 namespace surefoot::camera {
 namespace {
 
 using Problem = std::optional<std::string>;
 
-constexpr double kMinBaseline_m = 1e-3;
-constexpr double kMaxBaseline_m = 100.0;
 /// A rotation read from seven decimals is this close to a unit quaternion.
 constexpr double kUnitTolerance = 1e-6;
 constexpr double kMaxRelativeRotation_deg = 45.0;
@@ -30,16 +30,15 @@ Problem pose_problem(const Pose& pose, const char* name) {
     return std::nullopt;
 }
 
-Problem baseline_problem(const Pose& T_left_right) {
+Problem mounted_problem(const Pose& T_body_sensor, const char* name) {
+    if (auto found = pose_problem(T_body_sensor, name)) return found;
+    return mount_problem(name, T_body_sensor.translation_m.norm());
+}
+
+Problem pair_pose_problem(const Pose& T_left_right) {
     const Eigen::Vector3d& t = T_left_right.translation_m;
     const double length_m = t.norm();
-    if (length_m < kMinBaseline_m) {
-        return fmt::format("baseline {:.6f} m must be at least {} m", length_m, kMinBaseline_m);
-    }
-    if (length_m > kMaxBaseline_m) {
-        return fmt::format(
-            "baseline {:.1f} m is above {} m; are its units metres?", length_m, kMaxBaseline_m);
-    }
+    if (auto found = baseline_problem(length_m)) return found;
     const double angle_deg = log_so3(T_left_right.rotation).norm() * kDegreesPerRadian;
     if (angle_deg > kMaxRelativeRotation_deg) {
         return fmt::format(
@@ -148,7 +147,7 @@ Problem pair_problem(const StereoRig& rig) {
                            rig.right->height);
     }
     if (auto found = pose_problem(rig.T_left_right, "T_left_right")) return found;
-    return baseline_problem(rig.T_left_right);
+    return pair_pose_problem(rig.T_left_right);
 }
 
 Problem rate_problem(const char* name, double value, double min, double max, const char* unit) {
@@ -167,10 +166,10 @@ std::optional<std::string> StereoRig::problem() const {
         if (auto found = rectified_problem(*this)) return found;
     }
     if (T_body_left) {
-        if (auto found = pose_problem(*T_body_left, "T_body_left")) return found;
+        if (auto found = mounted_problem(*T_body_left, "T_body_left")) return found;
     }
     if (imu) {
-        if (auto found = pose_problem(imu->T_body_imu, "T_body_imu")) return found;
+        if (auto found = mounted_problem(imu->T_body_imu, "T_body_imu")) return found;
         if (auto found = rate_problem("imu.rate_hz", imu->rate_hz, 1.0, 1e5, "Hz")) return found;
     }
     if (auto found = rate_problem("rate_hz", rate_hz, 0.0, 1e4, "Hz")) return found;

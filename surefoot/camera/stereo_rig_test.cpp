@@ -44,10 +44,10 @@ TEST(StereoRig, NamesTheCameraThatIsWrong) {
 TEST(StereoRig, RefusesImpossibleGeometry) {
     EXPECT_EQ(problem_after(test::euroc_rig(),
                             [](StereoRig& r) { r.T_left_right.translation_m.setZero(); }),
-              "baseline 0.000000 m must be at least 0.001 m");
+              "baseline 0.000 mm is below 1 mm. Give the distance of the cameras in metres");
     EXPECT_EQ(
         problem_after(test::euroc_rig(), [](StereoRig& r) { r.T_left_right.translation_m *= 1e3; }),
-        "baseline 110.1 m is above 100 m; are its units metres?");
+        "baseline 110.078 m exceeds 5 m: is it in mm (then 110.1 mm)? Give it in metres");
     EXPECT_EQ(problem_after(test::euroc_rig(),
                             [](StereoRig& r) { r.T_left_right.translation_m.y() = kNan; }),
               "T_left_right holds a value that is not finite");

@@ -165,6 +165,54 @@ TEST_F(CleanUp, WhoStoodThereFromTheStartIsGoneWithinASecond) {
     EXPECT_GT(left.floor, 10 * left.unknown);
 }
 
+/// Cells of the shown surface over a box that are higher than a floor's noise.
+int shown_higher(const ElevationMap& map, const Box& box) {
+    grid::Layer surface_m;
+    map.surface(surface_m);
+    const auto first = map.geometry().cell_at(box.low_m.x(), box.low_m.y());
+    const auto last = map.geometry().cell_at(box.high_m.x(), box.high_m.y());
+    int higher = 0;
+    for (int iy = first->iy; iy <= last->iy; ++iy) {
+        for (int ix = first->ix; ix <= last->ix; ++ix)
+            higher += surface_m.at(ix, iy) > 0.05F ? 1 : 0;
+    }
+    return higher;
+}
+
+TEST_F(CleanUp, APersonWhoStepsOntoMappedFloorIsShownFromTheSecondFrame) {
+    eye_ = rig(672);
+    frames({}, kSecond);
+    ASSERT_EQ(shown_higher(map_, kPerson), 0);
+    frames({kPerson}, 2);
+    EXPECT_GE(shown_higher(map_, kPerson), 18) << "the row of cells that faces the camera";
+    EXPECT_EQ(over(map_, kPerson).higher, 0) << "the map itself still remembers the floor";
+    frames({kPerson}, 2 * kSecond);
+    EXPECT_GE(shown_higher(map_, kPerson), 18) << "and while the map learns it";
+    frames({}, kSecond);
+    EXPECT_EQ(shown_higher(map_, kPerson), 0) << "gone with the person";
+}
+
+TEST_F(CleanUp, OnlyWhatStandsOnTheGroundIsShownInPlaceOfIt) {
+    eye_ = rig(672);
+    const Box lamp{{1.4, -0.25, 0.6}, {1.7, 0.25, 0.7}};
+    frames({}, kSecond);
+    frames({lamp}, 3);
+    const int blocked = over(map_, lamp).blocked;
+    ASSERT_GT(blocked, 30);
+    grid::Layer surface_m;
+    map_.surface(surface_m);
+    // A cell at the rim holds points of the lamp and of the floor in one frame, like a face that
+    // stands on the floor. Farther in, the floor below stays what is shown.
+    constexpr double kRim_m = 0.06;
+    for (int iy = 0; iy < surface_m.height(); ++iy) {
+        for (int ix = 0; ix < surface_m.width(); ++ix) {
+            if (!(surface_m.at(ix, iy) > map_.layers().height_m.at(ix, iy))) continue;
+            const Eigen::Vector2d at_m = map_.geometry().center_m({ix, iy});
+            EXPECT_LT(at_m.x() - lamp.low_m.x(), kRim_m) << at_m.transpose();
+        }
+    }
+}
+
 TEST_F(CleanUp, WhatStandsThereStays) {
     frames({kCrate, kTableTop}, 5);
     const Found crate = over(map_, kCrate);

@@ -75,6 +75,10 @@ class ElevationCells {
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }
+    /// The highest surface of each cell as a person sees it: the height, or the top of a thing that
+    /// stands on known ground and was seen twice (somebody stepped in). NaN = unknown cell. `out_m`
+    /// gets the size of the layers.
+    void surface(grid::Layer& out_m) const;
     /// A line of sight passed through the lowest thing above a cell.
     void see_no_more_above(std::size_t cell);
     /// The cell is unknown; what its height was may still hang over it.
@@ -101,6 +105,7 @@ class ElevationCells {
     /// In the height of a cell, should it turn out to hang over ground.
     [[nodiscard]] int trust_in(std::size_t cell) const;
     void see_above(std::size_t cell, float z_m, int trust, bool hangs);
+    [[nodiscard]] bool is_sure_of_overhead(std::size_t cell) const;
     void forget_overhead(std::size_t cell);
     /// If it does not hang over the height of the cell, but is that surface, or below it.
     void forget_overhead_near(std::size_t cell);
@@ -121,6 +126,7 @@ class ElevationCells {
     grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
     /// Lowest surface seen above the height, and how far it is believed.
     ElevationLayers::Layer overhead_m_;
+    ElevationLayers::Layer overhead_top_m_;  ///< highest surface seen above the height
     grid::SlidingLayer<std::uint8_t> overhead_trust_;
     grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: it stands on the ground
     /// Of a known cell, see `Seen`; of an unknown one the lowest line of sight over it.

@@ -73,6 +73,11 @@ class ElevationMap {
 
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return window_.geometry(); }
     [[nodiscard]] const ElevationLayers& layers() const noexcept { return cells_.layers(); }
+    /// The highest surface of each cell in odom, as it is to be shown and rated: `height_m`, or the
+    /// top of a thing that stands on known ground and was seen in two frames. `height_m` stays the
+    /// ground below it until enough frames contradict it, and `clearance_m` says how low the thing
+    /// begins. NaN = unknown. No allocation when `out_m` has the size of the map.
+    void surface(grid::Layer& out_m) const { cells_.surface(out_m); }
     [[nodiscard]] const ElevationConfig& config() const noexcept { return config_; }
     [[nodiscard]] std::int64_t known_cells() const noexcept;
     /// What the last frame said of the height drift.

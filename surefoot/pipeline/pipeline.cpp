@@ -320,7 +320,14 @@ FusionCounts Pipeline::fuse(const MotionEstimate& motion) {
 
 void Pipeline::rate() {
     rated_at_m_ = map_.geometry().origin_m;
-    rater_.rate(map_.layers().height_m.view(), map_.geometry().resolution_m, *executor_, rating_);
+    map_.surface(surface_m_);
+    rater_.rate(surface_m_.view(), map_.geometry().resolution_m, *executor_, rating_);
+}
+
+grid::Layer Pipeline::surface_m() const {
+    grid::Layer surface_m;
+    map_.surface(surface_m);
+    return surface_m;
 }
 
 stairs::View Pipeline::view() const {

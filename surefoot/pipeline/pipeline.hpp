@@ -77,6 +77,9 @@ class Pipeline {
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return rating_;
     }
+    /// What is rated and to be shown: the highest surface of each cell in odom, somebody who
+    /// stepped onto mapped ground included (`ElevationMap::surface`). Allocates.
+    [[nodiscard]] grid::Layer surface_m() const;
     /// Edges, drops, stairs, followed over time, as of the last full frame.
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept { return features_; }
     /// The camera at the last frame.
@@ -137,6 +140,7 @@ class Pipeline {
     std::unique_ptr<stereo::Matcher> matcher_;
     elevation::ElevationMap map_;
     traversability::Traversability rater_;
+    grid::Layer surface_m_;  ///< of the map, as rated last
     traversability::TraversabilityLayers rating_;
     stairs::FeatureFinder feature_finder_;
     stairs::FeatureFollower feature_follower_;

@@ -36,13 +36,21 @@ class OwnCamera(CliTest):
         blocks = re.findall(r"(?:^ {6}\S.*\n)+", PAGE, re.M)
         return [textwrap.dedent(block) for block in blocks if "resolution:" in block]
 
-    def test_both_rigs_of_the_page_are_whole(self):
+    def test_all_rigs_of_the_page_are_whole(self):
         rigs = self.rigs_of_the_page()
-        self.assertEqual(len(rigs), 2)
+        self.assertEqual(len(rigs), 3)
         for text in rigs:
             (self.dir / "rig.yaml").write_text(text)
             answer = self.json_of("rig", self.dir / "rig.yaml")
-            self.assertEqual((answer["width"], answer["height"], answer["baseline_m"]), (672, 376, 0.12))
+            expected = (640, 480, None) if "rgbd" in text else (672, 376, 0.12)
+            self.assertEqual((answer["width"], answer["height"], answer["baseline_m"]), expected)
+
+    def test_a_depth_camera_that_is_not_called_one_is_told_so(self):
+        text = next(rig for rig in self.rigs_of_the_page() if "rgbd" in rig)
+        (self.dir / "rig.yaml").write_text(text.replace("layout: rgbd\n", ""))
+        process = surefoot("rig", self.dir / "rig.yaml")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("needs 'layout: rgbd'", process.stderr)
 
     def test_a_folder_of_side_by_side_frames_becomes_a_map(self):
         frames = 11  # 10 comes after 9: natural order
