@@ -258,8 +258,8 @@ TEST(MachineFile, a_signature_is_for_one_value_of_one_limit) {
         return message_of(signed_rex(text.replace(at, from.size(), to)));
     };
     EXPECT_TRUE(contains(line("value: 8", "value: 7"), "7 was signed, but limits.tilt_deg is 8"));
-    EXPECT_TRUE(
-        contains(line("tilt_deg", "tiltdeg"), "is no rated limit; did you mean 'limits.tilt_deg'?"));
+    EXPECT_TRUE(contains(line("tilt_deg", "tiltdeg"),
+                         "is no rated limit; did you mean 'limits.tilt_deg'?"));
     EXPECT_TRUE(contains(line("limits.tilt_deg, value: 8", "limits.drop_m, value: 0.05"),
                          "limits.drop_m is not beyond its rated limit 0.05: remove this line"));
     EXPECT_TRUE(contains(line("2026-11-27", "27.11.2026"), "is no date YYYY-MM-DD"));

@@ -137,7 +137,8 @@ TEST(RigYaml, BadValuesNameFileLineKeyAndLimit) {
     };
     EXPECT_TRUE(contains(bad_full("model: pinhole", "model: fish"),
                          "none of pinhole | pinhole_rational | kannala_brandt"));
-    EXPECT_TRUE(contains(bad_full("coefficients: [", "coefficients: [1, 2, "), "7 numbers; pinhole has 5"));
+    EXPECT_TRUE(
+        contains(bad_full("coefficients: [", "coefficients: [1, 2, "), "7 numbers; pinhole has 5"));
     EXPECT_TRUE(contains(bad_full("T_left_right: [", "T_left_right: [5"), "not a rigid motion"));
     EXPECT_TRUE(contains(bad_full("  focal_px", "  focal_length_px"),
                          "unknown key 'left.focal_length_px'"));

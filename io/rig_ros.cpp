@@ -10,7 +10,7 @@
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
 #include "io/yaml_tree.hpp"
-#include "surefoot/camera/baseline.hpp"
+#include "surefoot/camera/rig_units.hpp"
 
 namespace surefoot::io {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "io/text.hpp"
-#include "surefoot/camera/baseline.hpp"
 #include "surefoot/camera/rectification.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/camera/rig_units.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -259,6 +259,11 @@ Result<RigFile> checked_file(RigFile out, const std::string& file) {
     Result<camera::StereoRig> rig = checked_rig(std::move(out.rig), file);
     if (!rig) return rig.error();
     out.rig = std::move(rig).value();
+    if (!is_kannala_brandt(out.rig.left.model)) {
+        const double focal_px = intrinsics_of(out.rig.left.model)[0];
+        if (auto warning = camera::focal_warning(focal_px, out.rig.left.width))
+            out.notes.push_back(std::move(*warning));
+    }
     if (!out.rig.right) return out;
     if (auto warning = camera::baseline_warning(out.rig.T_left_right.translation_m.norm()))
         out.notes.push_back(std::move(*warning));

@@ -337,6 +337,15 @@ TEST(RigVariants, OpenCvUnitsAreNamed) {
     EXPECT_TRUE(contains(message(with_T("[ 0.12, 0.0004, 0.0002 ]")), "exchange the cameras"));
 }
 
+TEST(RigVariants, AFocalLengthInMillimetresIsSaid) {
+    const auto file = parse_rig_file(
+        "resolution: [640, 480]\nbaseline_m: 0.12\nfocal_px: 4.2\nprincipal_px: [320, 240]\n",
+        "rig.yaml");
+    EXPECT_TRUE(file.ok()) << message(file);
+    EXPECT_TRUE(
+        has_note(file, "focal length 4.20 px is too short for an image of 640 px: is it in mm?"));
+}
+
 TEST(RigVariants, OpenCvSizeRotationAndLens) {
     const std::string no_size =
         replaced(opencv_file(kUsualNames), "image_width: 1280\nimage_height: 720\n", "");

@@ -6,7 +6,7 @@
 #include "io/rig_lens.hpp"
 #include "io/rig_values.hpp"
 #include "io/text.hpp"
-#include "surefoot/camera/baseline.hpp"
+#include "surefoot/camera/rig_units.hpp"
 
 namespace surefoot::io {
 namespace {

@@ -12,7 +12,7 @@
 #include "io/recording.hpp"
 #include "io/rig_formats.hpp"
 #include "sim/rigs.hpp"
-#include "surefoot/camera/baseline.hpp"
+#include "surefoot/camera/rig_units.hpp"
 
 namespace surefoot::app {
 namespace {

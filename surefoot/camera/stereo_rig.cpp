@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "surefoot/camera/baseline.hpp"
+#include "surefoot/camera/rig_units.hpp"
 
 namespace surefoot::camera {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/camera/baseline.hpp"
+#include "surefoot/camera/rig_units.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,14 @@ bool contains(const std::optional<std::string>& text, const char* part) {
     return text && text->find(part) != std::string::npos;
 }
 
-TEST(Baseline, NamesTheUnitThatWasMeant) {
+TEST(RigUnits, AFocalLengthInMillimetresIsNamed) {
+    EXPECT_TRUE(contains(focal_warning(4.0, 640),
+                         "focal length 4.00 px is too short for an image of 640 px"));
+    EXPECT_FALSE(focal_warning(33.0, 640));
+    EXPECT_FALSE(focal_warning(350.0, 672));
+}
+
+TEST(RigUnits, ABaselineNamesTheUnitThatWasMeant) {
     struct Case {
         double length_m;
         const char* says;
@@ -39,7 +46,7 @@ TEST(Baseline, NamesTheUnitThatWasMeant) {
     }
 }
 
-TEST(Baseline, AMountInMillimetresIsRefused) {
+TEST(RigUnits, AMountInMillimetresIsRefused) {
     StereoRig rig = test::euroc_rig();
     rig.T_body_left = Pose{};
     rig.T_body_left->translation_m = {75.0, 250.0, 50.0};

@@ -22,6 +22,10 @@ inline constexpr double kMaxBaseline_m = 5.0;
 /// check. Nothing for all others.
 [[nodiscard]] std::optional<std::string> baseline_warning(double length_m);
 
+/// A focal length that is so short for a pinhole image of this width [px] that it must be in
+/// another unit: a field of view beyond 168 deg. Fisheyes have such views, pinholes do not.
+[[nodiscard]] std::optional<std::string> focal_warning(double focal_px, int width_px);
+
 /// Why the position of a sensor on its machine cannot be in metres: farther than 10 m away.
 /// `name` is the pose's, "T_body_left".
 [[nodiscard]] std::optional<std::string> mount_problem(std::string_view name, double distance_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "surefoot/camera/baseline.hpp"
+#include "surefoot/camera/rig_units.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -66,6 +66,17 @@ std::optional<std::string> baseline_warning(double length_m) {
         length_m < kUsualMin_m ? "shorter" : "longer",
         length_m < kUsualMin_m ? kUsualMin_m : kUsualMax_m,
         likely_units(length_m));
+}
+
+std::optional<std::string> focal_warning(double focal_px, int width_px) {
+    constexpr double kLeastOfWidth = 0.05;  // 2 atan(10) = 168.6 deg
+    if (!(focal_px < kLeastOfWidth * width_px)) return std::nullopt;
+    return fmt::format(
+        "focal length {:.2f} px is too short for an image of {} px: is it in mm? In pixels it is "
+        "the "
+        "focal length divided by the side of a pixel, both in mm",
+        focal_px,
+        width_px);
 }
 
 std::optional<std::string> mount_problem(std::string_view name, double distance_m) {
