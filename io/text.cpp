@@ -224,10 +224,7 @@ bool natural_less(std::string_view a, std::string_view b) noexcept {
     return a < b;  // "01" and "1": a total order all the same
 }
 
-LineReader::LineReader(std::string_view text) noexcept : rest_(text), next_feed_(text.size() + 1) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
-}
+LineReader::LineReader(std::string_view text) noexcept : rest_(text), next_feed_(text.size() + 1) {}
 
 std::optional<std::string_view> LineReader::next() noexcept {
     if (rest_.empty()) return std::nullopt;
@@ -239,7 +236,9 @@ std::optional<std::string_view> LineReader::next() noexcept {
     }
     const std::size_t feed = rest_.size() - next_feed_;
     const std::size_t end = std::min(rest_.substr(0, feed).find('\r'), feed);
-    const std::string_view line = rest_.substr(0, end);
+    std::string_view line = rest_.substr(0, end);
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     const bool both = end + 1 == feed && feed < rest_.size();  // CR LF
     rest_.remove_prefix(std::min(end + (both ? 2 : 1), rest_.size()));
     ++number_;

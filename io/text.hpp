@@ -55,7 +55,7 @@ namespace surefoot::io {
 [[nodiscard]] bool natural_less(std::string_view a, std::string_view b) noexcept;
 
 /// Lines of a text, without their line ends (LF, CR LF or CR), counted from 1. A byte order mark of
-/// UTF-8 at the beginning is stepped over.
+/// UTF-8 at the beginning of a line is stepped over: files are put one behind the other.
 class LineReader {
   public:
     explicit LineReader(std::string_view text) noexcept;

@@ -21,7 +21,7 @@ bool is_long_number(std::string_view word) {
     constexpr std::size_t kDigits = 16;
     if (word.size() < kDigits || word.find_first_of(".eE") != word.npos) return false;
     const auto value = parse_double(word);
-    return value && std::abs(*value) > kExact;
+    return value && std::abs(*value) >= kExact;
 }
 
 /// Names of the columns behind x, y and z in a Leica or potree .pts file, which has no head.
@@ -83,7 +83,6 @@ std::vector<std::string> TextCloudParser::notes() const {
 
 Status TextCloudParser::take_line(std::string_view content, PointCloud& cloud) {
     if (is_comment(content)) return take_head(content, true);
-    if (const auto problem = separator_problem(content)) return input_error(*problem);
     split_fields(content, columns_ == 0 ? separator_of(content) : separator_, fields_);
     if (fields_.size() == 1 && parse_int64(fields_[0])) return take_count();
     const bool numbers = std::any_of(fields_.begin(), fields_.end(), [](std::string_view field) {
@@ -92,6 +91,7 @@ Status TextCloudParser::take_line(std::string_view content, PointCloud& cloud) {
     const bool words = std::any_of(
         fields_.begin(), fields_.end(), [](std::string_view field) { return !field.empty(); });
     if (!numbers && words && fields_.size() >= 3) return take_head(content, false);
+    if (const auto problem = separator_problem(content)) return input_error(*problem);
     if (columns_ == 0) {
         if (Status status = choose_columns(content); !status) return status;
         cloud.scalars = scalars_;

@@ -118,7 +118,6 @@ Status TrajectoryTable::take_line(std::string_view content, int number) {
         if (rows_.empty()) (void)take_head(content);  // else it is a comment of no concern
         return {};
     }
-    if (const auto problem = separator_problem(content)) return input_error(*problem);
     const char separator = rows_.empty() ? separator_of(content) : layout_.separator;
     split_fields(content, separator, words_);
     if (words_.size() > 1 && words_.back().empty()) words_.pop_back();
@@ -133,6 +132,7 @@ Status TrajectoryTable::take_line(std::string_view content, int number) {
                         "qy, qz and qw once each: name the columns so, or remove the line",
                         quoted(words_.front())));
     }
+    if (const auto problem = separator_problem(content)) return input_error(*problem);
     if (rows_.empty()) {
         if (Status status = choose_layout(separator); !status) return status;
     }
