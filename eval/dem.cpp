@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/height_limit.hpp"
 #include "surefoot/core/pieces.hpp"
 
 namespace surefoot::eval {
@@ -23,6 +24,11 @@ constexpr double kSteps = 8388608.0;
 constexpr std::size_t kMostPartCells = 1U << 26U;
 /// Points that are worth a thread's while.
 constexpr std::size_t kPiece = 1U << 14U;
+
+/// Is this a point that a height map may hold?
+bool is_mappable(const Eigen::Vector3d& p_m) {
+    return p_m.allFinite() && std::abs(p_m.z()) <= kMaxHeight_m;
+}
 
 /// Number of the cell, or of the nearest node, along one axis.
 double number_of(double p_m, double low, double resolution_m, Lattice lattice) {
@@ -53,7 +59,7 @@ void CloudBounds::add(std::span<const Eigen::Vector3d> points_m, Executor& execu
 }
 
 void CloudBounds::add(const Eigen::Vector3d& p_m) {
-    if (!p_m.allFinite()) {
+    if (!is_mappable(p_m)) {
         ++skipped_;
         return;
     }
@@ -67,7 +73,10 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
     SUREFOOT_ASSERT(resolution_m > 0.0);
     if (points_ == 0) {
         return input_error(fmt::format(
-            "no point with finite coordinates among {}: there is nothing to map", skipped_));
+            "no point with finite coordinates (and a height within {:g} m) among {}: there is "
+            "nothing to map",
+            kMaxHeight_m,
+            skipped_));
     }
     Eigen::Vector2d cells;
     DemGrid grid;
@@ -124,7 +133,7 @@ std::uint32_t DemBuilder::cell_of(const Eigen::Vector3d& p_m) const {
     const auto number = [&](int axis) {
         return number_of(p_m[axis], grid_.first[axis], geometry.resolution_m, grid_.lattice);
     };
-    if (!p_m.allFinite()) return kNoCell;
+    if (!is_mappable(p_m)) return kNoCell;
     const double ix = number(0);
     const double iy = number(1);
     if (!(ix >= 0.0 && iy >= 0.0 && ix < geometry.nx && iy < geometry.ny)) return kNoCell;

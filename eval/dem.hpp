@@ -31,7 +31,7 @@ struct DemGrid {
 };
 
 /// The box around points that are given in any number of pieces; points with a coordinate that is
-/// not finite are counted and left out.
+/// not finite, or a height beyond kMaxHeight_m, are counted and left out.
 class CloudBounds {
   public:
     void add(std::span<const Eigen::Vector3d> points_m, Executor& executor = serial());
@@ -59,7 +59,7 @@ class DemBuilder {
   public:
     DemBuilder(const DemGrid& grid, Reduce reduce);
 
-    /// Points outside the grid and points that are not finite are left out.
+    /// Points outside the grid are left out, and those that CloudBounds leaves out.
     void add(std::span<const Eigen::Vector3d> points_m, Executor& executor = serial());
 
     /// Heights so far; NaN where no point fell.

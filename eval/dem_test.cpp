@@ -185,6 +185,19 @@ TEST(Dem, OnePointAndPointsThatAreNone) {
     EXPECT_NE(grid_of_none.error().message.find("no point"), std::string::npos);
 }
 
+TEST(Dem, HeightsThatAreNoneAreLeftOutAndCounted) {
+    const Points points = {
+        {0, 0, 0.1}, {0, 0, 1e12}, {0, 0, -3.4e38}, {0.1, 0, 1e5}, {0.1, 0, 100001}};
+    CloudBounds bounds;
+    bounds.add(points);
+    EXPECT_EQ(bounds.points(), 2);
+    EXPECT_EQ(bounds.skipped(), 3);
+    const DemGrid grid = grid_of(points, 0.1, Lattice::cell);
+    EXPECT_EQ(dem_of(points, grid, Reduce::max).at(0, 0), 0.1F);
+    EXPECT_EQ(dem_of(points, grid, Reduce::max).at(1, 0), 1e5F);
+    EXPECT_EQ(dem_of(points, grid, Reduce::min).at(0, 0), 0.1F);
+}
+
 TEST(Dem, AStrayPointIsRefusedInWords) {
     for (const Lattice lattice : {Lattice::cell, Lattice::node}) {
         for (const double far_m : {1e5, 1e18, 1e300}) {

@@ -151,11 +151,12 @@ Result<Recording> open_scene(sim::SceneOptions sim, const SceneCase& now, Execut
 Result<Recording> open_recording(const std::string& folder, int frames, Executor& executor) {
     auto source = open_source({.source = folder, .rig_file = {}, .max_frames = frames}, executor);
     if (!source) return source.error();
-    auto bodies = io::read_tum_trajectory(folder + "/groundtruth.tum");
-    if (!bodies) return bodies.error();
+    auto truth = io::read_trajectory(folder + "/groundtruth.tum");
+    if (!truth) return truth.error();
+    Trajectory bodies = std::move(truth->poses);
     const Pose T_left_body = (*source)->rig().body_from_left().inverse();
-    for (StampedPose& pose : *bodies) pose.T_world_body = pose.T_world_body * T_left_body;
-    return Recording{std::move(*source), std::move(*bodies)};
+    for (StampedPose& pose : bodies) pose.T_world_body = pose.T_world_body * T_left_body;
+    return Recording{std::move(*source), std::move(bodies)};
 }
 
 Status measure(const SceneCase& now,

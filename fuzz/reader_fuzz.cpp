@@ -23,7 +23,9 @@
 #include "io/rig_file.hpp"
 #include "io/rig_formats.hpp"
 #include "io/snapshot_file.hpp"
+#include "io/text_cloud.hpp"
 #include "io/trajectory_file.hpp"
+#include "surefoot/core/height_limit.hpp"
 #include "surefoot/grid/snapshot_fields.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
 
@@ -75,16 +77,49 @@ void must_explain(const Result<T>& result) {
     }
 }
 [[maybe_unused]] void fuzz_text_cloud(std::string_view bytes) {
-    must_explain(io::parse_text_cloud(bytes, "f"));
+    const auto whole = io::parse_text_cloud(bytes, "f.txt");
+    must_explain(whole);
+    must_explain(io::parse_text_cloud(bytes, "f.pts"));
+    // Pieces of whole lines hold what the file holds.
+    io::TextCloudParser parser("f.txt");
+    std::size_t points = 0;
+    bool fine = true;
+    for (std::size_t at = 0; at < bytes.size() && fine;) {
+        const std::size_t end = std::min(bytes.find('\n', at), bytes.size() - 1) + 1;
+        const auto piece = parser.parse(bytes.substr(at, end - at));
+        fine = piece.ok();
+        if (fine && piece->problem()) std::abort();
+        if (fine) points += piece->points_m.size();
+        at = end;
+    }
+    fine = fine && parser.finish().ok();
+    if (fine != whole.ok() || (fine && points != whole->points_m.size())) std::abort();
+    if (fine && whole->problem()) std::abort();
 }
 [[maybe_unused]] void fuzz_pfm(std::string_view bytes) {
     must_explain(io::parse_pfm(bytes, "f"));
 }
 [[maybe_unused]] void fuzz_esri_grid(std::string_view bytes) {
     must_explain(io::parse_esri_grid(bytes, "f"));
+    const auto heights = io::parse_height_grid(bytes, "f");
+    if (!heights) return;
+    for (std::size_t i = 0; i < heights->values.size(); ++i) {
+        const float height_m = heights->values.data()[i];
+        if (!std::isnan(height_m) && std::abs(static_cast<double>(height_m)) > kMaxHeight_m)
+            std::abort();
+    }
 }
-[[maybe_unused]] void fuzz_tum_trajectory(std::string_view bytes) {
-    must_explain(io::parse_tum_trajectory(bytes, "f"));
+[[maybe_unused]] void fuzz_trajectory(std::string_view bytes) {
+    must_explain(io::parse_times(bytes, "f"));
+    const auto file = io::parse_trajectory(bytes, "f");
+    must_explain(file);
+    if (!file) return;
+    if (file->poses.empty()) std::abort();
+    for (std::size_t i = 0; i < file->poses.size(); ++i) {
+        const StampedPose& pose = file->poses[i];
+        if (!pose.T_world_body.all_finite()) std::abort();
+        if (i > 0 && pose.time_ns <= file->poses[i - 1].time_ns) std::abort();
+    }
 }
 /// A rig that is accepted is sound, and what can be written of it reads back.
 void must_be_sound(const camera::StereoRig& rig) {

@@ -10,6 +10,7 @@
 
 #include "io/cloud_rows.hpp"
 #include "io/file.hpp"
+#include "io/text_cloud.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -57,6 +58,7 @@ class CloudStream::Part {
     virtual Result<PointCloud> next() = 0;
     virtual void rewind() = 0;
     [[nodiscard]] virtual std::optional<std::uint64_t> points() const { return std::nullopt; }
+    [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
 };
 
 /// Rows of one size.
@@ -71,72 +73,62 @@ class CloudStream::Rows final : public Part {
             file_.read(rows_.first_byte + next_ * rows_.row_bytes, count * rows_.row_bytes);
         if (!bytes) return bytes.error();
         next_ += count;
-        return parse_cloud(rows_.head(count) + *bytes, path_);
+        auto block = parse_cloud(rows_.head(count) + *bytes, path_);
+        if (!block) return block;
+        for (std::string& note : block->notes)
+            if (std::find(notes_.begin(), notes_.end(), note) == notes_.end())
+                notes_.push_back(std::move(note));
+        block->notes.clear();
+        return block;
     }
     void rewind() override { next_ = 0; }
     [[nodiscard]] std::optional<std::uint64_t> points() const override { return rows_.rows; }
+    [[nodiscard]] std::vector<std::string> notes() const override { return notes_; }
 
   private:
     std::string path_;
     ByteFile file_;
     CloudRows rows_;
+    std::vector<std::string> notes_;  ///< of the blocks so far, each once
     std::uint64_t next_ = 0;
 };
 
-/// Text with a point a line; a first line that names the columns stands before each piece.
+/// Text with a point a line.
 class CloudStream::Lines final : public Part {
   public:
-    Lines(std::string path, ByteFile file) : path_(std::move(path)), file_(std::move(file)) {}
+    Lines(std::string path, ByteFile file)
+        : path_(std::move(path)), file_(std::move(file)), parser_(path_) {}
     Result<PointCloud> next() override {
         while (at_ < file_.size()) {
             auto bytes = file_.read(at_, kBlockBytes);
             if (!bytes) return bytes.error();
             if (at_ + bytes->size() < file_.size()) {
-                const std::size_t end = bytes->rfind('\n');
+                const std::size_t feed = bytes->rfind('\n');
+                const std::size_t end = feed != bytes->npos ? feed : bytes->rfind('\r');
                 if (end == bytes->npos) {
                     return input_error(fmt::format(
                         "{}: a line of more than {} bytes is no point", path_, kBlockBytes));
                 }
                 bytes->resize(end + 1);
             }
-            if (at_ == 0) {
-                head_ = bytes->starts_with('/') || bytes->starts_with('#')
-                            ? bytes->substr(0, bytes->find('\n')) + "\n"
-                            : std::string();
-            }
-            const std::string piece = at_ == 0 ? *bytes : head_ + *bytes;
-            const std::uint64_t begin = at_;
             at_ += bytes->size();
-            if (!has_points(piece)) continue;
-            auto cloud = parse_text_cloud(piece, path_);
-            // Lines count from the beginning of the piece.
-            if (!cloud && begin > 0) {
-                return input_error(fmt::format(
-                    "{} (lines counted from byte {} on)", cloud.error().message, begin));
-            }
-            any_ = true;
-            return cloud;
+            auto cloud = parser_.parse(*bytes);
+            if (!cloud || !cloud->points_m.empty()) return cloud;
         }
-        if (!any_) return parse_text_cloud("", path_);
+        if (Status status = parser_.finish(); !status) return status.error();
         return PointCloud{};
     }
-    void rewind() override { at_ = 0; }
+    void rewind() override {
+        at_ = 0;
+        parser_ = TextCloudParser(path_);
+    }
+    [[nodiscard]] std::vector<std::string> notes() const override { return parser_.notes(); }
 
   private:
-    static bool has_points(std::string_view text) {
-        for (std::size_t begin = 0; begin < text.size();) {
-            const std::size_t end = std::min(text.find('\n', begin), text.size());
-            const std::size_t first = text.find_first_not_of(" \t\r", begin);
-            if (first < end && text[first] != '#' && text.substr(first, 2) != "//") return true;
-            begin = end + 1;
-        }
-        return false;
-    }
     std::string path_;
     ByteFile file_;
-    std::string head_;
+    TextCloudParser parser_;
     std::uint64_t at_ = 0;
-    bool any_ = false;
 };
 
 /// What cannot be cut.
@@ -153,9 +145,13 @@ class CloudStream::Whole final : public Part {
         };
         block.points_m = part(cloud_.points_m);
         if (!cloud_.colours.empty()) block.colours = part(cloud_.colours);
-        for (const CloudScalar& scalar : cloud_.scalars)
-            block.scalars.push_back({scalar.name, part(scalar.values)});
+        for (const CloudScalar& scalar : cloud_.scalars) {
+            block.scalars.push_back(scalar.without_values());
+            block.scalars.back().append(scalar, next_, count);
+        }
         block.width = static_cast<int>(count);
+        block.T_cloud_sensor = cloud_.T_cloud_sensor;
+        block.double_precision = cloud_.double_precision;
         next_ += count;
         return block;
     }
@@ -163,6 +159,7 @@ class CloudStream::Whole final : public Part {
     [[nodiscard]] std::optional<std::uint64_t> points() const override {
         return cloud_.points_m.size();
     }
+    [[nodiscard]] std::vector<std::string> notes() const override { return cloud_.notes; }
 
   private:
     PointCloud cloud_;
@@ -203,6 +200,9 @@ void CloudStream::rewind() {
 }
 std::optional<std::uint64_t> CloudStream::points() const {
     return part_->points();
+}
+std::vector<std::string> CloudStream::notes() const {
+    return part_->notes();
 }
 
 Eigen::Vector3d shift_for(const Eigen::Vector3d& first_m) {

@@ -41,6 +41,9 @@ class CloudStream {
     }
     /// How many points there are, where the file says so.
     [[nodiscard]] std::optional<std::uint64_t> points() const;
+    /// What the blocks so far do not hold of the file, a sentence each; blocks have none
+    /// themselves.
+    [[nodiscard]] std::vector<std::string> notes() const;
 
   private:
     class Part;

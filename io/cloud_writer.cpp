@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/file.hpp"
+#include "io/text.hpp"
 #include "io/write_at.hpp"
 
 namespace surefoot::io {
@@ -28,11 +29,22 @@ void put_count(std::string& head, const std::string& key, std::int64_t points) {
     head.replace(number, head.find('\n', number) - number, std::to_string(points));
 }
 
+bool holds_the_same(const PointCloud& a, const PointCloud& b) {
+    if (a.scalars.size() != b.scalars.size() || a.colours.empty() != b.colours.empty())
+        return false;
+    for (std::size_t i = 0; i < a.scalars.size(); ++i) {
+        if (a.scalars[i].name != b.scalars[i].name ||
+            a.scalars[i].values.index() != b.scalars[i].values.index())
+            return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 Result<CloudWriter> CloudWriter::create(const std::string& path, const CloudFormat& format) {
     const std::string extension = extension_of(path);
-    const bool text = is_text_cloud(extension);
+    const bool text = is_text_cloud(extension) && extension != ".pts";  // which has another head
     if (!text && extension != ".ply" && extension != ".pcd") {
         return usage_error(fmt::format(
             "{}: clouds are written as .ply .pcd .xyz .asc .txt .csv, not '{}'", path, extension));
@@ -57,8 +69,27 @@ CloudWriter::CloudWriter(CloudWriter&& other) noexcept
       format_(other.format_),
       descriptor_(std::exchange(other.descriptor_, -1)),
       head_(std::move(other.head_)),
+      first_(std::move(other.first_)),
+      notes_(std::move(other.notes_)),
       points_(other.points_),
       size_(other.size_) {}
+
+void CloudWriter::note_losses(const PointCloud& block) {
+    if (kind_ != Kind::pcd && block.T_cloud_sensor &&
+        !block.T_cloud_sensor->matrix().isIdentity(0.0)) {
+        notes_.emplace_back("the viewpoint of the cloud is not kept: only .pcd has one");
+    }
+    if (kind_ != Kind::ply) return;
+    for (const CloudScalar& scalar : block.scalars) {
+        if (!std::holds_alternative<std::vector<std::int64_t>>(scalar.values) &&
+            !std::holds_alternative<std::vector<std::uint64_t>>(scalar.values))
+            continue;
+        notes_.push_back(fmt::format(
+            "{} has 64-bit whole numbers, which PLY does not have: they are written as doubles, "
+            "exact up to 2^53; write .pcd or text to keep them",
+            quoted(scalar.name)));
+    }
+}
 
 /// Of the same length for every number of points.
 std::string CloudWriter::head(std::int64_t points) const {
@@ -79,6 +110,16 @@ std::string CloudWriter::head(std::int64_t points) const {
 Status CloudWriter::add(const PointCloud& block) {
     if (descriptor_ < 0) return output_error(fmt::format("{}: is finished already", path_));
     if (const auto problem = block.problem()) return output_error(path_ + ": " + *problem);
+    if (size_ == 0) {
+        format_.double_precision = format_.double_precision || block.double_precision;
+        first_.colours.assign(block.colours.empty() ? 0 : 1, Rgb{});
+        for (const CloudScalar& scalar : block.scalars)
+            first_.scalars.push_back(scalar.without_values());
+        note_losses(block);
+    } else if (!holds_the_same(first_, block)) {
+        return output_error(
+            fmt::format("{}: points with other values than the first ones have", path_));
+    }
     const CloudFormat format{true, format_.double_precision};
     std::string bytes = kind_ == Kind::ply   ? format_ply(block, format)
                         : kind_ == Kind::pcd ? format_pcd(block, format)

@@ -3,13 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "io/file.hpp"
+#include "io/height_rules.hpp"
 #include "io/image_file.hpp"
 #include "io/text.hpp"
+#include "surefoot/core/height_limit.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -17,9 +20,19 @@ namespace {
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNoData = -9999.0;
 constexpr std::int64_t kMaxSide = 1 << 20;
+/// No layer has such values; -3.4028235e38, the smallest float, is the usual mark for "no data".
+constexpr double kMaxValue = 1e30;
+/// The precision of a float: marks are printed from floats, with 7 to 17 digits.
+constexpr double kFloatStep = 1.1920928955078125e-07;
+
+/// Does a value stand for "no data"?
+bool is_no_data(double value, double no_data) {
+    return std::abs(value) >= kMaxValue ||
+           std::abs(value - no_data) <= kFloatStep * std::abs(no_data);
+}
 
 struct Header {
-    std::optional<double> columns, rows, x, y, cell;
+    std::optional<double> columns, rows, x, y, cell, dx, dy;
     double no_data = kNoData;
     bool x_is_center = false;
     bool y_is_center = false;
@@ -39,6 +52,10 @@ bool take_pair(const std::string& key, double value, Header& header) {
         header.y_is_center = key == "yllcenter";
     } else if (key == "cellsize") {
         header.cell = value;
+    } else if (key == "dx") {
+        header.dx = value;
+    } else if (key == "dy") {
+        header.dy = value;
     } else if (key == "nodata_value") {
         header.no_data = value;
     } else {
@@ -51,34 +68,54 @@ Error at_line(const std::string& file, int line, const std::string& what) {
     return input_error(fmt::format("{}:{}: {}", file, line, what));
 }
 
+/// Number of the line of `text` in which `word`, a part of it, begins.
+int line_of(std::string_view text, std::string_view word) {
+    LineReader lines(text);
+    while (const auto line = lines.next())
+        if (word.data() <= line->data() + line->size()) break;
+    return lines.number();
+}
+
 /// Reads "key value" lines until one begins with a number; `body` is the text from there.
 Result<Header> parse_header(std::string_view text,
                             const std::string& file,
-                            std::string_view& body,
-                            int& line_number) {
+                            std::string_view& body) {
+    if (const auto problem = encoding_problem(text)) return at_line(file, 1, *problem);
     Header header;
     LineReader lines(text);
-    body = text;
+    body = lines.rest();
     while (const auto line = lines.next()) {
         const std::vector<std::string_view> words = split(*line);
-        if (!words.empty() && parse_double(words[0])) break;
+        if (!words.empty() && parse_value(words[0])) break;
         body = lines.rest();
-        line_number = lines.number();
         if (words.empty()) continue;
-        const auto value = words.size() == 2 ? parse_double(words[1]) : std::nullopt;
-        if (!value) return at_line(file, lines.number(), "expected 'key value' of an ESRI grid");
-        const std::string key = lowercase(words[0]);
-        if (key == "dx" || key == "dy") {
-            return at_line(
-                file, lines.number(), "cells must be square ('cellsize', not dx and dy)");
-        }
-        if (!take_pair(key, *value, header)) {
+        if (has_decimal_comma(words[0]))
+            return at_line(file, lines.number(), why_no_number(words[0]));
+        if (words.size() != 2)
+            return at_line(file, lines.number(), "expected 'key value' of an ESRI grid");
+        const auto value = parse_value(words[1]);
+        if (!value) return at_line(file, lines.number(), why_no_number(words[1]));
+        if (!take_pair(lowercase(words[0]), *value, header)) {
             return at_line(file,
                            lines.number(),
                            fmt::format("unknown key {} of an ESRI grid", quoted(words[0])));
         }
     }
     return header;
+}
+
+/// Cells that are given by dx and dy must be square.
+Status take_cell_size(Header& header, const std::string& file) {
+    constexpr double kSame = 1e-9;
+    if (header.cell || (!header.dx && !header.dy)) return {};
+    if (header.dx && header.dy && std::abs(*header.dx - *header.dy) <= kSame * *header.dx) {
+        header.cell = header.dx;
+        return {};
+    }
+    return input_error(fmt::format("{}: cells must be square: dx {} and dy {} must be equal",
+                                   file,
+                                   header.dx ? format_double(*header.dx) : "(missing)",
+                                   header.dy ? format_double(*header.dy) : "(missing)"));
 }
 
 Result<grid::GridGeometry> geometry_of(const Header& header, const std::string& file) {
@@ -128,6 +165,16 @@ Status check_layer(const std::string& path,
                                     geometry.ny));
 }
 
+/// Nine digits, or NODATA for what is unknown.
+std::string format_cell(float cell) {
+    const auto value = static_cast<double>(cell);
+    if (!(std::abs(value) < kMaxValue)) return fmt::format("{}", kNoData);
+    // A value that would be read as NODATA moves by two float steps, 2 mm at 10 km.
+    return fmt::format(
+        "{:.9g}",
+        is_no_data(value, kNoData) ? static_cast<float>((1.0 - 2.0 * kFloatStep) * kNoData) : cell);
+}
+
 template <typename Pixel>
 Dem dem_from_image(const Image<Pixel>& image, double scale_m, double full_height_m) {
     Dem dem;
@@ -142,6 +189,7 @@ Dem dem_from_image(const Image<Pixel>& image, double scale_m, double full_height
             out[u] = static_cast<float>(unit_m * static_cast<double>(image.row(v)[u]));
         }
     }
+    dem.notes = drop_impossible_heights(dem.values);
     return dem;
 }
 
@@ -149,9 +197,9 @@ Dem dem_from_image(const Image<Pixel>& image, double scale_m, double full_height
 
 Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
     std::string_view body;
-    int line_number = 0;
-    const Result<Header> header = parse_header(text, file, body, line_number);
+    Result<Header> header = parse_header(text, file, body);
     if (!header) return header.error();
+    if (Status status = take_cell_size(*header, file); !status) return status.error();
     const Result<grid::GridGeometry> geometry = geometry_of(*header, file);
     if (!geometry) return geometry.error();
     const std::int64_t cells = std::int64_t{geometry->nx} * geometry->ny;
@@ -164,23 +212,27 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
                         geometry->ny,
                         body.size()));
     }
-    Dem dem{*geometry, grid::Layer(geometry->nx, geometry->ny, kUnknown)};
+    Dem dem{*geometry, grid::Layer(geometry->nx, geometry->ny, kUnknown), {}};
     WordReader words(body);
     for (int row = 0; row < geometry->ny; ++row) {
         float* out = dem.values.row(geometry->ny - 1 - row);
         for (int ix = 0; ix < geometry->nx; ++ix) {
             const std::string_view word = words.next();
-            const auto value = parse_double(word);
+            const auto value = parse_value(word);
             if (!value || std::isinf(*value)) {
-                return input_error(fmt::format("{}: value {} of row {} (of {} x {} cells) is {}",
-                                               file,
-                                               ix + 1,
-                                               row + 1,
-                                               geometry->nx,
-                                               geometry->ny,
-                                               word.empty() ? "missing" : quoted(word)));
+                return input_error(fmt::format(
+                    "{}:{}: value {} of row {} (of {} x {} cells) is {}",
+                    file,
+                    word.empty() ? line_of(text, text.substr(text.size())) : line_of(text, word),
+                    ix + 1,
+                    row + 1,
+                    geometry->nx,
+                    geometry->ny,
+                    word.empty()              ? "missing"
+                    : has_decimal_comma(word) ? why_no_number(word)
+                                              : quoted(word)));
             }
-            if (*value != header->no_data) out[ix] = static_cast<float>(*value);
+            if (!is_no_data(*value, header->no_data)) out[ix] = static_cast<float>(*value);
         }
     }
     if (const std::string_view extra = words.next(); !extra.empty()) {
@@ -196,6 +248,18 @@ Result<Dem> read_esri_grid(const std::string& path) {
     return parse_esri_grid(*text, path);
 }
 
+Result<Dem> parse_height_grid(std::string_view text, const std::string& file) {
+    Result<Dem> dem = parse_esri_grid(text, file);
+    if (dem) dem->notes = drop_impossible_heights(dem->values);
+    return dem;
+}
+
+Result<Dem> read_height_grid(const std::string& path) {
+    const Result<std::string> text = read_file(path);
+    if (!text) return text.error();
+    return parse_height_grid(*text, path);
+}
+
 std::string format_esri_grid(const grid::GridGeometry& geometry, const grid::Layer& values) {
     std::string out = fmt::format(
         "ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\ncellsize {}\nNODATA_value {}\n",
@@ -207,12 +271,7 @@ std::string format_esri_grid(const grid::GridGeometry& geometry, const grid::Lay
         kNoData);
     for (int iy = values.height() - 1; iy >= 0; --iy) {
         for (int ix = 0; ix < values.width(); ++ix) {
-            const float value = values.row(iy)[ix];
-            // A height that happens to be the NODATA value moves by one float step, 1 mm at 10 km.
-            const float written =
-                value == static_cast<float>(kNoData) ? std::nextafter(value, 0.0F) : value;
-            out += std::isfinite(written) ? fmt::format("{:.9g}", written)
-                                          : fmt::format("{}", kNoData);
+            out += format_cell(values.row(iy)[ix]);
             out += ix + 1 < values.width() ? ' ' : '\n';
         }
     }
@@ -237,6 +296,12 @@ Result<Dem> parse_dem_image(std::string_view bytes,
                         file,
                         scale_m,
                         full_height_m));
+    }
+    if (std::abs(full_height_m) > kMaxHeight_m) {
+        return usage_error(fmt::format("{}: a full height of {} m is beyond {:g} m: give metres",
+                                       file,
+                                       full_height_m,
+                                       kMaxHeight_m));
     }
     const Result<ImageHeader> header = check_image(bytes, file);
     if (!header) return header.error();

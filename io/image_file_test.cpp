@@ -227,6 +227,103 @@ TEST(DemFile, FirstRowOfAnEsriGridIsTheLargestY) {
     EXPECT_EQ(dem->geometry.origin_m, Eigen::Vector2d(9.5, 20.0));
 }
 
+/// A map of 3 x 2 cells with this line of NODATA and these rows.
+std::string grid_of(const std::string& no_data, const std::string& rows) {
+    return "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0.025\n" + no_data + rows;
+}
+
+TEST(DemFile, MarksForNoDataAreUnknownHoweverTheyAreSpelt) {
+    const struct {
+        const char* what;
+        std::string text;
+    } grids[] = {
+        {"GDAL",
+         grid_of("NODATA_value  -3.402823E+38\n",
+                 "-3.4028234663852886E+38 0.5 0.5\n0.25 0.5 -3.4028230607371E+38\n")},
+        {"the smallest float",
+         grid_of("NODATA_value  -3.40282346638529e+38\n",
+                 "-3.4028234663852886e+38 0.5 0.5\n0.25 0.5 -3.4028235e+38\n")},
+        {"WindNinja",
+         grid_of("NODATA_value  -3.39999999999999996e+38\n",
+                 "-3.3999999521443642e+38 0.5 0.5\n0.25 0.5 -3.4e+38\n")},
+        {"a float",
+         grid_of("NODATA_value  -9999.9\n", "-9999.900390625 0.5 0.5\n0.25 0.5 -9999.9\n")},
+        {"null", grid_of("NODATA_value null\n", "null 0.5 0.5\n0.25 0.5 NULL\n")},
+        {"nan", grid_of("NODATA_value -9999\n", "nan 0.5 0.5\n0.25 0.5 -nan\n")},
+        {"begins with nan", grid_of("", "nan 0.5 0.5\n0.25 0.5 -9999\n")},
+        {"a byte order mark", "\xef\xbb\xbf" + grid_of("", "-9999 0.5 0.5\n0.25 0.5 -9999.0\n")},
+    };
+    for (const auto& grid : grids) {
+        const auto dem = parse_esri_grid(grid.text, "a.asc");
+        ASSERT_TRUE(dem.ok()) << grid.what << ": " << message(dem);
+        EXPECT_TRUE(std::isnan(dem->values.at(0, 1)) && std::isnan(dem->values.at(2, 0)))
+            << grid.what;
+        EXPECT_EQ(dem->values.at(1, 1), 0.5F) << grid.what;
+        EXPECT_EQ(dem->values.at(0, 0), 0.25F) << grid.what;
+    }
+    // What is not a mark stays: a layer may hold anything.
+    EXPECT_EQ(parse_esri_grid(grid_of("", "-32768 1 1\n1 1 1\n"), "a.asc")->values.at(0, 1),
+              -32768.0F);
+}
+
+TEST(DemFile, HeightsThatNobodyMeasuredAreUnknownAndSaid) {
+    for (const char* mark :
+         {"-32768", "-999", "-99999", "9999", "1e6", "-1e12", "3e38", "-100", "200001"}) {
+        const auto heights = parse_height_grid(
+            grid_of("", std::string(mark) + " 0.5 0.5\n0.25 0.5 " + mark + "\n"), "a.asc");
+        ASSERT_TRUE(heights.ok()) << mark;
+        EXPECT_TRUE(std::isnan(heights->values.at(0, 1)) && std::isnan(heights->values.at(2, 0)))
+            << mark;
+        EXPECT_EQ(heights->values.at(0, 0), 0.25F) << mark;
+        ASSERT_LE(heights->notes.size(), 1U) << mark;
+        if (std::string(mark) != "3e38") {
+            ASSERT_EQ(heights->notes.size(), 1U) << mark;
+            EXPECT_TRUE(contains(heights->notes[0], "2 cells hold")) << heights->notes[0];
+        }
+    }
+    // Ground: mountains in metres, a pit, a hall's ceiling, level ground at any height.
+    for (const char* rows : {"2400 2900 1800\n372 372 400\n",
+                             "0 0 0\n-45 0 0\n",
+                             "0 12 0\n0 0 0\n",
+                             "-430 -430 -430\n-430 -430 -430\n",
+                             "-999 -1003 -2500\n-5000 -999 -1200\n"}) {
+        const auto heights = parse_height_grid(grid_of("", rows), "a.asc");
+        ASSERT_TRUE(heights.ok()) << rows;
+        EXPECT_TRUE(heights->notes.empty()) << rows << heights->notes.front();
+    }
+    EXPECT_TRUE(std::isnan(
+        parse_height_grid(grid_of("", "-32768 -32768 -32768\n-32768 -32768 -32768\n"), "a.asc")
+            ->values.at(0, 0)))
+        << "a map of nothing but marks";
+    // Two marks in one file.
+    const auto two = parse_height_grid(grid_of("", "-32768 0.5 -99999\n0.5 0.25 0.5\n"), "a.asc");
+    EXPECT_EQ(two->notes.size(), 2U);
+}
+
+TEST(DemFile, CellsOfEqualSidesAndDecimalCommasInWords) {
+    const std::string head = "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\n";
+    EXPECT_EQ(parse_esri_grid(head + "dx 0.025\ndy 0.025\n1\n", "a.asc")->geometry.resolution_m,
+              0.025);
+    EXPECT_TRUE(contains(message(parse_esri_grid(head + "dx 0.025\ndy 0.05\n1\n", "a.asc")),
+                         "must be square: dx 0.025 and dy 0.05"));
+    EXPECT_TRUE(contains(message(parse_esri_grid(head + "cellsize ,250E-01\n1\n", "a.asc")),
+                         "a.asc:5: ',250E-01' has a decimal comma"));
+    EXPECT_TRUE(contains(message(parse_esri_grid(head + "cellsize 1\n,5\n", "a.asc")),
+                         "a.asc:6: ',5' has a decimal comma"));
+    EXPECT_TRUE(contains(message(parse_esri_grid(grid_of("", "1 2 3\n4 5,5 6\n"), "a.asc")),
+                         "a.asc:7: value 2 of row 2"));
+}
+
+TEST(DemFile, AValueThatIsTheMarkComesBackBesideIt) {
+    grid::Layer layer(2, 1);
+    layer.data()[0] = -9999.0F;
+    layer.data()[1] = 3e38F;  // no value of any layer
+    const auto dem = parse_esri_grid(format_esri_grid({0.1, 2, 1, {0, 0}}, layer), "a.asc");
+    ASSERT_TRUE(dem.ok());
+    EXPECT_NEAR(static_cast<double>(dem->values.at(0, 0)), -9999.0, 0.003);
+    EXPECT_TRUE(std::isnan(dem->values.at(1, 0)));
+}
+
 TEST(DemFile, RefusesDamageInWords) {
     const std::string head = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
     EXPECT_TRUE(
@@ -265,6 +362,7 @@ TEST(DemFile, HeightImagesHaveTheirHeights) {
     EXPECT_NEAR(height_at_row(20), 0.6 * 179 / 255, 1e-6);
     EXPECT_NEAR(height_at_row(30), 0.6 * 94 / 255, 1e-6);
     EXPECT_TRUE(contains(message(read_dem_image(path, 0.0, 1.0)), "scale above 0"));
+    EXPECT_TRUE(contains(message(read_dem_image(path, 0.02, 2e5)), "beyond 100000 m"));
 }
 
 }  // namespace

@@ -28,23 +28,28 @@ constexpr std::size_t kSmallestHeader = 227;
 constexpr std::size_t kHeader14 = 375;
 
 struct RecordFormat {
-    std::size_t bytes;   ///< of the fields below
-    std::size_t colour;  ///< where red begins; 0 = no colours
+    std::size_t bytes;     ///< of all fields
+    std::size_t time;      ///< where the GPS time begins; 0 = there is none
+    std::size_t colour;    ///< where red begins
+    std::size_t infrared;  ///< where the near infrared channel begins
+    std::size_t waves;     ///< where the wave packet begins
 };
 // Tables 7 to 17.
-constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0},
-                                                    {28, 0},
-                                                    {26, 20},
-                                                    {34, 28},
-                                                    {57, 0},
-                                                    {63, 28},
-                                                    {30, 0},
-                                                    {36, 30},
-                                                    {38, 30},
-                                                    {59, 0},
-                                                    {67, 30}}};
+constexpr std::array<RecordFormat, 11> kFormats = {{{20, 0, 0, 0, 0},
+                                                    {28, 20, 0, 0, 0},
+                                                    {26, 0, 20, 0, 0},
+                                                    {34, 20, 28, 0, 0},
+                                                    {57, 20, 0, 0, 28},
+                                                    {63, 20, 28, 0, 34},
+                                                    {30, 22, 0, 0, 0},
+                                                    {36, 22, 30, 0, 0},
+                                                    {38, 22, 30, 36, 0},
+                                                    {59, 22, 0, 0, 30},
+                                                    {67, 22, 30, 36, 38}}};
 constexpr std::size_t kIntensity = 12;
-constexpr std::uint8_t kCompressed = 0xC0;  ///< bits that LAZ sets in the format
+constexpr std::size_t kReturns = 14;
+constexpr std::size_t kFirstWideFormat = 6;  ///< from here on records are laid out anew
+constexpr std::uint8_t kCompressed = 0xC0;   ///< bits that LAZ sets in the format
 
 struct Header {
     std::size_t header_bytes = 0;
@@ -115,16 +120,95 @@ Result<Header> parse_header(std::string_view bytes, std::uint64_t size, const st
     return header;
 }
 
-/// Classification: five bits of one byte, or a byte of its own from format 6 on.
-float class_of(const char* record, std::size_t format) {
-    return static_cast<float>(format < 6 ? load_le<std::uint8_t>(record + 15) & 31
-                                         : load_le<std::uint8_t>(record + 16));
+/// One value of every record as a scalar; `value_of` takes the record's first byte.
+template <typename T, typename Value>
+void add_scalar(const Header& header,
+                std::string_view records,
+                const char* name,
+                const Value& value_of,
+                PointCloud& cloud) {
+    std::vector<T> values;
+    values.reserve(header.points);
+    for (std::size_t i = 0; i < header.points; ++i)
+        values.push_back(static_cast<T>(value_of(records.data() + i * header.record_bytes)));
+    cloud.scalars.push_back({name, std::move(values)});
 }
 
-/// Colours have 16 bits, of which many writers use the lower eight alone.
-void add_colours(const Header& header, std::string_view records, PointCloud& cloud) {
+/// The fields of a point with their types; flags are left out.
+void add_scalars(const Header& header, std::string_view records, PointCloud& cloud) {
+    const RecordFormat& format = kFormats[header.format];
+    const bool wide = header.format >= kFirstWideFormat;
+    const auto add = [&]<typename T>(const char* name, T, const auto& value_of) {
+        add_scalar<T>(header, records, name, value_of, cloud);
+    };
+    const auto byte_at = [](std::size_t at) {
+        return [at](const char* record) { return load_le<std::uint8_t>(record + at); };
+    };
+    add("intensity", std::uint16_t{}, [](const char* record) {
+        return load_le<std::uint16_t>(record + kIntensity);
+    });
+    add("classification", std::uint8_t{}, [&](const char* record) {
+        return wide ? load_le<std::uint8_t>(record + 16) : load_le<std::uint8_t>(record + 15) & 31;
+    });
+    add("return_number", std::uint8_t{}, [&](const char* record) {
+        return load_le<std::uint8_t>(record + kReturns) & (wide ? 15 : 7);
+    });
+    add("number_of_returns", std::uint8_t{}, [&](const char* record) {
+        const auto byte = load_le<std::uint8_t>(record + kReturns);
+        return wide ? byte >> 4 : (byte >> 3) & 7;
+    });
+    if (wide) {
+        constexpr float kUnit_deg = 0.006F;
+        add("scan_angle_deg", 0.0F, [](const char* record) {
+            return kUnit_deg * static_cast<float>(load_le<std::int16_t>(record + 18));
+        });
+    } else {
+        add("scan_angle_deg", std::int8_t{}, [](const char* record) {
+            return load_le<std::int8_t>(record + 16);
+        });
+    }
+    add("user_data", std::uint8_t{}, byte_at(17));
+    add("point_source_id", std::uint16_t{}, [&](const char* record) {
+        return load_le<std::uint16_t>(record + (wide ? 20 : 18));
+    });
+    if (format.time != 0) {
+        add("gps_time", 0.0, [&](const char* record) {
+            return load_le<double>(record + format.time);
+        });
+    }
+    if (format.infrared != 0) {
+        add("near_infrared", std::uint16_t{}, [&](const char* record) {
+            return load_le<std::uint16_t>(record + format.infrared);
+        });
+    }
+}
+
+/// What a cloud does not hold of a file.
+std::vector<std::string> notes_of(const Header& header,
+                                  std::string_view records,
+                                  bool wide_colours) {
+    const RecordFormat& format = kFormats[header.format];
+    std::vector<std::string> notes;
+    bool flags = false;
+    for (std::size_t i = 0; i < header.points && !flags; ++i) {
+        const char* record = records.data() + i * header.record_bytes;
+        flags = header.format >= kFirstWideFormat
+                    ? load_le<std::uint8_t>(record + 15) != 0
+                    : (load_le<std::uint8_t>(record + kReturns) & 0xC0) != 0 ||
+                          (load_le<std::uint8_t>(record + 15) & 0xE0) != 0;
+    }
+    if (flags) notes.emplace_back("the flags of points (LAS) are not kept");
+    if (format.waves != 0) notes.emplace_back("the wave packets of points (LAS) are not kept");
+    if (header.record_bytes > format.bytes)
+        notes.emplace_back("the extra bytes of points (LAS) are not kept");
+    if (wide_colours) notes.emplace_back("colours are kept with 8 of their 16 bits (LAS)");
+    return notes;
+}
+
+/// Colours have 16 bits, of which many writers use the lower eight alone. Whether more are used.
+bool add_colours(const Header& header, std::string_view records, PointCloud& cloud) {
     const std::size_t at = kFormats[header.format].colour;
-    if (at == 0) return;
+    if (at == 0) return false;
     const auto channel = [&](std::size_t i, std::size_t c) {
         return load_le<std::uint16_t>(records.data() + i * header.record_bytes + at + 2 * c);
     };
@@ -137,6 +221,7 @@ void add_colours(const Header& header, std::string_view records, PointCloud& clo
                                  static_cast<std::uint8_t>(channel(i, 1) >> shift),
                                  static_cast<std::uint8_t>(channel(i, 2) >> shift)});
     }
+    return wide;
 }
 
 }  // namespace
@@ -150,19 +235,17 @@ Result<PointCloud> parse_las(std::string_view bytes, const std::string& file) {
     const std::string_view records = bytes.substr(header->points_at);
     PointCloud cloud;
     cloud.points_m.reserve(header->points);
-    CloudScalar intensity{"intensity", {}};
-    CloudScalar classification{"classification", {}};
     for (std::size_t i = 0; i < header->points; ++i) {
         const char* record = records.data() + i * header->record_bytes;
         const Eigen::Vector3d whole(load_le<std::int32_t>(record),
                                     load_le<std::int32_t>(record + 4),
                                     load_le<std::int32_t>(record + 8));
         cloud.points_m.emplace_back(header->scale.cwiseProduct(whole) + header->offset_m);
-        intensity.values.push_back(load_le<std::uint16_t>(record + kIntensity));
-        classification.values.push_back(class_of(record, header->format));
     }
-    add_colours(*header, records, cloud);
-    cloud.scalars = {std::move(intensity), std::move(classification)};
+    add_scalars(*header, records, cloud);
+    const bool wide_colours = add_colours(*header, records, cloud);
+    cloud.notes = notes_of(*header, records, wide_colours);
+    cloud.double_precision = true;
     cloud.width = static_cast<int>(header->points);
     return cloud;
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "io/bytes.hpp"
 #include "io/cloud_rows.hpp"
@@ -30,7 +31,7 @@ struct Field {
 struct Header {
     enum class Data { ascii, binary, compressed } data = Data::ascii;
     std::vector<Field> fields;
-    std::uint64_t width = 0;
+    std::optional<std::uint64_t> width;
     std::uint64_t height = 1;
     std::optional<std::uint64_t> points;
     std::optional<Pose> T_cloud_sensor;
@@ -59,9 +60,14 @@ std::optional<std::uint64_t> parse_count(std::string_view word, std::uint64_t ma
     return static_cast<std::uint64_t>(*value);
 }
 
+/// COLUMNS is what FIELDS was called before version 0.6.
+bool names_fields(std::string_view key) {
+    return key == "FIELDS" || key == "COLUMNS";
+}
+
 /// FIELDS, SIZE, TYPE or COUNT: one word per field.
 Status parse_field_line(const std::vector<std::string_view>& words, Header& header) {
-    if (words[0] == "FIELDS") header.fields.resize(words.size() - 1);
+    if (names_fields(words[0])) header.fields.resize(words.size() - 1);
     if (header.fields.empty() || header.fields.size() > kMaxFields ||
         words.size() != header.fields.size() + 1) {
         return input_error(fmt::format(
@@ -70,7 +76,7 @@ Status parse_field_line(const std::vector<std::string_view>& words, Header& head
     for (std::size_t i = 0; i < header.fields.size(); ++i) {
         Field& field = header.fields[i];
         const std::string_view word = words[i + 1];
-        if (words[0] == "FIELDS") {
+        if (names_fields(words[0])) {
             field.name = word;
         } else if (words[0] == "TYPE" && (word == "I" || word == "U" || word == "F")) {
             field.type = word[0];
@@ -119,7 +125,7 @@ Status parse_data_line(const std::vector<std::string_view>& words, Header& heade
 Status parse_header_line(const std::vector<std::string_view>& words, Header& header) {
     const std::string_view key = words[0];
     if (key == "VERSION") return {};
-    if (key == "FIELDS" || key == "SIZE" || key == "TYPE" || key == "COUNT") {
+    if (names_fields(key) || key == "SIZE" || key == "TYPE" || key == "COUNT") {
         return parse_field_line(words, header);
     }
     if (key == "VIEWPOINT") return parse_viewpoint(words, header);
@@ -147,12 +153,14 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
         if (words[0] != "DATA") continue;
         header.body = lines.rest();
         header.last_line = lines.number();
-        const std::uint64_t cells = header.width * header.height;  // both at most 2^30
+        // Version 0.5 has no WIDTH: all points are one row, as PCL reads it.
+        if (!header.width) header.width = header.points.value_or(0);
+        const std::uint64_t cells = *header.width * header.height;  // both at most 2^30
         if (cells > kMaxPoints || header.points.value_or(cells) != cells) {
             return at_line(file,
                            lines.number(),
                            fmt::format("WIDTH {} x HEIGHT {} is not POINTS {}",
-                                       header.width,
+                                       *header.width,
                                        header.height,
                                        header.points.value_or(0)));
         }
@@ -162,23 +170,13 @@ Result<Header> parse_header(std::string_view bytes, const std::string& file) {
     return at_line(file, lines.number(), "truncated PCD header: 'DATA' is missing");
 }
 
-double load_value(const char* data, const Field& field) {
-    if (field.type == 'F') {
-        return field.bytes == 8   ? load_le<double>(data)
-               : field.bytes == 4 ? static_cast<double>(load_le<float>(data))
-                                  : std::numeric_limits<double>::quiet_NaN();
-    }
-    const bool is_signed = field.type == 'I';
-    switch (field.bytes) {
-        case 1: return is_signed ? load_le<std::int8_t>(data) : load_le<std::uint8_t>(data);
-        case 2: return is_signed ? load_le<std::int16_t>(data) : load_le<std::uint16_t>(data);
-        case 4:
-            return is_signed ? static_cast<double>(load_le<std::int32_t>(data))
-                             : static_cast<double>(load_le<std::uint32_t>(data));
-        default: break;
-    }
-    return is_signed ? static_cast<double>(load_le<std::int64_t>(data))
-                     : static_cast<double>(load_le<std::uint64_t>(data));
+/// Calls `use` with a zero of the field's type.
+template <typename Use>
+void with_type_of(const Field& field, const Use& use) {
+    // check_fields has found a type that exists.
+    const auto values = no_values_of(field.type, field.bytes).value_or(ScalarValues());
+    std::visit([&](const auto& v) { use(typename std::decay_t<decltype(v)>::value_type{}); },
+               values);
 }
 
 /// Colour packed as 0x00RRGGBB, as PCL stores it in the bits of a float or an integer.
@@ -195,56 +193,115 @@ bool is_padding(const Field& field) {
     return field.name == "_" || field.count != 1;
 }
 
-/// Puts one value of one field where it belongs; `bits` are those of a 4-byte value.
+/// 0 to 2 for x, y and z, also in capitals.
+std::optional<int> axis_of(const Field& field) {
+    const std::string name = lowercase(field.name);
+    if (name.size() != 1 || name[0] < 'x' || name[0] > 'z' || field.count != 1) return std::nullopt;
+    return name[0] - 'x';
+}
+
+/// Where the values of a field go.
+struct Role {
+    enum class Kind : std::uint8_t { nothing, axis, colour, scalar } kind = Kind::nothing;
+    std::size_t index = 0;  ///< of the axis, or of the scalar
+};
+
+/// A cloud that is filled field by field, or point by point.
 struct Collector {
     PointCloud cloud;
-    std::vector<int> roles;  ///< per field: 0..2 axis, -1 colour, -2 nothing, 3 + scalar index
+    std::vector<Role> roles;  ///< per field
 
     explicit Collector(const Header& header) {
         const std::size_t count = *header.points;
         cloud.points_m.assign(count, Eigen::Vector3d::Zero());
         for (const Field& field : header.fields) {
             if (is_padding(field)) {
-                roles.push_back(-2);
+                roles.push_back({});
             } else if (is_colour(field)) {
-                roles.push_back(-1);
+                roles.push_back({Role::Kind::colour, 0});
                 cloud.colours.assign(count, Rgb{});
-            } else if (field.name == "x" || field.name == "y" || field.name == "z") {
-                roles.push_back(field.name[0] - 'x');
+            } else if (const auto axis = axis_of(field)) {
+                roles.push_back({Role::Kind::axis, static_cast<std::size_t>(*axis)});
+                cloud.double_precision = cloud.double_precision || field.bytes == 8 ||
+                                         (field.type != 'F' && field.bytes == 4);
             } else {
-                roles.push_back(3 + static_cast<int>(cloud.scalars.size()));
-                cloud.scalars.push_back({field.name, std::vector<float>(count)});
+                roles.push_back({Role::Kind::scalar, cloud.scalars.size()});
+                cloud.scalars.push_back(
+                    {field.name, no_values_of(field.type, field.bytes).value_or(ScalarValues())});
+                cloud.scalars.back().reserve(count);
             }
-        }
-    }
-    void set(std::size_t point, std::size_t field, double value, std::uint32_t bits) {
-        const int role = roles[field];
-        if (role == -1) cloud.colours[point] = unpacked_colour(bits);
-        if (role >= 0 && role < 3) cloud.points_m[point][role] = value;
-        if (role >= 3) {
-            cloud.scalars[static_cast<std::size_t>(role - 3)].values[point] =
-                static_cast<float>(value);
         }
     }
 };
 
+/// All values of one field, `step` bytes apart.
+void collect_field(
+    const Field& field, const Role& role, const char* data, std::size_t step, PointCloud& cloud) {
+    const std::size_t count = cloud.points_m.size();
+    if (role.kind == Role::Kind::nothing) return;
+    if (role.kind == Role::Kind::colour) {
+        for (std::size_t i = 0; i < count; ++i)
+            cloud.colours[i] = unpacked_colour(load_le<std::uint32_t>(data + i * step));
+        return;
+    }
+    with_type_of(field, [&]<typename T>(T) {
+        if (role.kind == Role::Kind::axis) {
+            for (std::size_t i = 0; i < count; ++i)
+                cloud.points_m[i][static_cast<Eigen::Index>(role.index)] =
+                    static_cast<double>(load_le<T>(data + i * step));
+            return;
+        }
+        auto& values = *std::get_if<std::vector<T>>(&cloud.scalars[role.index].values);
+        for (std::size_t i = 0; i < count; ++i) values.push_back(load_le<T>(data + i * step));
+    });
+}
+
 void collect_binary(const Header& header, std::string_view data, bool by_field, Collector& out) {
-    const std::size_t count = *header.points;
     const std::size_t stride = header.stride();
     std::size_t offset = 0;
     for (std::size_t f = 0; f < header.fields.size(); ++f) {
         const Field& field = header.fields[f];
         const std::size_t size = field.bytes * field.count;
         // Records lie point by point; compressed data hold each field of all points in turn.
-        const std::size_t first = by_field ? offset * count : offset;
-        const std::size_t step = by_field ? size : stride;
-        for (std::size_t i = 0; i < count && out.roles[f] != -2; ++i) {
-            const char* at = data.data() + first + i * step;
-            const std::uint32_t bits = field.bytes == 4 ? load_le<std::uint32_t>(at) : 0;
-            out.set(i, f, load_value(at, field), bits);
-        }
+        const std::size_t first = by_field ? offset * *header.points : offset;
+        collect_field(
+            field, out.roles[f], data.data() + first, by_field ? size : stride, out.cloud);
         offset += size;
     }
+}
+
+/// Colour as text: the bits of a float, or a whole number.
+std::optional<Rgb> parse_colour(std::string_view word, const Field& field) {
+    const auto value = parse_value(word);
+    if (!value) return std::nullopt;
+    if (field.type == 'F') {
+        const bool is_float =
+            std::abs(*value) <= static_cast<double>(std::numeric_limits<float>::max());
+        return unpacked_colour(
+            std::bit_cast<std::uint32_t>(is_float ? static_cast<float>(*value) : 0.0F));
+    }
+    const bool fits = *value >= 0.0 && *value <= 4294967295.0;
+    return unpacked_colour(static_cast<std::uint32_t>(fits ? *value : 0.0));
+}
+
+/// Puts a word of point `i` where it belongs; false where it is no number of the field's type.
+bool collect_word(
+    std::string_view word, const Field& field, const Role& role, std::size_t i, PointCloud& cloud) {
+    switch (role.kind) {
+        case Role::Kind::nothing: return parse_value(word).has_value();
+        case Role::Kind::colour: {
+            const auto colour = parse_colour(word, field);
+            cloud.colours[i] = colour.value_or(Rgb{});
+            return colour.has_value();
+        }
+        case Role::Kind::axis: {
+            const auto value = parse_value(word);
+            cloud.points_m[i][static_cast<Eigen::Index>(role.index)] = value.value_or(0.0);
+            return value.has_value();
+        }
+        case Role::Kind::scalar: return cloud.scalars[role.index].add(word);
+    }
+    return false;
 }
 
 Status collect_ascii(const Header& header, const std::string& file, Collector& out) {
@@ -268,21 +325,38 @@ Status collect_ascii(const Header& header, const std::string& file, Collector& o
         }
         std::size_t w = 0;
         for (std::size_t f = 0; f < header.fields.size(); ++f) {
-            for (std::size_t k = 0; k < header.fields[f].count; ++k, ++w) {
-                const auto value = parse_double(words[w]);
-                if (!value) return at_line(file, number, quoted(words[w]) + " is not a number");
-                if (out.roles[f] == -2) continue;
-                const bool fits = *value >= 0.0 && *value <= 4294967295.0;
-                const std::uint32_t bits =
-                    header.fields[f].type == 'F'
-                        ? std::bit_cast<std::uint32_t>(static_cast<float>(*value))
-                        : static_cast<std::uint32_t>(fits ? *value : 0.0);
-                out.set(point, f, *value, bits);
+            const Field& field = header.fields[f];
+            for (std::size_t k = 0; k < field.count; ++k, ++w) {
+                if (collect_word(words[w], field, out.roles[f], point, out.cloud)) continue;
+                return at_line(file,
+                               number,
+                               parse_value(words[w])
+                                   ? fmt::format("{} does not fit the field {} of type {}{}",
+                                                 quoted(words[w]),
+                                                 quoted(field.name),
+                                                 field.type,
+                                                 field.bytes)
+                                   : why_no_number(words[w]));
             }
         }
         ++point;
     }
     return {};
+}
+
+/// What a cloud does not hold of a file.
+std::vector<std::string> notes_of(const Header& header) {
+    std::vector<std::string> notes;
+    for (const Field& field : header.fields) {
+        if (field.name == "rgba" && is_colour(field)) {
+            notes.emplace_back("the fourth channel of 'rgba' is not kept");
+        } else if (field.name != "_" && field.count > 1) {
+            notes.push_back(fmt::format("the field {} with {} values a point is not kept",
+                                        quoted(field.name),
+                                        field.count));
+        }
+    }
+    return notes;
 }
 
 /// The records of a binary body; the sizes have to be right before anything is allocated.
@@ -311,8 +385,7 @@ Result<std::string> unpacked_body(const Header& header, const std::string& file)
 Status check_fields(const Header& header, const std::string& file) {
     int axes[3] = {0, 0, 0};
     for (const Field& field : header.fields) {
-        const bool axis = field.name == "x" || field.name == "y" || field.name == "z";
-        if (axis && field.count == 1) ++axes[field.name[0] - 'x'];
+        if (const auto axis = axis_of(field)) ++axes[*axis];
         if (field.type == 'F' && field.bytes < 4) {
             return input_error(
                 fmt::format("{}: field {}: F needs SIZE 4 or 8", file, quoted(field.name)));
@@ -355,11 +428,12 @@ Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file) {
         collect_binary(*header, data, header->data == Header::Data::compressed, collector);
     }
     PointCloud cloud = std::move(collector.cloud);
-    cloud.width = static_cast<int>(header->width);
+    cloud.width = static_cast<int>(*header->width);
     cloud.height = static_cast<int>(header->height);
     if (cloud.points_m.empty()) cloud.width = 0;
     if (cloud.points_m.empty() || cloud.height == 0) cloud.height = 1;
     cloud.T_cloud_sensor = header->T_cloud_sensor;
+    cloud.notes = notes_of(*header);
     return cloud;
 }
 
@@ -378,7 +452,7 @@ std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size) {
         while (const auto line = lines.next()) {
             const auto words = split(*line);
             const std::string_view key = words.empty() ? std::string_view() : words[0];
-            if (key == "WIDTH" || key == "POINTS") {
+            if (key == "WIDTH" || key == "POINTS") {  // without WIDTH, POINTS alone counts
                 with_count += fmt::format("{} {}", key, count);
             } else {
                 with_count += key == "HEIGHT" ? "HEIGHT 1" : std::string(*line);
@@ -391,25 +465,32 @@ std::optional<CloudRows> pcd_rows(std::string_view head, std::uint64_t size) {
 }
 
 std::string format_pcd(const PointCloud& cloud, const CloudFormat& format) {
-    std::string fields = "x y z";
-    const std::string real_size = format.double_precision ? " 8" : " 4";
-    std::string sizes = real_size + real_size + real_size;
-    std::string types = " F F F";
-    std::string counts = " 1 1 1";
-    const auto add_field = [&](const std::string& name, const char* type) {
+    std::string fields, sizes, types, counts;
+    const auto add_field = [&](const std::string& name, std::size_t bytes, char type) {
         fields += " " + name;
-        sizes += " 4";
-        types += type;
+        sizes += fmt::format(" {}", bytes);
+        types += fmt::format(" {}", type);
         counts += " 1";
     };
-    if (!cloud.colours.empty()) add_field("rgb", " U");
-    for (const CloudScalar& scalar : cloud.scalars) add_field(one_word(scalar.name), " F");
+    for (const char* axis : {"x", "y", "z"}) add_field(axis, format.double_precision ? 8 : 4, 'F');
+    if (!cloud.colours.empty()) add_field("rgb", 4, 'U');
+    for (const CloudScalar& scalar : cloud.scalars) {
+        std::visit(
+            [&](const auto& v) {
+                using T = typename std::decay_t<decltype(v)>::value_type;
+                const char type = std::is_floating_point_v<T> ? 'F'
+                                  : std::is_signed_v<T>       ? 'I'
+                                                              : 'U';
+                add_field(one_word(scalar.name), sizeof(T), type);
+            },
+            scalar.values);
+    }
     const Pose view = cloud.T_cloud_sensor.value_or(Pose{});
     const Eigen::Vector3d& t = view.translation_m;
     const Eigen::Quaterniond& q = view.rotation;
     std::string out = fmt::format(
-        "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS "
-        "{}\nSIZE{}\nTYPE{}\nCOUNT{}\n"
+        "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n"
+        "FIELDS{}\nSIZE{}\nTYPE{}\nCOUNT{}\n"
         "WIDTH {}\nHEIGHT {}\nVIEWPOINT {} {} {} {} {} {} {}\nPOINTS {}\nDATA {}\n",
         fields,
         sizes,
@@ -441,7 +522,8 @@ std::string format_pcd(const PointCloud& cloud, const CloudFormat& format) {
             const Rgb& c = cloud.colours[i];
             put_number(static_cast<std::uint32_t>(c.r << 16 | c.g << 8 | c.b));
         }
-        for (const CloudScalar& scalar : cloud.scalars) put_number(scalar.values[i]);
+        for (const CloudScalar& scalar : cloud.scalars)
+            std::visit([&](const auto& v) { put_number(v[i]); }, scalar.values);
         if (!format.binary) out.back() = '\n';
     }
     return out;

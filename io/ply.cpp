@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 #include "io/bytes.hpp"
 #include "io/cloud_rows.hpp"
@@ -191,38 +193,67 @@ struct Target {
     std::size_t scalar = 0;
 };
 
-std::vector<Target> targets_of(const Element& vertex, PointCloud& cloud) {
-    std::vector<Target> targets;
+ScalarValues no_values(Type type) {
+    switch (type) {
+        case Type::i8: return std::vector<std::int8_t>();
+        case Type::u8: return std::vector<std::uint8_t>();
+        case Type::i16: return std::vector<std::int16_t>();
+        case Type::u16: return std::vector<std::uint16_t>();
+        case Type::i32: return std::vector<std::int32_t>();
+        case Type::u32: return std::vector<std::uint32_t>();
+        case Type::f64: return std::vector<double>();
+        case Type::f32: break;
+    }
+    return std::vector<float>();
+}
+
+/// Three numeric properties that are called so, each once, or nothing. `type`: which they must
+/// have.
+std::optional<std::array<std::size_t, 3>> three_named(const Element& vertex,
+                                                      const std::array<std::string_view, 3>& names,
+                                                      std::optional<Type> type) {
+    std::array<std::size_t, 3> at{};
+    std::array<int, 3> count{};
+    for (std::size_t i = 0; i < vertex.properties.size(); ++i) {
+        const Property& property = vertex.properties[i];
+        if (property.count_type || (type && property.type != *type)) continue;
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            if (property.name != names[k]) continue;
+            at[k] = i;
+            ++count[k];
+        }
+    }
+    if (count != std::array<int, 3>{1, 1, 1}) return std::nullopt;
+    return at;
+}
+
+/// Targets of all properties; nothing without x, y and z (or X, Y and Z), each once.
+std::optional<std::vector<Target>> targets_of(const Element& vertex, PointCloud& cloud) {
+    auto axes = three_named(vertex, {"x", "y", "z"}, std::nullopt);
+    if (!axes) axes = three_named(vertex, {"X", "Y", "Z"}, std::nullopt);
+    if (!axes) return std::nullopt;
+    const auto colours = three_named(vertex, {"red", "green", "blue"}, Type::u8);
+    std::vector<Target> targets(vertex.properties.size());
     using Kind = Target::Kind;
-    for (const Property& property : vertex.properties) {
-        const auto kind = [&] {
-            if (property.count_type) return Kind::none;
-            if (property.name == "x") return Kind::x;
-            if (property.name == "y") return Kind::y;
-            if (property.name == "z") return Kind::z;
-            if (property.type == Type::u8) {
-                if (property.name == "red") return Kind::red;
-                if (property.name == "green") return Kind::green;
-                if (property.name == "blue") return Kind::blue;
-            }
-            return Kind::scalar;
-        }();
-        targets.push_back({kind, cloud.scalars.size()});
-        if (kind == Kind::scalar) cloud.scalars.push_back({property.name, {}});
+    for (std::size_t k = 0; k < 3; ++k) {
+        constexpr Kind kAxes[] = {Kind::x, Kind::y, Kind::z};
+        constexpr Kind kColours[] = {Kind::red, Kind::green, Kind::blue};
+        targets[(*axes)[k]].kind = kAxes[k];
+        if (colours) targets[(*colours)[k]].kind = kColours[k];
+        const Type type = vertex.properties[(*axes)[k]].type;
+        cloud.double_precision =
+            cloud.double_precision || type == Type::f64 || type == Type::i32 || type == Type::u32;
+    }
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const Property& property = vertex.properties[i];
+        if (property.count_type || targets[i].kind != Kind::none) continue;
+        targets[i] = {Kind::scalar, cloud.scalars.size()};
+        cloud.scalars.push_back({property.name, no_values(property.type)});
     }
     return targets;
 }
 
-bool has_all(const std::vector<Target>& targets, std::initializer_list<Target::Kind> kinds) {
-    for (const Target::Kind kind : kinds) {
-        bool found = false;
-        for (const Target& target : targets) found = found || target.kind == kind;
-        if (!found) return false;
-    }
-    return true;
-}
-
-/// Reads one vertex; false where the data end or a word is no number.
+/// Reads one vertex; false where the data end, a word is no number or does not fit its type.
 bool read_vertex(ValueReader& values,
                  const Element& vertex,
                  const std::vector<Target>& targets,
@@ -249,7 +280,8 @@ bool read_vertex(ValueReader& values,
             case Target::Kind::green: colour.g = channel(); break;
             case Target::Kind::blue: colour.b = channel(); break;
             case Target::Kind::scalar:
-                cloud.scalars[targets[i].scalar].values.push_back(static_cast<float>(*value));
+                // A double holds every value of the types that PLY has.
+                if (!cloud.scalars[targets[i].scalar].add(*value)) return false;
                 break;
             case Target::Kind::none: break;
         }
@@ -284,30 +316,78 @@ Result<PointCloud> read_vertices(const Element& vertex,
                                  ValueReader& values,
                                  const std::string& file) {
     PointCloud cloud;
-    const std::vector<Target> targets = targets_of(vertex, cloud);
-    if (!has_all(targets, {Target::Kind::x, Target::Kind::y, Target::Kind::z})) {
-        return input_error(fmt::format("{}: PLY vertices without x, y and z", file));
+    const auto targets = targets_of(vertex, cloud);
+    if (!targets) {
+        return input_error(fmt::format(
+            "{}: PLY vertices without x, y and z, or with one of them more than once", file));
     }
-    using Kind = Target::Kind;
-    const bool coloured = has_all(targets, {Kind::red, Kind::green, Kind::blue});
+    const bool coloured = std::any_of(targets->begin(), targets->end(), [](const Target& target) {
+        return target.kind == Target::Kind::red;
+    });
     cloud.points_m.reserve(vertex.count);
-    for (CloudScalar& scalar : cloud.scalars) scalar.values.reserve(vertex.count);
+    if (coloured) cloud.colours.reserve(vertex.count);
+    for (CloudScalar& scalar : cloud.scalars) scalar.reserve(vertex.count);
     for (std::uint64_t i = 0; i < vertex.count; ++i) {
-        if (read_vertex(values, vertex, targets, coloured, cloud)) continue;
+        if (read_vertex(values, vertex, *targets, coloured, cloud)) continue;
         return input_error(
-            fmt::format("{}: PLY vertex {} of {} is cut off or no number", file, i, vertex.count));
+            fmt::format("{}: PLY vertex {} of {} is cut off, no number, or beyond the "
+                        "type of its property",
+                        file,
+                        i,
+                        vertex.count));
     }
     cloud.width = static_cast<int>(vertex.count);
     return cloud;
 }
 
-template <typename T>
-void put(std::string& out, double value, bool binary) {
-    if (binary) {
-        store_le(out, static_cast<T>(value));
-    } else {
-        out += fmt::format("{} ", static_cast<T>(value));
+/// What a cloud does not hold of a file.
+std::vector<std::string> notes_of(const Header& header) {
+    std::vector<std::string> notes;
+    for (const Element& element : header.elements) {
+        if (element.name != "vertex" && element.count > 0) {
+            notes.push_back(fmt::format("the element {} is not kept", quoted(element.name)));
+        }
+        for (const Property& property : element.properties) {
+            if (element.name != "vertex" || !property.count_type) continue;
+            notes.push_back(
+                fmt::format("the list {} of vertices is not kept", quoted(property.name)));
+        }
     }
+    return notes;
+}
+
+template <typename T>
+void put(std::string& out, T value, bool binary) {
+    if (binary) {
+        store_le(out, value);
+    } else {
+        out += fmt::format("{} ", value);
+    }
+}
+
+/// PLY has no whole numbers of 64 bits: they become doubles.
+template <typename T>
+constexpr bool kNotInPly = std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::uint64_t>;
+
+template <typename T>
+void put_scalar(std::string& out, T value, bool binary) {
+    if constexpr (kNotInPly<T>) {
+        put(out, static_cast<double>(value), binary);
+    } else {
+        put(out, value, binary);
+    }
+}
+
+template <typename T>
+constexpr const char* ply_type() {
+    if (std::is_same_v<T, float>) return "float";
+    if (std::is_same_v<T, std::int8_t>) return "char";
+    if (std::is_same_v<T, std::uint8_t>) return "uchar";
+    if (std::is_same_v<T, std::int16_t>) return "short";
+    if (std::is_same_v<T, std::uint16_t>) return "ushort";
+    if (std::is_same_v<T, std::int32_t>) return "int";
+    if (std::is_same_v<T, std::uint32_t>) return "uint";
+    return "double";
 }
 
 }  // namespace
@@ -325,7 +405,11 @@ Result<PointCloud> parse_ply(std::string_view bytes, const std::string& file) {
         if (!element.properties.empty() && (element.count > room || element.count > kMaxPoints)) {
             return too_short(file, element, header->body.size());
         }
-        if (element.name == "vertex") return read_vertices(element, values, file);
+        if (element.name == "vertex") {
+            Result<PointCloud> cloud = read_vertices(element, values, file);
+            if (cloud) cloud->notes = notes_of(*header);
+            return cloud;
+        }
         if (!skip_element(values, element)) return too_short(file, element, header->body.size());
     }
     return input_error(fmt::format("{}: PLY without vertices", file));
@@ -369,23 +453,27 @@ std::string format_ply(const PointCloud& cloud, const CloudFormat& format) {
         for (const char* c : {"red", "green", "blue"}) out += fmt::format("property uchar {}\n", c);
     }
     for (const CloudScalar& scalar : cloud.scalars) {
-        out += fmt::format("property float {}\n", one_word(scalar.name));
+        const char* type = std::visit(
+            [](const auto& v) {
+                return ply_type<typename std::decay_t<decltype(v)>::value_type>();
+            },
+            scalar.values);
+        out += fmt::format("property {} {}\n", type, one_word(scalar.name));
     }
     out += "end_header\n";
     for (std::size_t i = 0; i < cloud.points_m.size(); ++i) {
         for (const double value : cloud.points_m[i]) {
-            format.double_precision ? put<double>(out, value, format.binary)
-                                    : put<float>(out, value, format.binary);
+            format.double_precision ? put(out, value, format.binary)
+                                    : put(out, static_cast<float>(value), format.binary);
         }
         if (!cloud.colours.empty()) {
             const Rgb& colour = cloud.colours[i];
             for (const std::uint8_t channel : {colour.r, colour.g, colour.b}) {
-                put<std::uint8_t>(out, channel, format.binary);
+                put(out, channel, format.binary);
             }
         }
-        for (const CloudScalar& scalar : cloud.scalars) {
-            put<float>(out, static_cast<double>(scalar.values[i]), format.binary);
-        }
+        for (const CloudScalar& scalar : cloud.scalars)
+            std::visit([&](const auto& v) { put_scalar(out, v[i], format.binary); }, scalar.values);
         if (!format.binary) out.back() = '\n';
     }
     return out;

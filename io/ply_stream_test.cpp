@@ -29,7 +29,7 @@ TEST(PlyStream, CanBeReadAfterEveryPiece) {
         ASSERT_EQ(cloud->points_m.size(), static_cast<std::size_t>(i + 1));
         EXPECT_EQ(cloud->points_m.back(), Eigen::Vector3d(i, 2.0, 3.0));
         EXPECT_EQ(cloud->points_m.front(), Eigen::Vector3d(0.0, 2.0, 3.0));
-        EXPECT_EQ(cloud->scalar("station")->values.back(), 1.0F);
+        EXPECT_EQ(cloud->scalar("station")->floats().back(), 1.0F);
     }
     EXPECT_EQ(stream->points(), 12);
     EXPECT_TRUE(stream->close().ok());

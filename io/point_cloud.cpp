@@ -24,16 +24,17 @@ std::optional<std::string> PointCloud::problem() const {
         return fmt::format("{} colours for {} points", colours.size(), count);
     }
     for (const CloudScalar& scalar : scalars) {
-        if (scalar.values.size() != count) {
+        if (scalar.size() != count) {
             return fmt::format(
-                "{} values of '{}' for {} points", scalar.values.size(), scalar.name, count);
+                "{} values of '{}' for {} points", scalar.size(), scalar.name, count);
         }
     }
     return std::nullopt;
 }
 
 bool is_text_cloud(std::string_view extension) noexcept {
-    return extension == ".xyz" || extension == ".asc" || extension == ".txt" || extension == ".csv";
+    return extension == ".xyz" || extension == ".asc" || extension == ".txt" ||
+           extension == ".csv" || extension == ".pts";
 }
 
 Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) {
@@ -50,10 +51,11 @@ Result<PointCloud> read_cloud(const std::string& path) {
     const bool named =
         extension == ".ply" || extension == ".pcd" || extension == ".las" || extension == ".vtk";
     if (!named && !is_text_cloud(extension)) {
-        const char* hint = extension == ".laz"
-                               ? "nothing packaged reads LAZ: convert it with 'pdal translate "
-                                 "IN.laz OUT.las' or 'laszip'"
-                               : "clouds are read from .ply .pcd .las .vtk .xyz .asc .txt .csv";
+        const char* hint =
+            extension == ".laz"
+                ? "nothing packaged reads LAZ: convert it with 'pdal translate "
+                  "IN.laz OUT.las' or 'laszip'"
+                : "clouds are read from .ply .pcd .las .vtk .xyz .asc .txt .csv .pts";
         return input_error(fmt::format("{}: unknown cloud format '{}'; {}", path, extension, hint));
     }
     const Result<std::string> bytes = read_file(path);

@@ -7,17 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "io/cloud_scalar.hpp"
 #include "io/image_file.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::io {
-
-/// A further value per point: intensity, variance, a normal's component.
-struct CloudScalar {
-    std::string name;
-    std::vector<float> values;
-};
 
 /// Points of a file, in its own frame [m].
 struct PointCloud {
@@ -26,7 +21,11 @@ struct PointCloud {
     int height = 1;            ///< organised: rows > 1; point of (u, v) at v * width + u
     std::vector<Rgb> colours;  ///< one per point, or none at all
     std::vector<CloudScalar> scalars;
-    std::optional<Pose> T_cloud_sensor;  ///< viewpoint, where the file knows one
+    /// Viewpoint, where the file knows one (PCD's VIEWPOINT). The points are as the file has them:
+    /// it is not applied to them.
+    std::optional<Pose> T_cloud_sensor;
+    bool double_precision = false;   ///< the file's coordinates may need more than 24 bits
+    std::vector<std::string> notes;  ///< what the file holds that is not here, a sentence each
 
     [[nodiscard]] bool organised() const noexcept { return height > 1; }
     [[nodiscard]] const CloudScalar* scalar(std::string_view name) const noexcept;
@@ -40,37 +39,42 @@ struct CloudFormat {
     bool double_precision = false;  ///< for large (projected) coordinates; float keeps 24 bits
 };
 
-/// .xyz .asc .txt .csv: a point a line.
+/// .xyz .asc .txt .csv .pts: a point a line.
 [[nodiscard]] bool is_text_cloud(std::string_view extension) noexcept;
 
-/// By extension: .ply, .pcd, .las, .vtk, and .xyz .asc .txt .csv as text.
+/// By extension: .ply, .pcd, .las, .vtk, and .xyz .asc .txt .csv .pts as text.
 [[nodiscard]] Result<PointCloud> read_cloud(const std::string& path);
 /// The content of such a file; `file` says by its extension what it is.
 [[nodiscard]] Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file);
 
 /// PLY 1.0: ascii, binary_little_endian, binary_big_endian; vertices with x y z, optional colours
-/// (red green blue) and any further numeric property as scalar. Other elements are stepped over.
+/// (red green blue, all three as uchar) and any further numeric property as scalar. Lists and other
+/// elements are stepped over.
 [[nodiscard]] Result<PointCloud> parse_ply(std::string_view bytes, const std::string& file);
 [[nodiscard]] std::string format_ply(const PointCloud& cloud, const CloudFormat& format = {});
 [[nodiscard]] Status write_ply(const std::string& path,
                                const PointCloud& cloud,
                                const CloudFormat& format = {});
 
-/// PCD 0.7: ascii, binary, binary_compressed (LZF); padding fields and COUNT > 1 are stepped over.
+/// PCD 0.5 to 0.7: ascii, binary, binary_compressed (LZF); padding fields and COUNT > 1 are stepped
+/// over. X Y Z, COLUMNS for FIELDS and a head without WIDTH are read too.
 [[nodiscard]] Result<PointCloud> parse_pcd(std::string_view bytes, const std::string& file);
 [[nodiscard]] std::string format_pcd(const PointCloud& cloud, const CloudFormat& format = {});
 [[nodiscard]] Status write_pcd(const std::string& path,
                                const PointCloud& cloud,
                                const CloudFormat& format = {});
 
-/// LAS 1.0 to 1.4, point formats 0 to 10: intensity, classification and colours; not LAZ.
+/// LAS 1.0 to 1.4, point formats 0 to 10, not LAZ: the fields of a point as scalars, and colours
+/// (of 8 bits). Flags, wave packets and extra bytes are stepped over.
 [[nodiscard]] Result<PointCloud> parse_las(std::string_view bytes, const std::string& file);
 
 /// The POINTS of a legacy VTK file, as text.
 [[nodiscard]] Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file);
 
-/// Lines of at least "x y z" with blanks, commas, semicolons or tabs between; '#' and '//' lines
-/// are comments; a "//X Y Z name ..." head names the further columns, which become scalars.
+/// Lines of points in text. One of blanks (or tabs), commas and semicolons separates. A head line,
+/// with or without '#' or '//' before it, names the columns: x, y and z are found by their names.
+/// Without one they are the first three. Further columns become scalars; an empty field is NaN. A
+/// number alone in a line, before points, is how many follow. Errors name the line.
 [[nodiscard]] Result<PointCloud> parse_text_cloud(std::string_view text, const std::string& file);
 [[nodiscard]] std::string format_text_cloud(const PointCloud& cloud);
 [[nodiscard]] Status write_text_cloud(const std::string& path, const PointCloud& cloud);

@@ -61,31 +61,80 @@ std::optional<std::int64_t> parse_int64(std::string_view text) noexcept {
     return value;
 }
 
-std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) noexcept {
-    constexpr double kMaxSeconds = 9.2e9;  // int64 holds 9.22e18 ns
+std::optional<double> parse_value(std::string_view text) noexcept {
+    // What databases, spreadsheets and the C runtime of Windows print for a missing number.
+    static constexpr std::string_view kMissing[] = {"null",
+                                                    "na",
+                                                    "n/a",
+                                                    "#n/a",
+                                                    "none",
+                                                    "-nan",
+                                                    "-nan(ind)",
+                                                    "nan(ind)",
+                                                    "1.#qnan",
+                                                    "-1.#qnan",
+                                                    "1.#ind",
+                                                    "-1.#ind"};
+    constexpr std::size_t kLongest = 9;
+    if (const auto value = parse_double(text)) return value;
+    if (text.empty() || text.size() > kLongest) return std::nullopt;
+    const std::string lower = lowercase(text);
+    for (const std::string_view word : kMissing)
+        if (lower == word) return std::numeric_limits<double>::quiet_NaN();
+    return std::nullopt;
+}
+
+bool has_decimal_comma(std::string_view text) noexcept {
+    const std::size_t comma = text.find(',');
+    if (comma == text.npos || comma + 1 == text.size() || !is_digit(text[comma + 1])) return false;
+    return text.find_first_not_of("0123456789+-.,eE") == text.npos;
+}
+
+std::string why_no_number(std::string_view word) {
+    if (!has_decimal_comma(word)) return quoted(word) + " is not a number";
+    return quoted(word) + " has a decimal comma: write decimal points (1.5, not 1,5)";
+}
+
+std::optional<std::string> encoding_problem(std::string_view text) {
+    if (!text.starts_with("\xff\xfe") && !text.starts_with("\xfe\xff")) return std::nullopt;
+    return "is text in UTF-16: save it as UTF-8 or plain ASCII";
+}
+
+std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) noexcept {
+    constexpr double kMax = 9.2e18;  // int64 holds 9.22e18
+    std::int64_t scale = 1;
+    for (int i = 0; i < decimals; ++i) scale *= 10;
     text = without_plus(text);
     const bool negative = !text.empty() && text[0] == '-';
     std::string_view digits = text.substr(negative ? 1 : 0);
     if (digits.find_first_not_of("0123456789.") != digits.npos) {  // exponent, as KITTI writes
-        const auto seconds = parse_double(text);
-        if (!seconds || !(std::abs(*seconds) < kMaxSeconds)) return std::nullopt;
-        return ns_from_seconds(*seconds);
+        const auto value = parse_double(text);
+        if (!value) return std::nullopt;
+        const double scaled = std::round(*value * static_cast<double>(scale));
+        if (!(std::abs(scaled) < kMax)) return std::nullopt;
+        return static_cast<std::int64_t>(scaled);
     }
     const std::size_t dot = std::min(digits.find('.'), digits.size());
     const std::string_view whole = digits.substr(0, dot);
     const std::string_view fraction = dot < digits.size() ? digits.substr(dot + 1) : "";
     if (whole.empty() && fraction.empty()) return std::nullopt;
     if (fraction.find('.') != fraction.npos) return std::nullopt;
-    const auto seconds = whole.empty() ? std::optional<std::int64_t>(0) : parse_int64(whole);
-    if (!seconds || static_cast<double>(*seconds) >= kMaxSeconds) return std::nullopt;
-    std::int64_t ns = *seconds * kNanosecondsPerSecond;
-    std::int64_t unit = kNanosecondsPerSecond;
-    for (std::size_t i = 0; i < fraction.size() && i < 9; ++i) {
+    const auto ones = whole.empty() ? std::optional<std::int64_t>(0) : parse_int64(whole);
+    if (!ones || static_cast<double>(*ones) * static_cast<double>(scale) >= kMax)
+        return std::nullopt;
+    std::int64_t sum = *ones * scale;
+    std::int64_t unit = scale;
+    const auto kept = static_cast<std::size_t>(decimals);
+    for (std::size_t i = 0; i < fraction.size() && i < kept; ++i) {
         unit /= 10;
-        ns += (fraction[i] - '0') * unit;
+        sum += (fraction[i] - '0') * unit;
     }
-    if (fraction.size() > 9 && fraction[9] >= '5') ns += 1;
-    return negative ? -ns : ns;
+    if (fraction.size() > kept && fraction[kept] >= '5') sum += 1;
+    return negative ? -sum : sum;
+}
+
+std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) noexcept {
+    return parse_decimal(text, 9);
 }
 
 std::string format_seconds(std::int64_t time_ns) {
@@ -124,6 +173,12 @@ std::string lowercase(std::string_view text) {
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
     return lower;
+}
+
+std::string_view unquoted(std::string_view text) noexcept {
+    const bool quotes = text.size() >= 2 && text.front() == text.back() &&
+                        (text.front() == '"' || text.front() == '\'');
+    return quotes ? text.substr(1, text.size() - 2) : text;
 }
 
 std::string one_word(std::string_view name) {
@@ -169,12 +224,23 @@ bool natural_less(std::string_view a, std::string_view b) noexcept {
     return a < b;  // "01" and "1": a total order all the same
 }
 
+LineReader::LineReader(std::string_view text) noexcept : rest_(text), next_feed_(text.size() + 1) {}
+
 std::optional<std::string_view> LineReader::next() noexcept {
     if (rest_.empty()) return std::nullopt;
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    // The next LF is looked for once: a file that has CR alone would be searched to its end for
+    // every line.
+    if (next_feed_ > rest_.size()) {
+        const std::size_t feed = rest_.find('\n');
+        next_feed_ = feed == rest_.npos ? 0 : rest_.size() - feed;
+    }
+    const std::size_t feed = rest_.size() - next_feed_;
+    const std::size_t end = std::min(rest_.substr(0, feed).find('\r'), feed);
     std::string_view line = rest_.substr(0, end);
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+    const bool both = end + 1 == feed && feed < rest_.size();  // CR LF
+    rest_.remove_prefix(std::min(end + (both ? 2 : 1), rest_.size()));
     ++number_;
     return line;
 }

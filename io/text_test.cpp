@@ -83,6 +83,37 @@ TEST(Text, LinesCountAndLoseTheirEnds) {
     EXPECT_EQ(lines.next(), "b");
     EXPECT_EQ(lines.number(), 3);
     EXPECT_FALSE(lines.next().has_value());
+    LineReader odd(
+        "\xef\xbb\xbf"
+        "a\rb\r\n\rc");
+    for (const char* line : {"a", "b", "", "c"}) EXPECT_EQ(odd.next(), line);
+    EXPECT_EQ(odd.number(), 4);
+    EXPECT_FALSE(odd.next().has_value());
+    LineReader head("end_header\r\n\r\n.");
+    EXPECT_EQ(head.next(), "end_header");
+    EXPECT_EQ(head.rest(), "\r\n.") << "bytes behind a line are left as they are";
+}
+
+TEST(Text, MissingValuesAreNanAndDecimalCommasAreNamed) {
+    for (const char* word :
+         {"null", "NULL", "NA", "n/a", "none", "-nan", "-nan(ind)", "1.#QNAN", "NaN"})
+        EXPECT_TRUE(std::isnan(parse_value(word).value_or(0.0))) << word;
+    EXPECT_EQ(parse_value("-1.5e3"), -1500.0);
+    for (const char* bad : {"", "1,5", "nothing", "0x10"}) EXPECT_FALSE(parse_value(bad)) << bad;
+    EXPECT_TRUE(testing::contains(why_no_number("1,5"), "'1,5' has a decimal comma"));
+    EXPECT_TRUE(testing::contains(why_no_number(",25E-01"), "decimal comma"));
+    EXPECT_EQ(why_no_number("a,b"), "'a,b' is not a number");
+    EXPECT_TRUE(encoding_problem("\xff\xfe"
+                                 "0")
+                    .has_value());
+    EXPECT_FALSE(encoding_problem("0 0 0").has_value());
+}
+
+TEST(Text, DecimalsMoveExactly) {
+    EXPECT_EQ(parse_decimal("1403636579049999872.4", 0), 1403636579049999872);
+    EXPECT_EQ(parse_decimal("1.5", 0), 2);
+    EXPECT_EQ(parse_decimal("1403636579049999.8", 3), 1403636579049999800);
+    EXPECT_FALSE(parse_decimal("9300000000000000000", 0).has_value());
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "io/file.hpp"
+#include "io/stamps.hpp"
 #include "io/text.hpp"
+#include "io/trajectory_table.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -21,77 +24,123 @@ Error at_line(const std::string& file, int line, const std::string& what) {
     return input_error(fmt::format("{}:{}: {}", file, line, what));
 }
 
-/// Calls `take(words)` for every line with content; an error of it gets file and line.
-template <typename Take>
-Status for_each_row(std::string_view text,
-                    const std::string& file,
-                    std::size_t columns,
-                    Take take) {
-    LineReader lines(text);
-    while (const auto line = lines.next()) {
-        const std::vector<std::string_view> words = split(*line, " \t,");
-        if (words.empty() || words[0].starts_with("#")) continue;
-        if (words.size() != columns) {
-            return at_line(file,
-                           lines.number(),
-                           fmt::format("{} numbers; {} belong in a line", words.size(), columns));
+/// x y z qx qy qz qw.
+Result<Pose> pose_of_seven(const std::array<double, 12>& v) {
+    const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+    if (std::abs(rotation.norm() - 1.0) > kNormTolerance) {
+        return input_error(fmt::format(
+            "quaternion has length {:.4f}; it must be 1 +- {}", rotation.norm(), kNormTolerance));
+    }
+    return Pose{rotation.normalized(), {v[0], v[1], v[2]}};
+}
+
+/// The upper 3x4 of a matrix, row by row.
+Result<Pose> pose_of_twelve(const std::array<double, 12>& v) {
+    Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+    for (Eigen::Index i = 0; i < 12; ++i) T(i / 4, i % 4) = v[static_cast<std::size_t>(i)];
+    const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+    const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (!(error < kRotationTolerance) || R.determinant() < 0.0) {
+        return input_error(
+            fmt::format("its left 3x3 is no rotation (R^T R differs from 1 by {:.3g})", error));
+    }
+    return Pose::from_matrix(T);
+}
+
+StampUnit unit_of(const TrajectoryTable& table) {
+    if (table.layout().unit) return *table.layout().unit;
+    std::vector<std::string_view> stamps;
+    for (const TrajectoryRow& row : table.rows()) stamps.push_back(row.stamp);
+    return stamp_unit_of(stamps);
+}
+
+/// Sorts by time; of poses with one stamp the first of the file is kept.
+void sort_and_thin(TrajectoryFile& out) {
+    const auto earlier = [](const StampedPose& a, const StampedPose& b) {
+        return a.time_ns < b.time_ns;
+    };
+    out.sorted = !std::is_sorted(out.poses.begin(), out.poses.end(), earlier);
+    std::stable_sort(out.poses.begin(), out.poses.end(), earlier);
+    Trajectory kept;
+    for (const StampedPose& pose : out.poses) {
+        if (kept.empty() || pose.time_ns != kept.back().time_ns) {
+            kept.push_back(pose);
+            continue;
         }
-        const std::string problem = take(words);
-        if (!problem.empty()) return at_line(file, lines.number(), problem);
+        ++out.repeated;
+        const double apart_m =
+            (pose.T_world_body.translation_m - kept.back().T_world_body.translation_m).norm();
+        out.repeated_apart_m = std::max(out.repeated_apart_m, apart_m);
     }
-    return {};
-}
-
-/// Finite numbers from words[first]...; the problem in words or an empty string.
-std::string parse_numbers(const std::vector<std::string_view>& words,
-                          std::size_t first,
-                          std::vector<double>& out) {
-    out.clear();
-    for (std::size_t i = first; i < words.size(); ++i) {
-        const auto value = parse_double(words[i]);
-        if (!value || !std::isfinite(*value)) return quoted(words[i]) + " is not a finite number";
-        out.push_back(*value);
-    }
-    return {};
-}
-
-std::string parse_stamp(std::string_view word, const std::int64_t* previous_ns, std::int64_t& out) {
-    const auto time_ns = parse_seconds_as_ns(word);
-    if (!time_ns) return fmt::format("stamp {} is not a time in seconds", quoted(word));
-    if (previous_ns != nullptr && *time_ns <= *previous_ns) {
-        return fmt::format("stamp {} s does not grow: {} s came before",
-                           format_seconds(*time_ns),
-                           format_seconds(*previous_ns));
-    }
-    out = *time_ns;
-    return {};
+    out.poses = std::move(kept);
 }
 
 }  // namespace
 
-Result<Trajectory> parse_tum_trajectory(std::string_view text, const std::string& file) {
-    Trajectory trajectory;
-    std::vector<double> v;
-    const Status status = for_each_row(text, file, 8, [&](const auto& words) -> std::string {
-        StampedPose pose;
-        const std::int64_t* previous_ns = trajectory.empty() ? nullptr : &trajectory.back().time_ns;
-        if (auto problem = parse_stamp(words[0], previous_ns, pose.time_ns); !problem.empty()) {
-            return problem;
+std::vector<std::string> TrajectoryFile::notes() const {
+    std::vector<std::string> notes;
+    if (repeated > 0) {
+        notes.push_back(fmt::format(
+            "{} rows left out whose stamp was there already (at most {:.4f} m from the row that "
+            "was kept, the first)",
+            repeated,
+            repeated_apart_m));
+    }
+    if (not_finite > 0)
+        notes.push_back(fmt::format("{} rows left out that hold NaN or infinity", not_finite));
+    if (sorted) notes.emplace_back("the rows were not in the order of time; they are sorted");
+    return notes;
+}
+
+Result<TrajectoryFile> parse_trajectory(std::string_view text, const std::string& file) {
+    const auto table = TrajectoryTable::read(text, file);
+    if (!table) return table.error();
+    TrajectoryFile out;
+    out.format = table->layout().format;
+    const bool stamped = table->layout().stamped;
+    const StampUnit unit = unit_of(*table);
+    out.stamps = stamped ? std::string(unit.name) : "none";
+    for (const TrajectoryRow& row : table->rows()) {
+        const std::size_t index = out.rows++;
+        if (!row.finite) {
+            ++out.not_finite;
+            continue;
         }
-        if (auto problem = parse_numbers(words, 1, v); !problem.empty()) return problem;
-        const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-        if (std::abs(rotation.norm() - 1.0) > kNormTolerance) {
-            return fmt::format("quaternion has length {:.4f}; it must be 1 +- {}",
-                               rotation.norm(),
-                               kNormTolerance);
+        const auto time_ns = stamped ? parse_stamp_ns(row.stamp, unit)
+                                     : static_cast<std::int64_t>(index) * kKittiPeriod_ns;
+        if (!time_ns) {
+            return at_line(
+                file,
+                row.line,
+                fmt::format("stamp {} is not a time in {}", quoted(row.stamp), unit.name));
         }
-        pose.T_world_body = {rotation.normalized(), {v[0], v[1], v[2]}};
-        trajectory.push_back(pose);
-        return {};
-    });
-    if (!status) return status.error();
-    if (trajectory.empty()) return input_error(file + ": no poses in this trajectory");
-    return trajectory;
+        const auto pose = stamped ? pose_of_seven(row.numbers) : pose_of_twelve(row.numbers);
+        if (!pose) return at_line(file, row.line, pose.error().message);
+        out.poses.push_back({*time_ns, *pose});
+        if (!stamped) out.row_of_pose.push_back(index);
+    }
+    if (out.poses.empty()) {
+        return input_error(fmt::format(
+            "{}: no poses in this trajectory ({} rows of numbers)", file, table->rows().size()));
+    }
+    if (stamped) sort_and_thin(out);
+    return out;
+}
+
+Status give_stamps(std::span<const std::int64_t> times_ns,
+                   const std::string& from,
+                   TrajectoryFile& trajectory) {
+    if (times_ns.size() < trajectory.rows) {
+        return input_error(
+            fmt::format("{}: {} stamps for {} poses", from, times_ns.size(), trajectory.rows));
+    }
+    for (std::size_t i = 0; i < trajectory.poses.size(); ++i) {
+        trajectory.poses[i].time_ns = times_ns[trajectory.row_of_pose[i]];
+    }
+    trajectory.stamps = from;
+    trajectory.row_of_pose.clear();
+    sort_and_thin(trajectory);
+    return {};
 }
 
 std::string format_tum_trajectory(const Trajectory& trajectory) {
@@ -112,104 +161,54 @@ std::string format_tum_trajectory(const Trajectory& trajectory) {
     return out;
 }
 
-Result<std::vector<Pose>> parse_kitti_poses(std::string_view text, const std::string& file) {
-    std::vector<Pose> poses;
-    std::vector<double> v;
-    const Status status = for_each_row(text, file, 12, [&](const auto& words) -> std::string {
-        if (auto problem = parse_numbers(words, 0, v); !problem.empty()) return problem;
-        Eigen::Matrix4d T_world_camera = Eigen::Matrix4d::Identity();
-        for (Eigen::Index i = 0; i < 12; ++i) {
-            T_world_camera(i / 4, i % 4) = v[static_cast<std::size_t>(i)];
-        }
-        const Eigen::Matrix3d R = T_world_camera.topLeftCorner<3, 3>();
-        const double error =
-            (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-        if (!(error < kRotationTolerance) || R.determinant() < 0.0) {
-            return fmt::format("its left 3x3 is no rotation (R^T R differs from 1 by {:.3g})",
-                               error);
-        }
-        poses.push_back(Pose::from_matrix(T_world_camera));
-        return {};
-    });
-    if (!status) return status.error();
-    if (poses.empty()) return input_error(file + ": no poses in this file");
-    return poses;
-}
-
-Result<std::vector<std::int64_t>> parse_times(std::string_view text, const std::string& file) {
-    std::vector<std::int64_t> times_ns;
-    const Status status = for_each_row(text, file, 1, [&](const auto& words) -> std::string {
-        std::int64_t time_ns = 0;
-        std::string problem = parse_stamp(words[0], nullptr, time_ns);
-        if (problem.empty() && time_ns < 0)
-            problem = fmt::format("stamp {} s is negative", words[0]);
-        if (problem.empty()) times_ns.push_back(time_ns);
-        return problem;
-    });
-    if (!status) return status.error();
-    return times_ns;
-}
-
-Result<Trajectory> read_tum_trajectory(const std::string& path) {
+Result<TrajectoryFile> read_trajectory(const std::string& path, bool ignore_times_beside) {
     const Result<std::string> text = read_file(path);
     if (!text) return text.error();
-    return parse_tum_trajectory(*text, path);
+    Result<TrajectoryFile> trajectory = parse_trajectory(*text, path);
+    if (!trajectory || trajectory->has_stamps() || ignore_times_beside) return trajectory;
+    const std::string times = join_path(folder_of(path), "times.txt");
+    if (!is_file(times)) return trajectory;
+    const auto times_ns = read_times(times);
+    if (!times_ns) return times_ns.error();
+    if (Status status = give_stamps(*times_ns, times, *trajectory); !status) return status.error();
+    return trajectory;
 }
 
 Status write_tum_trajectory(const std::string& path, const Trajectory& trajectory) {
     return write_file(path, format_tum_trajectory(trajectory));
 }
 
-Result<std::vector<Pose>> read_kitti_poses(const std::string& path) {
-    const Result<std::string> text = read_file(path);
-    if (!text) return text.error();
-    return parse_kitti_poses(*text, path);
+Result<std::vector<std::int64_t>> parse_times(std::string_view text, const std::string& file) {
+    if (const auto problem = encoding_problem(text)) return at_line(file, 1, *problem);
+    std::vector<std::string_view> words;
+    std::vector<int> line_of;
+    LineReader lines(text);
+    while (const auto line = lines.next()) {
+        const std::string_view content = trimmed(*line);
+        if (content.empty() || is_comment(content)) continue;
+        if (!parse_double(content)) return at_line(file, lines.number(), "stamp " + why_no_number(content));
+        words.push_back(content);
+        line_of.push_back(lines.number());
+    }
+    const StampUnit unit = stamp_unit_of(words);
+    std::vector<std::int64_t> times_ns;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const auto time_ns = parse_stamp_ns(words[i], unit);
+        if (!time_ns || *time_ns < 0) {
+            return at_line(
+                file,
+                line_of[i],
+                fmt::format("stamp {} is not a time in {} from 0 on", quoted(words[i]), unit.name));
+        }
+        times_ns.push_back(*time_ns);
+    }
+    return times_ns;
 }
 
 Result<std::vector<std::int64_t>> read_times(const std::string& path) {
     const Result<std::string> text = read_file(path);
     if (!text) return text.error();
     return parse_times(*text, path);
-}
-
-Result<Trajectory> read_trajectory(const std::string& path) {
-    const Result<std::string> text = read_file(path);
-    if (!text) return text.error();
-    std::size_t columns = 0;
-    LineReader lines(*text);
-    while (const auto line = lines.next()) {
-        const auto words = split(*line, " \t,");
-        if (words.empty() || words[0].starts_with("#")) continue;
-        columns = words.size();
-        break;
-    }
-    if (columns != 12) return parse_tum_trajectory(*text, path);
-    const Result<std::vector<Pose>> poses = parse_kitti_poses(*text, path);
-    if (!poses) return poses.error();
-    std::vector<std::int64_t> times_ns;
-    if (const std::string times = join_path(folder_of(path), "times.txt"); is_file(times)) {
-        Result<std::vector<std::int64_t>> stamps = read_times(times);
-        if (!stamps) return stamps.error();
-        times_ns = std::move(stamps).value();
-        if (times_ns.size() < poses->size()) {
-            return input_error(fmt::format("{}: {} stamps for the {} poses of {}",
-                                           times,
-                                           times_ns.size(),
-                                           poses->size(),
-                                           path));
-        }
-    }
-    Trajectory trajectory;
-    for (std::size_t i = 0; i < poses->size(); ++i) {
-        const auto index = static_cast<std::int64_t>(i);
-        const std::int64_t time_ns = times_ns.empty() ? index * kKittiPeriod_ns : times_ns[i];
-        if (!trajectory.empty() && time_ns <= trajectory.back().time_ns) {
-            return input_error(
-                fmt::format("{}: stamp {} of its times.txt does not grow", path, i + 1));
-        }
-        trajectory.push_back({time_ns, (*poses)[i]});
-    }
-    return trajectory;
 }
 
 }  // namespace surefoot::io

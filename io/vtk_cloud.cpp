@@ -12,6 +12,7 @@ namespace {
 /// The count and the text behind the line "POINTS n type".
 struct Points {
     std::int64_t count = 0;
+    bool doubles = false;
     std::string_view text;
 };
 
@@ -36,7 +37,7 @@ Result<Points> find_points(std::string_view bytes, const std::string& file) {
             return input_error(
                 fmt::format("{}:{}: expected 'POINTS count type'", file, lines.number()));
         }
-        return Points{*count, lines.rest()};
+        return Points{*count, words[2] == "double", lines.rest()};
     }
     return input_error(fmt::format("{}: VTK file without POINTS", file));
 }
@@ -63,20 +64,23 @@ Result<PointCloud> parse_vtk(std::string_view bytes, const std::string& file) {
         Eigen::Vector3d p_m;
         for (double& c_m : p_m) {
             const std::string_view word = words.next();
-            const auto value = parse_double(word);
+            const auto value = parse_value(word);
             if (!value) {
                 return input_error(
-                    fmt::format("{}: VTK point {} of {}: {} is not a number",
+                    fmt::format("{}: VTK point {} of {}: {}",
                                 file,
                                 i,
                                 points->count,
-                                word.empty() ? std::string("the end of the file") : quoted(word)));
+                                word.empty() ? "the file ends here" : why_no_number(word)));
             }
             c_m = *value;
         }
         cloud.points_m.push_back(p_m);
     }
     cloud.width = static_cast<int>(points->count);
+    cloud.double_precision = points->doubles;
+    if (points->text.find("\nPOINT_DATA") != std::string_view::npos)
+        cloud.notes.emplace_back("the values of points (POINT_DATA) are not kept");
     return cloud;
 }
 

@@ -28,6 +28,7 @@ std::string voxel_json(const ThinnedCloud& thinned, double size_m, const std::st
                          {"skipped", thinned.skipped},
                          {"size_m", size_m},
                          {"shift_m", vector(thinned.shift_m)},
+                         {"notes", thinned.notes},
                          {"file", file}};
     return object.dump(kIndent);
 }
@@ -44,6 +45,7 @@ std::string sor_json(const KeptPoints& result,
                          {"std_m", number(filter.std_m())},
                          {"limit_m", number(filter.limit_m())},
                          {"shift_m", vector(result.shift_m)},
+                         {"notes", result.notes},
                          {"file", file}};
     return object.dump(kIndent);
 }
@@ -139,6 +141,10 @@ std::string measure_json(const eval::HeightHistogram& heights,
     if (door_width_m)
         object["door"] = {{"width_m", *door_width_m ? Json(**door_width_m) : Json(nullptr)}};
     return object.dump(kIndent);
+}
+
+void tell_notes(const std::string& cloud, const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) log_warning(fmt::format("{}: {}", cloud, note));
 }
 
 void tell_shift(const Eigen::Vector3d& shift_m) {

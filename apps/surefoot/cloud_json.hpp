@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/surefoot/voxel_stream.hpp"
 #include "eval/cloud_distance.hpp"
@@ -24,6 +25,7 @@ struct KeptPoints {
     std::int64_t kept = 0;
     std::int64_t skipped = 0;  ///< that were not finite
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+    std::vector<std::string> notes;  ///< what the output does not hold of the input
 };
 [[nodiscard]] std::string sor_json(const KeptPoints& result,
                                    int others,
@@ -52,6 +54,8 @@ struct CloudComparison {
                                        const std::optional<std::optional<double>>& door_width_m,
                                        const Eigen::Vector3d& shift_m);
 
+/// Says what an output does not hold of a cloud.
+void tell_notes(const std::string& cloud, const std::vector<std::string>& notes);
 /// Says where coordinates were counted from, if it was not zero.
 void tell_shift(const Eigen::Vector3d& shift_m);
 

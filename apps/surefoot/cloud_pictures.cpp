@@ -133,7 +133,7 @@ Status write_coloured(const std::string& path,
             const auto colour = scale(std::isnan(d_m) ? 0.0 : static_cast<double>(d_m));
             block.colours.push_back(std::isnan(d_m) ? kNone
                                                     : io::Rgb{colour.r, colour.g, colour.b});
-            block.scalars[0].values.push_back(d_m);
+            block.scalars[0].floats().push_back(d_m);
         }
         block.width = static_cast<int>(block.points_m.size());
         if (auto status = writer->add(block); !status) return status;

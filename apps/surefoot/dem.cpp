@@ -11,6 +11,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "io/cloud_stream.hpp"
 #include "io/dem_file.hpp"
+#include "io/height_rules.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -45,7 +46,9 @@ int dem(const DemOptions& options) {
         return Status();
     });
     if (!read_again) return report(read_again.error());
-    const grid::Layer heights_m = builder.heights_m();
+    grid::Layer heights_m = builder.heights_m();
+    for (const std::string& note : io::drop_impossible_heights(heights_m))
+        log_warning(fmt::format("{}: {}", options.cloud, note));
     if (auto status = io::write_esri_grid(options.out_file, grid->geometry, heights_m); !status)
         return report(status.error());
     std::int64_t known = 0;

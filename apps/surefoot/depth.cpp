@@ -40,7 +40,7 @@ io::PointCloud cloud_of(const MeasuredPair& measured, const camera::RectifiedRig
         cloud.points_m.push_back(point_m);
         cloud.colours.push_back({grey, grey, grey});
         // dz = z^2 / (f b) dd, the derivative of z = f b / d
-        sigma_m.values.push_back(
+        sigma_m.floats().push_back(
             static_cast<float>(point_m.z() * point_m.z() / rig.depth_to_disparity_px_m() *
                                static_cast<double>(measured.depth.sigma_px.data()[i])));
     }

@@ -54,9 +54,9 @@ Result<grid::Layer> read_layer(const std::string& path, const grid::GridGeometry
 Status add_track(const EvalMapsOptions& options, const Settings& settings, eval::MapPair& maps) {
     const std::string track_file = options.live_dir + "/trajectory.tum";
     if (!io::is_file(track_file)) return {};
-    auto track = io::read_tum_trajectory(track_file);
+    auto track = io::read_trajectory(track_file);
     if (!track) return track.error();
-    maps.trajectory = std::move(*track);
+    maps.trajectory = std::move(track->poses);
     const std::string report_file = options.live_dir + "/report.json";
     if (!io::is_file(report_file)) return {};
     const auto text = io::read_file(report_file);
@@ -73,10 +73,12 @@ Status add_track(const EvalMapsOptions& options, const Settings& settings, eval:
 }
 
 Result<eval::MapPair> read_maps(const EvalMapsOptions& options, const Settings& settings) {
-    const auto live = io::read_esri_grid(options.live_dir + "/elevation.asc");
+    const auto live = io::read_height_grid(options.live_dir + "/elevation.asc");
     if (!live) return live.error();
-    const auto truth = io::read_esri_grid(options.truth_dir + "/elevation.asc");
+    const auto truth = io::read_height_grid(options.truth_dir + "/elevation.asc");
     if (!truth) return truth.error();
+    for (const io::Dem* dem : {&*live, &*truth})
+        for (const std::string& note : dem->notes) log_warning(note);
     eval::MapPair maps;
     maps.geometry = live->geometry;
     maps.live_m = live->values;

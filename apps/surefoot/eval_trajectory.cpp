@@ -14,18 +14,79 @@
 namespace surefoot::app {
 namespace {
 
-/// KITTI poses have no stamps; --rate says when pose i was, counted from the first estimate.
-Result<Trajectory> read_truth(const EvalTrajectoryOptions& options, const Trajectory& estimate) {
-    if (options.rate_hz <= 0.0) return io::read_trajectory(options.truth);
-    const auto poses = io::read_kitti_poses(options.truth);
-    if (!poses) return poses.error();
-    const std::int64_t start_ns = estimate.empty() ? 0 : estimate.front().time_ns;
-    Trajectory truth;
-    for (const Pose& pose : *poses) {
-        const auto index = static_cast<double>(truth.size());
-        truth.push_back({start_ns + ns_from_seconds(index / options.rate_hz), pose});
+/// Both trajectories as their files hold them.
+struct TrajectoryPair {
+    io::TrajectoryFile estimate;
+    io::TrajectoryFile truth;
+};
+
+/// From --times, for each of the two that has no stamps.
+Status stamp_from_file(const std::string& times_file, TrajectoryPair& pair) {
+    if (pair.estimate.has_stamps() && pair.truth.has_stamps()) {
+        return usage_error(fmt::format(
+            "--times {}: both trajectories have stamps of their own; leave it away", times_file));
     }
-    return truth;
+    const auto times_ns = io::read_times(times_file);
+    if (!times_ns) return times_ns.error();
+    for (io::TrajectoryFile* file : {&pair.estimate, &pair.truth}) {
+        if (file->has_stamps()) continue;
+        if (auto status = io::give_stamps(*times_ns, times_file, *file); !status) return status;
+    }
+    return {};
+}
+
+/// From --rate: pose i of the truth, counted from the first estimate.
+Status stamp_at_rate(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
+    if (pair.truth.has_stamps()) {
+        return usage_error(fmt::format("--rate {:g}: {} has stamps of its own; leave it away",
+                                       options.rate_hz,
+                                       options.truth));
+    }
+    std::vector<std::int64_t> times_ns;
+    for (std::size_t i = 0; i < pair.truth.rows; ++i) {
+        times_ns.push_back(pair.estimate.poses.front().time_ns +
+                           ns_from_seconds(static_cast<double>(i) / options.rate_hz));
+    }
+    return io::give_stamps(times_ns, fmt::format("--rate {:g}", options.rate_hz), pair.truth);
+}
+
+/// Row i belongs to pose i of the other trajectory, where that one has stamps and as many poses.
+/// A truth of another length stays at 10 Hz from 0, the rate of KITTI's recordings.
+Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
+    const bool of_estimate = !pair.estimate.has_stamps();
+    if (of_estimate == !pair.truth.has_stamps()) return {};  // both have stamps, or none has
+    io::TrajectoryFile& bare = of_estimate ? pair.estimate : pair.truth;
+    const io::TrajectoryFile& other = of_estimate ? pair.truth : pair.estimate;
+    if (bare.rows == other.poses.size()) {
+        std::vector<std::int64_t> times_ns;
+        for (const StampedPose& pose : other.poses) times_ns.push_back(pose.time_ns);
+        return io::give_stamps(times_ns, "row by row as the other trajectory", bare);
+    }
+    if (!of_estimate) return {};
+    return input_error(
+        fmt::format("{}: {} poses without stamps, and {} has {}: give their stamps with --times",
+                    options.estimate,
+                    bare.rows,
+                    options.truth,
+                    other.poses.size()));
+}
+
+Result<TrajectoryPair> read_pair(const EvalTrajectoryOptions& options) {
+    const bool told = !options.times_file.empty() || options.rate_hz > 0.0;
+    auto estimate = io::read_trajectory(options.estimate, !options.times_file.empty());
+    if (!estimate) return estimate.error();
+    auto truth = io::read_trajectory(options.truth, told);
+    if (!truth) return truth.error();
+    TrajectoryPair pair{std::move(estimate).value(), std::move(truth).value()};
+    Status status = !options.times_file.empty() ? stamp_from_file(options.times_file, pair)
+                    : options.rate_hz > 0.0     ? stamp_at_rate(options, pair)
+                                                : stamp_by_index(options, pair);
+    if (!status) return status.error();
+    return pair;
+}
+
+void print_file(const char* what, const io::TrajectoryFile& file) {
+    fmt::print("{}: {}, stamps: {}, {} poses\n", what, file.format, file.stamps, file.poses.size());
 }
 
 eval::Alignment alignment_named(const std::string& name) {
@@ -88,26 +149,32 @@ void print_errors(const EvalTrajectoryOptions& options,
 }  // namespace
 
 int eval_trajectory(const EvalTrajectoryOptions& options) {
-    const auto estimate = io::read_tum_trajectory(options.estimate);
-    if (!estimate) return report(estimate.error());
-    const auto truth = read_truth(options, *estimate);
-    if (!truth) return report(truth.error());
+    const auto pair = read_pair(options);
+    if (!pair) return report(pair.error());
+    const Trajectory& estimate = pair->estimate.poses;
+    const Trajectory& truth = pair->truth.poses;
+    for (const std::string& note : pair->estimate.notes())
+        log_warning(fmt::format("{}: {}", options.estimate, note));
+    for (const std::string& note : pair->truth.notes())
+        log_warning(fmt::format("{}: {}", options.truth, note));
     eval::EvalTrajectoryConfig config;
     config.align = alignment_named(options.align);
-    const auto errors = eval::evaluate_trajectory(*estimate, *truth, config);
+    const auto errors = eval::evaluate_trajectory(estimate, truth, config);
     if (!errors) return report(errors.error());
     const auto by_length = eval::errors_over_path(
-        *estimate,
-        *truth,
+        estimate,
+        truth,
         errors->pairs,
         options.lengths_m.empty() ? eval::kPathLengths_m : options.lengths_m);
     if (options.common.json) {
-        print_answer(trajectory_json(*errors, by_length));
+        print_answer(trajectory_json(*errors, by_length, pair->estimate, pair->truth));
     } else {
+        print_file("estimate", pair->estimate);
+        print_file("truth", pair->truth);
         print_errors(options, *errors, by_length);
     }
     if (options.plot_file.empty()) return kExitOk;
-    const auto status = write_plot(options, *estimate, *truth, *errors);
+    const auto status = write_plot(options, estimate, truth, *errors);
     return status ? kExitOk : report(status.error());
 }
 

@@ -440,8 +440,24 @@ std::optional<ReportCamera> parse_report_camera(const std::string& report_json) 
     return whole ? std::optional(camera) : std::nullopt;
 }
 
+namespace {
+
+/// What was read of a trajectory's file.
+Json trajectory_file_json(const io::TrajectoryFile& file) {
+    return {{"format", file.format},
+            {"stamps", file.stamps},
+            {"poses", file.poses.size()},
+            {"repeated", file.repeated},
+            {"not_finite", file.not_finite},
+            {"sorted", file.sorted}};
+}
+
+}  // namespace
+
 std::string trajectory_json(const eval::TrajectoryErrors& errors,
-                            const std::vector<eval::PathError>& by_length) {
+                            const std::vector<eval::PathError>& by_length,
+                            const io::TrajectoryFile& estimate,
+                            const io::TrajectoryFile& truth) {
     Json list = Json::array();
     for (const eval::PathError& error : by_length) {
         list.push_back({{"length_m", error.length_m},
@@ -452,6 +468,8 @@ std::string trajectory_json(const eval::TrajectoryErrors& errors,
     }
     Json object = errors_json(errors);
     object["rpe_by_length"] = list;
+    object["estimate"] = trajectory_file_json(estimate);
+    object["truth"] = trajectory_file_json(truth);
     return object.dump(kIndent);
 }
 

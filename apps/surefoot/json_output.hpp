@@ -30,6 +30,7 @@
 #include "io/model_file.hpp"
 #include "io/recorder.hpp"
 #include "io/rig_formats.hpp"
+#include "io/trajectory_file.hpp"
 #include "server/rex_link/link_client.hpp"
 #include "server/wire/audit_reader.hpp"
 #include "sim/scenes.hpp"
@@ -64,7 +65,9 @@ struct ReportCamera {
 [[nodiscard]] std::string audit_replay_json(const wire::AuditSummary& summary,
                                             const AuditReplay& replay);
 [[nodiscard]] std::string trajectory_json(const eval::TrajectoryErrors& errors,
-                                          const std::vector<eval::PathError>& by_length);
+                                          const std::vector<eval::PathError>& by_length,
+                                          const io::TrajectoryFile& estimate,
+                                          const io::TrajectoryFile& truth);
 [[nodiscard]] std::string maps_json(const eval::MapComparison& result);
 /// What a truth was divided by, and what it probably should have been.
 struct TruthScale {

@@ -670,15 +670,20 @@ void add_eval(CLI::App& app, AllOptions& all, int& exit_code) {
                                 eval_trajectory,
                                 exit_code,
                                 Reads::no_settings);
-    trajectory->add_option("estimate", t.estimate, "TUM trajectory")->required()->type_name("EST");
-    trajectory->add_option("truth", t.truth, "TUM trajectory, or KITTI 3x4 poses")
+    trajectory->add_option("estimate", t.estimate, "trajectory: TUM, EuRoC csv, KITTI 3x4 poses")
+        ->required()
+        ->type_name("EST");
+    trajectory->add_option("truth", t.truth, "the true one, in any of these formats")
         ->required()
         ->type_name("TRUTH");
     trajectory->add_option("--align", t.align, "how the estimate is laid onto the truth")
         ->check(CLI::IsMember({"se3", "yaw", "none"}));
-    trajectory->add_option("--rate", t.rate_hz, "KITTI poses without times.txt")
-        ->type_name("HZ")
-        ->check(number_in(0.01, 1000.0));
+    auto* rate = trajectory->add_option("--rate", t.rate_hz, "true KITTI poses without times.txt")
+                     ->type_name("HZ")
+                     ->check(number_in(0.01, 1000.0));
+    trajectory->add_option("--times", t.times_file, "stamps of KITTI poses, one in a line")
+        ->type_name("FILE")
+        ->excludes(rate);
     trajectory
         ->add_option("--delta",
                      t.lengths_m,

@@ -76,7 +76,7 @@ io::PointCloud cloud_of(const grid::MapRegion& region, const std::vector<FloatLa
             auto scalar = cloud.scalars.begin();
             for (const FloatLayer& layer : layers)
                 if (layer.name != "elevation")
-                    (scalar++)->values.push_back(layer.values.at(ix, iy));
+                    (scalar++)->floats().push_back(layer.values.at(ix, iy));
         }
     }
     cloud.width = static_cast<int>(cloud.points_m.size());

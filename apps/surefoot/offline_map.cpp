@@ -30,7 +30,7 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
             "is no verdict; its report.json says what failed",
             folder));
     }
-    const auto height = io::read_esri_grid(height_file);
+    const auto height = io::read_height_grid(height_file);
     if (!height) return height.error();
     const auto variance = io::read_esri_grid(variance_file);
     if (!variance) return variance.error();
@@ -53,9 +53,11 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     input.version = 1;
     OfflineMap map{std::make_unique<grid::MapSnapshot>(), {}};
     if (auto status = grid::build_snapshot(input, *map.snapshot); !status) return status.error();
-    map.assumed = {"no drift since the cells were seen",
-                   "gravity is the z axis of the grid",
-                   "odometry and camera were healthy"};
+    map.assumed = height->notes;
+    for (const char* assumed : {"no drift since the cells were seen",
+                                "gravity is the z axis of the grid",
+                                "odometry and camera were healthy"})
+        map.assumed.emplace_back(assumed);
     return map;
 }
 

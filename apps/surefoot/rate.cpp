@@ -21,7 +21,7 @@ namespace surefoot::app {
 namespace {
 
 Result<io::Dem> read_dem(const RateOptions& options) {
-    if (io::extension_of(options.dem) != ".png") return io::read_esri_grid(options.dem);
+    if (io::extension_of(options.dem) != ".png") return io::read_height_grid(options.dem);
     return read_height_image(options.dem, options.scale_m_per_px, options.height_m);
 }
 
@@ -56,6 +56,8 @@ int rate(const RateOptions& options) {
     if (!settings) return report(settings.error());
     const auto dem = read_dem(options);
     if (!dem) return report(dem.error());
+    for (const std::string& note : dem->notes)
+        log_warning(fmt::format("{}: {}", options.dem, note));
     const double resolution_m = dem->geometry.resolution_m;
     if (const auto problem = settings->pipeline.traversability.problem(resolution_m)) {
         return report(usage_error(fmt::format("{}: {}", options.dem, *problem)));

@@ -46,8 +46,8 @@ io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
             if (std::isnan(z_m)) continue;
             const Eigen::Vector2d center_m = geometry.center_m({ix, iy});
             cloud.points_m.emplace_back(center_m.x(), center_m.y(), z_m);
-            variance.values.push_back(layers.height_var_m2.at(ix, iy));
-            traversability.values.push_back(rating.empty() ? std::nanf("") : rating.at(ix, iy));
+            variance.floats().push_back(layers.height_var_m2.at(ix, iy));
+            traversability.floats().push_back(rating.empty() ? std::nanf("") : rating.at(ix, iy));
         }
     }
     cloud.width = static_cast<int>(cloud.points_m.size());

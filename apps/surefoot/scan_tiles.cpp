@@ -76,8 +76,8 @@ Status ScanTiles::add(std::span<const float> values) {
         if (!tile) return tile.error();
         io::PointCloud& block = (*tile)->block;
         block.points_m.push_back(p_m);
-        block.scalars[0].values.push_back(values[i + 3]);
-        block.scalars[1].values.push_back(values[i + 4]);
+        block.scalars[0].floats().push_back(values[i + 3]);
+        block.scalars[1].floats().push_back(values[i + 4]);
         if (block.points_m.size() < kBlockPoints) continue;
         if (auto status = flush(**tile); !status) return status;
     }

@@ -20,22 +20,31 @@ constexpr std::size_t kTaken = 2048;  ///< points that one thread takes
 /// The points of a block for which `keep` holds a 1, with all that is known of them.
 io::PointCloud kept_of(const io::PointCloud& block, const std::vector<char>& keep) {
     io::PointCloud kept;
-    for (const io::CloudScalar& scalar : block.scalars) kept.scalars.push_back({scalar.name, {}});
     for (std::size_t i = 0; i < keep.size(); ++i) {
         if (keep[i] == 0) continue;
         kept.points_m.push_back(block.points_m[i]);
         if (!block.colours.empty()) kept.colours.push_back(block.colours[i]);
-        for (std::size_t s = 0; s < kept.scalars.size(); ++s)
-            kept.scalars[s].values.push_back(block.scalars[s].values[i]);
+    }
+    for (const io::CloudScalar& scalar : block.scalars) {
+        kept.scalars.push_back(scalar.without_values());
+        kept.scalars.back().append_kept(scalar, keep);
     }
     kept.width = static_cast<int>(kept.points_m.size());
+    kept.T_cloud_sensor = block.T_cloud_sensor;
+    kept.double_precision = block.double_precision;
     return kept;
 }
 
-Result<std::int64_t> write_kept(const SorOptions& options,
-                                const Eigen::Vector3d& shift_m,
-                                const eval::OutlierFilter& filter,
-                                Executor& executor) {
+/// What was written, and what the output does not hold of the input.
+struct Written {
+    std::int64_t points = 0;
+    std::vector<std::string> notes;
+};
+
+Result<Written> write_kept(const SorOptions& options,
+                           const Eigen::Vector3d& shift_m,
+                           const eval::OutlierFilter& filter,
+                           Executor& executor) {
     auto stream = io::CloudStream::open(options.cloud);
     if (!stream) return stream.error();
     auto writer = io::CloudWriter::create(options.out_file, {true, !shift_m.isZero()});
@@ -52,9 +61,10 @@ Result<std::int64_t> write_kept(const SorOptions& options,
         return kept.points_m.empty() ? Status() : writer->add(kept);
     });
     if (!status) return status.error();
-    const std::int64_t count = writer->points();
+    Written written{writer->points(), stream->notes()};
+    written.notes.insert(written.notes.end(), writer->notes().begin(), writer->notes().end());
     if (auto finished = writer->finish(); !finished) return finished.error();
-    return count;
+    return written;
 }
 
 }  // namespace
@@ -74,18 +84,23 @@ int sor(const SorOptions& options) {
     const eval::OutlierFilter filter(geometry::KdTree(std::move(cloud->points_m), *executor),
                                      {others, options.sigmas},
                                      *executor);
-    const auto kept = write_kept(options, cloud->shift_m, filter, *executor);
-    if (!kept) return report(kept.error());
+    const auto written = write_kept(options, cloud->shift_m, filter, *executor);
+    if (!written) return report(written.error());
+    tell_notes(options.cloud, written->notes);
     if (options.common.json) {
-        print_answer(sor_json(
-            {points, *kept, cloud->skipped, cloud->shift_m}, others, filter, options.out_file));
+        print_answer(
+            sor_json({points, written->points, cloud->skipped, cloud->shift_m, written->notes},
+                     others,
+                     filter,
+                     options.out_file));
         return kExitOk;
     }
     fmt::print(
-        "{} points of {} kept: {} neighbours beside the point itself lie {:.2f} mm away on average "
-        "(standard deviation {:.2f} mm), at most {:.2f} mm of what is kept; in {}\n",
-        *kept,
-        points,
+        "{} points of {} kept{}: {} neighbours beside the point itself lie {:.2f} mm away on "
+        "average (standard deviation {:.2f} mm), at most {:.2f} mm of what is kept; in {}\n",
+        written->points,
+        points + cloud->skipped,
+        cloud->skipped == 0 ? "" : fmt::format(" ({} are not finite)", cloud->skipped),
         others,
         1e3 * filter.mean_m(),
         1e3 * filter.std_m(),

@@ -11,6 +11,7 @@
 #include "eval/dem.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
+#include "io/height_rules.hpp"
 #include "io/point_cloud.hpp"
 #include "io/snapshot_file.hpp"
 
@@ -25,14 +26,15 @@ TerrainMap map_of(io::Dem dem) {
     TerrainMap map;
     map.geometry = dem.geometry;
     map.height_m = std::move(dem.values);
+    map.assumed = std::move(dem.notes);
     return map;
 }
 
 Result<TerrainMap> from_grid(const std::string& file) {
-    auto dem = io::read_esri_grid(file);
+    auto dem = io::read_height_grid(file);
     if (!dem) return dem.error();
     TerrainMap map = map_of(std::move(dem).value());
-    map.assumed = {"heights are exact: the grid has no variances"};
+    map.assumed.emplace_back("heights are exact: the grid has no variances");
     return map;
 }
 
@@ -40,7 +42,7 @@ Result<TerrainMap> from_image(const StairsOptions& options) {
     auto dem = read_height_image(options.map, options.scale_m_per_px, options.height_m);
     if (!dem) return dem.error();
     TerrainMap map = map_of(std::move(dem).value());
-    map.assumed = {"heights are exact: an image has no variances"};
+    map.assumed.emplace_back("heights are exact: an image has no variances");
     return map;
 }
 
@@ -135,7 +137,7 @@ Result<TerrainMap> from_folder(const std::string& folder) {
             "map: .asc, .png, .ply, .pcd or .xyz",
             folder));
     }
-    auto height = io::read_esri_grid(height_file);
+    auto height = io::read_height_grid(height_file);
     if (!height) return height.error();
     TerrainMap map = map_of(std::move(height).value());
     const std::string variance_file = io::join_path(folder, "variance.asc");
@@ -269,6 +271,9 @@ stairs::Terrain TerrainMap::terrain() const {
 Result<TerrainMap> load_terrain(const StairsOptions& options) {
     auto map = load_map(options);
     if (!map) return map.error();
+    // Clouds have marks for "no data" too; readers of grids have taken theirs out.
+    for (std::string& note : io::drop_impossible_heights(map->height_m))
+        map->assumed.push_back(std::move(note));
     if (auto status = check_cells(options.map, *map); !status) return status.error();
     if (options.from.empty()) {
         stand_somewhere(*map);

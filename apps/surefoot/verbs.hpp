@@ -156,6 +156,7 @@ struct EvalTrajectoryOptions {
     std::string truth;
     std::string align = "se3";
     double rate_hz = 0.0;
+    std::string times_file;         ///< stamps of KITTI poses; may be empty
     std::vector<double> lengths_m;  ///< of the stretches for relative errors; empty = the usual
     std::string plot_file;
 };

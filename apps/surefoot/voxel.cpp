@@ -12,6 +12,7 @@ int voxel(const VoxelOptions& options) {
     const auto executor = make_executor(options.common);
     const auto thinned = thin_cloud(options.cloud, options.size_m, options.out_file, *executor);
     if (!thinned) return report(thinned.error());
+    tell_notes(options.cloud, thinned->notes);
     if (options.common.json) {
         print_answer(voxel_json(*thinned, options.size_m, options.out_file));
         return kExitOk;

@@ -43,6 +43,7 @@ class Source {
         std::vector<Vector3f> points_m;
         Status status = stream_.each_block([&](const io::PointCloud& block) -> Status {
             points_m.clear();
+            if (notes_.empty()) note_losses(block);
             if (auto added = reader.add(block, points_m); !added) return added;
             return use(points_m);
         });
@@ -55,14 +56,26 @@ class Source {
         return shift_m_.value_or(Eigen::Vector3d::Zero());
     }
     [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
+    [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   private:
+    /// A mean of places has no colour, no value and no viewpoint.
+    void note_losses(const io::PointCloud& block) {
+        std::string lost = block.colours.empty() ? "" : "colours";
+        const auto add = [&](const std::string& name) {
+            lost += (lost.empty() ? "" : ", ") + name;
+        };
+        for (const io::CloudScalar& scalar : block.scalars) add(scalar.name);
+        if (block.T_cloud_sensor) add("viewpoint");
+        if (!lost.empty()) notes_.push_back("only places are kept, not: " + lost);
+    }
     Source(std::string path, io::CloudStream stream)
         : path_(std::move(path)), stream_(std::move(stream)) {}
     std::string path_;
     io::CloudStream stream_;
     std::optional<Eigen::Vector3d> shift_m_;
     std::int64_t skipped_ = 0;
+    std::vector<std::string> notes_;
 };
 
 /// How many points there are where.
@@ -242,7 +255,8 @@ Result<ThinnedCloud> thin_cloud(const std::string& cloud,
     }
     const std::int64_t voxels = writer->points();
     if (auto status = writer->finish(); !status) return status.error();
-    return ThinnedCloud{census->points, source->skipped(), voxels, source->shift_m()};
+    return ThinnedCloud{
+        census->points, source->skipped(), voxels, source->shift_m(), source->notes()};
 }
 
 }  // namespace surefoot::app

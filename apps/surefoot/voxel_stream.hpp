@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
@@ -17,6 +18,7 @@ struct ThinnedCloud {
     std::int64_t skipped = 0;  ///< that were not
     std::int64_t voxels = 0;   ///< points that are left
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+    std::vector<std::string> notes;  ///< what the output does not hold of the cloud
 };
 
 /// Refuses a box whose voxels cannot be numbered; `cloud` is for the error.

@@ -53,6 +53,18 @@ TEST(PlanarPatches, ALeaningPlaneIsOnePatchWithItsSlopeAndNoise) {
     }
 }
 
+// Such heights must not get here (kMaxHeight_m); should they, they are no crash.
+TEST(PlanarPatches, HeightsOfAnyMagnitudeLeaveTheOthersAlone) {
+    for (const float bad_m : {9e4F, -1e10F, 1e12F, std::numeric_limits<float>::lowest()}) {
+        TestMap map([](double, double) { return 0.0; }, 0.0, {0.0, 0.0});
+        map.height_m.at(10, 10) = bad_m;
+        const PatchMap patches = patches_of(map);
+        EXPECT_FALSE(patches.patches.empty()) << bad_m;
+        EXPECT_EQ(patches.of_cell.at(10, 10), PatchMap::kNone) << bad_m;
+        EXPECT_NE(patches.of_cell.at(60, 60), PatchMap::kNone) << bad_m;
+    }
+}
+
 // The sums over blocks are those of all cells: the same plane as by total least squares, whose
 // residuals lie along the normal.
 TEST(PlanarPatches, ThePlaneIsThatOfItsCells) {

@@ -165,6 +165,21 @@ class BadInput(CliTest):
             self.assertLess(ratings[10][10], 0.8, bad)
             self.assertEqual(ratings[0][0], 1.0, bad)
 
+    def test_a_void_is_unknown_however_it_is_spelt(self):
+        for declared, written in (("-3.402823E+38", "-3.4028234663852886e+38"), ("-9999", "-32768"), ("-9999", "-999"),
+                                  ("null", "null"), ("-9999", "1e6"), ("-9999", "-100")):
+            rows = [[written if 10 <= x < 30 and 10 <= y < 30 else "0" for x in range(40)] for y in range(40)]
+            body = f"NODATA_value {declared}\n" + "\n".join(" ".join(row) for row in rows)
+            heights = self.grid(40, 0.025, body)
+            self.json_of("rate", heights, "--preset", "rex_zed", "--out", self.dir / "rated")
+            lines = (self.dir / "rated" / "traversability.asc").read_text().splitlines()[6:]
+            ratings = [[float(word) for word in line.split()] for line in lines]
+            void = [ratings[y][x] for y in range(10, 30) for x in range(10, 30)]
+            self.assertEqual(set(void), {-9999.0}, written)
+            self.assertEqual(ratings[0][0], 1.0, written)
+            answer = self.json_of("stairs", heights)  # a segmentation fault, once
+            self.assertEqual(answer["flights"], [], written)
+
     def test_clouds_that_make_no_height_map(self):
         cloud, out = self.dir / "c.xyz", self.dir / "d.asc"
         for text, word, code in (("", "no points", 1), ("nan nan nan\ninf 0 0\n", "no point with finite coordinates", 1),

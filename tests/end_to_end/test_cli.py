@@ -86,7 +86,7 @@ class Verbs(CliTest):
             (["fuse", steps, "--preset", "ethz", "--out", self.dir / "fused"], "steps folder"),
             (["ground", run / "map.ply", "--origin", "0,0,0.95"], "tilt_deg height_m inlier_ratio normal"),
             (["eval", "trajectory", run / "trajectory.tum", recording / "groundtruth.tum"],
-             "ate_rmse_m rpe_trans_rmse_m rpe_rot_rmse_deg drift_percent matched rpe_by_length"),
+             "ate_rmse_m rpe_trans_rmse_m rpe_rot_rmse_deg drift_percent matched rpe_by_length estimate truth"),
             (["eval", "maps", run, recording],
              "elevation traversability coverage sigma by_distance by_range by_column edges floor"),
             (["eval", "depth", depth / "disparity.pfm", depth / "truth.pfm"],
@@ -467,6 +467,60 @@ class Measures(CliTest):
         process = surefoot("dem", self.dir / "far.xyz", "--resolution", 0.01, "--out", self.dir / "d.asc")
         self.assertEqual(process.returncode, 2, process.stderr)
         self.assertIn("larger resolution", process.stderr)
+
+    def test_trajectories_of_other_programs_are_read_and_named(self):
+        stamps = [1403636579000000000 + 50000000 * i for i in range(40)]
+        place = lambda i: (0.1 * i, 0.02 * math.sin(i), 0.01 * i)
+        turn = lambda i: (0.0, 0.0, math.sin(0.01 * i), math.cos(0.01 * i))
+        row = lambda stamp, i: " ".join([stamp, *(f"{v:.9f}" for v in (*place(i), *turn(i)))]) + "\n"
+        seconds = lambda ns: f"{ns // 10**9}.{ns % 10**9:09d}"
+        tum = [row(seconds(ns), i) for i, ns in enumerate(stamps)]
+
+        def matrix(i):
+            c, s = math.cos(0.02 * i), math.sin(0.02 * i)
+            x, y, z = place(i)
+            return f"{c:.9f} {-s:.9f} 0 {x:.9f} {s:.9f} {c:.9f} 0 {y:.9f} 0 0 1 {z:.9f}\n"
+        euroc = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []\n"
+        for i, ns in enumerate(stamps):
+            x, y, z, w = turn(i)
+            euroc += ",".join([str(ns), *(f"{v:.9f}" for v in (*place(i), w, x, y, z))]) + "\n"
+        kitti = "".join(matrix(i) for i in range(40))
+        files = {"truth.tum": ("".join(tum), "TUM", "s"), "dup.tum": ("".join(tum[:9] + tum[8:]), "TUM", "s"),
+                 "unsorted.tum": ("".join(tum[20:] + tum[:20]), "TUM", "s"),
+                 "header.tum": ("timestamp tx ty tz qx qy qz qw\n" + "".join(tum), "TUM", "s"),
+                 "nan.tum": (seconds(1) + " NaN" * 7 + "\n" + "".join(tum), "TUM", "s"),
+                 "num.csv": ("num, t, x, y, z, qx, qy, qz, qw\n" + "".join(
+                     f"{i}, " + line.replace(" ", ", ") for i, line in enumerate(tum)), "columns by name", "s"),
+                 "ns.tum": ("".join(row(f"{ns}.000000", i) for i, ns in enumerate(stamps)), "TUM", "ns"),
+                 "euroc.csv": (euroc, "EuRoC csv", "ns"),
+                 "kitti.txt": (kitti, "KITTI poses", "row by row as the other trajectory")}
+        for name, (text, kind, unit) in files.items():
+            (self.dir / name).write_text(text)
+            for pair in ((name, "truth.tum"), ("truth.tum", name)):
+                answer = self.json_of("eval", "trajectory", *(self.dir / file for file in pair))
+                self.assertLess(answer["ate_rmse_m"], 1e-6, pair)
+                self.assertEqual(answer["matched"], 40, pair)
+                read = answer["estimate" if pair[0] == name else "truth"]
+                self.assertEqual((read["format"], read["stamps"]), (kind, unit), pair)
+                self.assertEqual((read["repeated"], read["not_finite"], read["sorted"]),
+                                 (int(name == "dup.tum"), int(name == "nan.tum"), name == "unsorted.tum"), pair)
+        said = surefoot("eval", "trajectory", self.dir / "dup.tum", self.dir / "euroc.csv")
+        self.assertIn("estimate: TUM, stamps: s, 40 poses\ntruth: EuRoC csv, stamps: ns, 40 poses\n", said.stdout)
+        self.assertIn("1 rows left out", said.stderr)
+        (self.dir / "times.txt").write_text("".join(f"{ns}\n" for ns in stamps))
+        answer = self.json_of("eval", "trajectory", self.dir / "kitti.txt", self.dir / "truth.tum", "--times",
+                              self.dir / "times.txt")
+        self.assertLess(answer["ate_rmse_m"], 1e-6)
+        (self.dir / "times.txt").unlink()
+        (self.dir / "zero.tum").write_text("".join(tum[:5]) + f"{seconds(stamps[5])} 1 2 3 0 0 0 0\n")
+        (self.dir / "short.txt").write_text(kitti[:kitti.rindex("\n", 0, -1) + 1])
+        for words, why in ((["zero.tum", "truth.tum"], "zero.tum:6: quaternion has length 0"),
+                           (["short.txt", "truth.tum"], "39 poses without stamps")):
+            process = surefoot("eval", "trajectory", *(self.dir / file for file in words))
+            self.assertEqual(process.returncode, 1)
+            self.assertIn(why, process.stderr)
+        process = surefoot("eval", "trajectory", self.dir / "truth.tum", self.dir / "truth.tum", "--times", "x.txt")
+        self.assertEqual(process.returncode, 2)
 
     def test_pictures_and_lengths(self):
         recording, run = self.dir / "recording", self.dir / "run"

@@ -169,6 +169,43 @@ class Formats(CliTest):
         self.assertTrue((self.dir / "k.xyz").read_text().startswith("//X Y Z intensity\n"))
 
 
+    def test_sor_keeps_types_viewpoint_and_says_what_is_lost(self):
+        points = grid_points()
+        head = ("VERSION 0.7\nFIELDS x y z timestamp id\nSIZE 4 4 4 8 4\nTYPE F F F F U\nCOUNT 1 1 1 1 1\n"
+                f"WIDTH {len(points)}\nHEIGHT 1\nVIEWPOINT 0 -1 0 0.6 0.8 0 0\nPOINTS {len(points)}\nDATA binary\n")
+        rows = [struct.pack("<3fdI", *p, 1688000000.0 + 0.01 * i, 4000000000 + i) for i, p in enumerate(points)]
+        (self.dir / "a.pcd").write_bytes(head.encode() + b"".join(rows))
+        answer = self.json_of("sor", self.dir / "a.pcd", "--sigmas", 100, "--out", self.dir / "b.pcd")
+        self.assertEqual((answer["kept"], answer["notes"]), (len(points), []))
+        written, body = (self.dir / "b.pcd").read_bytes().split(b"DATA binary\n")
+        self.assertIn(b"SIZE 4 4 4 8 4\nTYPE F F F F U\n", written)
+        self.assertIn(b"VIEWPOINT 0 -1 0 0.6 0.8 0 0\n", written)
+        self.assertEqual(body, b"".join(rows))
+        answer = self.json_of("sor", self.dir / "a.pcd", "--sigmas", 100, "--out", self.dir / "b.ply")
+        self.assertEqual(len(answer["notes"]), 1)
+        self.assertIn("viewpoint", answer["notes"][0])
+        written, body = (self.dir / "b.ply").read_bytes().split(b"end_header\n")
+        self.assertIn(b"property double timestamp\nproperty uint id\n", written)
+        self.assertEqual(body, b"".join(rows))
+        answer = self.json_of("voxel", self.dir / "a.pcd", "--size", 0.1, "--out", self.dir / "v.pcd")
+        self.assertEqual(answer["notes"], ["only places are kept, not: timestamp, id, viewpoint"])
+
+    def test_columns_by_name_and_points_that_are_not_finite(self):
+        (self.dir / "a.csv").write_text("id,Y,X,Z\n7,0,0,0.1\n8,0,1,0.2\n9,5,0,0.3\n10,,,\n")
+        process = self.run_ok("sor", self.dir / "a.csv", "--neighbours", 2, "--sigmas", 100, "--out", self.dir / "b.xyz")
+        self.assertIn("3 points of 4 kept (1 are not finite)", process.stdout)
+        self.assertEqual((self.dir / "b.xyz").read_text(), "//X Y Z id\n0 0 0.1 7\n1 0 0.2 8\n0 5 0.3 9\n")
+
+    def test_marks_for_no_data_are_no_ground(self):
+        rows = "".join(f"{x} {y} {z}\n" for x, y, z in grid_points())
+        (self.dir / "a.xyz").write_text(rows + "3.05 0.05 -9999\n3.25 0.05 1e12\n")
+        process = self.run_ok("dem", self.dir / "a.xyz", "--resolution", 0.1, "--out", self.dir / "d.asc")
+        self.assertIn("1 cells hold -9999 m", process.stderr)
+        heights = [z for row in read_asc(self.dir / "d.asc")[1] for z in row if z is not None]
+        self.assertEqual((min(heights), len(heights)), (0.0, 400))
+        self.run_ok("stairs", self.dir / "a.xyz")  # 1e12 was a crash
+
+
 class Measure(CliTest):
     def scan(self, scene, *words):
         path = self.dir / f"{scene}.ply"
@@ -233,7 +270,7 @@ class BadInput(CliTest):
                "cut.ply": (ply(points)[:-1], "truncated"), "head.ply": (ply(points).split(b"property")[0], "truncated"),
                "lies.ply": (ply(points).replace(b"vertex 400", b"vertex 4000000000"), "4000000000 'vertex' announced"),
                "far.ply": (ply([*points, (1e30, 0, 0)]), "100 km"), "text.xyz": (b"1 2\n", "2 numbers"),
-               "decimal.csv": (b"1,5;2,5;3,5\n1,5;2,5\n", "4 numbers where 6"), "nothing.las": (b"", "not a LAS file"),
+               "decimal.csv": (b"1,5;2,5;3,5\n1,5;2,5\n", "'1,5' has a decimal comma"), "nothing.las": (b"", "not a LAS file"),
                "what.dat": (b"x", "unknown cloud format '.dat'"), "packed.laz": (b"LASF", "pdal")}
         for name, (content, why) in bad.items():
             (self.dir / name).write_bytes(content)
