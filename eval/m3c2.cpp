@@ -30,17 +30,19 @@ InCylinder look(const geometry::KdTree& cloud, const geometry::Cylinder& cylinde
     InCylinder seen;
     double sum_m = 0.0;
     double sum_sq_m2 = 0.0;
-    cloud.runs_near_cylinder(cylinder, [&](std::span<const Vector3f> run) {
+    const auto add = [&](std::span<const Vector3f> run, std::size_t copies) {
+        const auto weight = static_cast<double>(copies);
         for (const Vector3f& p_m : run) {
             const Eigen::Vector3d to_m = p_m.cast<double>() - middle_m;
             const double along_m = to_m.dot(axis);
             if (std::abs(along_m) > half_length_m) continue;
             if ((to_m - along_m * axis).squaredNorm() > radius_m * radius_m) continue;
-            ++seen.count;
-            sum_m += along_m;
-            sum_sq_m2 += along_m * along_m;
+            seen.count += static_cast<int>(copies);
+            sum_m += weight * along_m;
+            sum_sq_m2 += weight * along_m * along_m;
         }
-    });
+    };
+    cloud.runs_near_cylinder(cylinder, add);
     if (seen.count == 0) return seen;
     seen.mean_m = sum_m / seen.count;
     // Heights are counted from the core point: what the difference loses is far below a micrometre.

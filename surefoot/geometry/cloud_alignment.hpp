@@ -2,8 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "surefoot/core/executor.hpp"
@@ -38,19 +40,34 @@ struct AlignmentStep {
     double step_rad = 0.0;
 };
 
+/// Whether an alignment is an answer, and if not, why.
+enum class AlignmentOutcome : std::uint8_t {
+    converged,
+    no_pairs,        ///< no pair counts: beyond the reach, or no surface anywhere
+    too_few_points,  ///< hardly more points than unknowns: nothing would contradict a wrong answer
+    no_overlap,      ///< fewer than 5 % of the moved points lie where the reference has points
+    not_settled,     ///< still moving after the most iterations
+};
+inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
+    "converged", "no_pairs", "too_few_points", "no_overlap", "not_settled"};
+
 struct CloudAlignment {
     Pose T_reference_moved;
-    bool converged = false;
+    AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
     /// Directions of the six (three of them turns) along all surfaces that are held by borders
     /// alone, and those that nothing holds: there the guess stays as it was. A bare floor has three
     /// of them together.
     int border_directions = 0;
     int free_directions = 0;
-    /// One sigma of the place and of the turn, from the scatter across the surface and the pairs'
-    /// number, as if each pair erred by itself; of directions that surfaces hold alone.
+    /// One sigma of where the middle of the moved cloud lies and of the turn (`alignment_sigma`):
+    /// of the directions that surfaces or borders hold. Meaningless unless `converged()`.
     double sigma_m = 0.0;
     double sigma_rad = 0.0;
+    /// Share of the moved points that lie where the reference has points.
+    double overlap = 0.0;
     std::vector<AlignmentStep> steps;
+
+    [[nodiscard]] bool converged() const noexcept { return outcome == AlignmentOutcome::converged; }
 };
 
 /// Iterative closest point with distances across the reference's surface (Chen and Medioni 1992;

@@ -54,7 +54,7 @@ TEST(CloudAlignment, FindsHowACloudWasMoved) {
     const KdTree reference(corner(20000, true, 1));
     const Points moved_m = moved_by(kTruth, corner(20000, true, 2));
     const CloudAlignment found = align_clouds(reference, moved_m, Pose{}, {});
-    EXPECT_TRUE(found.converged);
+    EXPECT_TRUE(found.converged());
     EXPECT_EQ(found.free_directions, 0);
     const Error error = error_of(found.T_reference_moved);
     // Noise of both clouds over 20 000 pairs would leave 0.03 mm; normals of 30 points add to it.
@@ -92,7 +92,7 @@ TEST(CloudAlignment, ABareFloorLeavesTheGuessWhereItHoldsNothing) {
     AlignmentConfig config;
     config.borders = false;
     const CloudAlignment found = align_clouds(reference, moved_m, guess, config);
-    EXPECT_TRUE(found.converged);
+    EXPECT_TRUE(found.converged());
     EXPECT_EQ(found.free_directions, 3);
     EXPECT_NEAR(found.T_reference_moved.translation_m.z(), -0.03, 3e-4);
     // Sideways only what the tilt brings along.
@@ -105,7 +105,7 @@ TEST(CloudAlignment, WhereSurfacesHoldNothingBordersDo) {
     const Pose off{exp_so3({0.0, 0.0, 0.005}), {0.01, -0.007, 0.03}};
     const CloudAlignment found =
         align_clouds(reference, moved_by(off, corner(20000, false, 6)), Pose{}, {});
-    EXPECT_TRUE(found.converged);
+    EXPECT_TRUE(found.converged());
     EXPECT_EQ(found.border_directions, 3);
     EXPECT_EQ(found.free_directions, 0);
     const Eigen::Vector3d middle_m(1.0, 1.0, 0.0);
@@ -162,12 +162,12 @@ TEST(CloudAlignment, NoPairsMeansTheGuess) {
     const Pose guess{Eigen::Quaterniond::Identity(), {10.0, 0.0, 0.0}};
     const CloudAlignment far =
         align_clouds(KdTree(corner(1000, true, 10)), corner(1000, true, 11), guess, near);
-    EXPECT_FALSE(far.converged);
+    EXPECT_FALSE(far.converged());
     EXPECT_EQ(far.free_directions, 6);
     EXPECT_EQ(far.T_reference_moved.translation_m, guess.translation_m);
     // One point a thousand times has no surface.
     const Points same(1000, Vector3f(1.0F, 2.0F, 3.0F));
-    EXPECT_FALSE(align_clouds(KdTree(same), same, Pose{}, {}).converged);
+    EXPECT_FALSE(align_clouds(KdTree(same), same, Pose{}, {}).converged());
 }
 
 }  // namespace

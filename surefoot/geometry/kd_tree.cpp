@@ -18,18 +18,27 @@ constexpr std::size_t kLeaf = 12;
 constexpr int kParallelLevels = 5;
 /// Below this the pieces are not worth their threads.
 constexpr std::size_t kSmallestPiece = 2048;
-/// Sums of three squares are off by less; what lies within it of the best is looked at.
+/// Sums of three squares are off by less; regions are looked at where they touch a box within it.
 constexpr float kRounding = 1.0F - 4e-7F;
 
 int level_of(std::uint32_t node) noexcept {
     return static_cast<int>(std::bit_width(node)) - 1;
 }
 
-float sq_distance(const Vector3f& a, const Vector3f& b) noexcept {
-    const float dx = a.x() - b.x();
-    const float dy = a.y() - b.y();
-    const float dz = a.z() - b.z();
+/// Always summed in this order: roundings are monotone, so that no point of a box is nearer, in
+/// floats, than the offset to the box says. Searches need no slack for roundings, and leave out
+/// what is just as far as what they have: without that, copies of points and surfaces seen from far
+/// away would be searched from end to end.
+float sq_norm(float dx, float dy, float dz) noexcept {
     return dx * dx + dy * dy + dz * dz;
+}
+
+float sq_norm(const Vector3f& d) noexcept {
+    return sq_norm(d.x(), d.y(), d.z());
+}
+
+float sq_distance(const Vector3f& a, const Vector3f& b) noexcept {
+    return sq_norm(a.x() - b.x(), a.y() - b.y(), a.z() - b.z());
 }
 
 /// One nearest point.
@@ -37,6 +46,8 @@ struct OneNearest {
     Vector3f query_m;
     Neighbour best;
 
+    static void enter() noexcept {}
+    [[nodiscard]] static std::size_t wanted() noexcept { return 1; }
     [[nodiscard]] float bound() const noexcept { return best.sq_distance_m2; }
     void scan(std::span<const Vector3f> run, std::size_t first) noexcept {
         for (std::size_t i = 0; i < run.size(); ++i) {
@@ -52,6 +63,8 @@ struct SomeNearest {
     std::span<Neighbour> found;
     std::size_t count = 0;
 
+    static void enter() noexcept {}
+    [[nodiscard]] std::size_t wanted() const noexcept { return found.size(); }
     [[nodiscard]] float bound() const noexcept {
         return count < found.size() ? std::numeric_limits<float>::infinity()
                                     : found.back().sq_distance_m2;
@@ -67,6 +80,18 @@ struct SomeNearest {
     }
 };
 
+/// A search that counts what it does.
+template <typename Search>
+struct Counted : Search {
+    SearchWork work;
+
+    void enter() noexcept { ++work.nodes; }
+    void scan(std::span<const Vector3f> run, std::size_t first) noexcept {
+        work.points += run.size();
+        Search::scan(run, first);
+    }
+};
+
 }  // namespace
 
 KdTree::KdTree(std::vector<Vector3f> points_m, Executor& executor)
@@ -76,6 +101,7 @@ KdTree::KdTree(std::vector<Vector3f> points_m, Executor& executor)
     while ((points_m_.size() >> levels_) + 1 > kLeaf) ++levels_;
     nodes_.resize(std::size_t{1} << levels_);
     box_ = box_of(points_m_);
+    SUREFOOT_ASSERT(box_.low_m.minCoeff() >= -kFarthest_m && box_.high_m.maxCoeff() <= kFarthest_m);
     // The first levels are cut one after the other, then each branch by itself: the same tree for
     // any number of threads.
     const int shared = points_m_.size() >> kParallelLevels < kSmallestPiece
@@ -101,7 +127,10 @@ void KdTree::cut(std::uint32_t node) {
     const auto end = at(first_of(level, number + 1));
     const PointBox box = box_of({first, end});
     Eigen::Index axis = 0;
-    (box.high_m - box.low_m).maxCoeff(&axis);
+    if (!((box.high_m - box.low_m).maxCoeff(&axis) > 0.0F)) {
+        nodes_[node].axis = kAllEqual;
+        return;
+    }
     std::nth_element(first, middle, end, [axis](const Vector3f& a, const Vector3f& b) {
         return a[axis] < b[axis];
     });
@@ -113,25 +142,38 @@ void KdTree::cut(std::uint32_t node) {
 void KdTree::build(std::uint32_t node) {
     if (level_of(node) == levels_) return;
     cut(node);
+    if (all_equal(node)) return;
     build(2 * node);
     build(2 * node + 1);
 }
 
-std::size_t KdTree::first_in_leaf(std::uint32_t node) const noexcept {
-    return first_of(levels_, node - (1U << levels_));
+bool KdTree::is_leaf(std::uint32_t node) const noexcept {
+    return level_of(node) == levels_;
 }
 
-KdTree::Run KdTree::leaf(std::uint32_t node) const noexcept {
-    const std::size_t first = first_in_leaf(node);
-    return Run(points_m_).subspan(first, first_in_leaf(node + 1) - first);
+bool KdTree::all_equal(std::uint32_t node) const noexcept {
+    return nodes_[node].axis == kAllEqual;
+}
+
+std::size_t KdTree::first_in(std::uint32_t node) const noexcept {
+    const int level = level_of(node);
+    return first_of(level, node - (1U << level));
+}
+
+KdTree::Run KdTree::points_in(std::uint32_t node) const noexcept {
+    const int level = level_of(node);
+    const std::size_t first = first_in(node);
+    return Run(points_m_).subspan(first, first_of(level, node - (1U << level) + 1) - first);
 }
 
 /// `offset_m`: from the query to the box of the node, along each axis.
 template <typename Search>
 void KdTree::descend(Search& search, std::uint32_t node, Vector3f& offset_m) const {
-    if (level_of(node) == levels_) {
-        search.scan(leaf(node), first_in_leaf(node));
-        return;
+    search.enter();
+    if (is_leaf(node)) return search.scan(points_in(node), first_in(node));
+    if (all_equal(node)) {
+        const Run run = points_in(node);
+        return search.scan(run.first(std::min(run.size(), search.wanted())), first_in(node));
     }
     const Node& cut = nodes_[node];
     const float at_m = search.query_m[cut.axis];
@@ -139,8 +181,7 @@ void KdTree::descend(Search& search, std::uint32_t node, Vector3f& offset_m) con
     descend(search, 2 * node + (right ? 1 : 0), offset_m);
     const float near_m = offset_m[cut.axis];
     offset_m[cut.axis] = right ? at_m - cut.low_m : cut.high_m - at_m;
-    if (offset_m.squaredNorm() * kRounding <= search.bound())
-        descend(search, 2 * node + (right ? 0 : 1), offset_m);
+    if (sq_norm(offset_m) < search.bound()) descend(search, 2 * node + (right ? 0 : 1), offset_m);
     offset_m[cut.axis] = near_m;
 }
 
@@ -169,10 +210,47 @@ Vector3f KdTree::offset_to_box(const Vector3f& query_m) const {
     return (box_.low_m - query_m).cwiseMax(query_m - box_.high_m).cwiseMax(zero);
 }
 
+SearchWork KdTree::work_of_nearest(const Vector3f& query_m, std::size_t neighbours) const {
+    std::vector<Neighbour> found(neighbours);
+    if (empty() || found.empty()) return {};
+    Counted<SomeNearest> search{{query_m, found, 0}, {}};
+    Vector3f offset_m = offset_to_box(query_m);
+    descend(search, 1, offset_m);
+    return search.work;
+}
+
+/// By coordinates alone: squares of distances below 1e-23 m are zero for points that differ.
+std::uint32_t KdTree::find_below(std::uint32_t node,
+                                 const Vector3f& point_m,
+                                 SearchWork& work) const {
+    ++work.nodes;
+    if (is_leaf(node) || all_equal(node)) {
+        Run run = points_in(node);
+        if (!is_leaf(node)) run = run.first(1);
+        const auto same = std::find(run.begin(), run.end(), point_m);
+        work.points += run.size();
+        return same == run.end()
+                   ? Neighbour::kNone
+                   : static_cast<std::uint32_t>(first_in(node) +
+                                                static_cast<std::size_t>(same - run.begin()));
+    }
+    const Node& cut = nodes_[node];
+    std::uint32_t found = Neighbour::kNone;
+    if (point_m[cut.axis] <= cut.low_m) found = find_below(2 * node, point_m, work);
+    if (found == Neighbour::kNone && point_m[cut.axis] >= cut.high_m)
+        found = find_below(2 * node + 1, point_m, work);
+    return found;
+}
+
 std::uint32_t KdTree::find(const Vector3f& point_m) const {
-    const Neighbour same = nearest(point_m, {Neighbour::kNone, std::numeric_limits<float>::min()});
-    return same.index != Neighbour::kNone && points_m_[same.index] == point_m ? same.index
-                                                                              : Neighbour::kNone;
+    SearchWork work;
+    return empty() ? Neighbour::kNone : find_below(1, point_m, work);
+}
+
+SearchWork KdTree::work_of_find(const Vector3f& point_m) const {
+    SearchWork work;
+    if (!empty()) static_cast<void>(find_below(1, point_m, work));
+    return work;
 }
 
 /// Visits the leaves whose box the region may touch.
@@ -182,7 +260,8 @@ void KdTree::walk(const Region& region,
                   const PointBox& box,
                   OnRun on_run) const {
     if (!region.may_touch(box.low_m, box.high_m)) return;
-    if (level_of(node) == levels_) return on_run(leaf(node));
+    if (is_leaf(node)) return on_run(points_in(node), 1);
+    if (all_equal(node)) return on_run(points_in(node).first(1), points_in(node).size());
     const Node& cut = nodes_[node];
     PointBox part = box;
     part.high_m[cut.axis] = cut.low_m;

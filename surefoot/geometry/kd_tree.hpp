@@ -19,6 +19,12 @@ struct Neighbour {
     float sq_distance_m2 = std::numeric_limits<float>::infinity();
 };
 
+/// How many nodes a search entered and how many points it compared.
+struct SearchWork {
+    std::size_t nodes = 0;
+    std::size_t points = 0;
+};
+
 /// A cylinder by the middle of its axis.
 struct Cylinder {
     Eigen::Vector3f middle_m = Eigen::Vector3f::Zero();
@@ -30,20 +36,27 @@ struct Cylinder {
 /// Balanced k-d tree over points (Bentley 1975; Friedman, Bentley and Finkel 1977). It takes the
 /// points over and puts them into an order of its own, leaf by leaf, so that a leaf is a run of
 /// memory and no index is kept: 12 bytes a point and about one more for the nodes. Points are
-/// floats, relative to an origin near them; distances are exact to the rounding of
-/// floats, whatever the order of the points was. Searches are const and may run on many threads.
+/// floats, relative to an origin near them; distances are those of a search through all points, to
+/// the last bit. Searches are const and may run on many threads.
 ///
-/// Errors: none; points must be finite, and fewer than 2^32 - 1.
+/// Equal points are one leaf of any size, so that a cloud of copies costs no more than any other.
+///
+/// Errors: none; points must be finite, no farther than `kFarthest_m` from zero along each axis,
+/// and fewer than 2^32 - 1.
 class KdTree {
   public:
+    /// Squares of distances up to here are finite as floats.
+    static constexpr float kFarthest_m = 1e18F;
+
     explicit KdTree(std::vector<Eigen::Vector3f> points_m, Executor& executor = serial());
 
     [[nodiscard]] bool empty() const noexcept { return points_m_.empty(); }
     /// In the order of the tree.
     [[nodiscard]] std::span<const Eigen::Vector3f> points_m() const noexcept { return points_m_; }
 
-    /// The nearest point, or `start` where none is nearer than it. A start that is near already
-    /// (that of the query before) makes the search short.
+    /// The nearest point, or `start` where none is nearer than it (also where the query is so far
+    /// away that the square of the distance is no finite float). A start that is near already (that
+    /// of the query before) makes the search short.
     [[nodiscard]] Neighbour nearest(const Eigen::Vector3f& query_m, Neighbour start = {}) const;
     /// What `start` should be: point `index` as a neighbour of `query_m`.
     [[nodiscard]] Neighbour neighbour(const Eigen::Vector3f& query_m, std::uint32_t index) const;
@@ -55,8 +68,15 @@ class KdTree {
     /// A point with exactly these coordinates; `Neighbour::kNone` where there is none.
     [[nodiscard]] std::uint32_t find(const Eigen::Vector3f& point_m) const;
 
-    /// Calls `visit(std::span<const Eigen::Vector3f>)` with runs of points that hold all those of
-    /// the ball, and others.
+    /// What a search for the `neighbours` nearest points, and `find`, look at: a count that tells
+    /// a slow search from a slow machine.
+    [[nodiscard]] SearchWork work_of_nearest(const Eigen::Vector3f& query_m,
+                                             std::size_t neighbours) const;
+    [[nodiscard]] SearchWork work_of_find(const Eigen::Vector3f& point_m) const;
+
+    /// Calls `visit(std::span<const Eigen::Vector3f> run, std::size_t copies)` with runs of points
+    /// that hold all those of the ball, and others. Each point of a run stands for so many copies
+    /// of itself.
     template <typename Visit>
     void runs_near_ball(const Eigen::Vector3f& middle_m, float radius_m, Visit&& visit) const {
         walk_ball(middle_m, radius_m, OnRun(visit));
@@ -74,14 +94,18 @@ class KdTree {
       public:
         template <typename Visit>
         explicit OnRun(Visit& visit)
-            : visit_(&visit), call_([](void* v, Run run) { (*static_cast<Visit*>(v))(run); }) {}
-        void operator()(Run run) const { call_(visit_, run); }
+            : visit_(&visit), call_([](const void* v, Run run, std::size_t copies) {
+                  (*static_cast<const Visit*>(v))(run, copies);
+              }) {}
+        void operator()(Run run, std::size_t copies) const { call_(visit_, run, copies); }
 
       private:
-        void* visit_;
-        void (*call_)(void*, Run);
+        const void* visit_;
+        void (*call_)(const void*, Run, std::size_t);
     };
-    /// What lies left ends at `low_m`, what lies right begins at `high_m`.
+    static constexpr std::int32_t kAllEqual = -1;
+    /// What lies left ends at `low_m`, what lies right begins at `high_m`. Nodes below one of equal
+    /// points (`axis` is `kAllEqual`) are never entered.
     struct Node {
         float low_m = 0.0F;
         float high_m = 0.0F;
@@ -94,6 +118,9 @@ class KdTree {
     void walk(const Region& region, std::uint32_t node, const PointBox& box, OnRun on_run) const;
     template <typename Search>
     void descend(Search& search, std::uint32_t node, Eigen::Vector3f& offset_m) const;
+    [[nodiscard]] std::uint32_t find_below(std::uint32_t node,
+                                           const Eigen::Vector3f& point_m,
+                                           SearchWork& work) const;
 
     void cut(std::uint32_t node);
     void build(std::uint32_t node);
@@ -101,8 +128,10 @@ class KdTree {
     [[nodiscard]] std::size_t first_of(int level, std::uint64_t number) const noexcept {
         return static_cast<std::size_t>((points_m_.size() * number) >> level);
     }
-    [[nodiscard]] std::size_t first_in_leaf(std::uint32_t node) const noexcept;
-    [[nodiscard]] Run leaf(std::uint32_t node) const noexcept;
+    [[nodiscard]] std::size_t first_in(std::uint32_t node) const noexcept;
+    [[nodiscard]] Run points_in(std::uint32_t node) const noexcept;
+    [[nodiscard]] bool is_leaf(std::uint32_t node) const noexcept;
+    [[nodiscard]] bool all_equal(std::uint32_t node) const noexcept;
     [[nodiscard]] Eigen::Vector3f offset_to_box(const Eigen::Vector3f& query_m) const;
 
     std::vector<Eigen::Vector3f> points_m_;

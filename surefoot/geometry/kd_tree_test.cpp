@@ -107,7 +107,7 @@ TEST(KdTree, EmptyAndOnePlaceAThousandTimes) {
     EXPECT_EQ(none.find({1.0F, 2.0F, 3.0F}), Neighbour::kNone);
     std::vector<Neighbour> found(3);
     EXPECT_EQ(none.nearest({1.0F, 2.0F, 3.0F}, found), 0U);
-    none.runs_near_ball({0.0F, 0.0F, 0.0F}, 1e9F, [](auto) { FAIL() << "nothing is there"; });
+    none.runs_near_ball({0.0F, 0.0F, 0.0F}, 1e9F, [](auto, auto) { FAIL() << "nothing is there"; });
 
     const KdTree same(Points(1000, Vector3f(1.0F, 2.0F, 3.0F)));
     EXPECT_EQ(same.nearest({1.0F, 2.0F, 4.0F}).sq_distance_m2, 1.0F);
@@ -151,7 +151,8 @@ TEST(KdTree, RunsNearABallOrCylinderHoldAllOfItAndLittleElse) {
         c.radius_m = static_cast<float>(rng.uniform(0.02, 0.3));
         c.half_length_m = static_cast<float>(rng.uniform(0.02, 0.5));
         std::size_t found = 0;
-        tree.runs_near_cylinder(c, [&](std::span<const Vector3f> run) {
+        tree.runs_near_cylinder(c, [&](std::span<const Vector3f> run, std::size_t copies) {
+            ASSERT_EQ(copies, 1U);
             looked_at += run.size();
             found += count_if_inside(run, c);
         });
@@ -164,7 +165,7 @@ TEST(KdTree, RunsNearABallOrCylinderHoldAllOfItAndLittleElse) {
             });
         };
         std::ptrdiff_t in_runs = 0;
-        tree.runs_near_ball(c.middle_m, c.radius_m, [&](std::span<const Vector3f> run) {
+        tree.runs_near_ball(c.middle_m, c.radius_m, [&](std::span<const Vector3f> run, auto) {
             in_runs += in_ball(run);
         });
         EXPECT_EQ(in_runs, in_ball(points_m)) << "ball " << i;
@@ -172,6 +173,125 @@ TEST(KdTree, RunsNearABallOrCylinderHoldAllOfItAndLittleElse) {
     // Leaves of twelve points, about a hundred inside: the rim costs about as much as what is in
     // it.
     EXPECT_LT(looked_at, 4 * inside);
+}
+
+/// Clouds that are no scatter of points in space, all of so many points.
+struct Degenerate {
+    const char* name;
+    Points points_m;
+};
+
+std::vector<Degenerate> degenerate_clouds(std::size_t count) {
+    Rng rng(11);
+    std::vector<Degenerate> clouds;
+    const auto make = [&](const char* name, const auto& point) {
+        Points points_m;
+        for (std::size_t i = 0; i < count; ++i) points_m.push_back(point(i));
+        clouds.push_back({name, std::move(points_m)});
+    };
+    const auto c = [](std::size_t i) { return static_cast<float>(i); };
+    const auto uniform = [&] { return static_cast<float>(rng.uniform()); };
+    make("scattered", [&](std::size_t) { return random_point(rng, 1.0); });
+    make("one place", [](std::size_t) { return Vector3f(1.0F, 2.0F, 3.0F); });
+    make("one place and another",
+         [&](std::size_t i) { return Vector3f(i % 2 == 0 ? 1.0F : 2.0F, 2.0F, 3.0F); });
+    // The last bits of 1.0: 27 places.
+    make("nearly one place", [&](std::size_t) -> Vector3f {
+        return Vector3f::Ones() + 1e-7F * random_point(rng, 1.0);
+    });
+    // Squares of distances are zero for points that differ.
+    make("around zero", [&](std::size_t) -> Vector3f { return 1e-25F * random_point(rng, 1.0); });
+    make("each point a hundred times",
+         [&](std::size_t i) { return Vector3f(c(i / 100 % 7), c(i / 700 % 5), c(i / 3500)); });
+    make("half of them one place", [&](std::size_t i) {
+        return i % 2 == 0 ? Vector3f(0.3F, 0.3F, 0.3F) : random_point(rng, 1.0);
+    });
+    make("a line along an axis", [&](std::size_t i) { return Vector3f(c(i), 0.0F, 0.0F); });
+    make("a line across the axes",
+         [&](std::size_t) -> Vector3f { return uniform() * Vector3f(1.0F, 2.0F, 3.0F); });
+    make("a plane", [&](std::size_t) { return Vector3f(uniform(), uniform(), 0.5F); });
+    make("a lattice in a plane",
+         [&](std::size_t i) { return Vector3f(c(i % 100), c(i / 100), 0.0F); });
+    make("a lattice in space",
+         [&](std::size_t i) { return Vector3f(c(i % 25), c(i / 25 % 25), c(i / 625)); });
+    return clouds;
+}
+
+TEST(KdTree, DegenerateCloudsCostNoMoreThanOthers) {
+    constexpr std::size_t kCount = 20000;
+    constexpr std::size_t kQueries = 500;
+    // Seven neighbours of scattered points: measured 34 nodes and 105 points. A leaf has twelve.
+    constexpr std::size_t kMostNodes = 120;
+    constexpr std::size_t kMostPoints = 300;
+    for (const Degenerate& cloud : degenerate_clouds(kCount)) {
+        const KdTree tree(cloud.points_m);
+        Rng rng(12);
+        SearchWork nearest;
+        SearchWork exact;
+        for (std::size_t i = 0; i < kQueries; ++i) {
+            const Vector3f& p_m = cloud.points_m[rng.below(kCount)];
+            const SearchWork one = tree.work_of_nearest(p_m, 7);
+            const SearchWork other = tree.work_of_find(p_m);
+            nearest = {nearest.nodes + one.nodes, nearest.points + one.points};
+            exact = {exact.nodes + other.nodes, exact.points + other.points};
+            ASSERT_NE(tree.find(p_m), Neighbour::kNone) << cloud.name;
+            ASSERT_EQ(tree.points_m()[tree.find(p_m)], p_m) << cloud.name;
+        }
+        EXPECT_LT(nearest.nodes, kMostNodes * kQueries) << cloud.name;
+        EXPECT_LT(nearest.points, kMostPoints * kQueries) << cloud.name;
+        EXPECT_LT(exact.nodes, kMostNodes * kQueries) << cloud.name;
+        EXPECT_LT(exact.points, kMostPoints * kQueries) << cloud.name;
+    }
+}
+
+TEST(KdTree, SurfacesSeenFromFarAwayAreNotSearchedFromEndToEnd) {
+    // From 5 km all points of a square metre are as far in the last bit of a float.
+    Rng rng(13);
+    Points points_m;
+    for (int i = 0; i < 20000; ++i) {
+        points_m.push_back(random_point(rng, 0.5));
+        points_m.back().z() = 0.0F;
+    }
+    const KdTree tree(points_m);
+    SearchWork all;
+    constexpr int kQueries = 100;
+    for (int i = 0; i < kQueries; ++i) {
+        const SearchWork one =
+            tree.work_of_nearest(Vector3f(0.0F, 0.0F, 5000.0F) + random_point(rng, 0.5), 1);
+        all = {all.nodes + one.nodes, all.points + one.points};
+    }
+    EXPECT_LT(all.points, 300U * kQueries);
+}
+
+TEST(KdTree, CopiesAreOneRunThatCountsForAll) {
+    Points points_m(5000, Vector3f(1.0F, 0.0F, 0.0F));
+    points_m.resize(8000, Vector3f(1.0F, 0.5F, 0.0F));
+    const KdTree tree(points_m);
+    std::size_t visited = 0;
+    std::size_t near = 0;
+    const auto visit = [&](std::span<const Vector3f> run, std::size_t copies) {
+        visited += run.size();
+        for (const Vector3f& p_m : run) near += p_m.y() == 0.0F ? copies : 0;
+    };
+    tree.runs_near_ball({1.0F, 0.0F, 0.0F}, 0.1F, visit);
+    EXPECT_EQ(near, 5000U);
+    EXPECT_LT(visited, 100U);
+    near = 0;
+    tree.runs_near_cylinder({{1.0F, 0.0F, 0.0F}, Vector3f::UnitZ(), 0.1F, 0.1F}, visit);
+    EXPECT_EQ(near, 5000U);
+    EXPECT_LT(visited, 200U);
+    std::vector<Neighbour> found(7000);
+    EXPECT_EQ(tree.nearest({1.0F, 0.0F, 0.0F}, found), 7000U);
+    EXPECT_EQ(found[4999].sq_distance_m2, 0.0F);
+    EXPECT_EQ(found[5000].sq_distance_m2, 0.25F);
+}
+
+TEST(KdTree, AQueryBeyondAllSquaresFindsNothing) {
+    const KdTree tree(scan(100, 14));
+    EXPECT_EQ(tree.nearest({1e30F, 0.0F, 0.0F}).index, Neighbour::kNone);
+    std::vector<Neighbour> found(3);
+    EXPECT_EQ(tree.nearest({1e30F, 0.0F, 0.0F}, found), 0U);
+    EXPECT_EQ(tree.nearest({KdTree::kFarthest_m, 0.0F, 0.0F}, found), 3U);
 }
 
 TEST(SpatialOrder, NamesEveryPointOnceAndKeepsNeighboursTogether) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/geometry/surface_normal.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "surefoot/geometry/symmetric3.hpp"
@@ -10,19 +11,20 @@ namespace {
 
 /// Sums over points, counted from the middle of the ball.
 struct Sums {
-    int count = 0;
+    double count = 0.0;
     Eigen::Vector3d first = Eigen::Vector3d::Zero();
     Symmetric3 second;
 
-    void add(const Eigen::Vector3d& d) {
-        ++count;
-        first += d;
-        second.xx += d.x() * d.x();
-        second.xy += d.x() * d.y();
-        second.xz += d.x() * d.z();
-        second.yy += d.y() * d.y();
-        second.yz += d.y() * d.z();
-        second.zz += d.z() * d.z();
+    void add(const Eigen::Vector3d& d, double copies = 1.0) {
+        const Eigen::Vector3d all = copies * d;
+        count += copies;
+        first += all;
+        second.xx += all.x() * d.x();
+        second.xy += all.x() * d.y();
+        second.xz += all.x() * d.z();
+        second.yy += all.y() * d.y();
+        second.yz += all.y() * d.z();
+        second.zz += all.z() * d.z();
     }
     [[nodiscard]] Symmetric3 covariance() const {
         const double n = count;
@@ -36,21 +38,9 @@ struct Sums {
     }
 };
 
-}  // namespace
-
-std::optional<Eigen::Vector3f> surface_normal(const KdTree& cloud,
-                                              const Eigen::Vector3f& middle_m,
-                                              float radius_m) {
-    const Eigen::Vector3d from_m = middle_m.cast<double>();
-    const double sq_radius_m2 = static_cast<double>(radius_m) * static_cast<double>(radius_m);
-    Sums sums;
-    cloud.runs_near_ball(middle_m, radius_m, [&](std::span<const Eigen::Vector3f> run) {
-        for (const Eigen::Vector3f& p_m : run) {
-            const Eigen::Vector3d to_m = p_m.cast<double>() - from_m;
-            if (to_m.squaredNorm() <= sq_radius_m2) sums.add(to_m);
-        }
-    });
-    if (sums.count < 3) return std::nullopt;
+/// `sq_radius_m2`: of the farthest point.
+std::optional<LocalSurface> surface_of(const Sums& sums, double sq_radius_m2) {
+    if (sums.count < 3.0) return std::nullopt;
     const SmallestAxis thin = smallest_axis(sums.covariance());
     // As in plane_fit: a millionth of the ball across a line is no surface.
     constexpr double kLine = 1e-6;
@@ -62,7 +52,40 @@ std::optional<Eigen::Vector3f> surface_normal(const KdTree& cloud,
                         : std::abs(normal.x()) > std::abs(normal.y()) ? normal.x()
                                                                       : normal.y();
     if (side < 0.0) normal = -normal;
-    return normal.cast<float>().normalized();
+    return LocalSurface{normal.cast<float>().normalized(),
+                        static_cast<float>(std::sqrt(std::max(thin.smallest, 0.0)))};
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector3f> surface_normal(const KdTree& cloud,
+                                              const Eigen::Vector3f& middle_m,
+                                              float radius_m) {
+    const Eigen::Vector3d from_m = middle_m.cast<double>();
+    const double sq_radius_m2 = static_cast<double>(radius_m) * static_cast<double>(radius_m);
+    Sums sums;
+    const auto add = [&](std::span<const Eigen::Vector3f> run, std::size_t copies) {
+        for (const Eigen::Vector3f& p_m : run) {
+            const Eigen::Vector3d to_m = p_m.cast<double>() - from_m;
+            if (to_m.squaredNorm() <= sq_radius_m2) sums.add(to_m, static_cast<double>(copies));
+        }
+    };
+    cloud.runs_near_ball(middle_m, radius_m, add);
+    const auto surface = surface_of(sums, sq_radius_m2);
+    return surface ? std::optional(surface->normal) : std::nullopt;
+}
+
+std::optional<LocalSurface> surface_of_neighbours(const KdTree& cloud,
+                                                  const Eigen::Vector3f& middle_m,
+                                                  std::span<const Neighbour> near) {
+    const Eigen::Vector3d from_m = middle_m.cast<double>();
+    Sums sums;
+    double sq_radius_m2 = 0.0;
+    for (const Neighbour& neighbour : near) {
+        sums.add(cloud.points_m()[neighbour.index].cast<double>() - from_m);
+        sq_radius_m2 = std::max(sq_radius_m2, static_cast<double>(neighbour.sq_distance_m2));
+    }
+    return surface_of(sums, sq_radius_m2);
 }
 
 }  // namespace surefoot::geometry

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 
 #include "surefoot/geometry/kd_tree.hpp"
 
@@ -14,5 +15,17 @@ namespace surefoot::geometry {
 [[nodiscard]] std::optional<Eigen::Vector3f> surface_normal(const KdTree& cloud,
                                                             const Eigen::Vector3f& middle_m,
                                                             float radius_m);
+
+/// A surface through a few points.
+struct LocalSurface {
+    Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< as `surface_normal`
+    float thickness_m = 0.0F;  ///< root mean square of the points across it: noise, or an edge
+};
+
+/// The same of the neighbours that a search found around `middle_m`, however many others are just
+/// as near: the cost does not depend on the density of the cloud.
+[[nodiscard]] std::optional<LocalSurface> surface_of_neighbours(const KdTree& cloud,
+                                                                const Eigen::Vector3f& middle_m,
+                                                                std::span<const Neighbour> near);
 
 }  // namespace surefoot::geometry

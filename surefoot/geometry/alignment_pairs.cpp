@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/geometry/alignment_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surefoot/core/pieces.hpp"
+#include "surefoot/geometry/cloud_alignment.hpp"
+
+namespace surefoot::geometry {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr std::size_t kBorderNeighbours = 31;
+/// The middle of half a disc lies 0.42 of its radius off; that of 30 points of a whole one by
+/// chance 0.09. What is asked of both clouds together favours neither: a limit on each by itself
+/// would draw a border towards where chance has it. From the first share on a pair begins to count,
+/// at the second it counts wholly, so that no small step changes much.
+constexpr double kBegins = 0.3;
+constexpr double kWhole = 0.35;
+/// Of one cloud, to be looked at: together with half a disc of the other it just counts.
+constexpr double kCandidate = 0.18;
+
+std::optional<Vector3d> to_middle(const KdTree& cloud, const Vector3f& at_m, float radius_m) {
+    Vector3d sum_m = Vector3d::Zero();
+    double count = 0.0;
+    const auto add = [&](std::span<const Vector3f> run, std::size_t copies) {
+        const auto weight = static_cast<double>(copies);
+        for (const Vector3f& p_m : run) {
+            if ((p_m - at_m).squaredNorm() > radius_m * radius_m) continue;
+            sum_m += weight * (p_m - at_m).cast<double>();
+            count += weight;
+        }
+    };
+    cloud.runs_near_ball(at_m, radius_m, add);
+    constexpr double kFewest = 5.0;
+    if (count < kFewest) return std::nullopt;
+    return sum_m / count;
+}
+
+}  // namespace
+
+SurfacePairs::SurfacePairs(const KdTree& reference,
+                           std::vector<Vector3f> moved_m,
+                           const AlignmentConfig& config,
+                           Executor& executor)
+    : reference_(reference),
+      moved_m_(std::move(moved_m)),
+      config_(config),
+      executor_(executor),
+      pairs_(moved_m_.size()),
+      nearest_(moved_m_.size()) {}
+
+const std::vector<Pair>& SurfacePairs::at(const Pose& T_reference_moved) {
+    in_pieces(moved_m_.size(), kAlignmentPiece, executor_, [&](auto begin, auto end, auto) {
+        for (std::size_t i = begin; i < end; ++i) pair_up(i, T_reference_moved);
+    });
+    if (config_.kept_share < 1.0) keep_nearest();
+    return pairs_;
+}
+
+void SurfacePairs::pair_up(std::size_t i, const Pose& T_reference_moved) {
+    Pair& pair = pairs_[i];
+    pair.at_m = T_reference_moved * moved_m_[i].cast<double>();
+    const Vector3f query_m = pair.at_m.cast<float>();
+    Known& known = nearest_[i];
+    const Neighbour start =
+        known.index == Neighbour::kNone ? Neighbour{} : reference_.neighbour(query_m, known.index);
+    const Neighbour found = reference_.nearest(query_m, start);
+    pair.reference = found.index;
+    pair.counts = false;
+    if (found.index == Neighbour::kNone) return;
+    if (found.index != known.index) known = surface_at(found.index);
+    const Vector3d to_m = pair.at_m - reference_.points_m()[found.index].cast<double>();
+    pair.sq_apart_m2 = to_m.squaredNorm();
+    pair.ball_m = static_cast<double>(known.ball_m);
+    pair.counts = known.surface.has_value() &&
+                  (config_.reach_m == 0.0 || pair.sq_apart_m2 <= config_.reach_m * config_.reach_m);
+    if (!pair.counts) return;
+    pair.normal = known.surface->normal.cast<double>();
+    pair.thickness_m = static_cast<double>(known.surface->thickness_m);
+    pair.across_m = pair.normal.dot(to_m);
+}
+
+SurfacePairs::Known SurfacePairs::surface_at(std::uint32_t index) const {
+    std::vector<Neighbour> near(static_cast<std::size_t>(config_.normal_neighbours) + 1);
+    const Vector3f& p_m = reference_.points_m()[index];
+    const std::size_t count = reference_.nearest(p_m, near);
+    near.resize(count);
+    return {
+        index, surface_of_neighbours(reference_, p_m, near), std::sqrt(near.back().sq_distance_m2)};
+}
+
+/// The share of the pairs that counts; of pairs that are as far apart as the last, all do.
+void SurfacePairs::keep_nearest() {
+    std::vector<double> sq_apart_m2;
+    for (const Pair& pair : pairs_) {
+        if (pair.counts) sq_apart_m2.push_back(pair.sq_apart_m2);
+    }
+    if (sq_apart_m2.empty()) return;
+    const auto last = static_cast<std::ptrdiff_t>(config_.kept_share *
+                                                  static_cast<double>(sq_apart_m2.size() - 1));
+    std::nth_element(sq_apart_m2.begin(), sq_apart_m2.begin() + last, sq_apart_m2.end());
+    const double limit_m2 = sq_apart_m2[static_cast<std::size_t>(last)];
+    for (Pair& pair : pairs_) pair.counts = pair.counts && pair.sq_apart_m2 <= limit_m2;
+}
+
+BorderPairs::BorderPairs(const KdTree& reference,
+                         const KdTree& moved,
+                         const std::vector<Vector3f>& moved_m,
+                         Executor& executor)
+    : reference_(reference), executor_(executor) {
+    std::vector<std::optional<Border>> found(moved_m.size());
+    in_pieces(moved_m.size(), kAlignmentPiece, executor, [&](auto begin, auto end, auto) {
+        std::vector<Neighbour> near(kBorderNeighbours);
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t count = moved.nearest(moved_m[i], near);
+            const float radius_m = std::sqrt(near[count - 1].sq_distance_m2);
+            const auto off_m = to_middle(moved, moved_m[i], radius_m);
+            if (off_m && off_m->norm() > kCandidate * static_cast<double>(radius_m))
+                found[i] = Border{i, radius_m, *off_m};
+        }
+    });
+    for (const auto& border : found) {
+        if (border) borders_.push_back(*border);
+    }
+    pairs_.resize(borders_.size());
+}
+
+const std::vector<Pair>& BorderPairs::at(const Pose& T, const std::vector<Pair>& surface) {
+    in_pieces(borders_.size(), kAlignmentPiece, executor_, [&](auto begin, auto end, auto) {
+        for (std::size_t i = begin; i < end; ++i)
+            pairs_[i] = pair_up(borders_[i], T, surface[borders_[i].index]);
+    });
+    return pairs_;
+}
+
+Pair BorderPairs::pair_up(const Border& border, const Pose& T, const Pair& surface) const {
+    Pair pair;
+    if (!surface.counts) return pair;
+    const auto within = [&](const Vector3d& v) -> Vector3d {
+        return v - surface.normal.dot(v) * surface.normal;
+    };
+    const auto radius_m = static_cast<double>(border.radius_m);
+    const Vector3d moved_m = within(T.rotation * border.to_middle_m);
+    const auto reference = to_middle(reference_, surface.at_m.cast<float>(), border.radius_m);
+    if (!reference || !(moved_m.norm() > 0.0)) return pair;
+    pair.normal = moved_m.normalized();
+    const double there_m = pair.normal.dot(*reference);
+    const double share = 0.5 * (moved_m.norm() + there_m) / radius_m;
+    pair.weight = std::clamp((share - kBegins) / (kWhole - kBegins), 0.0, 1.0);
+    if (pair.weight == 0.0) return pair;
+    pair.at_m = surface.at_m;
+    pair.ball_m = radius_m;
+    pair.across_m = moved_m.norm() - there_m;
+    pair.sq_apart_m2 = pair.across_m * pair.across_m;
+    pair.counts = true;
+    return pair;
+}
+
+}  // namespace surefoot::geometry
