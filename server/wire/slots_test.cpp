@@ -91,6 +91,21 @@ TEST_F(SlotsTest, AListenerIsEndedAfterTheIdleAndAfterTheHeavyOnes) {
     EXPECT_FALSE(come(6).granted);
 }
 
+TEST_F(SlotsTest, ASilentClientGoesBeforeAnIdleOneAndThatBeforeAListener) {
+    (void)come(1);
+    slots_.listens(1, true);
+    serve(1);
+    (void)come(2);
+    serve(2);
+    now_ns_ += 3 * kSecond;
+    (void)come(3);
+    EXPECT_EQ(come(4).ended, std::optional<Slots::Id>(3)) << "the newest, but it never asked";
+    serve(4);
+    EXPECT_EQ(come(5).ended, std::optional<Slots::Id>(2)) << "the listener is older";
+    serve(5);
+    EXPECT_EQ(come(6).ended, std::optional<Slots::Id>(1));
+}
+
 TEST_F(SlotsTest, TheHeaviestBurdenIsEndedFirst) {
     for (Slots::Id id = 1; id <= 3; ++id) (void)come(id);
     for (int i = 0; i < 10; ++i) {
