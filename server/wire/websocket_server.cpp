@@ -425,7 +425,8 @@ bool Connection::wants(Topic topic) const {
 
 bool Connection::has_bytes() {
     error_code ignored;
-    return session_ && !dismissed_ && beast::get_lowest_layer(ws_).socket().available(ignored) > 0;
+    if (!session_ || dismissed_) return false;
+    return has_message_ || beast::get_lowest_layer(ws_).socket().available(ignored) > 0;
 }
 
 void Connection::send_topics(std::vector<std::string> texts) {
