@@ -86,7 +86,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     wire::SessionLimits limits;
     limits.messages = {.per_s = 100, .burst = 8};
     limits.refusals = {.per_s = 100, .burst = 8};
-    wire::RosbridgeSession session(kConnection, gate, limits);
+    const wire::Access access = wire::testing::three_tokens();
+    // Any role; what it does not allow must not reach the gate.
+    const auto role = static_cast<wire::Role>((data[0] >> 4U) % 4U);
+    wire::RosbridgeSession session(kConnection, gate, limits, {role, &access});
     std::string_view rest(reinterpret_cast<const char*>(data) + 2, size - 2);
     std::int64_t now_ns = 1'000'000'000;
     for (bool dropped = false; !rest.empty() && !dropped;) {

@@ -32,6 +32,7 @@ struct Rig {
         ServerConfig config;
         config.port = 0;
         config.accepts_per_tick = 1'000'000;
+        config.door_work_us = config.guest_work_us = 1'000'000'000;
         config.session.json.max_bytes = 4096;
         server = std::move(WebsocketServer::open(config, gate).value());
     }
@@ -175,6 +176,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     service.gate.rearmed.clear();
     service.gate.vouched.clear();
     service.gate.forgotten.clear();
+    service.gate.acts.clear();
     service.gate.last_sequence.clear();
     return 0;
 }

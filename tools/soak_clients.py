@@ -30,11 +30,19 @@ def port_of(folder):
         return 0
 
 
-def connect(folder, timeout_s):
+def path_of(folder, role):
+    """With the token of a role; without one for a guest."""
+    if role is None:
+        return "/"
+    lines = (folder / "tokens").read_text().splitlines()
+    return "/?token=" + next(line.split()[1] for line in lines if line.startswith(f"{role} "))
+
+
+def connect(folder, timeout_s, role=None):
     """A client of the gate of now; waits until there is one."""
     while True:
         try:
-            return RosbridgeClient(port_of(folder), timeout_s)
+            return RosbridgeClient(port_of(folder), timeout_s, path_of(folder, role))
         except GONE:
             time.sleep(0.05)
 
@@ -46,7 +54,7 @@ def witness(folder, seed):
     with open(folder / "queries.csv", "a", buffering=1) as log:
         while True:
             port = port_of(folder)
-            client = connect(folder, ANSWER_TIMEOUT_S)
+            client = connect(folder, ANSWER_TIMEOUT_S, "rider")
             next_s = time.monotonic()
             while True:
                 sent_ns = time.monotonic_ns()
@@ -78,9 +86,9 @@ class Crowd:
             self.counts[what] = self.counts.get(what, 0) + times
 
     def operator(self):
-        """Re-arms after a fault, and vouches for the ground again where its word has died with a gate."""
+        """Re-arms after a fault, and attests the ground again where its attestation has ended with a gate."""
         while True:
-            client = connect(self.folder, 5.0)
+            client = connect(self.folder, 5.0, "operator")
             try:
                 while True:
                     time.sleep(1.0)

@@ -18,10 +18,10 @@
 #include <numbers>
 
 #include "apps/surefoot/resources.hpp"
-#include "io/file.hpp"
 #include "io/machine_file.hpp"
 #include "server/wire/audit_log.hpp"
 #include "server/wire/gatekeeper.hpp"
+#include "server/wire/token_file.hpp"
 #include "server/wire/websocket_server.hpp"
 
 namespace surefoot::app {
@@ -40,6 +40,7 @@ struct Options {
     std::string machine = "rex";
     std::string snapshots;
     std::string token_file;
+    std::string guests;
     std::string audit_dir;
     bool assured = false;
     int audit_mb = 1024;
@@ -57,15 +58,6 @@ std::int64_t clock_ns(clockid_t clock) {
 int fail(const Error& error) {
     fmt::print(stderr, "surefoot-gate: {}\n", error.message);
     return error.code == ErrorCode::usage ? kExitUsage : kExitFailed;
-}
-
-/// A token on the command line would be seen by everybody on the machine.
-Result<std::string> read_token(const std::string& path) {
-    auto text = io::read_file(path, 4096);
-    if (!text) return text.error();
-    while (!text->empty() && (text->back() == '\n' || text->back() == '\r')) text->pop_back();
-    if (text->empty()) return usage_error(path + ": the token is empty");
-    return text;
 }
 
 gate::ReadinessLimits limits_of(const io::MachineFile& file) {
@@ -113,13 +105,17 @@ int serve(const Options& options, const io::MachineFile& file) {
     auto log = open_log(options, file.machine);
     if (!log) return fail(log.error());
     wire::AuditLog* const audit = log->get();
-    wire::Gatekeeper keeper(file.machine,
-                            limits_of(file),
-                            options.snapshots,
-                            [audit](const wire::Judgement& j, const grid::MapSnapshot& map) {
-                                if (audit != nullptr)
-                                    audit->push({j.query, j.health, j.now_ns, map, j.verdict});
-                            });
+    wire::Gatekeeper keeper(
+        file.machine,
+        limits_of(file),
+        options.snapshots,
+        [audit](const wire::Judgement& j, const grid::MapSnapshot& map) {
+            if (audit != nullptr)
+                audit->push(wire::AuditedVerdict{j.query, j.health, j.now_ns, map, j.verdict});
+        },
+        [audit](const wire::Act& act) {
+            if (audit != nullptr) audit->push(act);
+        });
     if (options.vouch_radius_m > 0.0) {
         if (auto status = keeper.vouch_when_ready(options.vouch_radius_m); !status)
             return fail(status.error());
@@ -139,7 +135,10 @@ int serve(const Options& options, const io::MachineFile& file) {
     const auto server = wire::WebsocketServer::open(options.server, keeper, tick);
     if (!server) return fail(server.error());
     running = server->get();
-    fmt::print("listening on ws://{}:{}\n", options.server.bind_address, running->port());
+    fmt::print("listening on {}://{}:{}\n",
+               options.server.tls.empty() ? "ws" : "wss",
+               options.server.bind_address,
+               running->port());
     std::fflush(stdout);
     ask_for_short_slices();
     running->run();
@@ -153,11 +152,11 @@ int run(Options options) {
     if (!machine) return fail(machine.error());
     for (const io::Deviation& deviation : machine->deviations)
         fmt::print(stderr, "surefoot-gate: {}: {}\n", options.machine, io::text_of(deviation));
-    if (!options.token_file.empty()) {
-        auto token = read_token(options.token_file);
-        if (!token) return fail(token.error());
-        options.server.token = std::move(token).value();
-    }
+    auto loaded =
+        wire::load_access(options.token_file, options.guests, options.server.bind_address);
+    if (!loaded) return fail(loaded.error());
+    fmt::print(stderr, "{}", loaded->news);
+    options.server.access = std::move(loaded->access);
     if (options.assured && options.audit_dir.empty())
         return fail(usage_error("--assured gives no OK without a log: name its folder (--audit)"));
     // Every start of the gate counts its clients anew: a verdict of before answers none of them.
@@ -184,11 +183,35 @@ int main_with_arguments(int argc, char** argv) {
     app.add_option("--machine", options.machine, "machine file, or a built-in name")
         ->capture_default_str();
     app.add_option("--port", options.server.port, "0 = any free one")->capture_default_str();
-    app.add_option("--bind", options.server.bind_address, "address; beyond loopback a token is due")
+    app.add_option("--bind",
+                   options.server.bind_address,
+                   "address; beyond loopback everybody needs a token, and the gate needs "
+                   "--certificate and --key")
         ->capture_default_str();
-    app.add_option("--token-file", options.token_file, "file with what clients put into ?token=")
+    app.add_option("--token-file",
+                   options.token_file,
+                   "tokens of observer, rider and operator; made at the first start; unless given "
+                   "~/.local/state/surefoot/tokens")
         ->type_name("FILE");
-    app.add_option("--origin", options.server.origins, "web pages of this origin may connect")
+    app.add_option("--guests",
+                   options.guests,
+                   "what a client without a token is: none, observer, rider; unless given rider on "
+                   "loopback, none beyond")
+        ->check(CLI::IsMember({"none", "observer", "rider"}))
+        ->type_name("ROLE");
+    app.add_option(
+           "--certificate", options.server.tls.certificate_file, "for TLS: certificate chain (PEM)")
+        ->type_name("FILE");
+    app.add_option("--key", options.server.tls.key_file, "for TLS: private key (PEM), rights 0600")
+        ->type_name("FILE");
+    app.add_option("--insecure",
+                   options.server.insecure,
+                   "beyond loopback without TLS: a sentence, which the error says")
+        ->type_name("TEXT");
+    app.add_option(
+           "--origin",
+           options.server.origins,
+           "web pages of this origin may connect, as http://192.0.2.7:8000, null or file://")
         ->type_name("URL");
     app.add_option("--audit", options.audit_dir, "folder of the audit log")->type_name("DIR");
     app.add_flag("--assured", options.assured, "no OK while the audit log cannot be written");

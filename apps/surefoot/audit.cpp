@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <utility>
+#include <vector>
 
 #include "apps/surefoot/audit_replay.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "server/wire/audit_reader.hpp"
+#include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -21,8 +23,9 @@ void say_what_is_missing(const wire::AuditSummary& summary) {
 }
 
 std::string text_of(const wire::AuditSummary& summary) {
-    return fmt::format("{} verdicts of {} runs in {} files ({} bytes)",
+    return fmt::format("{} verdicts and {} acts of {} runs in {} files ({} bytes)",
                        summary.verdicts,
+                       summary.acts,
                        summary.runs,
                        summary.files,
                        summary.bytes);
@@ -35,7 +38,34 @@ void print_difference(const AuditDifference& first) {
         fmt::print("  {}: recorded {}, now {}\n", d.field, d.recorded, d.replayed);
 }
 
+void print_act(const wire::Act& act) {
+    fmt::print("{:.3f} s  {} {}: {}",
+               seconds_from_ns(act.time_ns),
+               to_string(act.role),
+               to_string(act.kind),
+               to_string(act.outcome));
+    if (act.connection != 0) fmt::print(", connection {}", act.connection);
+    if (act.kind == wire::ActKind::attest) fmt::print(", {:.4f} m", act.radius_tenth_mm * 1e-4);
+    if (!act.text.empty()) fmt::print(", {}", act.text);
+    if (act.left_out > 0) fmt::print(" ({} refused acts before it were left out)", act.left_out);
+    fmt::print("\n");
+}
+
 }  // namespace
+
+int audit_acts(const AuditOptions& options) {
+    std::vector<wire::Act> acts;
+    const auto summary =
+        wire::read_audit(options.path, {}, [&](const wire::Act& act) { acts.push_back(act); });
+    if (!summary) return report(summary.error());
+    say_what_is_missing(*summary);
+    if (options.common.json) {
+        print_answer(audit_acts_json(*summary, acts));
+    } else {
+        for (const wire::Act& act : acts) print_act(act);
+    }
+    return summary->damage ? kExitFailed : kExitOk;
+}
 
 int audit_verify(const AuditOptions& options) {
     const auto summary = wire::read_audit(options.path, {});

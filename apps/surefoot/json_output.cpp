@@ -63,6 +63,7 @@ Json summary_json(const wire::AuditSummary& summary) {
             {"verdicts", summary.verdicts},
             {"gaps", summary.gaps},
             {"lost", summary.lost},
+            {"acts", summary.acts},
             {"unfinished", summary.unfinished},
             {"damage", damage}};
 }
@@ -391,6 +392,23 @@ std::string verdict_json(const gate::Verdict& verdict,
 
 std::string audit_json(const wire::AuditSummary& summary) {
     return summary_json(summary).dump(kIndent);
+}
+
+std::string audit_acts_json(const wire::AuditSummary& summary, const std::vector<wire::Act>& acts) {
+    Json object = summary_json(summary);
+    Json list = Json::array();
+    for (const wire::Act& act : acts) {
+        list.push_back({{"time_ns", act.time_ns},
+                        {"act", to_string(act.kind)},
+                        {"outcome", to_string(act.outcome)},
+                        {"role", to_string(act.role)},
+                        {"connection", act.connection},
+                        {"radius_m", kTenthMm_m * act.radius_tenth_mm},
+                        {"left_out", act.left_out},
+                        {"text", act.text}});
+    }
+    object["list"] = list;
+    return object.dump(kIndent);
 }
 
 std::string audit_replay_json(const wire::AuditSummary& summary, const AuditReplay& replay) {

@@ -62,6 +62,8 @@ struct ReportCamera {
                                        const std::string& text,
                                        const std::vector<std::string>& assumed);
 [[nodiscard]] std::string audit_json(const wire::AuditSummary& summary);
+[[nodiscard]] std::string audit_acts_json(const wire::AuditSummary& summary,
+                                          const std::vector<wire::Act>& acts);
 [[nodiscard]] std::string audit_replay_json(const wire::AuditSummary& summary,
                                             const AuditReplay& replay);
 [[nodiscard]] std::string trajectory_json(const eval::TrajectoryErrors& errors,

@@ -100,6 +100,7 @@ struct AllOptions {
     RexLinkOptions rex_link;
     ServeOptions serve;
     AuditOptions audit_verify;
+    AuditOptions audit_acts;
     AuditOptions audit_replay;
     EvalTrajectoryOptions eval_trajectory;
     EvalMapsOptions eval_maps;
@@ -384,6 +385,11 @@ void add_audit(CLI::App& app, AllOptions& all, int& exit_code) {
         "surefoot audit verify out/audit --json",
         all.audit_verify,
         audit_verify);
+    add("acts",
+        "who attested the ground, re-armed, showed a token, or was refused; with the role",
+        "surefoot audit acts out/audit",
+        all.audit_acts,
+        audit_acts);
     add("replay",
         "decides every verdict anew; exit 0 only when all are the same, bit for bit",
         "surefoot audit replay out/audit",
@@ -424,10 +430,35 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
     verb->add_option("--port", o.port, "of the gate; 0 = any free one")
         ->check(CLI::Range(0, 65535))
         ->capture_default_str();
-    verb->add_option("--bind", o.bind_address, "of the gate; beyond loopback a token is due")
+    verb->add_option("--bind",
+                     o.bind_address,
+                     "of the gate and the page; beyond loopback everybody needs a token, and the "
+                     "service needs --certificate and --key")
         ->capture_default_str();
-    verb->add_option("--token-file", o.token_file, "what clients of the gate put into ?token=")
+    verb->add_option("--token-file",
+                     o.token_file,
+                     "tokens of observer, rider and operator; made at the first start; unless "
+                     "given ~/.local/state/surefoot/tokens")
         ->type_name("FILE");
+    verb->add_option("--guests",
+                     o.guests,
+                     "what a client without a token is: none, observer, rider; unless given rider "
+                     "on loopback, none beyond")
+        ->check(CLI::IsMember({"none", "observer", "rider"}))
+        ->type_name("ROLE");
+    verb->add_option("--certificate", o.certificate_file, "for TLS: certificate chain (PEM)")
+        ->type_name("FILE");
+    verb->add_option("--key", o.key_file, "for TLS: private key (PEM), rights 0600")
+        ->type_name("FILE");
+    verb->add_option("--insecure",
+                     o.insecure,
+                     "beyond loopback without TLS: a sentence, which the error says")
+        ->type_name("TEXT");
+    verb->add_option("--origin",
+                     o.origins,
+                     "web pages of this origin may ask the gate, as http://192.0.2.7:8000, null or "
+                     "file://")
+        ->type_name("URL");
     verb->add_option("--audit", o.audit_dir, "folder of the gate's audit log")->type_name("DIR");
     verb->add_flag("--assured", o.assured, "no OK while the audit log cannot be written");
     verb->add_option("--audit-mb", o.audit_mb, "of that folder; then the oldest logs go")
@@ -494,6 +525,10 @@ void add_rex_link(CLI::App& app, RexLinkOptions& o, int& exit_code) {
              Reads::no_settings);
     verb->add_option("--url", o.url, "of the gate's service: address in numbers or localhost")
         ->type_name("ws://ADDRESS[:PORT][/PATH]");
+    verb->add_option("--token-file",
+                     o.token_file,
+                     "shows the rider's token of this file (of surefoot serve), which keeps a slot")
+        ->type_name("FILE");
     CLI::Option* script = verb->add_option(
         "--script", o.script_file, "lines 'time_s code', or joystick.csv of a simulated walk");
     script->type_name("FILE");

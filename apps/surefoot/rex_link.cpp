@@ -16,6 +16,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "io/file.hpp"
 #include "server/rex_link/link_client.hpp"
+#include "server/wire/token_file.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
@@ -89,6 +90,13 @@ int rex_link_verb(const RexLinkOptions& options) {
     if (!tones) return report(tones.error());
     rex_link::LinkClientConfig config;
     config.gate = *gate;
+    if (!options.token_file.empty()) {
+        const auto access = wire::read_tokens(options.token_file);
+        if (!access) return report(access.error());
+        if (access->rider.empty())
+            return report(usage_error(options.token_file + ": no line with a rider's token"));
+        config.gate.show_token(access->rider);
+    }
     config.link.step_duration_ns = ns_from_seconds(options.step_s);
     if (const auto problem = config.link.problem()) return report(usage_error(*problem));
     watch_for_interrupts();

@@ -33,8 +33,8 @@
 #include "apps/surefoot/steered_walk.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/file.hpp"
-#include "io/text.hpp"
 #include "server/page/page_server.hpp"
+#include "server/wire/token_file.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/gate/vouching.hpp"
 
@@ -125,6 +125,11 @@ std::vector<std::string> gate_arguments(const ServeOptions& options, const std::
     };
     add("--audit", options.audit_dir);
     add("--token-file", options.token_file);
+    add("--guests", options.guests);
+    add("--certificate", options.certificate_file);
+    add("--key", options.key_file);
+    add("--insecure", options.insecure);
+    for (const std::string& origin : options.origins) add("--origin", origin);
     if (options.assured) words.emplace_back("--assured");
     if (options.max_rate_hz > 0) add("--max-rate", std::to_string(options.max_rate_hz));
     if (options.audit_mb > 0) add("--audit-mb", std::to_string(options.audit_mb));
@@ -151,18 +156,16 @@ Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
 /// The live page, on a thread of its own; without one where the user wants none.
 class PageService {
   public:
-    static Result<std::unique_ptr<PageService>> start(const ServeOptions& options) {
+    static Result<std::unique_ptr<PageService>> start(const ServeOptions& options,
+                                                      const wire::Access& access) {
         std::unique_ptr<PageService> service(new PageService());
         if (options.no_page) return service;
         page::PageServerConfig config;
         config.bind_address = options.bind_address;
         config.port = static_cast<std::uint16_t>(options.page_port);
         config.foxglove_origins = options.foxglove_origins;
-        if (!options.token_file.empty()) {
-            auto token = io::read_file(options.token_file);
-            if (!token) return token.error();
-            config.token = std::string(io::trimmed(*token));
-        }
+        // The page's socket knows one token; the gate's own knows the roles.
+        if (access.guest == wire::Role::none) config.token = access.operator_;
         auto server = page::PageServer::open(config, service->feed_, service->controls_);
         if (!server) return server.error();
         service->server_ = std::move(server).value();
@@ -235,12 +238,16 @@ class Service {
     Status perceive_beside(GateChild& gate,
                            std::unique_ptr<camera::FrameSource> source,
                            wire::SnapshotWriter& writer);
-    Status introduce(const camera::FrameSource& source, std::uint16_t gate_port);
+    Status introduce(const camera::FrameSource& source,
+                     const wire::Access& access,
+                     std::uint16_t gate_port);
     void offer_settings(bool is_scene);
     void offer_recording(const camera::FrameSource& source);
     Status apply(const ServiceConfig& wanted);
     Result<std::string> change(const page::SettingWish& wish);
-    Status steer(camera::FrameSource& source, std::uint16_t gate_port);
+    Status steer(camera::FrameSource& source,
+                 const std::string& rider_token,
+                 std::uint16_t gate_port);
     void follow_walk(sim::SceneSource& scene, const LiveSession& session);
     bool follow_pages(LiveSession& session, const wire::SnapshotWriter& writer);
     std::optional<int> next_jump(LiveSession::End end);
@@ -270,7 +277,11 @@ class Service {
 /// With --json the answer has stdout for itself.
 void Service::tell_where(const GateChild& gate) {
     std::FILE* const out = options_.common.json ? stderr : stdout;
-    fmt::print(out, "the gate listens on ws://{}:{}\n", options_.bind_address, gate.port());
+    fmt::print(out,
+               "the gate listens on {}://{}:{}\n",
+               options_.certificate_file.empty() ? "ws" : "wss",
+               options_.bind_address,
+               gate.port());
     std::fflush(out);
     hello_.gate_port = gate.port();
     page_->introduce(hello_, machine_);
@@ -423,8 +434,10 @@ Status Service::perceive_beside(GateChild& gate,
 }
 
 /// What pages are told of the source, and may do with it.
-Status Service::introduce(const camera::FrameSource& source, std::uint16_t gate_port) {
-    auto page = PageService::start(options_);
+Status Service::introduce(const camera::FrameSource& source,
+                          const wire::Access& access,
+                          std::uint16_t gate_port) {
+    auto page = PageService::start(options_, access);
     if (!page) return page.error();
     page_ = std::move(page).value();
     const bool is_scene = dynamic_cast<const sim::SceneSource*>(&source) != nullptr;
@@ -488,7 +501,9 @@ Result<std::string> Service::change(const page::SettingWish& wish) {
 }
 
 /// Somebody steers, where the user wants it.
-Status Service::steer(camera::FrameSource& source, std::uint16_t gate_port) {
+Status Service::steer(camera::FrameSource& source,
+                      const std::string& rider_token,
+                      std::uint16_t gate_port) {
     if (options_.walk.empty() && !options_.joystick) return {};
     if (!options_.walk.empty() && options_.joystick)
         return usage_error("either --walk or --joystick steers, not both");
@@ -506,7 +521,8 @@ Status Service::steer(camera::FrameSource& source, std::uint16_t gate_port) {
         if (!codes) return codes.error();
         walker = scripted_walker(std::move(codes).value());
     }
-    walk_ = std::make_unique<SteeredWalk>(std::move(walker), gate_port, scene->commanded());
+    walk_ = std::make_unique<SteeredWalk>(
+        std::move(walker), gate_port, rider_token, scene->commanded());
     return {};
 }
 
@@ -514,6 +530,10 @@ Status Service::run() {
     auto source = open(options_, settings_, executor_);
     if (!source) return source.error();
     fit_settings((*source)->rig(), machine_, settings_);
+    const auto loaded =
+        wire::load_access(options_.token_file, options_.guests, options_.bind_address);
+    if (!loaded) return loaded.error();
+    fmt::print(stderr, "{}", loaded->news);
     const ChannelFile channel(channel_path(options_));
     auto writer = wire::SnapshotWriter::create(channel.path());
     if (!writer) return writer.error();
@@ -522,7 +542,8 @@ Status Service::run() {
         first = {"--vouch", fmt::format("{}", options_.vouch_radius_m)};
     auto gate = GateChild::start(gate_arguments(options_, channel.path()), first);
     if (!gate) return gate.error();
-    if (auto introduced = introduce(**source, gate->port()); !introduced) return introduced;
+    if (auto introduced = introduce(**source, loaded->access, gate->port()); !introduced)
+        return introduced;
     tell_where(*gate);
     if (page_->port() != 0) {
         std::FILE* const out = options_.common.json ? stderr : stdout;
@@ -531,7 +552,8 @@ Status Service::run() {
         std::fflush(out);
     }
     watch_for_interrupts();
-    if (auto steered = steer(**source, gate->port()); !steered) return steered;
+    if (auto steered = steer(**source, loaded->access.rider, gate->port()); !steered)
+        return steered;
     Status perceived = perceive_beside(*gate, std::move(source).value(), *writer);
     walk_.reset();
     if (!perceived) return perceived;

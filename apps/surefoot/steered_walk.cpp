@@ -105,11 +105,13 @@ Result<std::vector<std::uint8_t>> parse_walk(const std::string& text) {
 
 SteeredWalk::SteeredWalk(std::unique_ptr<Walker> walker,
                          std::uint16_t gate_port,
+                         const std::string& rider_token,
                          std::shared_ptr<sim::CommandedMotion> motion)
     : walker_(std::move(walker)), motion_(std::move(motion)) {
     rex_link::LinkClientConfig config;
     config.gate.address = "127.0.0.1";
     config.gate.port = gate_port;
+    config.gate.show_token(rider_token);
     // The simulator says when a step has ended: its time need not run as ours does.
     config.link.step_duration_ns = kRest_ns;
     thread_ = std::thread([this, config] {

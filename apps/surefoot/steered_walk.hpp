@@ -52,6 +52,7 @@ class SteeredWalk {
   public:
     SteeredWalk(std::unique_ptr<Walker> walker,
                 std::uint16_t gate_port,
+                const std::string& rider_token,
                 std::shared_ptr<sim::CommandedMotion> motion);
     SteeredWalk(const SteeredWalk&) = delete;
     SteeredWalk& operator=(const SteeredWalk&) = delete;

@@ -111,7 +111,12 @@ struct ServeOptions {
     std::optional<double> speed;
     int port = 9090;  ///< of the gate; 0 = any free one
     std::string bind_address = "127.0.0.1";
-    std::string token_file;
+    std::string token_file;  ///< of the roles; empty = the user's own file
+    std::string guests;      ///< role of a client without a token; empty = the gate's own rule
+    std::string certificate_file;  ///< for TLS
+    std::string key_file;
+    std::string insecure;              ///< sentence that allows a network without TLS
+    std::vector<std::string> origins;  ///< of web pages that may connect to the gate
     std::string audit_dir;
     bool assured = false;
     int max_rate_hz = 0;          ///< of messages of a client of the gate; 0 = the gate's own limit
@@ -134,6 +139,7 @@ int serve(const ServeOptions& options);
 struct RexLinkOptions {
     CommonOptions common;
     std::string url = "ws://127.0.0.1:9090";
+    std::string token_file;  ///< the rider's token is taken from it; empty = none is shown
     std::string script_file;
     bool keys = false;
     std::string tones_dir;  ///< empty = no sound
@@ -147,6 +153,8 @@ struct AuditOptions {
 };
 /// `audit verify`: is the log whole?
 int audit_verify(const AuditOptions& options);
+/// `audit acts`: who attested, re-armed, or was refused.
+int audit_acts(const AuditOptions& options);
 /// `audit replay`: does the gate give every verdict of the log again?
 int audit_replay(const AuditOptions& options);
 

@@ -51,7 +51,10 @@ class Gate {
     explicit Gate(std::string token = {}) {
         wire::ServerConfig config;
         config.port = 0;
-        config.token = std::move(token);
+        if (!token.empty()) {
+            config.access.observer = std::move(token);
+            config.access.guest = wire::Role::none;
+        }
         auto opened = wire::WebsocketServer::open(config, script_);
         EXPECT_TRUE(opened);
         server_ = std::move(opened).value();

@@ -248,6 +248,11 @@ Error bad_url(std::string_view url) {
 
 }  // namespace
 
+void GateAddress::show_token(const std::string& token) {
+    if (token.empty()) return;
+    target += (target.find('?') == std::string::npos ? "?token=" : "&token=") + token;
+}
+
 Result<GateAddress> parse_gate_url(std::string_view url) {
     constexpr std::string_view kScheme = "ws://";
     if (!url.starts_with(kScheme)) return bad_url(url);

@@ -18,6 +18,8 @@ struct GateAddress {
     std::string address;  ///< IPv4 or IPv6, in numbers
     std::uint16_t port = 9090;
     std::string target = "/";  ///< path and query; a token goes here
+    /// Adds a token to the query; an empty one adds nothing.
+    void show_token(const std::string& token);
 };
 /// ws://ADDRESS[:PORT][/TARGET]; ADDRESS in numbers, IPv6 in brackets, or localhost.
 [[nodiscard]] Result<GateAddress> parse_gate_url(std::string_view url);

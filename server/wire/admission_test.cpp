@@ -5,6 +5,7 @@
 
 #include "server/wire/out_queue.hpp"
 #include "server/wire/server_config.hpp"
+#include "server/wire/wire_testing.hpp"
 
 namespace surefoot::wire {
 namespace {
@@ -71,48 +72,64 @@ TEST(Admission, PartsOfATarget) {
     EXPECT_EQ(query_value("", "a"), "");
 }
 
-TEST(ServerConfig, OutsideNeedsAToken) {
+TEST(ServerConfig, OutsideNeedsATokenOfEverybodyAndTls) {
+    const auto said = [](const ServerConfig& config) { return config.problem().value_or(""); };
     ServerConfig config;
-    EXPECT_EQ(config.problem(), std::nullopt);
+    EXPECT_EQ(said(config), "");
     for (const char* address : {"0.0.0.0", "192.168.1.5", "::", "::ffff:127.0.0.1", "128.0.0.1"}) {
+        config = {};
         config.bind_address = address;
-        config.token.clear();
-        ASSERT_TRUE(config.problem().has_value()) << address;
-        EXPECT_NE(config.problem()->find("token"), std::string::npos) << *config.problem();
-        config.token = kToken;
-        EXPECT_EQ(config.problem(), std::nullopt) << address;
+        EXPECT_NE(said(config).find("everybody needs a token"), std::string::npos) << address;
+        config.access = testing::three_tokens(Role::observer);
+        EXPECT_NE(said(config).find("--guests none"), std::string::npos) << said(config);
+        config.access.guest = Role::none;
+        EXPECT_NE(said(config).find("--certificate"), std::string::npos) << said(config);
+        EXPECT_NE(said(config).find(kInsecureSentence), std::string::npos) << said(config);
+        config.insecure = "yes";
+        EXPECT_NE(said(config).find(kInsecureSentence), std::string::npos) << said(config);
+        config.insecure = kInsecureSentence;
+        EXPECT_EQ(said(config), "") << address;
+        config.insecure.clear();
+        config.tls = {"certificate.pem", "key.pem"};
+        EXPECT_EQ(said(config), "") << address;
+        config.tls.key_file.clear();
+        EXPECT_NE(said(config).find("both files"), std::string::npos) << said(config);
     }
-    config.token.clear();
+    config = {};
     for (const char* address : {"127.0.0.1", "127.1.2.3", "::1"}) {
         config.bind_address = address;
-        EXPECT_EQ(config.problem(), std::nullopt) << address;
+        EXPECT_EQ(said(config), "") << address;
     }
     for (const char* address : {"", "localhost", "127.0.0", "127.0.0.1 "}) {
         config.bind_address = address;
-        EXPECT_TRUE(config.problem().has_value()) << address;
+        EXPECT_NE(said(config), "") << address;
     }
 }
 
 TEST(ServerConfig, NoLimitCanBeSwitchedOff) {
     using Change = void (*)(ServerConfig&);
-    for (const Change change : {Change([](ServerConfig& c) { c.token = "short"; }),
-                                Change([](ServerConfig& c) { c.token = "0123456789abcde&"; }),
-                                Change([](ServerConfig& c) { c.token = std::string(129, 'a'); }),
-                                Change([](ServerConfig& c) { c.first_connection = 0; }),
-                                Change([](ServerConfig& c) { c.max_clients = 0; }),
-                                Change([](ServerConfig& c) { c.max_handshakes = 0; }),
-                                Change([](ServerConfig& c) { c.accepts_per_tick = 0; }),
-                                Change([](ServerConfig& c) { c.tick_ms = 0; }),
-                                Change([](ServerConfig& c) { c.handshake_ms = 0; }),
-                                Change([](ServerConfig& c) { c.idle_ms = -1; }),
-                                Change([](ServerConfig& c) { c.message_ms = 0; }),
-                                Change([](ServerConfig& c) { c.write_ms = 0; }),
-                                Change([](ServerConfig& c) { c.max_queue_bytes = 0; }),
-                                Change([](ServerConfig& c) { c.max_read_bytes_per_s = 0; }),
-                                Change([](ServerConfig& c) { c.control_frames.per_s = 0; }),
-                                Change([](ServerConfig& c) { c.session.messages.burst = 0; }),
-                                Change([](ServerConfig& c) { c.session.refusals.per_s = -1; }),
-                                Change([](ServerConfig& c) { c.session.faults.per_s = 0; })}) {
+    for (const Change change :
+         {Change([](ServerConfig& c) { c.access.rider = "short"; }),
+          Change([](ServerConfig& c) { c.access.operator_ = "0123456789abcde&"; }),
+          Change([](ServerConfig& c) { c.access.observer = std::string(129, 'a'); }),
+          Change([](ServerConfig& c) { c.first_connection = 0; }),
+          Change([](ServerConfig& c) { c.access.guest = Role::operator_; }),
+          Change([](ServerConfig& c) { c.slots.max_clients = 0; }),
+          Change([](ServerConfig& c) { c.slots.max_handshakes = 0; }),
+          Change([](ServerConfig& c) { c.accepts_per_tick = 0; }),
+          Change([](ServerConfig& c) { c.tick_ms = 0; }),
+          Change([](ServerConfig& c) { c.guest_work_us = 0; }),
+          Change([](ServerConfig& c) { c.door_work_us = 0; }),
+          Change([](ServerConfig& c) { c.handshake_ms = 0; }),
+          Change([](ServerConfig& c) { c.idle_ms = -1; }),
+          Change([](ServerConfig& c) { c.message_ms = 0; }),
+          Change([](ServerConfig& c) { c.write_ms = 0; }),
+          Change([](ServerConfig& c) { c.max_queue_bytes = 0; }),
+          Change([](ServerConfig& c) { c.max_read_bytes_per_s = 0; }),
+          Change([](ServerConfig& c) { c.control_frames.per_s = 0; }),
+          Change([](ServerConfig& c) { c.session.messages.burst = 0; }),
+          Change([](ServerConfig& c) { c.session.refusals.per_s = -1; }),
+          Change([](ServerConfig& c) { c.session.faults.per_s = 0; })}) {
         ServerConfig config;
         change(config);
         EXPECT_TRUE(config.problem().has_value());

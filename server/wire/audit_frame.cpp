@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "server/wire/audit_bytes.hpp"
@@ -46,6 +47,22 @@ void for_each_gap_field(Gap& gap, Visit& visit) {
     visit("last_ns", gap.last_ns);
 }
 
+template <typename Act, typename Visit>
+void for_each_act_field(Act& act, Visit& visit) {
+    visit("kind", act.kind);
+    visit("outcome", act.outcome);
+    visit("role", act.role);
+    visit("connection", act.connection);
+    visit("time_ns", act.time_ns);
+    visit("radius_tenth_mm", act.radius_tenth_mm);
+    visit("left_out", act.left_out);
+}
+
+std::uint8_t text_bytes(const Act& act) noexcept {
+    static_assert(kMaxActText_bytes <= 255);
+    return static_cast<std::uint8_t>(std::min(act.text.size(), kMaxActText_bytes));
+}
+
 }  // namespace
 
 std::uint64_t append_frame(std::string& out, const FrameHeader& header, std::string_view stored) {
@@ -79,7 +96,8 @@ HeaderState parse_frame_header(std::string_view bytes, FrameHeader& header) noex
     if (!reader.ok()) return HeaderState::damaged;
     if ((magic & 0xffffffU) != kFrameMagic) return HeaderState::no_frame;
     if (check != check_of(bytes)) return HeaderState::damaged;
-    if (magic >> 24U != kFrameVersion) return HeaderState::other_version;
+    const std::uint32_t version = magic >> 24U;
+    if (version < kOldestFrameVersion || version > kFrameVersion) return HeaderState::other_version;
     const bool sound = zero == 0 && header.stored_bytes <= kMaxPayloadBytes &&
                        header.plain_bytes <= kMaxPayloadBytes;
     return sound ? HeaderState::sound : HeaderState::damaged;
@@ -115,6 +133,34 @@ Status parse_gap(std::string_view bytes, AuditGap& gap) {
     ByteReader reader(bytes);
     for_each_gap_field(gap, reader);
     if (!reader.ok() || !reader.rest().empty()) return input_error("no sound gap");
+    return {};
+}
+
+std::size_t act_bytes(const Act& act) noexcept {
+    ByteCounter counter;
+    for_each_act_field(act, counter);
+    return counter.bytes() + 1 + text_bytes(act);
+}
+
+void write_act(const Act& act, char* out) noexcept {
+    ByteWriter writer(out);
+    for_each_act_field(act, writer);
+    writer("text_bytes", text_bytes(act));
+    writer.copy(act.text.data(), text_bytes(act));
+}
+
+Status parse_act(std::string_view bytes, Act& act) {
+    ByteReader reader(bytes);
+    for_each_act_field(act, reader);
+    std::uint8_t text = 0;
+    reader("text_bytes", text);
+    if (!reader.ok() || reader.rest().size() != text || text > kMaxActText_bytes)
+        return input_error("no sound act");
+    if (act.kind < ActKind::connect || act.kind > ActKind::rearm ||
+        act.outcome < ActOutcome::done || act.outcome > ActOutcome::no_right ||
+        act.role > Role::operator_)
+        return input_error("an act that this program does not know");
+    act.text = reader.rest();
     return {};
 }
 

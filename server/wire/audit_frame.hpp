@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/wire/acts.hpp"
 #include "server/wire/audit_record.hpp"
 
 /// A log is a row of frames, each with the hash of the one before (docs/audit_format.md):
@@ -14,7 +15,7 @@
 ///     4              1     1         2  4       4      8         8         4     | stored  | 8
 namespace surefoot::wire {
 
-enum class FrameKind : std::uint8_t { file = 1, verdict = 2, gap = 3 };
+enum class FrameKind : std::uint8_t { file = 1, verdict = 2, gap = 3, act = 4 };
 enum class FrameEncoding : std::uint8_t { plain = 0, zstd = 1 };
 
 struct FrameHeader {
@@ -27,7 +28,8 @@ struct FrameHeader {
 };
 
 inline constexpr std::uint32_t kFrameMagic = 0x00414653;  // "SFA", the last byte is the version
-inline constexpr std::uint32_t kFrameVersion = 2;
+inline constexpr std::uint32_t kFrameVersion = 3;         ///< that is written
+inline constexpr std::uint32_t kOldestFrameVersion = 2;   ///< that is read; it has no acts
 inline constexpr std::size_t kFrameHeaderBytes = 36;
 inline constexpr std::size_t kFrameHashBytes = 8;
 /// No payload is longer, packed or not.
@@ -58,6 +60,12 @@ struct AuditGap {
 };
 [[nodiscard]] std::string format_gap(const AuditGap& gap);
 [[nodiscard]] Status parse_gap(std::string_view bytes, AuditGap& gap);
+
+/// Bytes of an act, whose text is cut at kMaxActText_bytes.
+[[nodiscard]] std::size_t act_bytes(const Act& act) noexcept;
+/// Writes that many bytes. Allocates nothing.
+void write_act(const Act& act, char* out) noexcept;
+[[nodiscard]] Status parse_act(std::string_view bytes, Act& act);
 
 /// "audit-RUN-NUMBER.log", with the run in 16 hexadecimal digits and the number in 8 decimal ones.
 [[nodiscard]] std::string audit_file_name(std::uint64_t run_id, std::uint64_t number);

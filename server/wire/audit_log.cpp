@@ -15,7 +15,8 @@ namespace {
 /// What an entry of the ring begins with; the record follows.
 struct EntryHead {
     std::int64_t now_ns = 0;
-    AuditGap before;  ///< verdicts that were lost since the entry before
+    AuditGap before;  ///< what was lost since the entry before
+    FrameKind kind = FrameKind::verdict;
 };
 
 EntryHead head_of(std::string_view entry) noexcept {
@@ -71,20 +72,33 @@ Status AuditLog::start() {
 void AuditLog::push(const AuditedVerdict& audited) noexcept {
     const CellBox zone = query_zone(
         machine_, audited.query, audited.map, audited.verdict.evidence.max_drift_tenth_mm);
-    char* at = ring_ == nullptr ? nullptr
-                                : ring_->reserve(sizeof(EntryHead) + record_bytes(audited, zone));
+    char* at = reserve(FrameKind::verdict, record_bytes(audited, zone), audited.now_ns);
+    if (at == nullptr) return;
+    write_record(machine_hash_, audited, zone, at);
+    ring_->commit();
+}
+
+void AuditLog::push(const Act& act) noexcept {
+    char* at = reserve(FrameKind::act, act_bytes(act), act.time_ns);
+    if (at == nullptr) return;
+    write_act(act, at);
+    ring_->commit();
+}
+
+/// Room for an entry behind its head, which is written; nullptr, and counted, where there is none.
+char* AuditLog::reserve(FrameKind kind, std::size_t bytes, std::int64_t now_ns) noexcept {
+    char* at = ring_ == nullptr ? nullptr : ring_->reserve(sizeof(EntryHead) + bytes);
     if (at == nullptr) {
-        if (missed_.verdicts == 0) missed_.first_ns = audited.now_ns;
-        missed_.last_ns = audited.now_ns;
+        if (missed_.verdicts == 0) missed_.first_ns = now_ns;
+        missed_.last_ns = now_ns;
         ++missed_.verdicts;
         lost_.fetch_add(1, std::memory_order_relaxed);
-        return;
+        return nullptr;
     }
-    const EntryHead head{audited.now_ns, missed_};
+    const EntryHead head{now_ns, missed_, kind};
     std::memcpy(at, &head, sizeof(head));
-    write_record(machine_hash_, audited, zone, at + sizeof(head));
-    ring_->commit();
     missed_ = {};
+    return at + sizeof(head);
 }
 
 AuditState AuditLog::state(std::int64_t now_ns) const noexcept {
@@ -152,7 +166,7 @@ bool AuditLog::write_entry(std::string_view entry) {
         if (!succeeded(writer_.write(FrameKind::gap, format_gap(head.before)))) return false;
         gap_written_ = true;
     }
-    if (!succeeded(writer_.write(FrameKind::verdict, entry.substr(sizeof(head))))) return false;
+    if (!succeeded(writer_.write(head.kind, entry.substr(sizeof(head))))) return false;
     gap_written_ = false;
     written_.fetch_add(1, std::memory_order_relaxed);
     return true;

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "server/wire/acts.hpp"
 #include "server/wire/audit_disk.hpp"
 #include "server/wire/audit_record.hpp"
 #include "server/wire/audit_writer.hpp"
@@ -37,8 +38,8 @@ enum class AuditState : std::uint8_t {
 [[nodiscard]] const char* to_string(AuditState state) noexcept;
 
 struct AuditReport {
-    std::uint64_t written = 0;  ///< verdicts that are in the log
-    std::uint64_t lost = 0;     ///< verdicts that never will be
+    std::uint64_t written = 0;  ///< verdicts and acts that are in the log
+    std::uint64_t lost = 0;     ///< verdicts and acts that never will be
     bool failing = false;
     std::string last_error;  ///< empty = none yet
 };
@@ -60,6 +61,8 @@ class AuditLog {
     [[nodiscard]] Status start();
     /// Never blocks, allocates, locks or calls the system; some microseconds for the copy.
     void push(const AuditedVerdict& audited) noexcept;
+    /// An act, in its order between the verdicts. One that finds no room is lost like a verdict.
+    void push(const Act& act) noexcept;
     /// For a service that gives no OK without a log (Reason::audit). `now_ns` as in the verdicts.
     [[nodiscard]] AuditState state(std::int64_t now_ns) const noexcept;
     /// Writes what waits, tries a failing disk once more, and ends the thread: returns when the
@@ -69,6 +72,7 @@ class AuditLog {
 
   private:
     void run();
+    [[nodiscard]] char* reserve(FrameKind kind, std::size_t bytes, std::int64_t now_ns) noexcept;
     [[nodiscard]] bool wait(std::int64_t time_ns);
     [[nodiscard]] bool write_all_that_waits();
     [[nodiscard]] bool write_entry(std::string_view entry);

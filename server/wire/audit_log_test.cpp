@@ -77,6 +77,32 @@ TEST(AuditLog, every_verdict_comes_out_of_the_log_again) {
     EXPECT_GT(bench.platter->syncs, 0);
 }
 
+TEST(AuditLog, acts_stand_between_the_verdicts_in_their_order) {
+    Bench bench;
+    ASSERT_TRUE(bench.log.start());
+    bench.push(2);
+    bench.log.push(act_of(ActKind::attest, Role::operator_, 4, {}, kNowNs, 0.5));
+    bench.push(1);
+    Act refused = act_of(ActKind::rearm, Role::rider, 5, {}, kNowNs);
+    refused.outcome = ActOutcome::no_right;
+    bench.log.push(refused);
+    bench.log.stop();
+    std::vector<std::string> order;
+    const AuditSummary summary =
+        bench.platter->read([&](const AuditedAt&) { order.emplace_back("verdict"); },
+                            [&](const Act& act) {
+                                order.push_back(std::string(to_string(act.role)) + " " +
+                                                to_string(act.kind) + " " + to_string(act.outcome));
+                            });
+    EXPECT_FALSE(summary.damage) << summary.damage->text();
+    EXPECT_EQ(
+        order,
+        (std::vector<std::string>{
+            "verdict", "verdict", "operator attest done", "verdict", "rider re-arm no right"}));
+    EXPECT_EQ(summary.acts, 2U);
+    EXPECT_EQ(summary.verdicts, 3U);
+}
+
 TEST(AuditLog, a_disk_that_hangs_delays_nothing_and_the_gap_is_in_the_log) {
     Bench bench;
     bench.cases.resize(1);  // records of one size: where one did not fit, no other does

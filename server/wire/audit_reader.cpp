@@ -51,7 +51,8 @@ std::string AuditDamage::text() const {
     return fmt::format("{}: byte {}{}: {}; nothing after it was read", file, offset, frame, what);
 }
 
-AuditReader::AuditReader(OnVerdict on_verdict) : on_verdict_(std::move(on_verdict)) {}
+AuditReader::AuditReader(OnVerdict on_verdict, OnAct on_act)
+    : on_verdict_(std::move(on_verdict)), on_act_(std::move(on_act)) {}
 
 void AuditReader::read(std::string_view bytes, const std::string& file) {
     if (summary_.damage) return;
@@ -90,8 +91,9 @@ std::optional<AuditReader::Frame> AuditReader::next_frame(std::string_view rest)
             damaged("the header of the frame does not match its check");
             return std::nullopt;
         case HeaderState::other_version:
-            damaged(fmt::format("version {} of the format; this program reads version {}",
+            damaged(fmt::format("version {} of the format; this program reads versions {} to {}",
                                 static_cast<unsigned char>(rest[3]),
+                                kOldestFrameVersion,
                                 kFrameVersion));
             return std::nullopt;
     }
@@ -137,6 +139,7 @@ bool AuditReader::take(const Frame& frame) {
         case FrameKind::file: return take_file_head(frame);
         case FrameKind::verdict: return follows(frame.header, link_) && take_verdict(frame);
         case FrameKind::gap: return follows(frame.header, link_) && take_gap(frame);
+        case FrameKind::act: return follows(frame.header, link_) && take_act(frame);
     }
     return damaged("a kind of frame that this program does not know", frame.header.sequence);
 }
@@ -193,6 +196,15 @@ bool AuditReader::take_gap(const Frame& frame) {
     return true;
 }
 
+bool AuditReader::take_act(const Frame& frame) {
+    Act act;
+    if (const Status status = parse_act(frame.payload, act); !status)
+        return damaged(status.error().message, frame.header.sequence);
+    ++summary_.acts;
+    if (on_act_) on_act_(act);
+    return true;
+}
+
 void AuditReader::end_unfinished(std::size_t bytes, const char* how) {
     summary_.unfinished.push_back(
         fmt::format("{}: its last {} bytes {}: writing ended there", file_, bytes, how));
@@ -225,10 +237,12 @@ Result<std::vector<std::string>> audit_files_of(const std::string& path) {
     return files;
 }
 
-Result<AuditSummary> read_audit(const std::string& path, AuditReader::OnVerdict on_verdict) {
+Result<AuditSummary> read_audit(const std::string& path,
+                                AuditReader::OnVerdict on_verdict,
+                                AuditReader::OnAct on_act) {
     const auto files = audit_files_of(path);
     if (!files) return files.error();
-    AuditReader reader(std::move(on_verdict));
+    AuditReader reader(std::move(on_verdict), std::move(on_act));
     for (const std::string& file : *files) {
         const auto bytes = whole_file(file);
         if (!bytes) return bytes.error();

@@ -31,6 +31,7 @@ struct AuditSummary {
     std::uint64_t verdicts = 0;
     std::uint64_t gaps = 0;
     std::uint64_t lost = 0;  ///< verdicts in the gaps
+    std::uint64_t acts = 0;
     /// Sentences about files that end within a frame, as after a loss of power: no damage, and
     /// where the run goes on in another file, no loss.
     std::vector<std::string> unfinished;
@@ -50,7 +51,8 @@ struct AuditedAt {
 class AuditReader {
   public:
     using OnVerdict = std::function<void(const AuditedAt&)>;
-    explicit AuditReader(OnVerdict on_verdict);
+    using OnAct = std::function<void(const Act&)>;
+    explicit AuditReader(OnVerdict on_verdict, OnAct on_act = {});
 
     /// The next file. Does nothing once there is damage.
     void read(std::string_view bytes, const std::string& file);
@@ -74,12 +76,14 @@ class AuditReader {
     [[nodiscard]] bool take_file_head(const Frame& frame);
     [[nodiscard]] bool take_verdict(const Frame& frame);
     [[nodiscard]] bool take_gap(const Frame& frame);
+    [[nodiscard]] bool take_act(const Frame& frame);
     [[nodiscard]] bool follows(const FrameHeader& header, const Link& link);
     void end_unfinished(std::size_t bytes, const char* how);
     /// Always false: "this frame is not taken".
     bool damaged(std::string what, std::optional<std::uint64_t> sequence = {});
 
     OnVerdict on_verdict_;
+    OnAct on_act_;
     AuditSummary summary_;
     std::string file_;
     std::uint64_t offset_ = 0;
@@ -93,6 +97,7 @@ class AuditReader {
 [[nodiscard]] Result<std::vector<std::string>> audit_files_of(const std::string& path);
 /// All of them. An error where a file cannot be read; damage is no error but in the summary.
 [[nodiscard]] Result<AuditSummary> read_audit(const std::string& path,
-                                              AuditReader::OnVerdict on_verdict);
+                                              AuditReader::OnVerdict on_verdict,
+                                              AuditReader::OnAct on_act = {});
 
 }  // namespace surefoot::wire

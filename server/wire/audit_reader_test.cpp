@@ -235,11 +235,87 @@ TEST(AuditReader, another_version_is_named) {
     std::string& file = log.file(0);
     constexpr std::size_t kVersionAt = 3;
     constexpr std::size_t kCheckAt = kFrameHeaderBytes - 4;
-    file[kVersionAt] = 3;
+    file[kVersionAt] = kFrameVersion + 1;
     const std::uint64_t hash = fnv1a(std::string_view(file).substr(0, kCheckAt));
     const auto check = static_cast<std::uint32_t>(hash ^ hash >> 32U);
     std::memcpy(&file[kCheckAt], &check, sizeof(check));
-    EXPECT_TRUE(contains(log.damage(), "version 3")) << log.damage();
+    EXPECT_TRUE(contains(log.damage(), "version 4")) << log.damage();
+}
+
+/// The same log as a program of an earlier version wrote it: version, checks and chain.
+std::string as_version(const std::string& file, char version, std::uint64_t& previous_hash) {
+    constexpr std::size_t kVersionAt = 3;
+    constexpr std::size_t kPreviousAt = 24;
+    constexpr std::size_t kCheckAt = kFrameHeaderBytes - 4;
+    std::string out;
+    const auto frames = frames_of(file);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const std::size_t end = i + 1 < frames.size() ? frames[i + 1] : file.size();
+        std::string frame = file.substr(frames[i], end - frames[i] - kFrameHashBytes);
+        frame[kVersionAt] = version;
+        std::memcpy(&frame[kPreviousAt], &previous_hash, sizeof(previous_hash));
+        const std::uint64_t head = fnv1a(std::string_view(frame).substr(0, kCheckAt));
+        const auto check = static_cast<std::uint32_t>(head ^ head >> 32U);
+        std::memcpy(&frame[kCheckAt], &check, sizeof(check));
+        previous_hash = fnv1a(frame);
+        out += frame;
+        out.append(reinterpret_cast<const char*>(&previous_hash), sizeof(previous_hash));
+    }
+    return out;
+}
+
+TEST(AuditReader, a_log_of_the_version_before_is_read) {
+    Log log;
+    std::uint64_t previous_hash = 0;
+    for (std::size_t i = 0; i < log.names.size(); ++i)
+        log.file(i) = as_version(log.file(i), kOldestFrameVersion, previous_hash);
+    EXPECT_EQ(log.damage(), "");
+    EXPECT_EQ(log.platter->read().verdicts, 9U);
+    log.file(0) = as_version(log.file(0), kOldestFrameVersion - 1, previous_hash = 0);
+    EXPECT_TRUE(contains(log.damage(), "reads versions 2 to 3")) << log.damage();
+}
+
+Act an_act() {
+    Act act = act_of(ActKind::attest, Role::operator_, 77, {}, 123'456'789, 0.6);
+    act.left_out = 5;
+    act.text = "from 192.0.2.7";
+    return act;
+}
+
+std::string bytes_of(const Act& act) {
+    std::string bytes(act_bytes(act), '?');
+    write_act(act, bytes.data());
+    return bytes;
+}
+
+TEST(AuditFrame, an_act_comes_out_as_it_went_in) {
+    Act read;
+    ASSERT_TRUE(parse_act(bytes_of(an_act()), read));
+    EXPECT_EQ(read.kind, ActKind::attest);
+    EXPECT_EQ(read.outcome, ActOutcome::done);
+    EXPECT_EQ(read.role, Role::operator_);
+    EXPECT_EQ(read.connection, 77U);
+    EXPECT_EQ(read.time_ns, 123'456'789);
+    EXPECT_EQ(read.radius_tenth_mm, 6'000);
+    EXPECT_EQ(read.left_out, 5U);
+    EXPECT_EQ(read.text, "from 192.0.2.7");
+    Act talkative = an_act();
+    talkative.text = std::string(1'000, 'x');
+    ASSERT_TRUE(parse_act(bytes_of(talkative), read));
+    EXPECT_EQ(read.text, std::string(kMaxActText_bytes, 'x'));
+}
+
+TEST(AuditFrame, what_is_no_act_is_refused) {
+    Act read;
+    const std::string whole = bytes_of(an_act());
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        EXPECT_FALSE(parse_act(whole.substr(0, size), read)) << size;
+    EXPECT_FALSE(parse_act(whole + "x", read));
+    for (const std::size_t at : {0U, 1U, 2U}) {
+        std::string other = whole;
+        other[at] = 9;
+        EXPECT_FALSE(parse_act(other, read)) << at;
+    }
 }
 
 TEST(AuditReader, reads_a_folder_in_the_order_of_the_numbers) {

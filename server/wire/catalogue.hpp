@@ -30,15 +30,26 @@ enum class Service : std::uint8_t {
     step,
     step_forward,
     step_with_reasons,
+    authenticate,
     rearm,
     vouch,
     health,
     list_topics,
     list_services,
     list_nodes,
+    list_params,
+    list_action_servers,
+    topics_for_type,
+    services_for_type,
     topic_type,
     service_type,
-    get_param
+    service_node,
+    service_providers,
+    publishers,
+    subscribers,
+    node_details,
+    get_param,
+    has_param
 };
 
 struct ServiceEntry {
@@ -47,19 +58,30 @@ struct ServiceEntry {
     std::string_view type;
 };
 
-inline constexpr std::array<ServiceEntry, 12> kServices{{
+inline constexpr std::array<ServiceEntry, 23> kServices{{
     {Service::step, "/step", "rex_interface/stepQuery"},
     {Service::step_forward, "/step_forward", "std_srvs/Empty"},
     {Service::step_with_reasons, "/surefoot/step", "surefoot/Step"},
+    {Service::authenticate, "/surefoot/authenticate", "surefoot/Authenticate"},
     {Service::rearm, "/surefoot/rearm", "std_srvs/Trigger"},
     {Service::vouch, "/surefoot/vouch", "surefoot/Vouch"},
     {Service::health, "/surefoot/health", "surefoot/GetHealth"},
     {Service::list_topics, "/rosapi/topics", "rosapi/Topics"},
     {Service::list_services, "/rosapi/services", "rosapi/Services"},
     {Service::list_nodes, "/rosapi/nodes", "rosapi/Nodes"},
+    {Service::list_params, "/rosapi/get_param_names", "rosapi/GetParamNames"},
+    {Service::list_action_servers, "/rosapi/action_servers", "rosapi/GetActionServers"},
+    {Service::topics_for_type, "/rosapi/topics_for_type", "rosapi/TopicsForType"},
+    {Service::services_for_type, "/rosapi/services_for_type", "rosapi/ServicesForType"},
     {Service::topic_type, "/rosapi/topic_type", "rosapi/TopicType"},
     {Service::service_type, "/rosapi/service_type", "rosapi/ServiceType"},
+    {Service::service_node, "/rosapi/service_node", "rosapi/ServiceNode"},
+    {Service::service_providers, "/rosapi/service_providers", "rosapi/ServiceProviders"},
+    {Service::publishers, "/rosapi/publishers", "rosapi/Publishers"},
+    {Service::subscribers, "/rosapi/subscribers", "rosapi/Subscribers"},
+    {Service::node_details, "/rosapi/node_details", "rosapi/NodeDetails"},
     {Service::get_param, "/rosapi/get_param", "rosapi/GetParam"},
+    {Service::has_param, "/rosapi/has_param", "rosapi/HasParam"},
 }};
 
 /// The entry of that name, with or without the leading slash, or nullptr.

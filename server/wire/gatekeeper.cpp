@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/wire/gatekeeper.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "surefoot/gate/goal.hpp"
@@ -29,8 +30,8 @@ std::int64_t tenth_mm(double length_m) {
     return std::llround(length_m * 1e4);
 }
 
-Status refuse_word(const std::string& why) {
-    return Error{ErrorCode::usage, "the ground cannot be vouched for: " + why};
+Status refuse_attestation(const std::string& why) {
+    return Error{ErrorCode::usage, "the ground cannot be attested: " + why};
 }
 
 }  // namespace
@@ -38,10 +39,12 @@ Status refuse_word(const std::string& why) {
 Gatekeeper::Gatekeeper(const Machine& machine,
                        const gate::ReadinessLimits& limits,
                        std::string channel_path,
-                       Audit audit)
+                       Audit audit,
+                       AuditAct audit_act)
     : machine_(machine),
       channel_path_(std::move(channel_path)),
       audit_(std::move(audit)),
+      audit_act_(std::move(audit_act)),
       readiness_(machine, limits),
       canaries_(std::make_unique<gate::Canaries>(machine)),
       map_(nothing_seen()),
@@ -200,7 +203,7 @@ Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
     if (readiness_.state() == gate::GateState::fault && !canaries_->judge_all().passed)
         return Error{ErrorCode::usage,
                      "the gate fails its self-test: it answers a known question wrongly and must "
-                     "not be used; start it anew, and if that does not help, install it anew"};
+                     "not be used. Restart the gate; if that does not help, reinstall it"};
     if (!readiness_.rearm(now_ns))
         return Error{ErrorCode::usage,
                      "there is nothing to re-arm: the gate is in no fault, or in one that only a "
@@ -215,21 +218,32 @@ Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
 }
 
 Status Gatekeeper::check_radius(double radius_m) const {
-    const double limit_m = machine_.limits.vouch_radius_tenth_mm * 1e-4;
-    if (!(radius_m > 0.0 && radius_m <= limit_m))
-        return refuse_word("the radius must be above 0 and at most " + std::to_string(limit_m) +
-                           " m (vouch_radius_m of the machine file)");
-    return {};
+    const double most_m = machine_.limits.vouch_radius_tenth_mm * 1e-4;
+    const std::int64_t least_tenth_mm = least_radius_tenth_mm();
+    const bool is_number = radius_m > 0.0 && radius_m <= most_m;
+    if (is_number && tenth_mm(radius_m) >= least_tenth_mm) return {};
+    return refuse_attestation(fmt::format(
+        "the radius of {} m is not within {:.4f} m, which holds both soles, and {} m, which the "
+        "machine file allows (vouch_radius_m)",
+        radius_m,
+        static_cast<double>(least_tenth_mm) * 1e-4,
+        most_m));
+}
+
+std::int64_t Gatekeeper::least_radius_tenth_mm() const {
+    const auto square = static_cast<double>(gate::least_vouched_radius_sq(machine_));
+    return static_cast<std::int64_t>(std::ceil(std::sqrt(square)));
 }
 
 Status Gatekeeper::vouch(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
     fetch(now_ns);
     if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
-        return refuse_word("no healthy pose is known");
-    if (readiness_.state() == gate::GateState::fault) return refuse_word("the gate is in a fault");
+        return refuse_attestation("no healthy pose is known");
+    if (readiness_.state() == gate::GateState::fault)
+        return refuse_attestation("the gate is in a fault");
     if (auto status = check_radius(radius_m); !status) return status;
     if (!vouching_.vouch(machine_, *map_, tenth_mm(radius_m), now_ns))
-        return refuse_word("the radius is too small");
+        return refuse_attestation("the map of this moment is damaged");
     return {};
 }
 
@@ -239,14 +253,27 @@ Status Gatekeeper::vouch_when_ready(double radius_m) {
     return {};
 }
 
+void Gatekeeper::note(const Act& act) {
+    if (!audit_act_) return;
+    if (act.outcome == ActOutcome::no_right && !refusals_.take(act.time_ns)) {
+        ++refusals_left_out_;
+        return;
+    }
+    Act whole = act;
+    whole.left_out = std::exchange(refusals_left_out_, 0);
+    audit_act_(whole);
+}
+
 void Gatekeeper::give_starters_word(std::int64_t now_ns) {
     if (starters_word_m_ == 0.0) return;
     const gate::GateState state = readiness_.state();
     if (state != gate::GateState::ready && state != gate::GateState::fault) return;
-    // Refused in a fault, and then it is over: the word was for where the machine stood at the
-    // start. `report` says whether it was given.
-    std::ignore = vouch(0, starters_word_m_, now_ns);
-    starters_word_m_ = 0.0;
+    const double radius_m = std::exchange(starters_word_m_, 0.0);
+    if (vouching_.area().active) return;  // the operator's own attestation is not replaced
+    // Refused in a fault, and then it is over: the attestation was for where the machine stood at
+    // the start. `report` says whether it is in force.
+    const Status attested = vouch(0, radius_m, now_ns);
+    note(act_of(ActKind::attest, Role::operator_, 0, attested, now_ns, radius_m));
 }
 
 }  // namespace surefoot::wire

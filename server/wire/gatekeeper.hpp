@@ -12,6 +12,7 @@
 
 #include "server/wire/snapshot_channel.hpp"
 #include "server/wire/step_gate.hpp"
+#include "server/wire/token_bucket.hpp"
 #include "surefoot/core/machine.hpp"
 #include "surefoot/gate/canary.hpp"
 #include "surefoot/gate/readiness.hpp"
@@ -34,20 +35,24 @@ class Gatekeeper final : public StepGate {
   public:
     /// Called with every verdict about a step; must neither wait nor throw.
     using Audit = std::function<void(const Judgement&, const grid::MapSnapshot&)>;
+    /// Called with every act that is to be logged; must neither wait nor throw.
+    using AuditAct = std::function<void(const Act&)>;
 
     /// The channel need not be there yet.
     Gatekeeper(const Machine& machine,
                const gate::ReadinessLimits& limits,
                std::string channel_path,
-               Audit audit = {});
+               Audit audit = {},
+               AuditAct audit_act = {});
 
     /// Fetches what is new, lets time pass, asks a canary now and then. `boottime_ns` is steady
     /// time with what the computer slept.
     void poll(std::int64_t now_ns, std::int64_t boottime_ns);
     /// An assured gate gives no OK (Reason::audit) while its log cannot be written.
     void set_log_failing(bool failing) noexcept { log_failing_ = failing; }
-    /// Whoever starts the process answers for the ground: once, when the gate is first ready, and
-    /// after a fault not any more. Refuses a radius that could never be vouched for.
+    /// Whoever starts the process attests the ground: once, when the gate is first ready, and after
+    /// a fault not any more. An attestation that the operator gave before then stays. Refuses a
+    /// radius that could never be attested.
     [[nodiscard]] Status vouch_when_ready(double radius_m);
     /// The process ends: nothing is OK any more.
     void stop() noexcept { readiness_.stop(); }
@@ -64,12 +69,16 @@ class Gatekeeper final : public StepGate {
                                double radius_m,
                                std::int64_t now_ns) override;
     void forget(std::uint64_t connection) override { sequences_.erase(connection); }
+    /// Of refusals a hundred at once and ten a second in the long run are passed on: nobody fills
+    /// the log with them. The act that follows tells how many were left out.
+    void note(const Act& act) override;
 
   private:
     void fetch(std::int64_t now_ns);
     void open_channel(std::int64_t now_ns);
     void ask_canary(std::int64_t now_ns);
     void give_starters_word(std::int64_t now_ns);
+    [[nodiscard]] std::int64_t least_radius_tenth_mm() const;
     [[nodiscard]] Status check_radius(double radius_m) const;
     [[nodiscard]] gate::GateHealth health() const noexcept;
     [[nodiscard]] bool is_in_sequence(const StepQuestion& question);
@@ -82,6 +91,9 @@ class Gatekeeper final : public StepGate {
     std::size_t movement_count_ = 0;
     std::string channel_path_;
     Audit audit_;
+    AuditAct audit_act_;
+    TokenBucket refusals_{{10, 100}};  ///< that are passed on to the log
+    std::uint32_t refusals_left_out_ = 0;
     gate::Readiness readiness_;
     gate::Vouching vouching_;
     std::unique_ptr<gate::Canaries> canaries_;

@@ -42,7 +42,8 @@ class GatekeeperTest : public ::testing::Test {
             [this](const Judgement& judgement, const grid::MapSnapshot& map) {
                 audited_.push_back(judgement);
                 audited_versions_.push_back(map.version);
-            });
+            },
+            [this](const Act& act) { acts_.push_back(act); });
     }
     void start_perception() {
         auto writer = SnapshotWriter::create(path_);
@@ -83,6 +84,7 @@ class GatekeeperTest : public ::testing::Test {
     std::unique_ptr<Gatekeeper> keeper_;
     std::vector<Judgement> audited_;
     std::vector<std::uint64_t> audited_versions_;
+    std::vector<Act> acts_;
     std::int64_t now_ns_ = 100'000 * kMs;
     std::int64_t next_frame_ns_ = 0;
     std::uint64_t sequence_ = 0;
@@ -266,6 +268,57 @@ TEST_F(GatekeeperTest, an_operators_word_lasts_until_the_machine_has_left_or_a_f
     publish();
     run(0.01, false);
     EXPECT_FALSE(keeper_->report(now_ns_).vouching);
+}
+
+TEST_F(GatekeeperTest, an_attestation_too_small_for_the_soles_replaces_none) {
+    become_ready();
+    ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
+    for (const double radius_m : {0.00005, 0.0, 0.1, 0.3649, 1.5}) {
+        const Status refused = keeper_->vouch(2, radius_m, now_ns_);
+        ASSERT_FALSE(refused.ok()) << radius_m;
+        EXPECT_NE(refused.error().message.find("0.3650 m, which holds both soles"),
+                  std::string::npos)
+            << refused.error().message;
+        EXPECT_TRUE(keeper_->report(now_ns_).vouching);
+    }
+    (void)ask();
+    EXPECT_EQ(audited_.back().query.vouched.radius_tenth_mm, 10'000);
+    EXPECT_TRUE(keeper_->vouch(2, 0.365, now_ns_).ok());
+}
+
+TEST_F(GatekeeperTest, the_starters_attestation_is_noted_and_does_not_replace_the_operators) {
+    ASSERT_TRUE(keeper_->vouch_when_ready(1.0).ok());
+    start_perception();
+    run(1.0);
+    ASSERT_TRUE(keeper_->vouch(7, 0.5, now_ns_).ok());
+    run(2.0);
+    ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
+    (void)ask();
+    EXPECT_EQ(audited_.back().query.vouched.radius_tenth_mm, 5'000);
+    EXPECT_TRUE(acts_.empty());
+    keep();
+    ASSERT_TRUE(keeper_->vouch_when_ready(1.0).ok());
+    run(3.0);
+    ASSERT_EQ(acts_.size(), 1U);
+    EXPECT_EQ(acts_[0].kind, ActKind::attest);
+    EXPECT_EQ(acts_[0].outcome, ActOutcome::done);
+    EXPECT_EQ(acts_[0].role, Role::operator_);
+    EXPECT_EQ(acts_[0].connection, 0U);
+    EXPECT_EQ(acts_[0].radius_tenth_mm, 10'000);
+}
+
+TEST_F(GatekeeperTest, nobody_fills_the_log_with_refusals) {
+    Act refused;
+    refused.time_ns = now_ns_;
+    for (int i = 0; i < 1'000; ++i) keeper_->note(refused);
+    EXPECT_EQ(acts_.size(), 100U);
+    keeper_->note(act_of(ActKind::rearm, Role::operator_, 1, {}, now_ns_));
+    ASSERT_EQ(acts_.size(), 101U) << "what was done is always noted";
+    EXPECT_EQ(acts_.back().left_out, 900U);
+    refused.time_ns += 100 * kMs;
+    keeper_->note(refused);
+    ASSERT_EQ(acts_.size(), 102U);
+    EXPECT_EQ(acts_.back().left_out, 0U);
 }
 
 TEST_F(GatekeeperTest, whoever_starts_it_gives_their_word_once_and_after_a_fault_none) {

@@ -51,7 +51,8 @@ struct Platter {
         return bytes;
     }
     /// The files in their order, as the reader gets them.
-    [[nodiscard]] AuditSummary read(AuditReader::OnVerdict on_verdict = {}) {
+    [[nodiscard]] AuditSummary read(AuditReader::OnVerdict on_verdict = {},
+                                    AuditReader::OnAct on_act = {}) {
         const std::lock_guard lock(mutex);
         std::vector<std::pair<std::uint64_t, std::string>> order;
         for (const auto& [name, content] : files) {
@@ -59,7 +60,7 @@ struct Platter {
             if (parse_audit_file_name(name, number)) order.emplace_back(number, name);
         }
         std::sort(order.begin(), order.end());
-        AuditReader reader(std::move(on_verdict));
+        AuditReader reader(std::move(on_verdict), std::move(on_act));
         for (const auto& [number, name] : order) reader.read(files[name], name);
         return reader.summary();
     }

@@ -9,7 +9,7 @@ namespace surefoot::wire {
 /// Answers of the services of rosapi about what is in the catalogue, as roslib reads them. An
 /// unknown topic or service has the type ""; an unknown parameter is {value: "null", successful:
 /// false, reason}. A value of get_param is JSON within a string.
-/// `service` is one of list_topics ... get_param; `args` an object, a list or null.
+/// `service` is one of list_topics ... has_param; `args` an object, a list or null.
 [[nodiscard]] Json rosapi_answer(Service service, const Json& args);
 
 }  // namespace surefoot::wire

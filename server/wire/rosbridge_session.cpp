@@ -55,14 +55,17 @@ struct RosbridgeSession::Call {
 
 RosbridgeSession::RosbridgeSession(std::uint64_t connection,
                                    StepGate& gate,
-                                   const SessionLimits& limits)
+                                   const SessionLimits& limits,
+                                   const SessionRights& rights)
     : connection_(connection),
       gate_(gate),
       limits_(limits),
       messages_(limits.messages),
       refusals_(limits.refusals),
       faults_(limits.faults),
-      subscriptions_(limits.max_subscriptions) {}
+      subscriptions_(limits.max_subscriptions),
+      role_(rights.role),
+      access_(rights.access) {}
 
 RosbridgeSession::~RosbridgeSession() {
     gate_.forget(connection_);
@@ -104,15 +107,17 @@ void RosbridgeSession::handle(const Call& call) {
     if (op == "publish") return publish(call);
     if (op == "set_level") return set_level(call);
     if (op == "unadvertise" || op == "status") return;  // nothing of it is kept
-    if (op == "auth")
-        return status(call, Level::warning, "auth is ignored: the token is in the URL");
+    if (op == "auth") return auth(call);
     status(call, Level::error, "op '" + op + "' is not served here");
 }
 
 void RosbridgeSession::status(const Call& call, Level level, const std::string& text) const {
     if (level > level_) return;
     const Json id = id_of(call.message);
-    Json message = {{"op", "status"}, {"level", level == Level::error ? "error" : "warning"}};
+    const char* const name = level == Level::error     ? "error"
+                             : level == Level::warning ? "warning"
+                                                       : "info";
+    Json message = {{"op", "status"}, {"level", name}};
     message["msg"] = text;
     if (!id.is_null()) message["id"] = id;
     call.out.replies.push_back(dump(message));
@@ -184,6 +189,8 @@ void RosbridgeSession::publish(const Call& call) {
     const TopicEntry* entry = find_topic(name);
     if (entry == nullptr || !entry->from_client)
         return status(call, Level::error, "no topic '" + name + "' to publish to");
+    if (!has_right(call, Role::rider, ActKind::ask))
+        return status(call, Level::error, no_right_text(Role::rider));
     judge_goal(call);
 }
 
@@ -233,6 +240,7 @@ void RosbridgeSession::serve(const ServiceEntry& entry, const Call& call, const 
     }
     if (call.overloaded) return respond(call, "too many messages: not done", false);
     switch (entry.service) {
+        case Service::authenticate: return authenticate_by_service(call, args);
         case Service::rearm: return rearm(call);
         case Service::vouch: return vouch(call, args);
         case Service::health: return respond(call, health_object(gate_.report(call.now_ns)), true);
@@ -241,6 +249,8 @@ void RosbridgeSession::serve(const ServiceEntry& entry, const Call& call, const 
 }
 
 void RosbridgeSession::serve_step(const ServiceEntry& entry, const Call& call, const Json& args) {
+    if (!has_right(call, Role::rider, ActKind::ask))
+        return respond(call, no_right_text(Role::rider), false);
     StepRequest request;
     if (entry.service == Service::step_forward) {
         request.command = kForwardCode;
@@ -269,7 +279,7 @@ Answer RosbridgeSession::answer_to(const StepRequest& request, const Call& call)
         return refusal(call, question, request.problem, request.text);
     question.sequence = request.sequence.value_or(last_sequence_ + 1);
     if (question.sequence > kMaxExact)
-        return refusal(call, question, gate::Reason::seq, "no number is left: connect anew");
+        return refusal(call, question, gate::Reason::seq, "no number is left: reconnect");
     last_sequence_ = std::max(last_sequence_, question.sequence);
     return ask(call, question);
 }
@@ -305,13 +315,71 @@ Answer RosbridgeSession::refusal(const Call& call,
 }
 
 void RosbridgeSession::rearm(const Call& call) {
-    respond_done(call, gate_.rearm(connection_, call.now_ns));
+    if (!has_right(call, Role::operator_, ActKind::rearm))
+        return respond_done(call, usage_error(no_right_text(Role::operator_)));
+    const Status done = gate_.rearm(connection_, call.now_ns);
+    gate_.note(act_of(ActKind::rearm, role_, connection_, done, call.now_ns));
+    respond_done(call, done);
 }
 
 void RosbridgeSession::vouch(const Call& call, const Json& args) {
+    if (!has_right(call, Role::operator_, ActKind::attest))
+        return respond_done(call, usage_error(no_right_text(Role::operator_)));
     const auto radius_m = read_radius(args);
     if (!radius_m) return respond(call, radius_m.error().message, false);
-    respond_done(call, gate_.vouch(connection_, *radius_m, call.now_ns));
+    const Status done = gate_.vouch(connection_, *radius_m, call.now_ns);
+    gate_.note(act_of(ActKind::attest, role_, connection_, done, call.now_ns, *radius_m));
+    respond_done(call, done);
+}
+
+bool RosbridgeSession::has_right(const Call& call, Role least, ActKind kind) {
+    if (role_ >= least) return true;
+    Act act;
+    act.kind = kind;
+    act.role = role_;
+    act.connection = connection_;
+    act.time_ns = call.now_ns;
+    gate_.note(act);
+    return false;
+}
+
+std::string RosbridgeSession::no_right_text(Role least) const {
+    return std::string("not done: this needs the role ") + to_string(least) +
+           ", and this client is " + to_string(role_) +
+           R"(. Connect with ?token=TOKEN, or send {"op":"auth","token":"TOKEN"}; the token stands )"
+           "in the service's token file";
+}
+
+/// roslib has a method for the op whose first argument becomes `mac`.
+void RosbridgeSession::auth(const Call& call) {
+    std::string token = text_member(call.message, "token");
+    if (token.empty()) token = text_member(call.message, "mac");
+    const Status done = authenticate(call, token);
+    if (!done) return fault(call, done.error().message);
+    status(call, Level::info, std::string("this client is ") + to_string(role_) + " now");
+}
+
+void RosbridgeSession::authenticate_by_service(const Call& call, const Json& args) {
+    const Status done = authenticate(call, text_argument(args, "token"));
+    if (!done && !faults_.take(call.now_ns)) call.out.drop = true;
+    respond(call,
+            {{"success", done.ok()},
+             {"message", done ? "" : done.error().message},
+             {"role", to_string(role_)}},
+            true);
+}
+
+Status RosbridgeSession::authenticate(const Call& call, std::string_view token) {
+    const auto role = access_ == nullptr ? std::nullopt : access_->role_of(token);
+    Act act = act_of(ActKind::authenticate, role.value_or(role_), connection_, {}, call.now_ns);
+    if (!role) act.outcome = ActOutcome::no_right;
+    gate_.note(act);
+    if (!role)
+        return usage_error(
+            "this token is not known here, and nothing was changed. Take a token of the service's "
+            "token file");
+    role_ = *role;
+    return {};
 }
 
 void RosbridgeSession::respond_done(const Call& call, const Status& done) const {

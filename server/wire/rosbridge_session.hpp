@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/wire/access.hpp"
 #include "server/wire/json_text.hpp"
 #include "server/wire/step_gate.hpp"
 #include "server/wire/subscriptions.hpp"
@@ -25,6 +26,12 @@ struct SessionLimits {
     std::size_t max_subscriptions = 32;
 };
 
+/// What the client of a session may do.
+struct SessionRights {
+    Role role = Role::none;          ///< at the beginning
+    const Access* access = nullptr;  ///< tokens that may change it; nullptr: none can. Lives on
+};
+
 /// What a message brought about.
 struct Reaction {
     std::vector<std::string> replies;     ///< to this connection, before everything else
@@ -35,11 +42,16 @@ struct Reaction {
 /// One client of the rosbridge protocol, version 2: a text in, texts out. No socket, no clock, no
 /// thread. Every question about a step goes to the gate exactly once, and nothing but the gate's
 /// own OK to this connection and sequence is answered as one; what cannot be read or comes too fast
-/// is an ERROR. Texts that are no JSON, or no message, get a status and change nothing.
+/// is an ERROR. Texts that are no JSON, or no message, get a status and change nothing. What the
+/// role of the client does not allow is refused with a sentence, noted for the audit log, and never
+/// reaches the gate.
 class RosbridgeSession {
   public:
     /// `connection` is never 0 and never used again. The gate outlives the session.
-    RosbridgeSession(std::uint64_t connection, StepGate& gate, const SessionLimits& limits);
+    RosbridgeSession(std::uint64_t connection,
+                     StepGate& gate,
+                     const SessionLimits& limits,
+                     const SessionRights& rights);
     RosbridgeSession(const RosbridgeSession&) = delete;
     RosbridgeSession& operator=(const RosbridgeSession&) = delete;
     /// The gate forgets the connection.
@@ -53,7 +65,9 @@ class RosbridgeSession {
     [[nodiscard]] std::vector<std::string> due(std::int64_t now_ns);
 
     [[nodiscard]] bool wants(Topic topic) const noexcept { return subscriptions_.wants(topic); }
+    [[nodiscard]] bool wants_any() const noexcept { return subscriptions_.count() > 0; }
     [[nodiscard]] std::uint64_t connection() const noexcept { return connection_; }
+    [[nodiscard]] Role role() const noexcept { return role_; }
 
   private:
     enum class Level : std::uint8_t { none, error, warning, info };
@@ -70,12 +84,18 @@ class RosbridgeSession {
     void publish(const Call& call);
     void set_level(const Call& call);
     void judge_goal(const Call& call);
+    void auth(const Call& call);
+    [[nodiscard]] Status authenticate(const Call& call, std::string_view token);
+    /// False, and noted, when the role of the client is below `least`.
+    [[nodiscard]] bool has_right(const Call& call, Role least, ActKind kind);
+    [[nodiscard]] std::string no_right_text(Role least) const;
 
     void call_service(const Call& call);
     void serve(const ServiceEntry& entry, const Call& call, const Json& args);
     void serve_step(const ServiceEntry& entry, const Call& call, const Json& args);
     [[nodiscard]] Answer answer_to(const StepRequest& request, const Call& call);
     void rearm(const Call& call);
+    void authenticate_by_service(const Call& call, const Json& args);
     void vouch(const Call& call, const Json& args);
     void respond_done(const Call& call, const Status& done) const;
 
@@ -92,6 +112,8 @@ class RosbridgeSession {
     TokenBucket refusals_;
     TokenBucket faults_;
     Subscriptions subscriptions_;
+    Role role_;
+    const Access* access_;
     Level level_ = Level::warning;
     std::uint64_t last_sequence_ = 0;
 };

@@ -18,6 +18,9 @@ using testing::kMs;
 using testing::kNowNs;
 using testing::ScriptedGate;
 
+const SessionRights kOperator{Role::operator_, nullptr};
+const Access kAccess = testing::three_tokens();
+
 const char* const kAhead =
     R"({"op":"call_service","id":"q","service":"/surefoot/step","args":[9]})";
 const char* const kAheadPlain = R"({"op":"call_service","id":"q","service":"/step","args":[9]})";
@@ -57,7 +60,8 @@ TEST(RosbridgeSession, AnswersEveryConversationAsItIsWrittenDown) {
     std::uint64_t connection = 1;
     for (const Json& vector : all) {
         ScriptedGate gate;
-        RosbridgeSession session(connection++, gate, {});
+        const Role role = role_named(vector.value("role", "rider")).value();
+        RosbridgeSession session(connection++, gate, {}, {role, &kAccess});
         std::vector<std::string> replies;
         Json published = Json::array();
         for (const Json& text : vector["send"]) {
@@ -78,7 +82,7 @@ TEST(RosbridgeSession, AnswersEveryConversationAsItIsWrittenDown) {
 
 TEST(RosbridgeSession, AsksTheGateOnceForEachReadableQuestion) {
     ScriptedGate gate;
-    RosbridgeSession session(7, gate, {});
+    RosbridgeSession session(7, gate, {}, kOperator);
     (void)session.on_message(kAheadPlain, kNowNs);
     (void)session.on_message(R"({"op":"call_service","service":"/step","args":[9.5]})", kNowNs);
     (void)session.on_message(R"({"op":"call_service","service":"/step_forward"})", kNowNs);
@@ -93,7 +97,7 @@ TEST(RosbridgeSession, StepForwardFailsUnlessItIsAllowed) {
     ScriptedGate gate;
     gate.report_.health.state = gate::GateState::fault;
     gate.report_.why = gate::Reason::pose_lost;
-    RosbridgeSession session(1, gate, {});
+    RosbridgeSession session(1, gate, {}, kOperator);
     const Reaction reaction =
         session.on_message(R"({"op":"call_service","service":"/step_forward"})", kNowNs);
     const Json response = Json::parse(reaction.replies.at(0));
@@ -108,7 +112,7 @@ TEST(RosbridgeSession, AnOkToAnotherQuestionIsAnError) {
                                 Change([](gate::Verdict& v) { v.command = testing::kBackward; })}) {
         ScriptedGate gate;
         gate.change_answer = change;
-        RosbridgeSession session(1, gate, {});
+        RosbridgeSession session(1, gate, {}, kOperator);
         const Reaction reaction = session.on_message(kAhead, kNowNs);
         EXPECT_EQ(values_of(reaction)["result_code"], -1);
         EXPECT_EQ(values_of(reaction)["primary"], "INTERNAL");
@@ -126,7 +130,7 @@ TEST(RosbridgeSession, AnOkThatIsNotValidNowIsAnError) {
           Change([](gate::Verdict& v) { v.reasons.add(gate::Reason::drop_off); })}) {
         ScriptedGate gate;
         gate.change_answer = change;
-        RosbridgeSession session(1, gate, {});
+        RosbridgeSession session(1, gate, {}, kOperator);
         EXPECT_EQ(values_of(session.on_message(kAhead, kNowNs))["primary"], "EXPIRED");
         EXPECT_EQ(values_of(session.on_message(kAheadPlain, kNowNs))["resultCode"], -1);
     }
@@ -136,7 +140,7 @@ TEST(RosbridgeSession, TooManyQuestionsAreOverload) {
     SessionLimits limits;
     limits.messages = {.per_s = 10, .burst = 3};
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, limits);
+    RosbridgeSession session(1, gate, limits, kOperator);
     for (int i = 0; i < 3; ++i)
         EXPECT_EQ(values_of(session.on_message(kAhead, kNowNs))["verdict"], "OK");
     const Reaction refused = session.on_message(kAhead, kNowNs);
@@ -152,7 +156,7 @@ TEST(RosbridgeSession, NothingElseIsDoneUnderOverload) {
     SessionLimits limits;
     limits.messages = {.per_s = 1, .burst = 1};
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, limits);
+    RosbridgeSession session(1, gate, limits, kOperator);
     (void)session.on_message(R"({"op":"status"})", kNowNs);
     for (const char* text : {R"({"op":"call_service","id":"q","service":"/surefoot/rearm"})",
                              R"({"op":"call_service","id":"q","service":"/surefoot/vouch",)"
@@ -175,7 +179,7 @@ TEST(RosbridgeSession, AClientThatNeverStopsIsDropped) {
     limits.messages = {.per_s = 1, .burst = 1};
     limits.refusals = {.per_s = 1, .burst = 5};
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, limits);
+    RosbridgeSession session(1, gate, limits, kOperator);
     for (int i = 0; i < 6; ++i) EXPECT_FALSE(session.on_message(kAhead, kNowNs).drop) << i;
     EXPECT_TRUE(session.on_message(kAhead, kNowNs).drop);
 }
@@ -184,7 +188,7 @@ TEST(RosbridgeSession, AClientThatOnlyTalksNonsenseIsDropped) {
     SessionLimits limits;
     limits.faults = {.per_s = 1, .burst = 4};
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, limits);
+    RosbridgeSession session(1, gate, limits, kOperator);
     for (int i = 0; i < 4; ++i) EXPECT_FALSE(session.on_message("{", kNowNs).drop) << i;
     const Reaction last = session.on_message("{", kNowNs);
     EXPECT_TRUE(last.drop);
@@ -194,7 +198,7 @@ TEST(RosbridgeSession, AClientThatOnlyTalksNonsenseIsDropped) {
 
 TEST(RosbridgeSession, TenMegabytesAreRefusedUnread) {
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, {});
+    RosbridgeSession session(1, gate, {}, kOperator);
     const std::string blanks(10'000'000, ' ');
     const Reaction reaction = session.on_message(kAheadPlain + blanks, kNowNs);
     ASSERT_EQ(reaction.replies.size(), 1U);
@@ -206,7 +210,7 @@ TEST(RosbridgeSession, AQuestionCutAnywhereIsNoQuestion) {
     const std::string whole = kAheadPlain;
     for (std::size_t size = 0; size < whole.size(); ++size) {
         ScriptedGate gate;
-        RosbridgeSession session(1, gate, {});
+        RosbridgeSession session(1, gate, {}, kOperator);
         const Reaction reaction = session.on_message(whole.substr(0, size), kNowNs);
         EXPECT_EQ(reaction.replies.size(), 1U) << size;
         EXPECT_TRUE(gate.questions.empty()) << size;
@@ -216,7 +220,7 @@ TEST(RosbridgeSession, AQuestionCutAnywhereIsNoQuestion) {
 
 TEST(RosbridgeSession, BytesThatAreNoUtf8AreNoMessage) {
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, {});
+    RosbridgeSession session(1, gate, {}, kOperator);
     for (const char* bad : {"\xff", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82"}) {
         const std::string text =
             std::string(R"({"op":"call_service","service":"/step","args":[9],"x":")") + bad + "\"}";
@@ -233,14 +237,14 @@ TEST(RosbridgeSession, TextOfTheGateThatIsNoUtf8IsNoLostAnswer) {
             return answer;
         }
     } gate;
-    RosbridgeSession session(1, gate, {});
+    RosbridgeSession session(1, gate, {}, kOperator);
     EXPECT_EQ(values_of(session.on_message(kAhead, kNowNs))["text"], "\xef\xbf\xbd");
 }
 
 TEST(RosbridgeSession, SubscribersHearUnderTheNameTheyUsed) {
     ScriptedGate gate;
-    RosbridgeSession asking(1, gate, {});
-    RosbridgeSession listening(2, gate, {});
+    RosbridgeSession asking(1, gate, {}, kOperator);
+    RosbridgeSession listening(2, gate, {}, kOperator);
     (void)listening.on_message(R"({"op":"subscribe","topic":"surefoot/verdict"})", kNowNs);
     const Reaction reaction = asking.on_message(kAheadPlain, kNowNs);
     ASSERT_EQ(reaction.published.size(), 1U);
@@ -258,7 +262,7 @@ TEST(RosbridgeSession, SubscribersHearUnderTheNameTheyUsed) {
 
 TEST(RosbridgeSession, ThrottleTimeIsInMilliseconds) {
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, {});
+    RosbridgeSession session(1, gate, {}, kOperator);
     (void)session.on_message(
         R"({"op":"subscribe","topic":"/surefoot/health","throttle_rate":100,"queue_length":1})",
         kNowNs);
@@ -274,7 +278,7 @@ TEST(RosbridgeSession, NoMoreSubscriptionsThanTheLimit) {
     SessionLimits limits;
     limits.max_subscriptions = 2;
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, limits);
+    RosbridgeSession session(1, gate, limits, kOperator);
     const auto replies = [&](int id) {
         return session
             .on_message(R"({"op":"subscribe","topic":"/surefoot/health","id":")" +
@@ -290,7 +294,7 @@ TEST(RosbridgeSession, NoMoreSubscriptionsThanTheLimit) {
 
 TEST(RosbridgeSession, TheGateForgetsWhoIsGone) {
     ScriptedGate gate;
-    { const RosbridgeSession session(5, gate, {}); }
+    { const RosbridgeSession session(5, gate, {}, kOperator); }
     EXPECT_EQ(gate.forgotten, std::vector<std::uint64_t>{5});
 }
 
@@ -309,7 +313,7 @@ std::string goal_at(double x_m, const std::string& frame, double yaw_rad) {
 
 TEST(RosbridgeSession, AGoalIsAskedWithItsYaw) {
     ScriptedGate gate;
-    RosbridgeSession session(3, gate, {});
+    RosbridgeSession session(3, gate, {}, kOperator);
     (void)session.on_message(goal_at(1.25, "odom", -2.0), kNowNs);
     ASSERT_EQ(gate.goals.size(), 1U);
     EXPECT_EQ(gate.goals[0].connection, 3U);
@@ -321,7 +325,7 @@ TEST(RosbridgeSession, AGoalIsAskedWithItsYaw) {
 
 TEST(RosbridgeSession, MarkersDifferInColourAndWords) {
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, {});
+    RosbridgeSession session(1, gate, {}, kOperator);
     const auto markers = [&](double x_m, const std::string& frame) {
         const Reaction reaction = session.on_message(goal_at(x_m, frame, 0.0), kNowNs);
         EXPECT_TRUE(reaction.replies.empty());
@@ -350,13 +354,139 @@ TEST(RosbridgeSession, MarkersDifferInColourAndWords) {
 
 TEST(RosbridgeSession, MarkersOfAGoalThatCannotBeReadAreTakenAway) {
     ScriptedGate gate;
-    RosbridgeSession session(1, gate, {});
+    RosbridgeSession session(1, gate, {}, kOperator);
     const Reaction reaction = session.on_message(
         R"({"op":"publish","topic":"/move_base_simple/goal","msg":{"pose":null}})", kNowNs);
     ASSERT_EQ(reaction.published.size(), 2U);
     for (const auto& message : reaction.published)
         EXPECT_EQ(Json::parse(*message.body)["action"], 2);
     EXPECT_TRUE(gate.goals.empty());
+}
+
+std::string call_of(const std::string& service, const std::string& args) {
+    return R"({"op":"call_service","id":"q","service":")" + service + R"(","args":)" + args + "}";
+}
+
+TEST(RosbridgeSession, OnlyTheOperatorAttestsAndRearms) {
+    for (const Role role : {Role::observer, Role::rider}) {
+        ScriptedGate gate;
+        RosbridgeSession session(7, gate, {}, {role, &kAccess});
+        for (const auto& [text, kind] :
+             {std::pair(call_of("/surefoot/vouch", "[0.4]"), ActKind::attest),
+              std::pair(call_of("/surefoot/rearm", "[]"), ActKind::rearm)}) {
+            const Json values = values_of(session.on_message(text, kNowNs));
+            EXPECT_EQ(values["success"], false);
+            const std::string message = values["message"];
+            EXPECT_NE(message.find("role operator"), std::string::npos) << message;
+            EXPECT_NE(message.find(to_string(role)), std::string::npos) << message;
+            EXPECT_NE(message.find("token file"), std::string::npos) << message;
+            ASSERT_FALSE(gate.acts.empty());
+            EXPECT_EQ(gate.acts.back().kind, kind);
+            EXPECT_EQ(gate.acts.back().outcome, ActOutcome::no_right);
+            EXPECT_EQ(gate.acts.back().role, role);
+            EXPECT_EQ(gate.acts.back().connection, 7U);
+        }
+        EXPECT_TRUE(gate.vouched.empty());
+        EXPECT_TRUE(gate.rearmed.empty());
+    }
+}
+
+TEST(RosbridgeSession, AnObserverAsksNothingAndReadsEverything) {
+    ScriptedGate gate;
+    RosbridgeSession session(7, gate, {}, {Role::observer, &kAccess});
+    for (const std::string& text :
+         {std::string(kAhead), std::string(kAheadPlain), call_of("/step_forward", "[]")}) {
+        const Reaction reaction = session.on_message(text, kNowNs);
+        const Json response = Json::parse(reaction.replies.at(0));
+        EXPECT_EQ(response["result"], false);
+        EXPECT_TRUE(response["values"].is_string()) << response;
+        EXPECT_TRUE(reaction.published.empty());
+    }
+    const Reaction goal = session.on_message(goal_at(1.0, "odom", 0.0), kNowNs);
+    EXPECT_EQ(Json::parse(goal.replies.at(0))["op"], "status");
+    EXPECT_TRUE(goal.published.empty());
+    EXPECT_TRUE(gate.questions.empty());
+    EXPECT_TRUE(gate.goals.empty());
+    EXPECT_EQ(gate.acts.size(), 4U);
+    EXPECT_EQ(values_of(session.on_message(call_of("/surefoot/health", "[]"), kNowNs))["state"],
+              "READY");
+    EXPECT_TRUE(session.on_message(R"({"op":"subscribe","topic":"/surefoot/verdict"})", kNowNs)
+                    .replies.empty());
+}
+
+TEST(RosbridgeSession, AClientWithoutAnyRoleGetsNoAnswerAboutSteps) {
+    ScriptedGate gate;
+    RosbridgeSession session(7, gate, {}, {});
+    EXPECT_EQ(Json::parse(session.on_message(kAhead, kNowNs).replies.at(0))["result"], false);
+    EXPECT_TRUE(gate.questions.empty());
+}
+
+TEST(RosbridgeSession, AnActOfTheOperatorIsNotedWithItsOutcome) {
+    ScriptedGate gate;
+    RosbridgeSession session(7, gate, {}, kOperator);
+    (void)session.on_message(call_of("/surefoot/vouch", "[0.4]"), kNowNs);
+    (void)session.on_message(call_of("/surefoot/vouch", "[4]"), kNowNs + 1);
+    (void)session.on_message(call_of("/surefoot/rearm", "[]"), kNowNs + 2);
+    ASSERT_EQ(gate.acts.size(), 3U);
+    EXPECT_EQ(gate.acts[0].outcome, ActOutcome::done);
+    EXPECT_EQ(gate.acts[0].radius_tenth_mm, 4000);
+    EXPECT_EQ(gate.acts[0].role, Role::operator_);
+    EXPECT_EQ(gate.acts[1].outcome, ActOutcome::failed);
+    EXPECT_EQ(gate.acts[1].radius_tenth_mm, 40000);
+    EXPECT_FALSE(gate.acts[1].text.empty());
+    EXPECT_EQ(gate.acts[2].kind, ActKind::rearm);
+    EXPECT_EQ(gate.acts[2].time_ns, kNowNs + 2);
+}
+
+TEST(RosbridgeSession, ATokenChangesTheRoleOfARunningConnection) {
+    for (const std::string& auth :
+         {R"({"op":"auth","token":")" + kAccess.operator_ + "\"}",
+          R"({"op":"auth","mac":")" + kAccess.operator_ + R"(","client":"","t":0})",
+          call_of("/surefoot/authenticate", R"({"token":")" + kAccess.operator_ + "\"}")}) {
+        ScriptedGate gate;
+        RosbridgeSession session(7, gate, {}, {Role::rider, &kAccess});
+        (void)session.on_message(auth, kNowNs);
+        EXPECT_EQ(session.role(), Role::operator_) << auth;
+        ASSERT_EQ(gate.acts.size(), 1U);
+        EXPECT_EQ(gate.acts[0].kind, ActKind::authenticate);
+        EXPECT_EQ(gate.acts[0].outcome, ActOutcome::done);
+        EXPECT_EQ(gate.acts[0].role, Role::operator_);
+        const Json values =
+            values_of(session.on_message(call_of("/surefoot/vouch", "[0.4]"), kNowNs));
+        EXPECT_EQ(values["success"], true);
+    }
+}
+
+TEST(RosbridgeSession, AWrongTokenChangesNothingIsSaidAndNoted) {
+    ScriptedGate gate;
+    RosbridgeSession session(7, gate, {}, {Role::rider, &kAccess});
+    for (const char* auth : {R"({"op":"auth"})",
+                             R"({"op":"auth","token":""})",
+                             R"({"op":"auth","token":7})",
+                             R"({"op":"auth","token":"operator-token-of-testt"})"}) {
+        const Json reply = Json::parse(session.on_message(auth, kNowNs).replies.at(0));
+        EXPECT_EQ(reply["level"], "error");
+        EXPECT_NE(reply["msg"].get<std::string>().find("not known"), std::string::npos);
+    }
+    const Json values = values_of(
+        session.on_message(call_of("/surefoot/authenticate", R"({"token":"x"})"), kNowNs));
+    EXPECT_EQ(values["success"], false);
+    EXPECT_EQ(values["role"], "rider");
+    EXPECT_EQ(session.role(), Role::rider);
+    ASSERT_EQ(gate.acts.size(), 5U);
+    for (const Act& act : gate.acts) EXPECT_EQ(act.outcome, ActOutcome::no_right);
+}
+
+TEST(RosbridgeSession, WhoeverGuessesTokensIsDropped) {
+    SessionLimits limits;
+    limits.faults = {.per_s = 1, .burst = 4};
+    const std::string guess = call_of("/surefoot/authenticate", R"({"token":"x"})");
+    for (const std::string& text : {guess, std::string(R"({"op":"auth","token":"x"})")}) {
+        ScriptedGate gate;
+        RosbridgeSession session(1, gate, limits, {Role::rider, &kAccess});
+        for (int i = 0; i < 4; ++i) EXPECT_FALSE(session.on_message(text, kNowNs).drop) << i;
+        EXPECT_TRUE(session.on_message(text, kNowNs).drop);
+    }
 }
 
 }  // namespace

@@ -18,24 +18,6 @@ bool is_address(const std::string& address) {
            inet_pton(AF_INET6, address.c_str(), &v6) == 1;
 }
 
-/// Characters that need no escape in a URL.
-bool is_plain(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_' || c == '.' || c == '~';
-}
-
-std::optional<std::string> problem_of_token(const std::string& token) {
-    constexpr std::size_t kShortest = 16;
-    constexpr std::size_t kLongest = 128;
-    if (token.size() < kShortest || token.size() > kLongest) {
-        return "token: " + std::to_string(kShortest) + " to " + std::to_string(kLongest) +
-               " characters are needed";
-    }
-    if (!std::all_of(token.begin(), token.end(), is_plain))
-        return "token: letters, digits and - _ . ~ alone, because it stands in a URL";
-    return std::nullopt;
-}
-
 bool positive(RateLimit limit) {
     constexpr std::int64_t kMost = 1'000'000;
     return limit.per_s > 0 && limit.per_s <= kMost && limit.burst > 0 && limit.burst <= kMost;
@@ -52,18 +34,38 @@ bool is_loopback_address(const std::string& address) {
     return inet_pton(AF_INET6, address.c_str(), bytes.data()) == 1 && bytes == kOne;
 }
 
-std::optional<std::string> ServerConfig::problem() const {
+std::optional<std::string> problem_of_exposure(const std::string& bind_address,
+                                               const Access& access,
+                                               bool has_tls,
+                                               const std::string& insecure) {
+    if (!insecure.empty() && insecure != kInsecureSentence)
+        return std::string("--insecure: the sentence must be \"") + kInsecureSentence + '"';
+    if (is_loopback_address(bind_address)) return std::nullopt;
+    const std::string reached = "bind_address " + bind_address + " is reached from outside: ";
+    if (!access.has_tokens() || access.guest != Role::none)
+        return reached + "everybody needs a token (--token-file FILE, --guests none)";
+    if (!has_tls && insecure.empty())
+        return reached + "TLS is needed (--certificate FILE --key FILE); without it, give " +
+               "--insecure \"" + kInsecureSentence + '"';
+    return std::nullopt;
+}
+
+std::optional<std::string> ServerConfig::problem_of_address() const {
     if (!is_address(bind_address))
         return "bind_address '" + bind_address + "': an IP address is needed, as 127.0.0.1 or ::1";
-    if (token.empty() && !is_loopback_address(bind_address))
-        return "bind_address " + bind_address + " is reached from outside: a token is needed";
-    if (!token.empty()) {
-        if (auto token_problem = problem_of_token(token)) return token_problem;
-    }
+    if (auto problem = access.problem()) return problem;
+    if (tls.certificate_file.empty() != tls.key_file.empty())
+        return "TLS needs both files: --certificate FILE and --key FILE";
+    return problem_of_exposure(bind_address, access, !tls.empty(), insecure);
+}
+
+std::optional<std::string> ServerConfig::problem() const {
+    if (auto problem = problem_of_address()) return problem;
     if (first_connection == 0 || first_connection > kMaxExact / 2)
         return "first_connection: from 1 to 2^52";
-    if (max_clients == 0 || max_handshakes == 0 || accepts_per_tick <= 0)
-        return "max_clients, max_handshakes, accepts_per_tick: above 0";
+    if (const char* slots_problem = slots.problem()) return slots_problem;
+    if (accepts_per_tick <= 0 || guest_work_us <= 0 || door_work_us <= 0)
+        return "accepts_per_tick, guest_work_us, door_work_us: above 0";
     if (tick_ms <= 0 || handshake_ms <= 0 || idle_ms <= 0 || message_ms <= 0 || write_ms <= 0)
         return "times: above 0 ms; none of them can be switched off";
     if (max_queue_bytes == 0 || max_read_bytes_per_s == 0)

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "server/wire/acts.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/gate/gate.hpp"
 
@@ -47,7 +48,7 @@ struct GateReport {
     std::uint64_t map_version = 0;
     std::int64_t frame_age_ns = -1;  ///< of the last snapshot; -1 = none came yet
     std::int64_t pose_age_ns = -1;
-    bool vouching = false;  ///< an operator's word for the start area is in force
+    bool vouching = false;  ///< an operator's attestation is in force
     std::uint64_t asked = 0;
     std::uint64_t allowed = 0;
 };
@@ -72,15 +73,20 @@ class StepGate {
     /// What a prospect says to people.
     [[nodiscard]] virtual std::string words_of(const Prospect& prospect) const = 0;
     [[nodiscard]] virtual GateReport report(std::int64_t now_ns) = 0;
-    /// An operator's explicit act after a fault: back to warm-up. Never starts a motion.
+    /// The operator's explicit act after a fault: back to warm-up. Never starts a motion. The
+    /// caller has checked the client's role.
     [[nodiscard]] virtual Status rearm(std::uint64_t connection, std::int64_t now_ns) = 0;
-    /// An operator answers for the ground within `radius_m` of base_link. Fails beyond the limit of
-    /// the machine file, which is off (0) where it says so, or when no pose is known.
+    /// The operator attests that the ground within `radius_m` of base_link carries. An attestation
+    /// replaces the one before; a refused one changes nothing. Refused when the area does not hold
+    /// both soles, beyond the limit of the machine file (0: attestations are off), and when no pose
+    /// is known. The caller has checked the client's role.
     [[nodiscard]] virtual Status vouch(std::uint64_t connection,
                                        double radius_m,
                                        std::int64_t now_ns) = 0;
     /// The client is gone: nothing that was answered to it counts any more.
     virtual void forget(std::uint64_t connection) = 0;
+    /// For the audit log: what somebody did, or was refused.
+    virtual void note(const Act& act) = 0;
 };
 
 }  // namespace surefoot::wire

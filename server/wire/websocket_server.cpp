@@ -2,6 +2,8 @@
 // Boost.Beast is included here and nowhere else: 25 seconds a translation unit.
 #include "server/wire/websocket_server.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -17,8 +19,10 @@
 #include "server/wire/admission.hpp"
 #include "server/wire/out_queue.hpp"
 #include "server/wire/outlook.hpp"
+#include "server/wire/peer_of.hpp"
 #include "server/wire/periodic_topics.hpp"
 #include "server/wire/steady_clock.hpp"
+#include "server/wire/tls_door.hpp"
 #include "server/wire/topic_json.hpp"
 
 namespace surefoot::wire {
@@ -35,9 +39,40 @@ using Stream = beast::basic_stream<tcp, tcp::socket::executor_type, beast::simpl
 
 constexpr std::int64_t kNsPerMs = 1'000'000;
 
+constexpr std::int64_t kNsPerUs = 1'000;
+
 std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
 }
+
+/// Processor time that some work may take between two ticks. What was overdrawn is taken from the
+/// next allowance.
+class WorkBudget {
+  public:
+    explicit WorkBudget(int per_tick_us) : per_tick_ns_(per_tick_us * kNsPerUs) {}
+    void refill() noexcept { left_ns_ = std::min(per_tick_ns_, left_ns_ + per_tick_ns_); }
+    void charge(std::int64_t cost_ns) noexcept { left_ns_ -= cost_ns; }
+    [[nodiscard]] bool is_spent() const noexcept { return left_ns_ <= 0; }
+
+  private:
+    std::int64_t per_tick_ns_;
+    std::int64_t left_ns_ = per_tick_ns_;
+};
+
+/// Closes a socket that nobody took over.
+class OwnedHandle {
+  public:
+    explicit OwnedHandle(int handle) noexcept : handle_(handle) {}
+    OwnedHandle(OwnedHandle&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
+    OwnedHandle& operator=(OwnedHandle&&) = delete;
+    ~OwnedHandle() {
+        if (handle_ >= 0) ::close(handle_);
+    }
+    [[nodiscard]] int release() noexcept { return std::exchange(handle_, -1); }
+
+  private:
+    int handle_;
+};
 
 }  // namespace
 
@@ -47,7 +82,12 @@ class Connection;
 class SocketServer {
   public:
     SocketServer(const ServerConfig& its_config, StepGate& its_gate, WebsocketServer::Tick tick)
-        : config(its_config), gate(its_gate), tick_(std::move(tick)) {}
+        : config(its_config),
+          gate(its_gate),
+          slots(its_config.slots),
+          guest_work(its_config.guest_work_us),
+          door_work(its_config.door_work_us),
+          tick_(std::move(tick)) {}
     SocketServer(const SocketServer&) = delete;
     SocketServer& operator=(const SocketServer&) = delete;
     ~SocketServer() = default;
@@ -58,19 +98,28 @@ class SocketServer {
     void stop();
     void publish(const std::vector<TopicMessage>& messages, std::int64_t now_ns);
     void leave(const Connection& connection);
+    /// Ends a connection for another one.
+    void end_for_another(Slots::Id id);
+    /// With the next tick, in the order of what the clients have used.
+    void wait_for_turn(std::shared_ptr<Connection> connection);
     [[nodiscard]] std::uint64_t new_connection() { return next_connection_++; }
     [[nodiscard]] std::uint16_t port() const { return port_; }
     [[nodiscard]] ServerCounts counts() const;
-    [[nodiscard]] std::size_t clients() const;
 
     const ServerConfig config;
     StepGate& gate;
     ServerCounts totals;
+    Slots slots;
+    WorkBudget guest_work;
+    WorkBudget door_work;
 
   private:
     void begin();
     void accept();
-    void admit_to_door(tcp::socket socket);
+    Status listen_plainly();
+    Status listen_with_tls();
+    void admit_to_door(tcp::socket socket, const std::string& peer);
+    void take_turns(std::int64_t now_ns);
     void wait_for_tick();
     void on_tick();
     void look_ahead(std::int64_t now_ns);
@@ -82,6 +131,9 @@ class SocketServer {
     PeriodicTopics topics_;
     OutlookRounds outlook_;
     std::vector<std::shared_ptr<Connection>> connections_;  // shared with their waiting handlers
+    std::vector<std::shared_ptr<Connection>> waiting_;      // for their turn
+    std::unique_ptr<TlsDoor> tls_door_;
+    Slots::Id next_slot_ = 1;
     std::uint16_t port_ = 0;
     std::uint64_t next_connection_ = 1;
     int accepts_left_ = 0;
@@ -92,8 +144,10 @@ class SocketServer {
 /// One connection: first a HTTP request, then perhaps a WebSocket.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
-    Connection(SocketServer& server, tcp::socket socket)
+    Connection(SocketServer& server, tcp::socket socket, Slots::Id slot, std::string peer)
         : server_(server),
+          slot_(slot),
+          peer_(std::move(peer)),
           ws_(std::move(socket)),
           out_(server.config.max_queue_bytes),
           controls_(server.config.control_frames) {}
@@ -105,20 +159,32 @@ class Connection : public std::enable_shared_from_this<Connection> {
     void on_tick(std::int64_t now_ns);
     /// Ends it at once, whatever is on its way.
     void end();
+    /// The same, and a client is told why if it reads.
+    void end_for_another();
+    /// Goes on with what it waited for.
+    void take_turn();
     [[nodiscard]] bool is_client() const { return session_.has_value(); }
+    [[nodiscard]] Slots::Id slot() const { return slot_; }
     [[nodiscard]] bool wants(Topic topic) const;
     /// Bytes of a client have come that are not read yet.
     [[nodiscard]] bool has_bytes();
 
   private:
     void on_request(error_code error);
+    void answer_request();
+    void note_refusal(const Entrance& entrance);
+    [[nodiscard]] std::string where_from() const {
+        return peer_.empty() ? "from this computer" : "from " + peer_;
+    }
     void refuse(http::status status, const std::string& text);
     void answer(http::status status, const char* type, std::string body);
-    void upgrade();
+    void upgrade(const Entrance& entrance);
     void on_upgraded(error_code error);
     void read();
     void on_read(error_code error);
     void on_message(std::int64_t now_ns);
+    void go_on();
+    void charge(std::int64_t cost_ns);
     void send_topics(std::vector<std::string> texts);
     void write();
     void on_written(error_code error);
@@ -127,16 +193,21 @@ class Connection : public std::enable_shared_from_this<Connection> {
     void close_politely();
 
     SocketServer& server_;
+    const Slots::Id slot_;
+    const std::string peer_;  // address of the other computer, empty for this one
     websocket::stream<Stream> ws_;
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     http::response<http::string_body> response_;
+    Role role_ = Role::none;
+    bool has_token_ = false;  // a right one, in its request
     std::optional<RosbridgeSession> session_;
     OutQueue out_;
     TokenBucket controls_;
     std::string writing_;                           // must stay while it is written
     std::optional<std::int64_t> write_since_ns_;    // a text is on its way
     std::optional<std::int64_t> message_since_ns_;  // a message has begun
+    bool has_message_ = false;                      // a whole one, in the buffer
     bool dismissed_ = false;                        // it gets what is queued, then the door
     bool flooded_ = false;                          // with control frames
     bool ended_ = false;
@@ -169,19 +240,27 @@ void Connection::on_request(error_code error) {
         ++server_.totals.refused;
         return end();
     }
+    const std::int64_t start_ns = thread_ns();
+    answer_request();
+    server_.door_work.charge(thread_ns() - start_ns);
+}
+
+void Connection::answer_request() {
     const auto& request = parser_->get();
+    const auto value_of = [&request](http::field field) {
+        const auto found = request.find(field);
+        return found == request.end() ? std::optional<std::string_view>{} : view(found->value());
+    };
     const std::string_view target = view(request.target());
-    const auto origin = request.find(http::field::origin);
-    const auto admission =
-        admit(server_.config.token,
-              server_.config.origins,
-              target,
-              origin == request.end() ? std::nullopt : std::optional(view(origin->value())));
-    if (admission == Admission::wrong_origin)
-        return refuse(http::status::forbidden, "this page's origin is not allowed");
-    if (admission == Admission::wrong_token)
-        return refuse(http::status::unauthorized, "the URL needs the token: ?token=...");
-    if (websocket::is_upgrade(request)) return upgrade();
+    const Knock knock{target, value_of(http::field::origin), value_of(http::field::authorization)};
+    const Entrance entrance = admit(server_.config.access, server_.config.origins, knock);
+    if (entrance.admission != Admission::welcome) {
+        note_refusal(entrance);
+        return refuse(entrance.admission == Admission::wrong_origin ? http::status::forbidden
+                                                                    : http::status::unauthorized,
+                      refusal_text(entrance, knock));
+    }
+    if (websocket::is_upgrade(request)) return upgrade(entrance);
     if (path_of(target) == "/health" && request.method() == http::verb::get) {
         return answer(
             http::status::ok, "application/json", health_text(server_.gate.report(steady_ns())));
@@ -189,6 +268,16 @@ void Connection::on_request(error_code error) {
     if (path_of(target) == "/")
         return refuse(http::status::upgrade_required, "a WebSocket is here");
     refuse(http::status::not_found, "here are a WebSocket and /health");
+}
+
+void Connection::note_refusal(const Entrance& entrance) {
+    Act act;
+    act.kind = entrance.has_token ? ActKind::authenticate : ActKind::connect;
+    act.time_ns = steady_ns();
+    act.text = where_from();
+    act.text +=
+        entrance.admission == Admission::wrong_origin ? ", a web page of another origin" : "";
+    server_.gate.note(act);
 }
 
 void Connection::refuse(http::status status, const std::string& text) {
@@ -211,9 +300,21 @@ void Connection::answer(http::status status, const char* type, std::string body)
                       [self = shared_from_this()](error_code, std::size_t) { self->end(); });
 }
 
-void Connection::upgrade() {
-    if (server_.clients() >= server_.config.max_clients)
-        return refuse(http::status::service_unavailable, "too many clients");
+void Connection::upgrade(const Entrance& entrance) {
+    const std::int64_t now_ns = steady_ns();
+    const Rank rank = entrance.has_token && entrance.role >= Role::rider ? Rank::high : Rank::low;
+    const Slots::Entry entry = server_.slots.enter(slot_, rank, now_ns);
+    if (entry.ended) server_.end_for_another(*entry.ended);
+    if (!entry.granted) {
+        return refuse(
+            http::status::service_unavailable,
+            entry.peer_is_full
+                ? "too many clients come from your computer: close one of them"
+                : "all slots are taken by clients that are being served: close one, or "
+                  "show the token of a rider or of the operator, for whom slots are kept");
+    }
+    role_ = entrance.role;
+    has_token_ = entrance.has_token;
     ws_.next_layer().expires_never();  // the WebSocket has a clock of its own
     ws_.set_option(
         websocket::stream_base::timeout{std::chrono::milliseconds(server_.config.handshake_ms),
@@ -222,7 +323,7 @@ void Connection::upgrade() {
     ws_.read_message_max(server_.config.session.json.max_bytes);
     ws_.text(true);
     ws_.control_callback([this](websocket::frame_type, beast::string_view) {
-        if (!controls_.take(steady_ns())) flooded_ = true;
+        if (!controls_.take(steady_ns())) flooded_ = true;  // looked at after this read
     });
     ws_.async_accept(parser_->get(),
                      [self = shared_from_this()](error_code error) { self->on_upgraded(error); });
@@ -236,7 +337,15 @@ void Connection::on_upgraded(error_code error) {
     }
     parser_.reset();
     buffer_.clear();
-    session_.emplace(server_.new_connection(), server_.gate, server_.config.session);
+    session_.emplace(server_.new_connection(),
+                     server_.gate,
+                     server_.config.session,
+                     SessionRights{role_, &server_.config.access});
+    if (has_token_) {
+        Act act = act_of(ActKind::authenticate, role_, session_->connection(), {}, steady_ns());
+        act.text = where_from();
+        server_.gate.note(act);
+    }
     read();
 }
 
@@ -251,14 +360,41 @@ void Connection::read() {
 void Connection::on_read(error_code error) {
     if (ended_ || dismissed_) return;
     if (error) return end();
-    const std::int64_t now_ns = steady_ns();
+    if (flooded_) return drop();
     if (ws_.is_message_done()) {
         message_since_ns_.reset();
-        on_message(now_ns);
+        has_message_ = true;
     } else if (!message_since_ns_) {
-        message_since_ns_ = now_ns;
+        message_since_ns_ = steady_ns();
+    }
+    go_on();
+}
+
+/// Handles what was read and reads on: now, or when it is this client's turn. What a client sends
+/// meanwhile stays in its socket.
+void Connection::go_on() {
+    if (!server_.slots.is_high(slot_) && server_.guest_work.is_spent())
+        return server_.wait_for_turn(shared_from_this());
+    if (std::exchange(has_message_, false)) {
+        const std::int64_t start_ns = thread_ns();
+        const std::int64_t now_ns = steady_ns();
+        on_message(now_ns);
+        const std::int64_t cost_ns = thread_ns() - start_ns;
+        server_.slots.served(slot_, now_ns, cost_ns);
+        charge(cost_ns);
+    } else {
+        constexpr std::int64_t kPieceCost_ns = 20'000;  // of reading and unmasking a part
+        charge(kPieceCost_ns);
     }
     if (!ended_ && !dismissed_) read();
+}
+
+void Connection::charge(std::int64_t cost_ns) {
+    if (!server_.slots.is_high(slot_)) server_.guest_work.charge(cost_ns);
+}
+
+void Connection::take_turn() {
+    if (!ended_ && !dismissed_) go_on();
 }
 
 void Connection::on_message(std::int64_t now_ns) {
@@ -266,6 +402,11 @@ void Connection::on_message(std::int64_t now_ns) {
     Reaction reaction =
         session_->on_message({static_cast<const char*>(bytes.data()), bytes.size()}, now_ns);
     buffer_.clear();
+    server_.slots.listens(slot_, session_->wants_any());
+    if (session_->role() != role_) {
+        role_ = session_->role();
+        if (role_ >= Role::rider) server_.slots.promote(slot_);
+    }
     bool room = true;
     for (auto& reply : reaction.replies) room = out_.push_reply(std::move(reply)) && room;
     if (!room) return drop();
@@ -284,7 +425,8 @@ bool Connection::wants(Topic topic) const {
 
 bool Connection::has_bytes() {
     error_code ignored;
-    return session_ && !dismissed_ && beast::get_lowest_layer(ws_).socket().available(ignored) > 0;
+    if (!session_ || dismissed_) return false;
+    return has_message_ || beast::get_lowest_layer(ws_).socket().available(ignored) > 0;
 }
 
 void Connection::send_topics(std::vector<std::string> texts) {
@@ -338,6 +480,21 @@ void Connection::drop() {
     end();
 }
 
+/// A client that loses its slot may not be waited for, even for a goodbye: the frame goes if there
+/// is room for it.
+void Connection::end_for_another() {
+    static constexpr std::string_view kGoodbye =
+        "\x88\x1f\x03\xf0this slot went to another one";  // close, 31 bytes, policy error
+    static_assert(kGoodbye.size() == 2 + 31);
+    if (session_) ++server_.totals.dropped;
+    error_code ignored;
+    auto& socket = beast::get_lowest_layer(ws_).socket();
+    socket.non_blocking(true, ignored);
+    if (session_ && !write_since_ns_)
+        socket.send(net::buffer(kGoodbye.data(), kGoodbye.size()), 0, ignored);
+    end();
+}
+
 void Connection::end() {
     if (ended_) return;
     ended_ = true;
@@ -348,6 +505,30 @@ void Connection::end() {
 
 Status SocketServer::listen() {
     next_connection_ = config.first_connection;
+    return config.tls.empty() ? listen_plainly() : listen_with_tls();
+}
+
+Status SocketServer::listen_with_tls() {
+    TlsDoorConfig door;
+    door.bind_address = config.bind_address;
+    door.port = config.port;
+    door.files = config.tls;
+    door.max_connections = config.slots.max_clients + config.slots.max_handshakes;
+    auto opened = TlsDoor::open(door, [this](int socket, const std::string& peer) {
+        net::post(io_, [this, handle = OwnedHandle(socket), peer]() mutable {
+            tcp::socket arrived(io_);
+            error_code error;
+            arrived.assign(tcp::v4(), handle.release(), error);
+            if (!error) admit_to_door(std::move(arrived), peer);
+        });
+    });
+    if (!opened) return opened.error();
+    tls_door_ = std::move(opened).value();
+    port_ = tls_door_->port();
+    return {};
+}
+
+Status SocketServer::listen_plainly() {
     error_code error;
     const tcp::endpoint endpoint(net::ip::make_address(config.bind_address, error), config.port);
     if (!error) acceptor_.open(endpoint.protocol(), error);
@@ -378,6 +559,7 @@ void SocketServer::begin() {
     accepts_left_ = config.accepts_per_tick;
     timer_.expires_after(std::chrono::milliseconds(config.tick_ms));
     wait_for_tick();
+    if (tls_door_) tls_door_->start();
     accept();
 }
 
@@ -385,34 +567,57 @@ void SocketServer::stop() {
     net::post(io_, [this] {
         error_code ignored;
         acceptor_.close(ignored);
+        if (tls_door_) tls_door_->stop();
         for (const auto& connection : std::vector(connections_)) connection->end();
         io_.stop();
     });
 }
 
 void SocketServer::accept() {
-    if (accepting_ || accepts_left_ == 0 || !acceptor_.is_open()) return;
+    if (accepting_ || accepts_left_ == 0 || door_work.is_spent() || !acceptor_.is_open()) return;
     accepting_ = true;
     --accepts_left_;
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
         accepting_ = false;
         if (error) return;  // no handles left, or gone already: the next tick tries again
-        admit_to_door(std::move(socket));
+        const std::int64_t start_ns = thread_ns();
+        const std::string peer = peer_of(socket);
+        admit_to_door(std::move(socket), peer);
+        door_work.charge(thread_ns() - start_ns);
         accept();
     });
 }
 
-void SocketServer::admit_to_door(tcp::socket socket) {
+void SocketServer::admit_to_door(tcp::socket socket, const std::string& peer) {
     ++totals.accepted;
-    if (connections_.size() - clients() >= config.max_handshakes) {
-        const auto oldest = std::find_if(connections_.begin(),
-                                         connections_.end(),
-                                         [](const auto& c) { return !c->is_client(); });
+    const Slots::Id slot = next_slot_++;
+    if (const auto ended = slots.arrive(slot, peer, steady_ns())) {
         ++totals.refused;
-        std::shared_ptr(*oldest)->end();
+        end_for_another(*ended);
     }
-    connections_.push_back(std::make_shared<Connection>(*this, std::move(socket)));
+    connections_.push_back(std::make_shared<Connection>(*this, std::move(socket), slot, peer));
     connections_.back()->start();
+}
+
+void SocketServer::end_for_another(Slots::Id id) {
+    const auto found = std::find_if(
+        connections_.begin(), connections_.end(), [id](const auto& c) { return c->slot() == id; });
+    if (found != connections_.end()) std::shared_ptr(*found)->end_for_another();
+}
+
+void SocketServer::wait_for_turn(std::shared_ptr<Connection> connection) {
+    waiting_.push_back(std::move(connection));
+}
+
+/// A client that asks now and then is served before one that never stops.
+void SocketServer::take_turns(std::int64_t now_ns) {
+    guest_work.refill();
+    door_work.refill();
+    auto turns = std::exchange(waiting_, {});
+    std::stable_sort(turns.begin(), turns.end(), [&](const auto& a, const auto& b) {
+        return slots.burden_ns(a->slot(), now_ns) < slots.burden_ns(b->slot(), now_ns);
+    });
+    for (const auto& connection : turns) connection->take_turn();  // waits again if nothing is left
 }
 
 void SocketServer::wait_for_tick() {
@@ -432,6 +637,7 @@ void SocketServer::on_tick() {
     publish(topics_.due(gate, now_ns), now_ns);
     for (const auto& connection : std::vector(connections_)) connection->on_tick(now_ns);
     look_ahead(now_ns);
+    take_turns(now_ns);
     accepts_left_ = config.accepts_per_tick;
     accept();
 }
@@ -457,17 +663,14 @@ void SocketServer::publish(const std::vector<TopicMessage>& messages, std::int64
 }
 
 void SocketServer::leave(const Connection& connection) {
+    slots.leave(connection.slot());
     std::erase_if(connections_, [&](const auto& other) { return other.get() == &connection; });
-}
-
-std::size_t SocketServer::clients() const {
-    return static_cast<std::size_t>(std::count_if(
-        connections_.begin(), connections_.end(), [](const auto& c) { return c->is_client(); }));
 }
 
 ServerCounts SocketServer::counts() const {
     ServerCounts counts = totals;
-    counts.clients = clients();
+    counts.clients = static_cast<std::size_t>(std::count_if(
+        connections_.begin(), connections_.end(), [](const auto& c) { return c->is_client(); }));
     counts.handshakes = connections_.size() - counts.clients;
     return counts;
 }

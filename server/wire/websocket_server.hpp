@@ -16,21 +16,23 @@ struct ServerCounts {
     std::size_t handshakes = 0;  ///< that are still at the door
     std::uint64_t accepted = 0;  ///< connections since the start
     std::uint64_t refused = 0;   ///< of these turned away: token, origin, request, crowd
-    std::uint64_t dropped = 0;   ///< clients that were sent away: too slow, too much, nonsense
+    std::uint64_t dropped = 0;   ///< clients that were sent away: too slow, too much, nonsense,
+                                 ///< or of less use than another one
 };
 
 class SocketServer;
 
-/// The step gate on a socket: rosbridge over WebSocket, and GET /health. One thread, the caller's:
-/// it asks the gate, and a client that misbehaves, sleeps or floods costs the others nothing. Start
-/// no thread for it but the one that calls `run`.
+/// The step gate on a socket: rosbridge over WebSocket, and GET /health. One thread, the caller's,
+/// asks the gate and serves all clients; TLS has a thread of its own. A client that misbehaves,
+/// sleeps or floods takes little from the others: clients with the token of a rider or of the
+/// operator are served at once and keep their slots, all others share a bounded part of the time.
 class WebsocketServer {
   public:
     /// Called every `tick_ms` before topics are published.
     using Tick = std::function<void(std::int64_t now_ns)>;
 
-    /// Listens, and serves nobody yet. Fails where the configuration is not valid or the address is
-    /// taken. The gate outlives the server.
+    /// Listens, with TLS where its files are given, and serves nobody yet. Fails where the
+    /// configuration is not valid or the address is taken. The gate outlives the server.
     [[nodiscard]] static Result<std::unique_ptr<WebsocketServer>> open(const ServerConfig& config,
                                                                        StepGate& gate,
                                                                        Tick tick = {});

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -31,7 +32,8 @@ using beast::error_code;
 using tcp = net::ip::tcp;
 using testing::ScriptedGate;
 
-const std::string kToken = "0123456789abcdef";
+const std::string kToken = testing::three_tokens().operator_;
+const std::string kRider = testing::three_tokens().rider;
 
 ServerConfig any_port() {
     ServerConfig config;
@@ -100,9 +102,12 @@ class Client {
     void open(const std::string& target = "/", const std::string& origin = "") {
         ws_.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
             if (!origin.empty()) request.set(http::field::origin, origin);
+            if (!authorization_.empty()) request.set(http::field::authorization, authorization_);
         }));
         ws_.handshake("127.0.0.1", target);
     }
+    /// Before `open`.
+    void authorize(const std::string& header) { authorization_ = header; }
     void send(const std::string& text) { ws_.write(net::buffer(text)); }
     Json receive() {
         beast::flat_buffer buffer;
@@ -122,6 +127,11 @@ class Client {
         }
         return error == websocket::error::closed ? ws_.reason().code : 0;
     }
+    /// The close code, also where the server did not wait for ours.
+    int goodbye() {
+        (void)end_of_reading();
+        return ws_.reason().code;
+    }
     void send_bytes(const std::string& bytes) {
         error_code ignored;
         net::write(socket(), net::buffer(bytes), ignored);
@@ -138,6 +148,7 @@ class Client {
 
   private:
     net::io_context io_;
+    std::string authorization_;
     websocket::stream<tcp::socket> ws_{io_};
 };
 
@@ -209,12 +220,14 @@ TEST(WebsocketServer, EveryClientIsAConnectionOfItsOwn) {
     }
 }
 
-TEST(WebsocketServer, DoesNotListenOutsideWithoutAToken) {
+TEST(WebsocketServer, DoesNotListenOutsideWithoutATokenAndTls) {
     ScriptedGate gate;
     ServerConfig config = any_port();
     config.bind_address = "0.0.0.0";
     EXPECT_FALSE(WebsocketServer::open(config, gate));
-    config.token = kToken;
+    config.access = testing::three_tokens(Role::none);
+    EXPECT_FALSE(WebsocketServer::open(config, gate));
+    config.insecure = kInsecureSentence;
     EXPECT_TRUE(WebsocketServer::open(config, gate));
 }
 
@@ -230,10 +243,10 @@ TEST(WebsocketServer, APortThatIsTakenIsSaid) {
 
 TEST(WebsocketServer, TheTokenOpensTheDoor) {
     ServerConfig config = any_port();
-    config.token = kToken;
+    config.access = testing::three_tokens(Role::none);
     Service service(config);
     EXPECT_EQ(status_of_upgrade(service, "/"), 401U);
-    EXPECT_EQ(status_of_upgrade(service, "/?token=0123456789abcdeg"), 401U);
+    EXPECT_EQ(status_of_upgrade(service, "/?token=operator-token-of-testt"), 401U);
     EXPECT_EQ(get(service, "/health").result_int(), 401U);
     EXPECT_EQ(get(service, "/health?token=" + kToken).result_int(), 200U);
     Client client(service, "/?token=" + kToken, "");
@@ -531,12 +544,15 @@ TEST(WebsocketServer, TooManyQuestionsAreAnsweredAsErrors) {
 
 TEST(WebsocketServer, NoMoreClientsThanTheLimit) {
     ServerConfig config = any_port();
-    config.max_clients = 2;
+    config.slots.max_clients = 2;
+    config.slots.reserved = 0;
     Service service(config);
     Client first(service, "/", "");
     {
         Client second(service, "/", "");
-        EXPECT_EQ(status_of_upgrade(service, "/"), 503U);
+        expect_allowed(first);
+        expect_allowed(second);
+        EXPECT_EQ(status_of_upgrade(service, "/"), 503U) << "both are being served";
         second.ws().close(websocket::close_code::normal);
     }
     service.wait_for(3, 1);
@@ -544,9 +560,150 @@ TEST(WebsocketServer, NoMoreClientsThanTheLimit) {
     expect_allowed(first);
 }
 
+SlotLimits few_slots() {
+    SlotLimits slots;
+    slots.max_clients = 4;
+    slots.reserved = 1;
+    return slots;
+}
+
+TEST(WebsocketServer, SleepersLockNobodyOut) {
+    ServerConfig config = any_port();
+    config.slots = few_slots();
+    Service service(config);
+    Client inside(service, "/", "");
+    expect_allowed(inside);
+    std::vector<std::unique_ptr<Client>> sleepers;
+    for (int i = 0; i < 20; ++i) sleepers.push_back(std::make_unique<Client>(service, "/", ""));
+    Client newcomer(service, "/", "");
+    expect_allowed(newcomer);
+    expect_allowed(inside);
+    EXPECT_EQ(sleepers.front()->goodbye(), websocket::close_code::policy_error)
+        << "it is told that its slot went to another one";
+    service.end();
+    EXPECT_EQ(service.counts().refused, 0U);
+}
+
+TEST(WebsocketServer, ASlotIsKeptForWhoeverShowsAToken) {
+    ServerConfig config = any_port();
+    config.slots = few_slots();
+    config.slots.useful_ns = 3'600'000'000'000;
+    config.access = testing::three_tokens();
+    Service service(config);
+    std::vector<std::unique_ptr<Client>> guests;
+    for (int i = 0; i < 3; ++i) {
+        guests.push_back(std::make_unique<Client>(service, "/", ""));
+        expect_allowed(*guests.back());
+    }
+    EXPECT_EQ(status_of_upgrade(service, "/"), 503U);
+    EXPECT_EQ(status_of_upgrade(service, "/?token=" + testing::three_tokens().observer), 503U);
+    Client rider(service, "/?token=" + kRider, "");
+    expect_allowed(rider);
+    Client operator_(service, "/?token=" + kToken, "");
+    expect_allowed(operator_);
+    EXPECT_EQ(guests.front()->goodbye(), websocket::close_code::policy_error);
+    expect_allowed(*guests.back());
+}
+
+TEST(WebsocketServer, ARiderWithATokenDoesNotWaitForAFloodOfGuests) {
+    ServerConfig config = any_port();
+    config.access = testing::three_tokens();
+    config.guest_work_us = 1;  // one message overdraws many ticks
+    config.message_ms = 60'000;
+    Service service(config);
+    Client guest(service, "/", "");
+    for (int i = 0; i < 150; ++i) guest.send(kStep);
+    Client rider(service, "/?token=" + kRider, "");
+    for (int i = 0; i < 100; ++i) expect_allowed(rider);
+    service.end();
+    const auto questions_of = [&](std::uint64_t connection) {
+        return std::count_if(service.gate.questions.begin(),
+                             service.gate.questions.end(),
+                             [&](const StepQuestion& q) { return q.connection == connection; });
+    };
+    EXPECT_EQ(questions_of(2), 100);
+    EXPECT_GE(questions_of(1), 1) << "what is left waits for its turn";
+    EXPECT_LT(questions_of(1), 150);
+}
+
+TEST(WebsocketServer, AGuestThatAsksSeldomComesBeforeOneThatNeverStops) {
+    ServerConfig config = any_port();
+    config.guest_work_us = 20;  // less than a question a tick
+    config.message_ms = 60'000;
+    config.session.messages = {.per_s = 100'000, .burst = 100'000};
+    Service service(config);
+    Client flood(service, "/", "");
+    for (int i = 0; i < 5000; ++i) flood.send(kStep);
+    Client seldom(service, "/", "");
+    for (int i = 0; i < 5; ++i) expect_allowed(seldom);
+    service.end();
+    EXPECT_LT(service.gate.questions.size(), 1000U) << "the flood has not been worked off before";
+}
+
+Json call(Client& client, const std::string& service, const std::string& args = "[]") {
+    return client.ask(R"({"op":"call_service","id":"c","service":")" + service + R"(","args":)" +
+                      args + "}")["values"];
+}
+
+TEST(WebsocketServer, TheRoleComesWithTheConnection) {
+    ServerConfig config = any_port();
+    config.access = testing::three_tokens();
+    Service service(config);
+    Client guest(service, "/", "");
+    EXPECT_EQ(call(guest, "/surefoot/vouch", "[0.4]")["success"], false);
+    Client observer(service, "/?token=" + testing::three_tokens().observer, "");
+    EXPECT_EQ(observer.ask(kStep)["result"], false);
+    Client by_url(service, "/?token=" + kToken, "");
+    EXPECT_EQ(call(by_url, "/surefoot/vouch", "[0.4]")["success"], true);
+    Client by_header(service);
+    by_header.authorize("Bearer " + kToken);
+    by_header.open();
+    EXPECT_EQ(call(by_header, "/surefoot/rearm")["success"], true);
+    EXPECT_EQ(call(guest, "/surefoot/authenticate", R"({"token":")" + kToken + "\"}")["role"],
+              "operator");
+    EXPECT_EQ(call(guest, "/surefoot/vouch", "[0.4]")["success"], true);
+    service.end();
+    const auto acts_of = [&](std::uint64_t connection) {
+        std::string text;
+        for (const Act& act : service.gate.acts) {
+            if (act.connection == connection)
+                text += std::string(to_string(act.role)) + " " + to_string(act.kind) + " " +
+                        to_string(act.outcome) + ";";
+        }
+        return text;
+    };
+    EXPECT_EQ(acts_of(1), "rider attest no right;operator authenticate done;operator attest done;");
+    EXPECT_EQ(acts_of(2), "observer authenticate done;observer ask no right;");
+    EXPECT_EQ(acts_of(3), "operator authenticate done;operator attest done;");
+    EXPECT_EQ(acts_of(4), "operator authenticate done;operator re-arm done;");
+}
+
+TEST(WebsocketServer, WhoeverIsRefusedAtTheDoorIsToldWhyAndNoted) {
+    ServerConfig config = any_port();
+    config.access = testing::three_tokens(Role::none);
+    Service service(config);
+    const auto wrong = get(service, "/health?token=0123456789abcdef");
+    EXPECT_EQ(wrong.result_int(), 401U);
+    EXPECT_NE(wrong.body().find("this token is not known"), std::string::npos) << wrong.body();
+    const auto none = get(service, "/health");
+    EXPECT_EQ(none.result_int(), 401U);
+    EXPECT_NE(none.body().find("a token is needed"), std::string::npos) << none.body();
+    http::request<http::empty_body> page(http::verb::get, "/health?token=" + kToken, 11);
+    page.set(http::field::origin, "null");
+    const auto origin = answer_to(service, page);
+    EXPECT_EQ(origin.result_int(), 403U);
+    EXPECT_NE(origin.body().find("--origin 'null'"), std::string::npos) << origin.body();
+    service.end();
+    ASSERT_EQ(service.gate.acts.size(), 3U);
+    EXPECT_EQ(service.gate.acts[0].kind, ActKind::authenticate);
+    EXPECT_EQ(service.gate.acts[1].kind, ActKind::connect);
+    EXPECT_EQ(service.gate.acts[2].text, "from this computer, a web page of another origin");
+    for (const Act& act : service.gate.acts) EXPECT_EQ(act.outcome, ActOutcome::no_right);
+}
+
 TEST(WebsocketServer, AtAFullDoorTheOldestGivesWay) {
     ServerConfig config = any_port();
-    config.max_handshakes = 2;
+    config.slots.max_handshakes = 2;
     config.handshake_ms = 60'000;
     Service service(config);
     Client oldest(service);

@@ -18,6 +18,16 @@ inline constexpr std::int64_t kNowNs = 5'000'000'000;
 inline constexpr std::uint8_t kForward = 9;
 inline constexpr std::uint8_t kBackward = 17;
 
+/// Tokens of tests/conformance/rosbridge.
+inline Access three_tokens(Role guest = Role::rider) {
+    Access access;
+    access.observer = "observer-token-of-tests";
+    access.rider = "rider-token-of-tests";
+    access.operator_ = "operator-token-of-tests";
+    access.guest = guest;
+    return access;
+}
+
 /// tests/conformance/rosbridge/README.md has its rules: 9 is OK, 17 is a drop, 21 was never seen,
 /// every other code is unknown. A sequence that does not grow is ERROR / SEQ. Goals: ahead of
 /// x = 0 OK, beside it a drop, behind it ERROR.
@@ -94,6 +104,7 @@ class ScriptedGate : public StepGate {
         return {};
     }
     void forget(std::uint64_t connection) override { forgotten.push_back(connection); }
+    void note(const Act& act) override { acts.push_back(act); }
 
     GateReport report_ = ready_report();
     std::int64_t life_ns = 300 * kMs;
@@ -104,6 +115,7 @@ class ScriptedGate : public StepGate {
     std::vector<std::uint64_t> rearmed;
     std::vector<std::pair<std::uint64_t, double>> vouched;
     std::vector<std::uint64_t> forgotten;
+    std::vector<Act> acts;
     std::map<std::uint64_t, std::uint64_t> last_sequence;
 
     std::vector<std::uint8_t> movement_codes{kForward, kBackward, 21};

@@ -3,14 +3,28 @@
 
 namespace surefoot::gate {
 
+std::int64_t least_vouched_radius_sq(const Machine& machine) noexcept {
+    const auto reach = [](std::int64_t center, std::int64_t size) {
+        return (center < 0 ? -center : center) + (size + 1) / 2;
+    };
+    std::int64_t farthest_sq = 0;
+    for (const GroundBox* foot : {&machine.left_foot, &machine.right_foot}) {
+        const std::int64_t x = reach(foot->center_x_tenth_mm, foot->length_tenth_mm);
+        const std::int64_t y = reach(foot->center_y_tenth_mm, foot->width_tenth_mm);
+        farthest_sq = x * x + y * y > farthest_sq ? x * x + y * y : farthest_sq;
+    }
+    return farthest_sq;
+}
+
 bool Vouching::vouch(const Machine& machine,
                      const grid::MapSnapshot& map,
                      std::int64_t radius_tenth_mm,
                      std::int64_t now_ns) noexcept {
-    revoke();
     if (machine.problem() != nullptr || !grid::is_intact(map)) return false;
     if (!(radius_tenth_mm > 0 && radius_tenth_mm <= machine.limits.vouch_radius_tenth_mm))
         return false;
+    if (radius_tenth_mm * radius_tenth_mm < least_vouched_radius_sq(machine)) return false;
+    revoke();
     area_.active = true;
     area_.center_x_tenth_mm = map.body_x_tenth_mm;
     area_.center_y_tenth_mm = map.body_y_tenth_mm;

@@ -9,15 +9,19 @@
 
 namespace surefoot::gate {
 
-/// An operator's word for the ground where the machine stands, as long as it holds. The camera
-/// cannot see that ground, and without a word the first step is refused. Off until somebody
-/// vouches; void for good once base_link has left the area or nobody knew where it was, or when it
-/// is revoked.
+/// Square of the least radius of an attested area [(0.1 mm)^2]: the area around base_link holds
+/// both soles. A smaller one says nothing about the ground that the machine stands on.
+[[nodiscard]] std::int64_t least_vouched_radius_sq(const Machine& machine) noexcept;
+
+/// The operator's attestation of the ground where the machine stands, as long as it holds. The
+/// camera cannot see that ground, and without an attestation the first step is refused. Off until
+/// somebody attests; void for good once base_link has left the area or nobody knew where it was, or
+/// when it is revoked.
 class Vouching {
   public:
-    /// Level ground under the soles, within `radius_tenth_mm` of base_link. False, and nothing is
-    /// vouched for, when the radius is not within the machine file's limit or the snapshot is of no
-    /// use.
+    /// Level ground under the soles, within `radius_tenth_mm` of base_link. False, and nothing
+    /// changes, when the radius is below the least one or beyond the machine file's limit, or when
+    /// the snapshot is of no use.
     [[nodiscard]] bool vouch(const Machine& machine,
                              const grid::MapSnapshot& map,
                              std::int64_t radius_tenth_mm,

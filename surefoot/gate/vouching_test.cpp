@@ -154,11 +154,11 @@ TEST(Vouching, the_area_lies_around_the_machine_wherever_that_is) {
     floor.input.T_odom_body.translation_m = {0.5, -0.25, 1.19};
     const auto map = floor.snapshot();
     Vouching vouching;
-    ASSERT_TRUE(vouching.vouch(rex(), *map, 1, kNowNs));
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 3'651, kNowNs));
     EXPECT_TRUE(vouching.area().active);
     EXPECT_EQ(vouching.area().center_x_tenth_mm, 5'000);
     EXPECT_EQ(vouching.area().center_y_tenth_mm, -2'500);
-    EXPECT_EQ(vouching.area().radius_tenth_mm, 1);
+    EXPECT_EQ(vouching.area().radius_tenth_mm, 3'651);
     EXPECT_EQ(vouching.area().height_tenth_mm, 2'000);
     vouching.observe(*map, kNowNs);
     EXPECT_TRUE(vouching.area().active);
@@ -174,15 +174,33 @@ TEST(Vouching, nobody_can_vouch_for_more_than_the_machine_file_allows) {
     EXPECT_FALSE(vouching.vouch(rex(), *map, 10'001, kNowNs));
     EXPECT_FALSE(vouching.vouch(rex(), *map, 0, kNowNs));
     EXPECT_FALSE(vouching.vouch(rex(), *map, -5, kNowNs));
-    EXPECT_FALSE(vouching.vouch(Machine{}, *map, 10, kNowNs));
+    EXPECT_FALSE(vouching.vouch(Machine{}, *map, 5'000, kNowNs));
     Machine off = rex();
     off.limits.vouch_radius_tenth_mm = 0;
-    EXPECT_FALSE(vouching.vouch(off, *map, 1, kNowNs));
+    EXPECT_FALSE(vouching.vouch(off, *map, 5'000, kNowNs));
     ASSERT_TRUE(vouching.vouch(rex(), *map, 5'000, kNowNs));
     const auto damaged = std::make_unique<grid::MapSnapshot>(*map);
     ++damaged->body_z_tenth_mm;
     EXPECT_FALSE(vouching.vouch(rex(), *damaged, 5'000, kNowNs));
-    EXPECT_FALSE(vouching.area().active) << "a word that failed takes back the one before";
+    EXPECT_TRUE(vouching.area().active) << "a refused attestation changes nothing";
+    EXPECT_EQ(vouching.area().radius_tenth_mm, 5'000);
+}
+
+// The corners of the soles lie 0.240 m ahead of base_link and 0.275 m beside it: 0.365 m away.
+TEST(Vouching, the_area_holds_both_soles_or_nothing_is_attested) {
+    const auto map = blind_zone();
+    EXPECT_EQ(least_vouched_radius_sq(rex()), 2'400 * 2'400 + 2'750 * 2'750);
+    Vouching vouching;
+    ASSERT_TRUE(vouching.vouch(rex(), *map, 8'000, kNowNs));
+    for (const std::int64_t radius : {1, 10, 1'000, 3'649}) {
+        EXPECT_FALSE(vouching.vouch(rex(), *map, radius, kNowNs)) << radius;
+        EXPECT_EQ(vouching.area().radius_tenth_mm, 8'000) << "the one before stays";
+    }
+    EXPECT_TRUE(vouching.vouch(rex(), *map, 3'650, kNowNs));
+    EXPECT_EQ(vouching.area().radius_tenth_mm, 3'650);
+    Machine wide_right = rex();
+    wide_right.right_foot.center_y_tenth_mm -= 500;
+    EXPECT_EQ(least_vouched_radius_sq(wide_right), 2'400 * 2'400 + 3'250 * 3'250);
 }
 
 TEST(Vouching, the_ground_lies_under_the_soles) {

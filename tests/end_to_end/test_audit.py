@@ -28,7 +28,7 @@ class AuditLog(CliTest):
     def test_every_verdict_comes_out_of_the_log_again(self):
         self.fill()
         whole = self.json_of("audit", "verify", self.log)
-        self.assertEqual({"files", "bytes", "runs", "verdicts", "gaps", "lost", "unfinished", "damage"}, set(whole))
+        self.assertEqual({"files", "bytes", "runs", "verdicts", "gaps", "lost", "acts", "unfinished", "damage"}, set(whole))
         self.assertEqual(whole["verdicts"], len(COMMANDS))
         self.assertEqual(whole["runs"], len(COMMANDS))
         self.assertIsNone(whole["damage"])

@@ -7,8 +7,9 @@ import struct
 
 
 class RosbridgeClient:
-    def __init__(self, port, timeout_s=5.0, path="/"):
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=timeout_s)
+    def __init__(self, port, timeout_s=5.0, path="/", connected=None):
+        """`connected`: a socket that is connected already, as one of TLS."""
+        self.socket = connected or socket.create_connection(("127.0.0.1", port), timeout=timeout_s)
         self.stream = self.socket.makefile("rb")
         key = base64.b64encode(os.urandom(16)).decode()
         self.socket.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"

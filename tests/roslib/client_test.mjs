@@ -24,11 +24,14 @@ after(async () => {
   assert.equal(code, 0);
 });
 
-/// An open connection of roslib.
-async function connect() {
+/// server/wire/wire_testing.hpp has these tokens.
+const tokenOf = (role) => `${role}-token-of-tests`;
+
+/// An open connection of roslib, as a guest or with the token of a role.
+async function connect(role) {
   const ros = new ROSLIB.Ros();
   const open = once(ros, "connection");
-  await ros.connect(url);
+  await ros.connect(role ? `${url}/?token=${tokenOf(role)}` : url);
   await open;
   return ros;
 }
@@ -43,8 +46,8 @@ function answerOf(ros, method, ...args) {
   return new Promise((resolve, reject) => ros[method](...args, resolve, reject));
 }
 
-async function withRos(use) {
-  const ros = await connect();
+async function withRos(use, role) {
+  const ros = await connect(role);
   try {
     await use(ros);
   } finally {
@@ -89,12 +92,37 @@ test("the extended service says why", () =>
     assert.equal(again.result_code, -1);
   }));
 
-test("operators rearm and vouch", () =>
+const vouch = (ros, radius_m) => call(ros, "/surefoot/vouch", "surefoot/Vouch", { radius_m });
+
+test("the operator re-arms and attests", () =>
   withRos(async (ros) => {
     assert.equal((await call(ros, "/surefoot/rearm", "std_srvs/Trigger", {})).success, true);
-    assert.equal((await call(ros, "/surefoot/vouch", "surefoot/Vouch", { radius_m: 0.4 })).success, true);
-    assert.equal((await call(ros, "/surefoot/vouch", "surefoot/Vouch", { radius_m: 4 })).success, false);
+    assert.equal((await vouch(ros, 0.4)).success, true);
+    assert.equal((await vouch(ros, 4)).success, false);
+  }, "operator"));
+
+test("a guest is a rider, until roslib authenticates it", () =>
+  withRos(async (ros) => {
+    const refused = await vouch(ros, 0.4);
+    assert.equal(refused.success, false);
+    assert.match(refused.message, /role operator/);
+    ros.authenticate(tokenOf("operator"), "", "", "", 0, "", 0);
+    assert.equal((await vouch(ros, 0.4)).success, true);
   }));
+
+test("an observer asks nothing", () =>
+  withRos(async (ros) => {
+    await assert.rejects(call(ros, "/step", kStepType, { direction: 9 }), (reason) =>
+      reason.includes("role rider"),
+    );
+    assert.equal((await call(ros, "/surefoot/health", "surefoot/GetHealth", {})).state, "READY");
+  }, "observer"));
+
+test("a token that is wrong closes the door", async () => {
+  const socket = new WebSocket(`${url}/?token=${tokenOf("king")}`);
+  const [error] = await once(socket, "error");
+  assert.match(error.message, /401/);
+});
 
 test("topics: every verdict, health, diagnostics", () =>
   withRos(async (ros) => {
@@ -168,6 +196,13 @@ test("rosapi as roslib reads it", () =>
     assert.equal(topics.types[topics.topics.indexOf("/diagnostics")], "diagnostic_msgs/DiagnosticArray");
     assert.ok((await answerOf(ros, "getServices")).includes("/step"));
     assert.deepEqual(await answerOf(ros, "getNodes"), ["/surefoot_gate"]);
+    assert.deepEqual(await answerOf(ros, "getParams"), [
+      "/surefoot/forward_code",
+      "/surefoot/result_codes",
+    ]);
+    assert.deepEqual(await answerOf(ros, "getActionServers"), []);
+    assert.deepEqual(await answerOf(ros, "getServicesForType", kStepType), ["/step"]);
+    assert.deepEqual(await answerOf(ros, "getTopicsForType", "surefoot/Health"), ["/surefoot/health"]);
     assert.equal(await answerOf(ros, "getServiceType", "/step"), kStepType);
     assert.equal(await answerOf(ros, "getTopicType", "/surefoot/health"), "surefoot/Health");
     const param = (name) =>
@@ -180,7 +215,7 @@ test("statuses reach roslib", () =>
   withRos(async (ros) => {
     const status = once(ros, "status");
     ros.authenticate("mac", "client", "dest", "rand", 0, "all", 1);
-    assert.equal((await status)[0].level, "warning");
+    assert.equal((await status)[0].level, "error");
   }));
 
 /// Everything that is expected is there, and equal; more may be there.
@@ -201,8 +236,8 @@ function holds(actual, expected) {
 }
 
 /// What comes back to the texts of a conversation; its end is the answer to one question more.
-async function repliesTo(texts) {
-  const socket = new WebSocket(url);
+async function repliesTo(texts, role) {
+  const socket = new WebSocket(role ? `${url}/?token=${tokenOf(role)}` : url);
   await once(socket, "open");
   const replies = [];
   const done = new Promise((resolve, reject) => {
@@ -220,9 +255,9 @@ async function repliesTo(texts) {
   return replies;
 }
 
-for (const { name, send, replies } of JSON.parse(readFileSync(process.env.SUREFOOT_VECTORS))) {
+for (const { name, role, send, replies } of JSON.parse(readFileSync(process.env.SUREFOOT_VECTORS))) {
   test(`conversation: ${name}`, async () => {
-    const got = await repliesTo(send);
+    const got = await repliesTo(send, role);
     assert.equal(got.length, replies.length, JSON.stringify(got));
     replies.forEach((expected, i) =>
       assert.ok(holds(got[i], expected), `${JSON.stringify(got[i])} is not ${JSON.stringify(expected)}`),

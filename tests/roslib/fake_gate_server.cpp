@@ -14,6 +14,7 @@ int main() {
     testing::ScriptedGate gate;
     ServerConfig config;
     config.port = 0;
+    config.access = testing::three_tokens();
     auto server = WebsocketServer::open(config, gate);
     if (!server) {
         std::fprintf(stderr, "%s\n", server.error().message.c_str());

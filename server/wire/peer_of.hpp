@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <string>
+
+namespace surefoot::wire {
+
+/// The address of the other computer; empty when the client runs on this one (it comes from
+/// loopback, or from the very address that it connected to).
+[[nodiscard]] inline std::string peer_of(const boost::asio::ip::tcp::socket& socket) {
+    boost::system::error_code error;
+    const auto there = socket.remote_endpoint(error).address();
+    const auto here = socket.local_endpoint(error).address();
+    if (error) return "unknown";
+    if (there.is_loopback() || there == here) return {};
+    return there.to_string();
+}
+
+}  // namespace surefoot::wire
