@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/stairs/edge_cells.hpp"
 #include "surefoot/stairs/median.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
 
@@ -91,50 +92,22 @@ void EdgeProfiler::slice(const Terrain& terrain,
 /// The cells of the slices, row by row: of each those between the ends of the line and of the
 /// slices.
 void EdgeProfiler::gather(const Terrain& terrain, const EdgeLine& line) {
-    const grid::GridGeometry& grid = terrain.geometry;
-    const Vector2d along = line.along() / resolution_m_;
-    const Vector2d down = line.down() / resolution_m_;
-    const double length = length_m_ / resolution_m_;
-    const auto slices = static_cast<double>(slices_.size());
-    for (int iy = 0; iy < grid.ny; ++iy) {
-        // Along a row both coordinates are linear in ix [cells].
-        const Vector2d first_m = grid.center_m({0, iy}) - line.from_m;
-        const double t = first_m.dot(along);
-        const double s = first_m.dot(down) + upper_slices_;
-        const double t_step = along.x() * resolution_m_;
-        const double s_step = down.x() * resolution_m_;
-        double low = 0.0;
-        double high = grid.nx - 1;
-        const auto keep = [&](double value, double step, double most) {
-            if (std::abs(step) < 1e-9) {
-                if (value < 0.0 || value >= most) high = -1.0;
-                return;
-            }
-            const double a = -value / step;
-            const double b = (most - value) / step;
-            low = std::max(low, std::min(a, b));
-            high = std::min(high, std::max(a, b));
-        };
-        keep(t, t_step, length);
-        keep(s, s_step, slices);
-        // A line almost along the rows meets some of them beyond all integers.
-        for (int ix = static_cast<int>(std::ceil(std::min(low, 1.0 * grid.nx))); ix <= high; ++ix) {
-            const double at_slice = s + s_step * ix;
-            if (!(at_slice >= 0.0 && at_slice < slices)) continue;  // by rounding
-            const int k = static_cast<int>(at_slice);
-            const auto slice = static_cast<std::size_t>(k);
-            ++cells_[slice];
-            const float height_m = terrain.height_m.row(iy)[ix];
-            if (height_m == height_m) {
-                const float var_m2 =
-                    terrain.height_var_m2.empty() ? 0.0F : terrain.height_var_m2.row(iy)[ix];
-                samples_.push_back({k, height_m, var_m2});
-            } else if (!terrain.free_above_m.empty()) {
-                const auto free_m = static_cast<double>(terrain.free_above_m.row(iy)[ix]);
-                if (free_m < slices_[slice].free_above_m) slices_[slice].free_above_m = free_m;
-            }
+    const auto visit = [&](int ix, int iy, double at_slice, double) {
+        const int k = static_cast<int>(at_slice);
+        const auto slice = static_cast<std::size_t>(k);
+        ++cells_[slice];
+        const float height_m = terrain.height_m.row(iy)[ix];
+        if (height_m == height_m) {
+            const float var_m2 =
+                terrain.height_var_m2.empty() ? 0.0F : terrain.height_var_m2.row(iy)[ix];
+            samples_.push_back({k, height_m, var_m2});
+        } else if (!terrain.free_above_m.empty()) {
+            const auto free_m = static_cast<double>(terrain.free_above_m.row(iy)[ix]);
+            if (free_m < slices_[slice].free_above_m) slices_[slice].free_above_m = free_m;
         }
-    }
+    };
+    for_each_cell_about(
+        terrain.geometry, line, upper_slices_, static_cast<int>(slices_.size()), visit);
 }
 
 void EdgeProfiler::measure_slice(std::span<const Sample> samples, int cells, Slice& slice) {

@@ -23,6 +23,7 @@ FeatureFinder::FeatureFinder(const StairsConfig& config)
       profiler_(config),
       step_fitter_(config),
       sight_steps_(config),
+      evidence_(config),
       flight_finder_(config),
       door_finder_(config.doors),
       reachability_({.max_step_m = config.walk_step_m, .stance_radius_m = kStance_m}) {}
@@ -40,6 +41,7 @@ void FeatureFinder::find(const Terrain& terrain, TerrainFeatures& out) {
     see_faces(terrain, out.edges);
     see_steps_down(terrain, out.edges);
     join_pieces(out.edges);
+    weigh(terrain, out.edges);
     for (std::vector<Edge>& chain : chains_) flight_finder_.lengthen(chain, out.edges);
     for (const std::vector<Edge>& chain : chains_)
         std::erase_if(out.edges, [&](const Edge& edge) { return is_among(edge, chain); });
@@ -206,6 +208,63 @@ bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
     return true;
 }
 
+void FeatureFinder::weigh_one(const Terrain& terrain, Edge& edge) {
+    if (!edge.lower_seen) return;  // there is nothing to be explained
+    constexpr double kBeside_m = 0.05;  ///< the next riser is spread so far over its tread
+    constexpr double kLeast_m = 0.15;
+    constexpr double kMost_m = 1.2;
+    const auto looked_at_m = [&](double depth_m) {
+        return std::clamp(depth_m - kBeside_m, kLeast_m, kMost_m);
+    };
+    const StepEvidence evidence = evidence_.weigh(
+        terrain, edge, looked_at_m(edge.upper_depth_m), looked_at_m(edge.lower_depth_m));
+    // What the last look saw of it may say more than the map.
+    if (!(edge.log_step_ratio >= evidence.log_ratio)) edge.log_step_ratio = evidence.log_ratio;
+    edge.hidden = evidence.is_hidden;
+}
+
+void FeatureFinder::weigh(const Terrain& terrain, std::vector<Edge>& edges) {
+    for (std::vector<Edge>& chain : chains_) {
+        for (Edge& step : chain) weigh_one(terrain, step);
+        keep_steps(chain, edges);
+    }
+    std::erase_if(chains_, [](const std::vector<Edge>& chain) { return chain.empty(); });
+    for (Edge& edge : edges)
+        if (std::isnan(edge.log_step_ratio)) weigh_one(terrain, edge);
+    const double least = std::log(config_.drop_ratio);
+    std::erase_if(edges, [&](const Edge& edge) {
+        return edge.lower_seen && !edge.hidden && edge.log_step_ratio < least;
+    });
+}
+
+/// A flight ends where smooth ground explains what goes on. At least half of its steps are proven
+/// ones, the others no worse than drops, in shadow, or between two proven ones.
+void FeatureFinder::keep_steps(std::vector<Edge>& chain, std::vector<Edge>& edges) const {
+    const auto is_step = [&](std::size_t k) { return is_step_of(config_, chain[k]); };
+    const double likely = std::log(config_.drop_ratio);
+    const auto goes_on = [&](std::size_t k) {
+        const bool is_between = k > 0 && k + 1 < chain.size() && is_step(k - 1) && is_step(k + 1);
+        return is_between || chain[k].hidden || !(chain[k].log_step_ratio < likely);
+    };
+    std::size_t begin = 0, end = 0;
+    for (std::size_t first = 0; first < chain.size();) {
+        std::size_t last = first;
+        std::size_t steps = 0;
+        for (; last < chain.size() && goes_on(last); ++last)
+            if (is_step(last)) ++steps;
+        if (last - first > end - begin && 2 * steps >= last - first) {
+            begin = first;
+            end = last;
+        }
+        first = std::max(last, first + 1);
+    }
+    if (end - begin < 2) begin = end = 0;
+    for (std::size_t k = 0; k < chain.size(); ++k)
+        if (k < begin || k >= end) edges.push_back(chain[k]);
+    chain.erase(chain.begin() + static_cast<std::ptrdiff_t>(end), chain.end());
+    chain.erase(chain.begin(), chain.begin() + static_cast<std::ptrdiff_t>(begin));
+}
+
 void FeatureFinder::join_pieces(std::vector<Edge>& edges) const {
     for (std::size_t i = 0; i < edges.size(); ++i) {
         for (std::size_t k = i + 1; k < edges.size();) {
@@ -233,7 +292,8 @@ void FeatureFinder::name_lines(const Terrain& terrain, TerrainFeatures& out) con
         if (!goes_down && !edge.lower_walkable) continue;
         const LineFeature feature = line_feature(edge, goes_down);
         if (feature.height_m < -config_.drop_m) out.drops.push_back(feature);
-        if (edge.lower_seen && edge.height_m() <= config_.kerb_m) out.kerbs.push_back(feature);
+        if (edge.lower_seen && edge.height_m() <= config_.kerb_m && is_step_of(config_, edge))
+            out.kerbs.push_back(feature);
     }
     // The near edge of a flight down is a drop like any other.
     for (const Flight& flight : out.flights) {

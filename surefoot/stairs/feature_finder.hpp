@@ -14,6 +14,7 @@
 #include "surefoot/stairs/sight_faces.hpp"
 #include "surefoot/stairs/sight_steps.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
+#include "surefoot/stairs/step_evidence.hpp"
 #include "surefoot/stairs/step_fit.hpp"
 #include "surefoot/stairs/terrain.hpp"
 #include "surefoot/traversability/reachability.hpp"
@@ -40,6 +41,10 @@ class FeatureFinder {
     /// Adds the steps down that the camera sees where the map holds fewer.
     void see_steps_down(const Terrain& terrain, std::vector<Edge>& edges);
     bool add_seen(std::vector<Edge>& edges);
+    /// Takes out what smooth ground explains as well, and ends flights where that begins.
+    void weigh(const Terrain& terrain, std::vector<Edge>& edges);
+    void weigh_one(const Terrain& terrain, Edge& edge);
+    void keep_steps(std::vector<Edge>& chain, std::vector<Edge>& edges) const;
     /// Measured alike, pieces of a ragged edge turn out to be one.
     void join_pieces(std::vector<Edge>& edges) const;
     /// Which sides of the edges can be walked to.
@@ -55,6 +60,7 @@ class FeatureFinder {
     StepFitter step_fitter_;
     SightFaces sight_faces_;
     SightSteps sight_steps_;
+    StepEvidenceFinder evidence_;
     FlightFinder flight_finder_;
     FlightSides flight_sides_;
     DoorFinder door_finder_;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace surefoot::stairs {
@@ -31,6 +32,10 @@ struct Edge {
     /// The ground goes on as far as this on either side before the next edge or the unknown.
     double upper_depth_m = 0.0;
     double lower_depth_m = 0.0;
+    /// Natural logarithm of the likelihood ratio, step over smooth ground, of the last look
+    /// (StepEvidenceFinder). NaN = not asked: the ground below it is not seen.
+    double log_step_ratio = std::numeric_limits<double>::quiet_NaN();
+    bool hidden = false;  ///< the ground between both sides is not seen where it falls
 
     bool upper_walkable = false;  ///< one comes to it from the stance without taking a step
     bool lower_walkable = false;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "surefoot/stairs/edge_relations.hpp"
+#include "surefoot/stairs/step_evidence.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -103,7 +104,10 @@ double median_of(std::vector<double> values) {
 }  // namespace
 
 bool FlightFinder::may_be_step(const Edge& edge) const {
-    return edge.height_m() <= config_.max_riser_m && edge.length_m() >= config_.min_width_m;
+    // What lies below an edge that is not seen cannot be asked: only as the last one of a flight.
+    const bool is_step = !edge.lower_seen || is_step_of(config_, edge);
+    return is_step && edge.height_m() <= config_.max_riser_m &&
+           edge.length_m() >= config_.min_width_m;
 }
 
 double FlightFinder::going_to(const Edge& edge, const Edge& next) const {

@@ -28,6 +28,7 @@ Edge step(int k, double right_m = -0.6, double left_m = 0.6, double turn_deg = 0
     edge.lower_m = k * kRiser_m;
     edge.upper_m = (k + 1) * kRiser_m;
     edge.lower_seen = edge.lower_walkable = true;
+    edge.log_step_ratio = 20.0;
     edge.height_sigma_m = 0.003;
     edge.across_sigma_m = 0.005;
     edge.upper_depth_m = edge.lower_depth_m = kGoing_m;

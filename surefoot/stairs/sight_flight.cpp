@@ -35,28 +35,58 @@ double SightFlight::cost(const EvenFlight& flight, double most) const {
     return sum;
 }
 
+/// Of ground that falls from `first_run_m` on, then is level; a slope above kSteepest is a fall.
+double SightFlight::cost_of_slope_to(double floor_m,
+                                     double slope,
+                                     double first_run_m,
+                                     double most) const {
+    double sum = 0.0;
+    for (const Point& point : points_) {
+        // Where the line of sight meets the slope: depth = slope (run - first run).
+        const double beyond_m = height_m_ * point.run_per_m - first_run_m;
+        const double left = 1.0 - slope * point.run_per_m;
+        double depth_m = floor_m;
+        if (beyond_m <= 0.0)
+            depth_m = 0.0;
+        else if (left > 0.0 && slope <= kSteepest)
+            depth_m = std::min(floor_m, slope * beyond_m / left);
+        sum += std::min(std::abs(point.depth_m - depth_m) * point.per_sigma, kMostCost);
+        if (sum >= most) break;
+    }
+    return sum;
+}
+
 /// The least cost of ground that falls evenly, or at once, and then is level.
 double SightFlight::cost_of_no_flight() const {
     double least = std::numeric_limits<double>::infinity();
-    for (double floor_m = kFloorStep_m; floor_m <= kDeepest_m; floor_m += kFloorStep_m) {
-        for (double slope = kSlopeStep; slope <= kSteepest + kSlopeStep; slope += kSlopeStep) {
-            double sum = 0.0;
-            for (const Point& point : points_) {
-                // Where the line of sight meets the slope: depth = slope (run - first run).
-                const double beyond_m = height_m_ * point.run_per_m - first_run_m_;
-                const double left = 1.0 - slope * point.run_per_m;
-                double depth_m = floor_m;
-                if (beyond_m <= 0.0)
-                    depth_m = 0.0;
-                else if (left > 0.0 && slope <= kSteepest)
-                    depth_m = std::min(floor_m, slope * beyond_m / left);
-                sum += std::min(std::abs(point.depth_m - depth_m) * point.per_sigma, kMostCost);
-                if (sum >= least) break;
-            }
-            least = std::min(least, sum);
-        }
+    for (double floor_m = kFloorStep_m; floor_m <= kDeepest_m; floor_m += kFloorStep_m)
+        for (double slope = kSlopeStep; slope <= kSteepest + kSlopeStep; slope += kSlopeStep)
+            least = std::min(least, cost_of_slope_to(floor_m, slope, first_run_m_, least));
+    return least;
+}
+
+double SightFlight::cost_of_slope(std::span<const SightBin> bins,
+                                  double height_m,
+                                  double first_run_m,
+                                  double least_run_m) {
+    constexpr int kPlaces = 3;  // half a tread before the nose and behind it
+    constexpr double kPlace_m = 0.05;
+    take(bins, height_m, first_run_m);
+    double least = std::numeric_limits<double>::infinity();
+    for (int place = -kPlaces; place <= kPlaces; ++place) {
+        const double begin_m = first_run_m + place * kPlace_m;
+        for (double slope = kSlopeStep; slope <= kSteepest; slope += 2.0 * kSlopeStep)
+            for (double floor_m = slope * least_run_m; floor_m <= kDeepest_m;
+                 floor_m += 2.0 * kFloorStep_m)
+                least = std::min(least, cost_of_slope_to(floor_m, slope, begin_m, least));
     }
     return least;
+}
+
+double SightFlight::cost_of_bin(const SightBin& bin, double depth_m) {
+    if (!(bin.depth_m == bin.depth_m) || !(bin.steepness > 0.0)) return 0.0;
+    return std::min(std::abs(bin.depth_m - depth_m) / std::hypot(bin.sigma_m, kLeastSigma_m),
+                    kMostCost);
 }
 
 void SightFlight::refine(EvenFlight& best) const {
@@ -78,9 +108,7 @@ void SightFlight::refine(EvenFlight& best) const {
     }
 }
 
-std::optional<EvenFlight> SightFlight::fit(std::span<const SightBin> bins,
-                                           double height_m,
-                                           double first_run_m) {
+void SightFlight::take(std::span<const SightBin> bins, double height_m, double first_run_m) {
     height_m_ = height_m;
     first_run_m_ = first_run_m;
     points_.clear();
@@ -89,6 +117,12 @@ std::optional<EvenFlight> SightFlight::fit(std::span<const SightBin> bins,
         points_.push_back(
             {1.0 / bin.steepness, bin.depth_m, 1.0 / std::hypot(bin.sigma_m, kLeastSigma_m)});
     }
+}
+
+std::optional<EvenFlight> SightFlight::fit(std::span<const SightBin> bins,
+                                           double height_m,
+                                           double first_run_m) {
+    take(bins, height_m, first_run_m);
     EvenFlight best;
     best.cost = std::numeric_limits<double>::infinity();
     for (int steps = 2; steps <= kMostSteps; ++steps) {

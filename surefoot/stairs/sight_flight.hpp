@@ -38,6 +38,15 @@ class SightFlight {
                                                 double height_m,
                                                 double first_run_m);
 
+    /// The least cost of ground that slopes evenly down to a floor, over at least `least_run_m`,
+    /// as smooth ground does. It begins near the first nose.
+    [[nodiscard]] double cost_of_slope(std::span<const SightBin> bins,
+                                       double height_m,
+                                       double first_run_m,
+                                       double least_run_m);
+    /// What a bin costs whose ground should lie at `depth_m`.
+    [[nodiscard]] static double cost_of_bin(const SightBin& bin, double depth_m);
+
   private:
     /// A bin that tells, by the run at which its line of sight meets the ground above.
     struct Point {
@@ -47,6 +56,11 @@ class SightFlight {
     };
     [[nodiscard]] double cost(const EvenFlight& flight, double most) const;
     [[nodiscard]] double cost_of_no_flight() const;
+    void take(std::span<const SightBin> bins, double height_m, double first_run_m);
+    [[nodiscard]] double cost_of_slope_to(double floor_m,
+                                          double slope,
+                                          double first_run_m,
+                                          double most) const;
     void refine(EvenFlight& best) const;
 
     StairsConfig config_;

@@ -184,6 +184,24 @@ std::size_t SightSteps::as_even_flight(std::span<const SightBin> bins,
     return seen - 1;
 }
 
+double SightSteps::log_ratio(std::span<const SightBin> bins, double height_m, std::size_t steps) {
+    const auto begin = static_cast<std::size_t>(levels_.front().begin);
+    const auto end = static_cast<std::size_t>(levels_[steps].end);
+    double cost = 0.0;
+    for (std::size_t level = 0; level <= steps; ++level)
+        for (int k = levels_[level].begin; k < levels_[level].end; ++k)
+            cost += SightFlight::cost_of_bin(bins[static_cast<std::size_t>(k)],
+                                             levels_[level].depth_m);
+    const double slope = even_.cost_of_slope(
+        bins.subspan(begin, end - begin), height_m, noses_.front().run_m, 2.0 * config_.smear_m);
+    // Of neighbouring bins those within kSightRows_px share one error. A step has a place and a
+    // depth, a slope has three parameters in all (BIC).
+    const double independent = static_cast<double>(end - begin) * kSightBin_px / kSightRows_px;
+    const double parameters = 2.0 * static_cast<double>(steps) - 3.0;
+    return (slope - cost) * kSightBin_px / kSightRows_px -
+           0.5 * parameters * std::log(std::max(2.0, independent));
+}
+
 /// The map holds the highest of what is in a cell, and of a low step what the matcher smears.
 Edge SightSteps::with_lower(Edge edge, std::size_t step) const {
     const Level& upper = levels_[step];
@@ -215,6 +233,7 @@ void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::
     // More levels than steps: the matcher blurred one of them.
     if (steps < kPlain && levels_.size() > steps + 1) steps = as_even_flight(bins, height_m, steps);
     if (steps < known.size()) return;
+    const double log_step_ratio = log_ratio(bins, height_m, steps);
 
     out.assign(known.begin(), known.end());
     const std::size_t last = known.size() - 1;
@@ -246,6 +265,7 @@ void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::
             k + 1 < noses_.size() && k + 1 < steps ? noses_[k + 1].run_m - noses_[k].run_m : 0.0;
         out.push_back(edge);
     }
+    for (Edge& edge : out) edge.log_step_ratio = log_step_ratio;
 }
 
 }  // namespace surefoot::stairs

@@ -49,6 +49,10 @@ class SightSteps {
     [[nodiscard]] std::size_t as_even_flight(std::span<const SightBin> bins,
                                              double height_m,
                                              std::size_t steps);
+    /// ln of the likelihood ratio: the first so many steps over ground that slopes.
+    [[nodiscard]] double log_ratio(std::span<const SightBin> bins,
+                                   double height_m,
+                                   std::size_t steps);
     [[nodiscard]] Edge with_lower(Edge edge, std::size_t step) const;
 
     StairsConfig config_;

@@ -45,6 +45,21 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
         "ground on which no neighbouring cells differ by more is walked on without steps");
     visitor.number("kerb_m", kerb_m, 0.02, 1.0, "highest kerb");
     visitor.number("drop_m", drop_m, 0.01, 1.0, "ground that lies lower by more is a drop");
+    visitor.number("step_ratio",
+                   step_ratio,
+                   1.0,
+                   1e12,
+                   "likelihood ratio, step over smooth ground, from which an edge is a step");
+    visitor.number("drop_ratio",
+                   drop_ratio,
+                   1e-12,
+                   1e12,
+                   "the same, from which an edge that goes down is a drop");
+    visitor.number("evidence_shared_m",
+                   evidence_shared_m,
+                   0.0001,
+                   0.1,
+                   "one sigma of errors that cells within 0.1 m share, for both ratios");
     visitor.group("doors", doors);
     visitor.group("patches", patches);
     visitor.group("classes", classes);
@@ -58,6 +73,11 @@ std::optional<std::string> StairsConfig::problem() const {
     if (!(min_going_m < max_going_m))
         return fmt::format(
             "stairs.min_going_m {} must be below stairs.max_going_m {}", min_going_m, max_going_m);
+    if (!(drop_ratio <= step_ratio))
+        return fmt::format(
+            "stairs.drop_ratio {} must not exceed stairs.step_ratio {}: a step down is a drop",
+            drop_ratio,
+            step_ratio);
     if (auto found = doors.problem()) return found;
     if (auto found = patches.problem()) return found;
     return classes.problem();

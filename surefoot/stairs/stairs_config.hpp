@@ -39,6 +39,16 @@ struct StairsConfig {
     double kerb_m = 0.20;          ///< highest kerb
     double drop_m = 0.05;          ///< what goes down by more is a drop (the gate's limit)
 
+    /// So many times more likely a step than smooth ground (StepEvidenceFinder) must the heights of
+    /// an edge be for a flight or a kerb. A map has some thirty lines that might be one, and at most
+    /// one map in thirty may invent one.
+    double step_ratio = 1000.0;
+    /// The same for a drop: what is as likely one as not is said. A drop whose ground is not seen
+    /// is not asked.
+    double drop_ratio = 1.0;
+    /// One sigma of errors that cells within 0.1 m share: 3 mm, what a matcher errs by 1 m away.
+    double evidence_shared_m = 0.003;
+
     DoorConfig doors;
     PatchConfig patches;
     ClassConfig classes;

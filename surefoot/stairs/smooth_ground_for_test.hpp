@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "surefoot/core/rng.hpp"
+#include "surefoot/stairs/terrain.hpp"
+
+namespace surefoot::stairs::testing {
+
+/// Ground without a step, drawn by a seed: a slope from a floor on, up or down, with a sharp crease
+/// or a rounded one, and perhaps a landing behind it; a plane; a hill or a dip; waves. Nowhere is
+/// it steeper than `slope`, which is up to 35 deg.
+class SmoothGround {
+  public:
+    enum class Kind { ramp, plane, hill, waves };
+    static constexpr int kKinds = 4;
+    static constexpr double kSteepest_deg = 35.0;
+
+    explicit SmoothGround(std::uint64_t seed) {
+        Rng rng(mix_seed(seed, 0));
+        kind = static_cast<Kind>(rng.below(kKinds));
+        slope_deg = rng.uniform(0.0, kSteepest_deg);
+        way_rad_ = rng.uniform(-std::numbers::pi, std::numbers::pi);
+        sign_ = rng.uniform() < 0.5 ? -1.0 : 1.0;
+        begin_m_ = rng.uniform(0.2, 1.2);
+        length_m_ = rng.uniform() < 0.5 ? 100.0 : rng.uniform(0.6, 2.0);
+        round_m_ = rng.uniform() < 0.5 ? 0.0 : rng.uniform(0.1, 0.6);
+        size_m_ = rng.uniform(0.5, 1.5);
+        middle_m_ = {rng.uniform(-2.0, 2.0), rng.uniform(-2.0, 2.0)};
+    }
+    Kind kind = Kind::plane;
+    double slope_deg = 0.0;
+
+    [[nodiscard]] double at(double x_m, double y_m) const {
+        const double slope = sign_ * std::tan(slope_deg * std::numbers::pi / 180.0);
+        const double s_m = std::cos(way_rad_) * x_m + std::sin(way_rad_) * y_m;
+        switch (kind) {
+            case Kind::plane: return slope * s_m;
+            case Kind::ramp:
+                return slope * (beyond_m(s_m - begin_m_) - beyond_m(s_m - begin_m_ - length_m_));
+            case Kind::waves: return slope * size_m_ * std::sin((s_m - begin_m_) / size_m_);
+            case Kind::hill: {
+                // exp(-r^2 / 2) is steepest at r = 1.
+                const double r = (Eigen::Vector2d(x_m, y_m) - middle_m_).norm() / size_m_;
+                return slope * size_m_ * std::exp(0.5 * (1.0 - r * r));
+            }
+        }
+        return 0.0;
+    }
+
+  private:
+    /// max(s, 0) with a bend of `round_m_` instead of the crease.
+    [[nodiscard]] double beyond_m(double s_m) const {
+        if (round_m_ <= 0.0) return std::max(s_m, 0.0);
+        const double inside_m = std::clamp(s_m + 0.5 * round_m_, 0.0, round_m_);
+        return 0.5 * inside_m * inside_m / round_m_ + std::max(0.0, s_m - 0.5 * round_m_);
+    }
+    double way_rad_ = 0.0;
+    double sign_ = 1.0;
+    double begin_m_ = 0.0;
+    double length_m_ = 0.0;
+    double round_m_ = 0.0;
+    double size_m_ = 1.0;
+    Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();
+};
+
+/// A map of 6 x 6 m about the origin, of the heights at the middles of its cells of 25 mm, with
+/// errors of `sigma_m`. Errors of neighbouring cells are independent, or hang together over about
+/// `correlation_m`, as a matcher's do. One stands at the origin.
+class SmoothMap {
+  public:
+    SmoothMap(const SmoothGround& ground,
+              double sigma_m,
+              double correlation_m,
+              bool states_variance,
+              std::uint64_t seed)
+        : height_m_(kCells, kCells, 0.0F), var_m2_(kCells, kCells, 0.0F) {
+        geometry_ = {kCell_m, kCells, kCells, Eigen::Vector2d::Constant(-0.5 * kCells * kCell_m)};
+        Rng rng(mix_seed(seed, 1));
+        for (std::size_t i = 0; i < height_m_.size(); ++i)
+            height_m_.data()[i] = static_cast<float>(sigma_m > 0.0 ? rng.normal() : 0.0);
+        if (correlation_m > 0.0 && sigma_m > 0.0) smooth(correlation_m);
+        for (int iy = 0; iy < kCells; ++iy) {
+            for (int ix = 0; ix < kCells; ++ix) {
+                const Eigen::Vector2d p_m = geometry_.center_m({ix, iy});
+                float& z_m = height_m_.at(ix, iy);
+                z_m = static_cast<float>(sigma_m * static_cast<double>(z_m) +
+                                         ground.at(p_m.x(), p_m.y()));
+            }
+        }
+        if (states_variance) var_m2_.fill(static_cast<float>(sigma_m * sigma_m));
+    }
+    [[nodiscard]] Terrain terrain() const {
+        Terrain terrain;
+        terrain.geometry = geometry_;
+        terrain.height_m = height_m_.view();
+        terrain.height_var_m2 = var_m2_.view();
+        return terrain;
+    }
+
+  private:
+    static constexpr int kCells = 240;
+    static constexpr double kCell_m = 0.025;
+
+    /// Means over squares of `side_m`, with their standard deviation of 1 again.
+    void smooth(double side_m) {
+        const int reach = std::max(1, static_cast<int>(std::lround(0.5 * side_m / kCell_m)));
+        for (const bool rows : {true, false}) {
+            const grid::Layer from = height_m_;
+            for (int iy = 0; iy < kCells; ++iy) {
+                for (int ix = 0; ix < kCells; ++ix) {
+                    double sum = 0.0;
+                    for (int k = -reach; k <= reach; ++k) {
+                        const int x = (rows ? ix + k + kCells : ix) % kCells;
+                        const int y = (rows ? iy : iy + k + kCells) % kCells;
+                        sum += static_cast<double>(from.at(x, y));
+                    }
+                    height_m_.at(ix, iy) = static_cast<float>(sum / std::sqrt(2.0 * reach + 1.0));
+                }
+            }
+        }
+    }
+    grid::GridGeometry geometry_;
+    grid::Layer height_m_;
+    grid::Layer var_m2_;
+};
+
+}  // namespace surefoot::stairs::testing
