@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
 
 namespace surefoot::stairs {
@@ -198,7 +199,8 @@ void PatchFinder::order_seeds() {
             quality = kQualities / 2;
         }
         quality +=
-            std::min(kQualities / 2 - 1, static_cast<int>(std::sqrt(square_m2) / kQualityStep_m));
+            std::min(kQualities / 2 - 1,
+                     saturated_integer<int>(std::sqrt(square_m2) / kQualityStep_m, kQualities));
         quality_[i] = static_cast<std::uint8_t>(quality);
         ++begin[static_cast<std::size_t>(quality) + 1];
     }
