@@ -5,6 +5,8 @@ if(SUREFOOT_SANITIZE)
   if("undefined" IN_LIST SUREFOOT_SANITIZE)
     # Not part of it, but undefined: a number beyond all integers as one.
     add_compile_options(-fsanitize=float-cast-overflow)
+    # core.CheckedIndex asks whether it really stops.
+    add_compile_definitions(SUREFOOT_CHECKS_FLOAT_CASTS)
   endif()
 endif()
 if(SUREFOOT_COVERAGE)

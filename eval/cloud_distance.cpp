@@ -18,7 +18,7 @@ constexpr std::size_t kTaken = 1U << 13U;
 
 double between_ranks(std::vector<float>& values, double fraction) {
     const double rank = fraction * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::ptrdiff_t>(rank);
+    const auto below = static_cast<std::ptrdiff_t>(rank);  // in range: 0 to the last rank
     std::nth_element(values.begin(), values.begin() + below, values.end());
     const double low = static_cast<double>(values[static_cast<std::size_t>(below)]);
     const double weight = rank - static_cast<double>(below);
@@ -44,9 +44,14 @@ std::vector<float> cloud_distances_m(const geometry::KdTree& reference,
             for (std::size_t i = begin; i < end; ++i) {
                 const Eigen::Vector3f& p_m = points_m[order[i]];
                 // What was nearest to the point before is near to this one.
-                const Neighbour start =
-                    i == begin ? Neighbour{} : reference.neighbour(p_m, last.index);
+                const Neighbour start = last.index == Neighbour::kNone
+                                            ? Neighbour{}
+                                            : reference.neighbour(p_m, last.index);
                 last = reference.nearest(p_m, start);
+                if (last.index == Neighbour::kNone) {  // the square of the distance is no float
+                    distances_m[from + order[i]] = std::numeric_limits<float>::infinity();
+                    continue;
+                }
                 const Eigen::Vector3d off_m =
                     p_m.cast<double>() - reference.points_m()[last.index].cast<double>();
                 distances_m[from + order[i]] = static_cast<float>(off_m.norm());

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "eval/voxels.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/pieces.hpp"
 #include "surefoot/geometry/kd_tree.hpp"
 #include "surefoot/geometry/plane_fit.hpp"
@@ -29,7 +30,7 @@ std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
                                   const LevelConfig& config) {
     const auto& counts = histogram.counts;
     const auto around =
-        static_cast<std::size_t>(std::ceil(3.0 * config.least_step_m / config.bin_m));
+        saturated_integer<std::size_t>(std::ceil(3.0 * config.least_step_m / config.bin_m));
     std::vector<std::size_t> candidates;
     for (std::size_t i = 0; i < counts.size(); ++i) {
         const auto count = static_cast<double>(counts[i]);
@@ -44,7 +45,8 @@ std::vector<std::size_t> peaks_of(const HeightHistogram& histogram,
     std::stable_sort(candidates.begin(), candidates.end(), [&](std::size_t a, std::size_t b) {
         return counts[a] > counts[b];
     });
-    const auto apart = static_cast<std::size_t>(std::lround(config.least_step_m / config.bin_m));
+    const auto apart =
+        saturated_integer<std::size_t>(std::round(config.least_step_m / config.bin_m));
     std::vector<std::size_t> peaks;
     for (const std::size_t i : candidates) {
         const bool alone = std::none_of(peaks.begin(), peaks.end(), [&](std::size_t k) {
@@ -111,6 +113,55 @@ constexpr double kHighestRiser_m = 0.30;
 
 bool is_step(const Level& lower, const Level& upper) {
     return upper.height_m - lower.height_m <= kHighestRiser_m;
+}
+
+/// Levels that follow each other by one riser, upward from the first and downward from it: of all
+/// that lie near where the next tread must be the one with most points.
+std::vector<Level> chain_of(std::span<const Level> levels, std::size_t first, double riser_m) {
+    constexpr double kUneven = 0.08;  // of a riser
+    constexpr double kLeastShare = 0.15;
+    const auto next_to = [&](const Level& from, double rise_m) -> const Level* {
+        const Level* best = nullptr;
+        const double low_m = from.height_m + rise_m - kUneven * riser_m;
+        const auto first_level = std::lower_bound(
+            levels.begin(), levels.end(), low_m, [](const Level& level, double height_m) {
+                return level.height_m < height_m;
+            });
+        for (const Level& level : std::span(first_level, levels.end())) {
+            if (level.height_m > low_m + 2.0 * kUneven * riser_m) break;
+            // A patch of a few points is no tread beside one of many.
+            if (static_cast<double>(level.points) < kLeastShare * static_cast<double>(from.points))
+                continue;
+            if (best == nullptr || level.points > best->points) best = &level;
+        }
+        return best;
+    };
+    std::vector<Level> chain{levels[first]};
+    while (const Level* above = next_to(chain.back(), riser_m)) chain.push_back(*above);
+    while (const Level* below = next_to(chain.front(), -riser_m))
+        chain.insert(chain.begin(), *below);
+    return chain;
+}
+
+/// The levels of a flight: the longest row of treads with one riser, of two as long the one on more
+/// points. Surfaces beside the flight and patches of noise between two treads are in none.
+std::vector<Level> flight_of(std::span<const Level> levels) {
+    std::vector<Level> best;
+    std::int64_t best_points = 0;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        for (std::size_t k = i + 1; k < levels.size() && is_step(levels[i], levels[k]); ++k) {
+            const std::vector<Level> chain =
+                chain_of(levels, i, levels[k].height_m - levels[i].height_m);
+            std::int64_t points = 0;
+            for (const Level& level : chain) points += level.points;
+            if (chain.size() < best.size() ||
+                (chain.size() == best.size() && points <= best_points))
+                continue;
+            best = chain;
+            best_points = points;
+        }
+    }
+    return best;
 }
 
 /// Where points along a line crowd: the fullest 20 mm, if it holds far more than an even spread, as
@@ -245,10 +296,10 @@ HeightHistogram height_histogram(std::span<const Vector3f> points_m, const Level
     constexpr double kMostBins = 1e6;
     if (!(bins <= kMostBins)) return histogram;
     histogram.low_m = first * config.bin_m;
-    histogram.counts.assign(static_cast<std::size_t>(bins), 0);
+    histogram.counts.assign(static_cast<std::size_t>(bins), 0);  // in range: at most kMostBins
     for (const Vector3f& p_m : points_m) {
         const double bin = std::floor(static_cast<double>(p_m.z()) / config.bin_m) - first;
-        ++histogram.counts[static_cast<std::size_t>(bin)];
+        ++histogram.counts[static_cast<std::size_t>(bin)];  // in range: of a point of the box
     }
     for (const std::size_t peak : peaks_of(histogram, points_m.size(), config)) {
         const double height_m = histogram.low_m + (static_cast<double>(peak) + 0.5) * config.bin_m;
@@ -258,7 +309,9 @@ HeightHistogram height_histogram(std::span<const Vector3f> points_m, const Level
     return histogram;
 }
 
-StairMeasures measure_stairs(const SortedSurfaces& surfaces, std::span<const Level> levels) {
+StairMeasures measure_stairs(const SortedSurfaces& surfaces, std::span<const Level> all) {
+    const std::vector<Level> flight = flight_of(all);
+    const std::span<const Level> levels = flight.empty() ? all : std::span<const Level>(flight);
     constexpr double kLongestTread_m = 0.5;  // what is longer is a landing
     StairMeasures measures;
     std::vector<double> rises_m;

@@ -63,12 +63,14 @@ struct Repeated {
 
 /// Stairs whose levels are known: what one reads off histograms.
 struct StairMeasures {
-    Repeated riser;  ///< height differences of at most 0.30 m between one level and the next
+    Repeated riser;  ///< height differences of at most 0.30 m between the levels of the flight
     Repeated going;  ///< between the faces of risers, or where a map has none, the ends of levels;
                      ///< longer ones are landings and are left out
     Eigen::Vector2d uphill = Eigen::Vector2d::Zero();  ///< unit; zero with fewer than two levels
 };
-/// For straight flights: places are counted along one line uphill. `levels`: of the level points.
+/// The flight is the longest row of levels with one riser (to 8 %); other levels, as patches
+/// between two treads or things beside the stairs, are left out. For straight flights: places are
+/// counted along one line uphill. `levels`: of the level points.
 [[nodiscard]] StairMeasures measure_stairs(const SortedSurfaces& surfaces,
                                            std::span<const Level> levels);
 

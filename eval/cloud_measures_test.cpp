@@ -117,6 +117,36 @@ TEST(StairMeasures, ALandingIsNoGoing) {
     EXPECT_NEAR(m.going.mean_m, kGoing_m, 3e-3);
 }
 
+TEST(StairMeasures, LevelsBetweenTheTreadsAndBesideThemAreNoSteps) {
+    // A depth camera's noise, patches of points in flight half way up, a shelf beside the flight.
+    Points points_m = flight(0.4, true, 0.005, 7);
+    Rng rng(8);
+    const auto patch = [&](double s_m, double y_m, double z_m, int count, double side_m) {
+        const Eigen::Vector2d way(std::cos(0.4), std::sin(0.4));
+        const Eigen::Vector2d left(-way.y(), way.x());
+        for (int i = 0; i < count; ++i) {
+            const Eigen::Vector2d xy_m = (s_m + rng.uniform(0.0, side_m)) * way +
+                                         (y_m + rng.uniform(0.0, side_m)) * left +
+                                         Eigen::Vector2d(3.0, -1.0);
+            points_m.emplace_back(static_cast<float>(xy_m.x()),
+                                  static_cast<float>(xy_m.y()),
+                                  static_cast<float>(z_m + 0.003 * rng.normal()));
+        }
+    };
+    for (int step = 1; step < kSteps; ++step)
+        patch(kGoing_m * step, 1.5, kRiser_m * (step + 0.5), 700, 0.22);
+    patch(0.3, -0.8, 0.43, 3000, 0.5);
+    patch(1.1, -0.8, 0.61, 3000, 0.5);
+    const SortedSurfaces surfaces = sort_surfaces(points_m);
+    const HeightHistogram heights = height_histogram(surfaces.level_m);
+    EXPECT_GT(heights.levels.size(), kSteps + 3U);
+    const StairMeasures m = measure_stairs(surfaces, heights.levels);
+    EXPECT_EQ(m.riser.values_m.size(), static_cast<std::size_t>(kSteps));
+    EXPECT_NEAR(m.riser.mean_m, kRiser_m, 0.001);
+    EXPECT_LT(m.riser.spread_m, 0.003);
+    EXPECT_NEAR(m.going.mean_m, kGoing_m, 0.01);
+}
+
 TEST(StairMeasures, GoingsOfAMapWithoutFaces) {
     const Points points_m = flight(0.0, false, 0.004, 4);
     const StairMeasures m = measured(points_m);

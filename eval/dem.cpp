@@ -38,6 +38,20 @@ double number_of(double p_m, double low, double resolution_m, Lattice lattice) {
 
 }  // namespace
 
+std::uint32_t cell_number(const DemGrid& grid, const Eigen::Vector3d& p_m) noexcept {
+    const grid::GridGeometry& geometry = grid.geometry;
+    const auto number = [&](int axis) {
+        return number_of(p_m[axis], grid.first[axis], geometry.resolution_m, grid.lattice);
+    };
+    if (!is_mappable(p_m)) return kNoCell;
+    const double ix = number(0);
+    const double iy = number(1);
+    if (!(ix >= 0.0 && iy >= 0.0 && ix < geometry.nx && iy < geometry.ny)) return kNoCell;
+    // in range: 0 to nx and ny, as checked
+    return static_cast<std::uint32_t>(iy) * static_cast<std::uint32_t>(geometry.nx) +
+           static_cast<std::uint32_t>(ix);  // in range
+}
+
 void CloudBounds::add(std::span<const Eigen::Vector3d> points_m, Executor& executor) {
     std::vector<CloudBounds> pieces(pieces_of(points_m.size(), kPiece));
     in_pieces(points_m.size(),
@@ -128,19 +142,6 @@ DemBuilder::Part DemBuilder::empty() const {
     return part;
 }
 
-std::uint32_t DemBuilder::cell_of(const Eigen::Vector3d& p_m) const {
-    const grid::GridGeometry& geometry = grid_.geometry;
-    const auto number = [&](int axis) {
-        return number_of(p_m[axis], grid_.first[axis], geometry.resolution_m, grid_.lattice);
-    };
-    if (!is_mappable(p_m)) return kNoCell;
-    const double ix = number(0);
-    const double iy = number(1);
-    if (!(ix >= 0.0 && iy >= 0.0 && ix < geometry.nx && iy < geometry.ny)) return kNoCell;
-    return static_cast<std::uint32_t>(iy) * static_cast<std::uint32_t>(geometry.nx) +
-           static_cast<std::uint32_t>(ix);
-}
-
 void DemBuilder::join(double value, double& kept) const {
     switch (reduce_) {
         case Reduce::max: kept = std::max(kept, value); break;
@@ -158,7 +159,7 @@ void DemBuilder::add(std::span<const Eigen::Vector3d> points_m, Executor& execut
     if (share == 0) return;
     in_pieces(points_m.size(), share, executor, [&](std::size_t begin, std::size_t end, auto i) {
         for (const Eigen::Vector3d& p_m : points_m.subspan(begin, end - begin)) {
-            const std::uint32_t cell = cell_of(p_m);
+            const std::uint32_t cell = cell_number(grid_, p_m);
             if (cell == kNoCell) continue;
             const double z_m = p_m.z();
             join(reduce_ == Reduce::mean ? std::round(kSteps * z_m) : z_m, parts_[i].value[cell]);

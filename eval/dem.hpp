@@ -30,6 +30,10 @@ struct DemGrid {
     Eigen::Vector2d first = Eigen::Vector2d::Zero();
 };
 
+/// The cell of a point, ix + iy * nx; `kNoCell` outside, and where a coordinate is not finite.
+inline constexpr std::uint32_t kNoCell = 0xffffffffU;
+[[nodiscard]] std::uint32_t cell_number(const DemGrid& grid, const Eigen::Vector3d& p_m) noexcept;
+
 /// The box around points that are given in any number of pieces; points with a coordinate that is
 /// not finite, or a height beyond kMaxHeight_m, are counted and left out.
 class CloudBounds {
@@ -66,8 +70,6 @@ class DemBuilder {
     [[nodiscard]] grid::Layer heights_m() const;
 
   private:
-    static constexpr std::uint32_t kNoCell = 0xffffffffU;
-    [[nodiscard]] std::uint32_t cell_of(const Eigen::Vector3d& p_m) const;
     struct Part {
         std::vector<double> value;  ///< highest, lowest [m] or sum [steps]
         std::vector<std::int64_t> count;

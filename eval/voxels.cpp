@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/pieces.hpp"
 
 namespace surefoot::eval {
@@ -122,7 +123,8 @@ std::vector<Vector3f> means_m(std::span<Keyed> points) {
 }  // namespace
 
 std::int64_t voxel_number(float p_m, double size_m) noexcept {
-    return static_cast<std::int64_t>(std::floor(static_cast<double>(p_m) / size_m));
+    // `fits_voxels` says no to boxes with such numbers.
+    return saturated_integer<std::int64_t>(std::floor(static_cast<double>(p_m) / size_m));
 }
 
 bool fits_voxels(const geometry::PointBox& box, double size_m) {

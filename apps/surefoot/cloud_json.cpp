@@ -66,18 +66,22 @@ std::string icp_json(const geometry::CloudAlignment& found, const Eigen::Vector3
     }
     const geometry::AlignmentStep last =
         found.steps.empty() ? geometry::AlignmentStep{} : found.steps.back();
-    const Json object = {{"T_reference_moved", rows},
-                         {"converged", found.converged},
-                         {"iterations", found.steps.size()},
-                         {"pairs", last.pairs},
-                         {"rms_m", number(last.rms_m)},
-                         {"nearest_rms_m", number(last.nearest_rms_m)},
-                         {"sigma_m", number(found.sigma_m)},
-                         {"sigma_deg", number(found.sigma_rad * kDegPerRad)},
-                         {"border_directions", found.border_directions},
-                         {"free_directions", found.free_directions},
-                         {"shift_m", vector(shift_m)},
-                         {"steps", steps}};
+    const Json object = {
+        {"T_reference_moved", rows},
+        {"converged", found.converged()},
+        {"outcome", geometry::kAlignmentOutcomeNames[static_cast<std::size_t>(found.outcome)]},
+        {"overlap", number(found.overlap)},
+        {"iterations", found.steps.size()},
+        {"pairs", last.pairs},
+        {"rms_m", number(last.rms_m)},
+        {"nearest_rms_m", number(last.nearest_rms_m)},
+        {"sigma_m", number(found.sigma_m)},
+        {"sigma_deg", number(found.sigma_rad * kDegPerRad)},
+        {"edge_directions", found.edge_directions},
+        {"border_directions", found.border_directions},
+        {"free_directions", found.free_directions},
+        {"shift_m", vector(shift_m)},
+        {"steps", steps}};
     return object.dump(kIndent);
 }
 

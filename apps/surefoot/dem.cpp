@@ -8,6 +8,7 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/surface_dem.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/cloud_stream.hpp"
 #include "io/dem_file.hpp"
@@ -19,6 +20,40 @@ namespace {
 eval::Reduce reduce_named(const std::string& name) {
     if (name == "mean") return eval::Reduce::mean;
     return name == "min" ? eval::Reduce::min : eval::Reduce::max;
+}
+
+/// Highest, mean or lowest.
+Result<grid::Layer> heights_of(const DemOptions& options,
+                               io::CloudStream& cloud,
+                               const eval::DemGrid& grid) {
+    if (options.lowest_z_m || options.highest_z_m) {
+        return usage_error(fmt::format(
+            "--min-height and --max-height belong to --reduce surface, not to --reduce {}",
+            options.reduce));
+    }
+    const auto executor = make_executor(options.common);
+    eval::DemBuilder builder(grid, reduce_named(options.reduce));
+    const auto read = cloud.each_block([&](const io::PointCloud& block) {
+        builder.add(block.points_m, *executor);
+        return Status();
+    });
+    if (!read) return read.error();
+    return builder.heights_m();
+}
+
+Result<grid::Layer> highest_surfaces(const DemOptions& options,
+                                     io::CloudStream& cloud,
+                                     const eval::DemGrid& grid) {
+    const auto rules = surface_rules(options.lowest_z_m, options.highest_z_m);
+    if (!rules) return rules.error();
+    const auto executor = make_executor(options.common);
+    const auto each_block = [&](const auto& take) {
+        return cloud.each_block([&](const io::PointCloud& block) { return take(block.points_m); });
+    };
+    auto dem = surface_dem(grid, *rules, each_block, *executor);
+    if (!dem) return dem.error();
+    if (const std::string text = left_out_text(*dem); !text.empty()) log_info(text);
+    return std::move(dem->height_m);
 }
 
 }  // namespace
@@ -40,13 +75,10 @@ int dem(const DemOptions& options) {
         return report(
             {grid.error().code, fmt::format("{}: {}", options.cloud, grid.error().message)});
     }
-    eval::DemBuilder builder(*grid, reduce_named(options.reduce));
-    const auto read_again = cloud->each_block([&](const io::PointCloud& block) {
-        builder.add(block.points_m, *executor);
-        return Status();
-    });
-    if (!read_again) return report(read_again.error());
-    grid::Layer heights_m = builder.heights_m();
+    auto reduced = options.reduce == "surface" ? highest_surfaces(options, *cloud, *grid)
+                                                     : heights_of(options, *cloud, *grid);
+    if (!reduced) return report(reduced.error());
+    grid::Layer& heights_m = *reduced;
     for (const std::string& note : io::drop_impossible_heights(heights_m))
         log_warning(fmt::format("{}: {}", options.cloud, note));
     if (auto status = io::write_esri_grid(options.out_file, grid->geometry, heights_m); !status)

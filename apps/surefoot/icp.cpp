@@ -84,23 +84,54 @@ std::string matrix_text(const Pose& T) {
     return text;
 }
 
+/// Why there is no answer, and what to do.
+void tell_outcome(const geometry::CloudAlignment& found) {
+    using geometry::AlignmentOutcome;
+    switch (found.outcome) {
+        case AlignmentOutcome::converged: return;
+        case AlignmentOutcome::no_pairs:
+            log_warning(
+                "no pair of points counts: is the guess near enough, and --reach large enough?");
+            return;
+        case AlignmentOutcome::too_few_points:
+            log_warning(
+                "too few points: an alignment needs at least 36 points of the reference that lie "
+                "on "
+                "surfaces and are paired, so that the others contradict a wrong one; give denser "
+                "clouds, or a larger --reach");
+            return;
+        case AlignmentOutcome::no_overlap:
+            log_warning(fmt::format(
+                "the clouds do not overlap: {:.1f} % of the moved points lie where the reference "
+                "has points, at least 5 % must; give --guess, and check the units of both files",
+                100.0 * found.overlap));
+            return;
+        case AlignmentOutcome::not_settled:
+            log_warning(fmt::format("not converged in {} iterations: give a better --guess",
+                                    found.steps.size()));
+            return;
+    }
+}
+
 /// What the surfaces did not say.
 void warn(const geometry::CloudAlignment& found) {
-    if (found.free_directions == 6) {
-        log_warning(
-            "no pair of points counts: is the guess near enough, and --reach large enough?");
-    } else if (found.free_directions > 0) {
+    tell_outcome(found);
+    if (found.free_directions > 0 && found.free_directions < 6) {
         log_warning(fmt::format(
             "{} of 6 directions are held by nothing in the clouds: there the guess stays as it was",
             found.free_directions));
+    }
+    if (found.edge_directions > 0) {
+        log_info(fmt::format(
+            "{} of 6 directions are held by edges that end between two points: sigma is that of "
+            "the spacing of the points",
+            found.edge_directions));
     }
     if (found.border_directions > 0) {
         log_info(
             fmt::format("{} of 6 directions are held by no surface, but by where both clouds end",
                         found.border_directions));
     }
-    if (!found.converged)
-        log_warning(fmt::format("not converged in {} iterations", found.steps.size()));
 }
 
 }  // namespace
@@ -144,16 +175,18 @@ int icp(const IcpOptions& options) {
         const geometry::AlignmentStep& last = found.steps.back();
         fmt::print(
             "after {} iterations: {} pairs, {:.2f} mm across the surface (rms), {:.2f} mm to the "
-            "nearest point; place and turn to {:.2f} mm and {:.4f} deg\n",
+            "nearest point; {}\n",
             found.steps.size(),
             last.pairs,
             1e3 * last.rms_m,
             1e3 * last.nearest_rms_m,
-            1e3 * found.sigma_m,
-            found.sigma_rad * 180.0 / M_PI);
+            found.converged() ? fmt::format("place and turn to {:.2f} mm and {:.4f} deg",
+                                            1e3 * found.sigma_m,
+                                            found.sigma_rad * 180.0 / M_PI)
+                              : "this is no answer");
         tell_shift(shift_m);
     }
-    return found.converged ? kExitOk : kExitFailed;
+    return found.converged() ? kExitOk : kExitFailed;
 }
 
 }  // namespace surefoot::app

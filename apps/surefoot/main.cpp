@@ -292,6 +292,10 @@ void add_stairs(CLI::App& app, StairsOptions& o, int& exit_code) {
     verb->add_option("--resolution", o.resolution_m, "cloud: side of a cell")
         ->type_name("M")
         ->check(positive_number());
+    verb->add_option("--min-height", o.lowest_z_m, "cloud: points lower than this z are left out")
+        ->type_name("M");
+    verb->add_option("--max-height", o.highest_z_m, "cloud: points higher than this z are left out")
+        ->type_name("M");
 }
 
 void add_fuse(CLI::App& app, FuseOptions& o, int& exit_code) {
@@ -920,8 +924,16 @@ void add_dem(CLI::App& app, DemOptions& o, int& exit_code) {
         ->required()
         ->type_name("M")
         ->check(number_in(1e-4, 1e3));
-    verb->add_option("--reduce", o.reduce, "which height a cell takes of its points")
-        ->check(CLI::IsMember({"max", "mean", "min"}));
+    verb->add_option("--reduce",
+                     o.reduce,
+                     "which height a cell takes of its points; surface: that of the highest "
+                     "surface that enough points share and that does not hang, as in the live map")
+        ->check(CLI::IsMember({"max", "mean", "min", "surface"}));
+    verb->add_option("--min-height", o.lowest_z_m, "surface: points lower than this z are left out")
+        ->type_name("M");
+    verb->add_option(
+            "--max-height", o.highest_z_m, "surface: points higher than this z are left out")
+        ->type_name("M");
     verb->add_option("--lattice",
                      o.lattice,
                      "cell: borders on multiples of the resolution; node: centres counted from the "

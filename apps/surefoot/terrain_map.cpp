@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "apps/surefoot/height_image.hpp"
 #include "apps/surefoot/numbers.hpp"
+#include "apps/surefoot/surface_dem.hpp"
 #include "eval/dem.hpp"
 #include "io/dem_file.hpp"
 #include "io/file.hpp"
@@ -46,7 +49,7 @@ Result<TerrainMap> from_image(const StairsOptions& options) {
     return map;
 }
 
-/// The highest point of each cell.
+/// The highest supported surface of each cell.
 Result<TerrainMap> from_cloud(const StairsOptions& options) {
     const auto cloud = io::read_cloud(options.map);
     if (!cloud) return cloud.error();
@@ -56,14 +59,19 @@ Result<TerrainMap> from_cloud(const StairsOptions& options) {
     if (!grid) {
         return Error{grid.error().code, fmt::format("{}: {}", options.map, grid.error().message)};
     }
-    eval::DemBuilder builder(*grid, eval::Reduce::max);
-    builder.add(cloud->points_m);
+    const auto rules = surface_rules(options.lowest_z_m, options.highest_z_m);
+    if (!rules) return rules.error();
+    auto dem = surface_dem(*grid, *rules, [&](const auto& take) { return take(cloud->points_m); });
+    if (!dem) return dem.error();
     TerrainMap map;
     map.geometry = grid->geometry;
-    map.height_m = builder.heights_m();
+    map.height_m = std::move(dem->height_m);
+    map.clearance_m = std::move(dem->clearance_m);
     map.assumed = {"z of the cloud points up",
-                   fmt::format("the highest point of each cell of {:g} m is its ground, and exact",
+                   fmt::format("the highest surface that enough points of a cell of {:g} m share, "
+                               "and that does not hang, is its ground, and exact",
                                options.resolution_m)};
+    if (const std::string text = left_out_text(*dem); !text.empty()) map.assumed.push_back(text);
     return map;
 }
 
@@ -166,7 +174,9 @@ Result<TerrainMap> from_folder(const std::string& folder) {
 }
 
 bool is_cloud(const std::string& extension) {
-    return extension == ".ply" || extension == ".pcd" || extension == ".xyz";
+    constexpr std::array kExtensions{
+        ".ply", ".pcd", ".xyz", ".las", ".vtk", ".txt", ".csv", ".pts"};
+    return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
 Result<TerrainMap> load_map(const StairsOptions& options) {

@@ -228,6 +228,8 @@ struct DemOptions {
     std::string cloud;
     double resolution_m = 0.0;
     std::string reduce = "max";
+    std::optional<double> lowest_z_m;  ///< with `surface`
+    std::optional<double> highest_z_m;
     std::string lattice = "cell";
     std::string out_file;
 };
@@ -294,7 +296,9 @@ struct StairsOptions {
     std::string from;     ///< x,y; empty = by the map
     double scale_m_per_px = 0.0;
     double height_m = 0.0;
-    double resolution_m = 0.025;  ///< of a cloud's cells
+    double resolution_m = 0.025;       ///< of a cloud's cells
+    std::optional<double> lowest_z_m;  ///< of a cloud's points
+    std::optional<double> highest_z_m;
 };
 int stairs(const StairsOptions& options);
 

@@ -42,6 +42,21 @@ std::optional<Vector3d> to_middle(const KdTree& cloud, const Vector3f& at_m, flo
 
 }  // namespace
 
+double spacing_m(double ball_m, int others) noexcept {
+    return ball_m * std::sqrt(M_PI / (others + 1.0));
+}
+
+double median_over(std::span<const Pair> pairs, double Pair::*value) {
+    std::vector<double> values;
+    for (const Pair& pair : pairs) {
+        if (pair.counts) values.push_back(pair.*value);
+    }
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 SurfacePairs::SurfacePairs(const KdTree& reference,
                            std::vector<Vector3f> moved_m,
                            const AlignmentConfig& config,
@@ -58,6 +73,7 @@ const std::vector<Pair>& SurfacePairs::at(const Pose& T_reference_moved) {
         for (std::size_t i = begin; i < end; ++i) pair_up(i, T_reference_moved);
     });
     if (config_.kept_share < 1.0) keep_nearest();
+    find_edges();
     return pairs_;
 }
 
@@ -105,6 +121,20 @@ void SurfacePairs::keep_nearest() {
     std::nth_element(sq_apart_m2.begin(), sq_apart_m2.begin() + last, sq_apart_m2.end());
     const double limit_m2 = sq_apart_m2[static_cast<std::size_t>(last)];
     for (Pair& pair : pairs_) pair.counts = pair.counts && pair.sq_apart_m2 <= limit_m2;
+}
+
+/// Where the neighbours are thicker than the noise of the surfaces, by more than a share of the
+/// spacing, they are those of two surfaces.
+void SurfacePairs::find_edges() {
+    constexpr double kNoise = 2.0;
+    constexpr double kShare = 0.125;
+    const double noise_m = kNoise * median_over(pairs_, &Pair::thickness_m);
+    const double wide_m =
+        kShare * spacing_m(median_over(pairs_, &Pair::ball_m), config_.normal_neighbours);
+    for (Pair& pair : pairs_) {
+        pair.edge =
+            wide_m > 0.0 ? std::clamp((pair.thickness_m - noise_m) / wide_m, 0.0, 1.0) : 0.0;
+    }
 }
 
 BorderPairs::BorderPairs(const KdTree& reference,

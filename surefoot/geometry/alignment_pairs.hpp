@@ -28,11 +28,19 @@ struct Pair {
     double across_m = 0.0;
     double sq_apart_m2 = 0.0;
     double weight = 1.0;
+    /// Share of the pair that lies at an edge between surfaces, where the normal is that of
+    /// neither.
+    double edge = 0.0;
     double ball_m = 0.0;       ///< radius of the neighbours that gave the normal, or of the border
     double thickness_m = 0.0;  ///< of those neighbours across the surface
     std::uint32_t reference = Neighbour::kNone;
     bool counts = false;
 };
+
+/// Distance of the neighbours in a square lattice, of which so many others lie in such a ball.
+[[nodiscard]] double spacing_m(double ball_m, int others) noexcept;
+/// Median over the pairs that count; 0 without one.
+[[nodiscard]] double median_over(std::span<const Pair> pairs, double Pair::*value);
 
 /// Pairs of nearest points. Asked again and again, it keeps the normals that it knows.
 class SurfacePairs {
@@ -55,6 +63,7 @@ class SurfacePairs {
     void pair_up(std::size_t i, const Pose& T_reference_moved);
     [[nodiscard]] Known surface_at(std::uint32_t index) const;
     void keep_nearest();
+    void find_edges();
 
     const KdTree& reference_;
     std::vector<Eigen::Vector3f> moved_m_;

@@ -67,15 +67,32 @@ double overlap_of(std::span<const Pair> pairs, double rms_m) {
     return static_cast<double>(there) / static_cast<double>(pairs.size());
 }
 
+/// Of where something ends between two points of a cloud, from some of its points.
+double cell_var_m2(const KdTree& cloud) {
+    constexpr std::size_t kAsked = 2000;
+    constexpr int kOthers = 30;
+    const auto points_m = cloud.points_m();
+    const std::size_t asked = std::min(points_m.size(), kAsked);
+    std::vector<Pair> balls(asked);
+    std::vector<Neighbour> near(kOthers + 1);
+    for (std::size_t i = 0; i < asked; ++i) {
+        const std::size_t count = cloud.nearest(points_m[i * points_m.size() / asked], near);
+        balls[i].ball_m = std::sqrt(static_cast<double>(near[count - 1].sq_distance_m2));
+        balls[i].counts = true;
+    }
+    const double cell_m = spacing_m(median_over(balls, &Pair::ball_m), kOthers);
+    return cell_m * cell_m / 12.0;
+}
+
 /// Whether what was found is an answer. The scatter of so many points tells its sigma to 13 %, and
 /// a normal has 30 neighbours of its own.
 AlignmentOutcome outcome_of(const CloudAlignment& found, bool settled, std::int64_t points) {
     constexpr std::int64_t kFewestToSpare = 30;
     constexpr double kLeastOverlap = 0.05;
     if (found.free_directions == 6) return AlignmentOutcome::no_pairs;
+    if (found.overlap < kLeastOverlap) return AlignmentOutcome::no_overlap;
     if (points - (6 - found.free_directions) < kFewestToSpare)
         return AlignmentOutcome::too_few_points;
-    if (found.overlap < kLeastOverlap) return AlignmentOutcome::no_overlap;
     return settled ? AlignmentOutcome::converged : AlignmentOutcome::not_settled;
 }
 
@@ -101,32 +118,41 @@ CloudAlignment align_clouds(const KdTree& reference,
     bool settled = false;
     while (!settled && static_cast<int>(result.steps.size()) < config.most_iterations) {
         lever.pivot_m = T * moved_lever.pivot_m;
-        const Normals6 sums = sum_up(pairs.at(T), lever, executor);
-        const Normals6 ends =
-            borders ? sum_up(borders->at(T, pairs.last()), lever, executor) : Normals6{};
-        solution = solve(sums, ends);
+        const std::vector<Pair>& now = pairs.at(T);
+        const std::array<Normals6, kHolds> sums{
+            sum_up(HeldBy::surfaces, now, lever, executor),
+            sum_up(HeldBy::edges, now, lever, executor),
+            borders ? sum_up(HeldBy::borders, borders->at(T, now), lever, executor) : Normals6{}};
+        solution = solve(sums);
         apply(solution.x, lever, T);
-        const auto n = static_cast<double>(std::max<std::int64_t>(sums.pairs, 1));
-        result.steps.push_back({sums.pairs,
-                                ends.pairs,
-                                std::sqrt(sums.sq_across_m2 / n),
-                                std::sqrt(sums.sq_apart_m2 / n),
+        const auto n = static_cast<double>(std::max<std::int64_t>(sums[0].pairs, 1));
+        result.steps.push_back({sums[0].pairs,
+                                sums[2].pairs,
+                                std::sqrt(sums[0].sq_across_m2 / n),
+                                std::sqrt(sums[0].sq_apart_m2 / n),
                                 solution.x.head<3>().norm(),
                                 solution.x.tail<3>().norm() / lever.length_m});
         if (solution.free_directions == 6) break;
         settled = result.steps.back().step_m < config.smallest_step_m &&
                   result.steps.back().step_rad < config.smallest_step_rad;
     }
-    result.border_directions = solution.border_directions;
+    result.edge_directions = solution.directions[1];
+    result.border_directions = solution.directions[2];
     result.free_directions = solution.free_directions;
     const std::span<const Pair> ends =
         borders ? std::span(borders->last()) : std::span<const Pair>();
     const AlignmentSigma sigma = alignment_sigma(
-        pairs.last(), ends, lever, solution, sampling_of(reference), sampling_of(moved));
+        pairs.last(), ends, lever, solution, cell_var_m2(reference) + cell_var_m2(moved));
     result.sigma_m = sigma.place_m;
     result.sigma_rad = sigma.turn_rad;
-    const double rms_m = result.steps.empty() ? 0.0 : result.steps.back().rms_m;
-    result.overlap = overlap_of(pairs.last(), rms_m);
+    if (!result.steps.empty()) {
+        const AlignmentStep& last = result.steps.back();
+        result.overlap = overlap_of(pairs.last(), last.rms_m);
+        // Pairs that change sides to and fro move it for ever; it is settled within its sigma.
+        constexpr double kShare = 0.1;
+        settled = settled || (last.step_m < kShare * result.sigma_m &&
+                              last.step_rad < kShare * result.sigma_rad);
+    }
     result.outcome = outcome_of(result, settled, points_paired_with(pairs.last()));
     return result;
 }

@@ -54,13 +54,15 @@ inline constexpr std::array<std::string_view, 5> kAlignmentOutcomeNames{
 struct CloudAlignment {
     Pose T_reference_moved;
     AlignmentOutcome outcome = AlignmentOutcome::no_pairs;
-    /// Directions of the six (three of them turns) along all surfaces that are held by borders
-    /// alone, and those that nothing holds: there the guess stays as it was. A bare floor has three
-    /// of them together.
+    /// Directions of the six (three of them turns) along all surfaces: those that edges hold, where
+    /// two surfaces end between points, as the faces of steps do in a height map; those that the
+    /// borders of the clouds hold alone; and those that nothing holds: there the guess stays as it
+    /// was. A bare floor has three of them together.
+    int edge_directions = 0;
     int border_directions = 0;
     int free_directions = 0;
     /// One sigma of where the middle of the moved cloud lies and of the turn (`alignment_sigma`):
-    /// of the directions that surfaces or borders hold. Meaningless unless `converged()`.
+    /// of the directions that something holds. Meaningless unless `converged()`.
     double sigma_m = 0.0;
     double sigma_rad = 0.0;
     /// Share of the moved points that lie where the reference has points.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/geometry/point_box.hpp"
 
 namespace surefoot::geometry {
@@ -45,12 +46,13 @@ std::vector<std::uint32_t> spatial_order(std::span<const Eigen::Vector3f> points
     // One scale for all axes: cells are cubes.
     const float side_m = (box.high_m - box.low_m).maxCoeff();
     constexpr float kCells = 1 << kBits;
+    constexpr std::uint32_t kLast = (1U << kBits) - 1U;
     const float scale = side_m > 0.0F ? kCells / side_m : 0.0F;
     std::vector<Keyed> keyed(points_m.size());
     for (std::size_t i = 0; i < points_m.size(); ++i) {
         const Eigen::Vector3f cell = scale * (points_m[i] - box.low_m);
         const auto bits = [&](float c) {
-            return spread(static_cast<std::uint32_t>(std::min(c, kCells - 1.0F)));
+            return spread(std::min(saturated_integer<std::uint32_t>(c), kLast));
         };
         keyed[i] = {bits(cell.x()) | bits(cell.y()) << 1U | bits(cell.z()) << 2U,
                     static_cast<std::uint32_t>(i)};

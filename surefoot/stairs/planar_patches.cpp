@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
 
 namespace surefoot::stairs {
@@ -197,9 +198,9 @@ void PatchFinder::order_seeds() {
             square_m2 = mean_square_m2(own, start_[i]);
             quality = kQualities / 2;
         }
-        // Limited before it is an integer: the scatter of heights may be any number, or none.
-        quality += static_cast<int>(
-            std::min(kQualities / 2.0 - 1.0, std::sqrt(square_m2) / kQualityStep_m));
+        quality +=
+            std::min(kQualities / 2 - 1,
+                     saturated_integer<int>(std::sqrt(square_m2) / kQualityStep_m, kQualities));
         quality_[i] = static_cast<std::uint8_t>(quality);
         ++begin[static_cast<std::size_t>(quality) + 1];
     }

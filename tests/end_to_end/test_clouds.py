@@ -120,6 +120,50 @@ class Conformance(CliTest):
             self.assertGreater(again["steps"][0]["rms_m"], answer["steps"][0]["rms_m"])
 
 
+class Surface(CliTest):
+    """Ground is the highest surface that enough points share and that does not hang."""
+
+    def cloud(self, beam):
+        """A floor and four steps of 0.17 m by 0.28 m, ten points a cell; behind each nosing pixels in flight."""
+        random = lambda i, k: (i * 7919 + k * 104729) % 1009 / 1009
+        height = lambda x: 0.0 if x < 0.6 else 0.17 * min(4, int((x - 0.6) / 0.28) + 1)
+        points = []
+        for i in range(48000):
+            x, y = 2.2 * ((i * 0.61803398875) % 1.0), 1.2 * ((i * 0.7548776662) % 1.0) - 0.6
+            points.append((x, y, height(x) + 0.006 * (random(i, 1) - 0.5)))
+        for i in range(6000):
+            share, step = random(i, 2), i % 4  # from a nosing up and away from the camera
+            points.append((0.6 + 0.28 * step + 0.25 * share, 1.2 * random(i, 3) - 0.6, 0.17 * (step + 1) + 0.4 * share * (0.3 + random(i, 4))))
+        if beam:
+            points += [(0.2 + 0.1 * random(i, 5), 1.2 * random(i, 6) - 0.6, 1.8 + 0.1 * random(i, 7)) for i in range(8000)]
+        path = self.dir / f"cloud{beam}.ply"
+        path.write_bytes(ply(points))
+        return path
+
+    def test_stairs_of_a_cloud_with_pixels_in_flight_and_a_beam(self):
+        for beam in (0, 1):
+            answer = self.json_of("stairs", self.cloud(beam), "--from", "0.1,0")
+            self.assertEqual([(flight["kind"], flight["steps"]) for flight in answer["flights"]], [("up", 4)])
+            self.assertAlmostEqual(answer["flights"][0]["riser_m"], 0.17, delta=0.004)
+            self.assertEqual(any("hanging" in sentence for sentence in answer["assumed"]), bool(beam))
+
+    def test_dem_takes_surfaces_and_cuts(self):
+        cloud = self.cloud(1)
+        heights = {}
+        for name, words in (("max", ["--reduce", "max"]), ("surface", ["--reduce", "surface"]),
+                            ("cut", ["--reduce", "surface", "--max-height", 1.0])):
+            self.run_ok("dem", cloud, "--resolution", 0.025, "--out", self.dir / "d.asc", *words)
+            heights[name] = max(z for row in read_asc(self.dir / "d.asc")[1] for z in row if z is not None)
+        self.assertGreater(heights["max"], 1.8)
+        self.assertLess(heights["surface"], 0.72)
+        self.assertLess(heights["cut"], 0.72)
+        for words, why in ((["--reduce", "max", "--max-height", 1.0], "belong to --reduce surface"),
+                           (["--reduce", "surface", "--min-height", 2, "--max-height", 1], "is not below")):
+            process = surefoot("dem", cloud, "--resolution", 0.025, "--out", self.dir / "d.asc", *words)
+            self.assertEqual(process.returncode, 2)
+            self.assertIn(why, process.stderr)
+
+
 class Formats(CliTest):
     def test_the_same_cloud_from_every_format(self):
         points = grid_points()
@@ -295,6 +339,50 @@ class BadInput(CliTest):
             self.assertEqual(process.returncode, 1)
             self.assertEqual(json.loads(process.stdout)["free_directions"], 6)
             self.assertIn("no pair of points counts", process.stderr)
+
+    def test_200_000_equal_points_are_as_fast_as_others(self):
+        same = self.dir / "same.ply"
+        same.write_bytes(ply([(1.0, 2.0, 3.0)] * 200000))
+        self.assertEqual(self.json_of("sor", same, "--out", self.dir / "s.ply")["kept"], 200000)
+        self.assertEqual(self.json_of("eval", "clouds", same, same)["max_m"], 0.0)
+        answer = self.json_of("eval", "clouds", same, same, "--method", "m3c2", "--set", "eval.m3c2.normals=vertical")
+        self.assertEqual((answer["count"], answer["p99_m"]), (200000, 0.0))
+        self.assertEqual(surefoot("icp", same, same).returncode, 1)
+
+    def test_five_points_are_no_alignment(self):
+        points = [(87.7, 242.5, 820.5), (596.1, 96.4, 443.5), (490.5, 163.6, 752.2), (116.4, 400.6, 529.1), (441.0, 600.9, 755.5)]
+        (self.dir / "a.ply").write_bytes(ply(points))
+        (self.dir / "b.ply").write_bytes(ply([(x + 0.7, y, z) for x, y, z in points]))
+        process = surefoot("icp", self.dir / "a.ply", self.dir / "b.ply", "--json")
+        self.assertEqual(process.returncode, 1)
+        answer = json.loads(process.stdout)
+        self.assertEqual((answer["converged"], answer["outcome"]), (False, "too_few_points"))
+        self.assertIn("too few points", process.stderr)
+
+    def test_clouds_apart_are_no_alignment(self):
+        floor = lambda x0: [(x0 + 0.05 * (i % 40), 0.05 * (i // 40), 0.001 * (i * 7 % 5)) for i in range(1600)]
+        (self.dir / "a.ply").write_bytes(ply(floor(0.0)))
+        (self.dir / "b.ply").write_bytes(ply(floor(100.0)))
+        process = surefoot("icp", self.dir / "a.ply", self.dir / "b.ply", "--json")
+        self.assertEqual(process.returncode, 1)
+        answer = json.loads(process.stdout)
+        self.assertEqual((answer["converged"], answer["outcome"], answer["overlap"]), (False, "no_overlap", 0.0))
+        self.assertIn("do not overlap", process.stderr)
+
+    def test_the_sigma_of_a_lattice_covers_its_error(self):
+        """Two levels by two, 50 mm apart, turned by 2 deg: nearest points find 1.5 deg."""
+        turn = math.radians(2.0)
+        points = [(0.05 * i, 0.05 * k, (0.2 if i > 20 else 0.0) + (0.3 if k > 26 else 0.0)) for k in range(40) for i in range(40)]
+        moved = [(0.065 + math.cos(turn) * x - math.sin(turn) * y, -0.053 + math.sin(turn) * x + math.cos(turn) * y, 0.01 + z)
+                 for x, y, z in points]
+        (self.dir / "a.ply").write_bytes(ply(points))
+        (self.dir / "b.ply").write_bytes(ply(moved))
+        answer = self.json_of("icp", self.dir / "a.ply", self.dir / "b.ply")
+        row = answer["T_reference_moved"]
+        yaw_deg = math.degrees(math.atan2(row[1][0], row[0][0]))
+        self.assertLess(abs(yaw_deg + 2.0), 2.0 * answer["sigma_deg"])
+        self.assertLess(answer["sigma_deg"], 3.0)
+        self.assertGreater(answer["edge_directions"] + answer["border_directions"], 0)
 
     def test_wrong_calls(self):
         good = self.dir / "good.ply"
