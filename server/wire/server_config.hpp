@@ -33,16 +33,17 @@ struct ServerConfig {
     int accepts_per_tick = 16;  ///< so that a crowd at the door disturbs nobody inside
     int tick_ms = 5;            ///< the owner's hook, topics and deadlines
     /// Processor time between two ticks for all clients without the token of a rider or an operator
-    /// together; those who have used least come first, and what is left of their messages waits.
+    /// together, new WebSockets included; those who have used least come first, and what is left
+    /// of their messages waits.
     int guest_work_us = 1500;
-    int door_work_us = 750;                 ///< the same for requests of new connections
+    int door_work_us = 750;                 ///< the same for accepting and reading a request
     int handshake_ms = 2000;                ///< to ask for the WebSocket, wholly
     int idle_ms = 10000;                    ///< without a sign of life; asked by a ping at half
     int message_ms = 2000;                  ///< from the first byte of a message to its last
     int write_ms = 2000;                    ///< for one text to leave
     std::size_t max_queue_bytes = 1 << 20;  ///< waiting for a client that does not read
     std::size_t max_read_bytes_per_s = 1 << 20;
-    RateLimit control_frames{20, 40};  ///< pings and pongs of a client, before it is dropped
+    RateLimit control_frames{5, 10};  ///< pings and pongs of a client, before it is dropped
     SessionLimits session;
 
     /// The first problem in words.

@@ -112,6 +112,7 @@ class SocketServer {
     Slots slots;
     WorkBudget guest_work;
     WorkBudget door_work;
+    std::int64_t accounted_ns = 0;  ///< processor time since the last tick whose owner is known
 
   private:
     void begin();
@@ -120,6 +121,7 @@ class SocketServer {
     Status listen_with_tls();
     void admit_to_door(tcp::socket socket, const std::string& peer);
     void take_turns(std::int64_t now_ns);
+    void do_tick(std::int64_t now_ns);
     void wait_for_tick();
     void on_tick();
     void look_ahead(std::int64_t now_ns);
@@ -133,6 +135,7 @@ class SocketServer {
     std::vector<std::shared_ptr<Connection>> connections_;  // shared with their waiting handlers
     std::vector<std::shared_ptr<Connection>> waiting_;      // for their turn
     std::unique_ptr<TlsDoor> tls_door_;
+    std::int64_t tick_ended_ns_ = 0;  // processor time
     Slots::Id next_slot_ = 1;
     std::uint16_t port_ = 0;
     std::uint64_t next_connection_ = 1;
@@ -173,6 +176,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     void on_request(error_code error);
     void answer_request();
     void note_refusal(const Entrance& entrance);
+    [[nodiscard]] static bool is_high(const Entrance& entrance) {
+        return entrance.has_token && entrance.role >= Role::rider;
+    }
     [[nodiscard]] std::string where_from() const {
         return peer_.empty() ? "from this computer" : "from " + peer_;
     }
@@ -191,6 +197,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     void dismiss();
     void drop();
     void close_politely();
+    void say_goodbye(std::string_view frame);
 
     SocketServer& server_;
     const Slots::Id slot_;
@@ -199,6 +206,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     http::response<http::string_body> response_;
+    std::optional<Entrance> entrance_;  // of a WebSocket that waits for its turn
     Role role_ = Role::none;
     bool has_token_ = false;  // a right one, in its request
     std::optional<RosbridgeSession> session_;
@@ -209,6 +217,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::optional<std::int64_t> message_since_ns_;  // a message has begun
     bool has_message_ = false;                      // a whole one, in the buffer
     bool dismissed_ = false;                        // it gets what is queued, then the door
+    std::optional<std::int64_t> leaves_at_ns_;      // it was told goodbye
     bool flooded_ = false;                          // with control frames
     bool ended_ = false;
 };
@@ -242,7 +251,10 @@ void Connection::on_request(error_code error) {
     }
     const std::int64_t start_ns = thread_ns();
     answer_request();
-    server_.door_work.charge(thread_ns() - start_ns);
+    const std::int64_t cost_ns = thread_ns() - start_ns;
+    server_.door_work.charge(cost_ns);
+    server_.accounted_ns += cost_ns;
+    if (entrance_) go_on();
 }
 
 void Connection::answer_request() {
@@ -260,7 +272,10 @@ void Connection::answer_request() {
                                                                     : http::status::unauthorized,
                       refusal_text(entrance, knock));
     }
-    if (websocket::is_upgrade(request)) return upgrade(entrance);
+    if (websocket::is_upgrade(request)) {
+        entrance_ = entrance;
+        return;
+    }
     if (path_of(target) == "/health" && request.method() == http::verb::get) {
         return answer(
             http::status::ok, "application/json", health_text(server_.gate.report(steady_ns())));
@@ -301,9 +316,8 @@ void Connection::answer(http::status status, const char* type, std::string body)
 }
 
 void Connection::upgrade(const Entrance& entrance) {
-    const std::int64_t now_ns = steady_ns();
-    const Rank rank = entrance.has_token && entrance.role >= Role::rider ? Rank::high : Rank::low;
-    const Slots::Entry entry = server_.slots.enter(slot_, rank, now_ns);
+    const Rank rank = is_high(entrance) ? Rank::high : Rank::low;
+    const Slots::Entry entry = server_.slots.enter(slot_, rank, steady_ns());
     if (entry.ended) server_.end_for_another(*entry.ended);
     if (!entry.granted) {
         return refuse(
@@ -323,7 +337,11 @@ void Connection::upgrade(const Entrance& entrance) {
     ws_.read_message_max(server_.config.session.json.max_bytes);
     ws_.text(true);
     ws_.control_callback([this](websocket::frame_type, beast::string_view) {
-        if (!controls_.take(steady_ns())) flooded_ = true;  // looked at after this read
+        if (flooded_ || controls_.take(steady_ns())) return;
+        flooded_ = true;
+        net::post(ws_.get_executor(), [self = shared_from_this()] {
+            if (!self->ended_) self->drop();
+        });
     });
     ws_.async_accept(parser_->get(),
                      [self = shared_from_this()](error_code error) { self->on_upgraded(error); });
@@ -360,7 +378,6 @@ void Connection::read() {
 void Connection::on_read(error_code error) {
     if (ended_ || dismissed_) return;
     if (error) return end();
-    if (flooded_) return drop();
     if (ws_.is_message_done()) {
         message_since_ns_.reset();
         has_message_ = true;
@@ -373,10 +390,14 @@ void Connection::on_read(error_code error) {
 /// Handles what was read and reads on: now, or when it is this client's turn. What a client sends
 /// meanwhile stays in its socket.
 void Connection::go_on() {
-    if (!server_.slots.is_high(slot_) && server_.guest_work.is_spent())
-        return server_.wait_for_turn(shared_from_this());
+    const bool high = entrance_ ? is_high(*entrance_) : server_.slots.is_high(slot_);
+    if (!high && server_.guest_work.is_spent()) return server_.wait_for_turn(shared_from_this());
+    const std::int64_t start_ns = thread_ns();
+    if (entrance_) {
+        upgrade(*std::exchange(entrance_, std::nullopt));
+        return charge(thread_ns() - start_ns);
+    }
     if (std::exchange(has_message_, false)) {
-        const std::int64_t start_ns = thread_ns();
         const std::int64_t now_ns = steady_ns();
         on_message(now_ns);
         const std::int64_t cost_ns = thread_ns() - start_ns;
@@ -390,6 +411,7 @@ void Connection::go_on() {
 }
 
 void Connection::charge(std::int64_t cost_ns) {
+    server_.accounted_ns += cost_ns;
     if (!server_.slots.is_high(slot_)) server_.guest_work.charge(cost_ns);
 }
 
@@ -440,7 +462,8 @@ void Connection::on_tick(std::int64_t now_ns) {
     const auto late = [&](const std::optional<std::int64_t>& since_ns, int limit_ms) {
         return since_ns && now_ns - *since_ns > limit_ms * kNsPerMs;
     };
-    if (flooded_ || late(message_since_ns_, server_.config.message_ms) ||
+    if (leaves_at_ns_ && now_ns > *leaves_at_ns_) return end();
+    if (late(message_since_ns_, server_.config.message_ms) ||
         late(write_since_ns_, server_.config.write_ms))
         return drop();
     if (session_ && !dismissed_) send_topics(session_->due(now_ns));
@@ -470,9 +493,23 @@ void Connection::dismiss() {
     if (!write_since_ns_) close_politely();
 }
 
+/// Says why and leaves soon. Nothing more is read: waiting for the client's own goodbye would mean
+/// to read all that a flood brings before it.
 void Connection::close_politely() {
-    ws_.async_close(websocket::close_code::policy_error,
-                    [self = shared_from_this()](error_code) { self->end(); });
+    if (leaves_at_ns_) return;
+    constexpr std::int64_t kLinger_ns = 100'000'000;
+    say_goodbye("\x88\x13\x03\xf0this was too much");
+    error_code ignored;
+    beast::get_lowest_layer(ws_).socket().shutdown(tcp::socket::shutdown_send, ignored);
+    leaves_at_ns_ = steady_ns() + kLinger_ns;
+}
+
+/// A whole close frame (RFC 6455), if there is room for it in the socket.
+void Connection::say_goodbye(std::string_view frame) {
+    error_code ignored;
+    auto& socket = beast::get_lowest_layer(ws_).socket();
+    socket.non_blocking(true, ignored);
+    socket.send(net::buffer(frame.data(), frame.size()), 0, ignored);
 }
 
 void Connection::drop() {
@@ -480,18 +517,10 @@ void Connection::drop() {
     end();
 }
 
-/// A client that loses its slot may not be waited for, even for a goodbye: the frame goes if there
-/// is room for it.
+/// A client that loses its slot is not waited for.
 void Connection::end_for_another() {
-    static constexpr std::string_view kGoodbye =
-        "\x88\x1f\x03\xf0this slot went to another one";  // close, 31 bytes, policy error
-    static_assert(kGoodbye.size() == 2 + 31);
     if (session_) ++server_.totals.dropped;
-    error_code ignored;
-    auto& socket = beast::get_lowest_layer(ws_).socket();
-    socket.non_blocking(true, ignored);
-    if (session_ && !write_since_ns_)
-        socket.send(net::buffer(kGoodbye.data(), kGoodbye.size()), 0, ignored);
+    if (session_ && !write_since_ns_) say_goodbye("\x88\x1f\x03\xf0this slot went to another one");
     end();
 }
 
@@ -556,6 +585,7 @@ void SocketServer::poll() {
 void SocketServer::begin() {
     if (begun_) return;
     begun_ = true;
+    tick_ended_ns_ = thread_ns();
     accepts_left_ = config.accepts_per_tick;
     timer_.expires_after(std::chrono::milliseconds(config.tick_ms));
     wait_for_tick();
@@ -583,7 +613,9 @@ void SocketServer::accept() {
         const std::int64_t start_ns = thread_ns();
         const std::string peer = peer_of(socket);
         admit_to_door(std::move(socket), peer);
-        door_work.charge(thread_ns() - start_ns);
+        const std::int64_t cost_ns = thread_ns() - start_ns;
+        door_work.charge(cost_ns);
+        accounted_ns += cost_ns;
         accept();
     });
 }
@@ -609,15 +641,24 @@ void SocketServer::wait_for_turn(std::shared_ptr<Connection> connection) {
     waiting_.push_back(std::move(connection));
 }
 
-/// A client that asks now and then is served before one that never stops.
+/// A client that asks now and then is served before one that never stops; newcomers and clients
+/// take turns, so that neither crowd shuts out the other.
 void SocketServer::take_turns(std::int64_t now_ns) {
     guest_work.refill();
     door_work.refill();
     auto turns = std::exchange(waiting_, {});
-    std::stable_sort(turns.begin(), turns.end(), [&](const auto& a, const auto& b) {
+    const auto clients = std::stable_partition(
+        turns.begin(), turns.end(), [](const auto& c) { return !c->is_client(); });
+    std::stable_sort(clients, turns.end(), [&](const auto& a, const auto& b) {
         return slots.burden_ns(a->slot(), now_ns) < slots.burden_ns(b->slot(), now_ns);
     });
-    for (const auto& connection : turns) connection->take_turn();  // waits again if nothing is left
+    auto newcomer = turns.begin();
+    auto client = clients;
+    while (newcomer != clients || client != turns.end()) {
+        // Whoever comes when nothing is left waits again.
+        if (client != turns.end()) (*client++)->take_turn();
+        if (newcomer != clients) (*newcomer++)->take_turn();
+    }
 }
 
 void SocketServer::wait_for_tick() {
@@ -631,8 +672,16 @@ void SocketServer::wait_for_tick() {
     });
 }
 
+/// What the thread did since the last tick and nobody accounted for (pongs, writing, closing) is
+/// taken from what guests may use: they cause nearly all of it.
 void SocketServer::on_tick() {
-    const std::int64_t now_ns = steady_ns();
+    guest_work.charge(thread_ns() - tick_ended_ns_ - accounted_ns);
+    do_tick(steady_ns());
+    tick_ended_ns_ = thread_ns();
+    accounted_ns = 0;
+}
+
+void SocketServer::do_tick(std::int64_t now_ns) {
     if (tick_) tick_(now_ns);
     publish(topics_.due(gate, now_ns), now_ns);
     for (const auto& connection : std::vector(connections_)) connection->on_tick(now_ns);
