@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cctype>
 #include <chrono>
 #include <deque>
 #include <iterator>
@@ -21,6 +23,7 @@
 #include "server/page/feature_lists.hpp"
 #include "server/page/foxglove_client.hpp"
 #include "server/page/gate_listener.hpp"
+#include "server/page/page_door.hpp"
 #include "server/page/page_files.hpp"
 #include "server/page/show.hpp"
 #include "server/wire/admission.hpp"
@@ -40,8 +43,9 @@ using beast::error_code;
 using wire::steady_ns;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kMs_ns = 1'000'000;
 constexpr auto kTick = std::chrono::milliseconds(20);
-constexpr auto kHandshake = std::chrono::seconds(5);
+constexpr auto kHandshake = std::chrono::seconds(5);  ///< of a WebSocket
 constexpr auto kIdle = std::chrono::seconds(10);
 constexpr std::size_t kMaxMessageBytes = 4096;
 constexpr std::int64_t kStatusEvery_ns = 500'000'000;
@@ -54,6 +58,31 @@ constexpr wire::RateLimit kMessages{40, 80};
 
 std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
+}
+
+/// The address of another computer; empty for this one.
+std::string peer_of(const tcp::socket& socket) {
+    error_code error;
+    const auto endpoint = socket.remote_endpoint(error);
+    if (error || endpoint.address().is_loopback()) return {};
+    return endpoint.address().to_string();
+}
+
+/// This computer, as its network may call it.
+std::vector<std::string> own_names() {
+    error_code error;
+    std::string name = net::ip::host_name(error);
+    if (error || name.empty()) return {};
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+        return static_cast<char>(std::tolower(c));
+    });
+    return {name, name + ".local"};
+}
+
+/// What came is no request, rather than none.
+bool is_malformed(error_code error) {
+    return error.category() == make_error_code(http::error::bad_method).category() &&
+           error != http::error::end_of_stream && error != http::error::partial_message;
 }
 
 std::int64_t period_ns(double rate_hz) {
@@ -85,7 +114,11 @@ class Viewer;
 class PageSockets {
   public:
     PageSockets(PageServerConfig its_config, PageFeed& feed, PageControls& its_controls)
-        : config(std::move(its_config)), controls(its_controls), rates(feed.rates), feed_(feed) {}
+        : config(std::move(its_config)),
+          controls(its_controls),
+          rates(feed.rates),
+          slots(config.slots),
+          feed_(feed) {}
 
     Status listen();
     void run();
@@ -97,12 +130,14 @@ class PageSockets {
     /// All viewers hear the status with the next tick.
     void tell_status() noexcept { ++status_serial_; }
     [[nodiscard]] std::uint64_t status_serial() const noexcept { return status_serial_; }
-    /// A name for a viewer, never 0.
-    [[nodiscard]] std::uint64_t next_name() noexcept { return ++names_; }
+    /// The connection becomes a viewer, perhaps in the place of another one.
+    [[nodiscard]] bool enter(std::uint64_t name);
+    [[nodiscard]] PageAddress address() const;
 
     const PageServerConfig config;
     PageControls& controls;
     const PageRates& rates;
+    wire::Slots slots;
     Show show;
     FoxgloveShow foxglove{show};
     const std::string session = fmt::format("{:x}", steady_ns());  ///< of this service
@@ -110,6 +145,8 @@ class PageSockets {
   private:
     error_code listen_at(const net::ip::address& address, std::uint16_t port);
     void accept();
+    void admit(tcp::socket socket);
+    void end(std::optional<wire::Slots::Id> name);
     void wait_for_tick();
     void on_tick();
 
@@ -119,7 +156,8 @@ class PageSockets {
     net::steady_timer timer_{io_};
     GateListener gate_{io_, [this](GateNews news) { foxglove.hear(std::move(news)); }};
     std::vector<std::shared_ptr<Viewer>> connections_;  // shared with their waiting handlers
-    std::uint64_t names_ = 0;
+    std::vector<std::string> names_ = own_names();
+    std::uint64_t connections_so_far_ = 0;
     std::uint64_t status_serial_ = 0;
     std::uint16_t port_ = 0;
     bool accepting_ = false;
@@ -128,9 +166,10 @@ class PageSockets {
 /// One connection: a request for a file, a page that looks, or a client of Foxglove.
 class Viewer : public std::enable_shared_from_this<Viewer> {
   public:
-    Viewer(PageSockets& sockets, tcp::socket socket)
+    /// `name`: never 0, and of no other connection.
+    Viewer(PageSockets& sockets, std::uint64_t name, tcp::socket socket)
         : sockets_(sockets),
-          name_(sockets.next_name()),
+          name_(name),
           ws_(std::move(socket)),
           messages_(kMessages),
           wishes_(kWishes) {}
@@ -151,8 +190,16 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
         bool operator==(const Hold&) const = default;
     };
 
+    struct Refusal {
+        http::status status;
+        std::string text;
+    };
     void on_request(error_code error);
+    [[nodiscard]] std::optional<Refusal> refuse_host();
+    [[nodiscard]] std::optional<Refusal> refuse_socket(bool is_foxglove) const;
     void answer(http::status status, std::string_view type, std::string body);
+    void answer(const Refusal& refusal) { answer(refusal.status, "text/plain", refusal.text); }
+    void send_response();
     void send_file(std::string_view path, bool head);
     void send_model(bool head);
     /// `protocol`: the subprotocol of Foxglove that the client speaks.
@@ -183,15 +230,17 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     http::response<http::string_body> response_;
+    std::string host_;  ///< of the request, when it is one of the page's
     wire::TokenBucket messages_;
     wire::TokenBucket wishes_;
     PageWish wish_;
     std::optional<FoxgloveClient> foxglove_;
     std::deque<SocketMessage> waiting_;
     SocketMessage writing_;
-    bool is_writing_ = false;
-    bool looks_ = false;  ///< over a WebSocket, no request for a file
-    bool open_ = false;   ///< its WebSocket
+    std::optional<std::int64_t> write_since_ns_;  ///< a message is on its way
+    bool has_asked_ = false;  ///< for something: whatever it takes from now on keeps its place
+    bool looks_ = false;      ///< over a WebSocket, no request for a file
+    bool open_ = false;       ///< its WebSocket
     bool ended_ = false;
 
     // What it has been shown.
@@ -217,7 +266,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
 void Viewer::start() {
     error_code ignored;
     beast::get_lowest_layer(ws_).socket().set_option(tcp::no_delay(true), ignored);
-    beast::get_lowest_layer(ws_).expires_after(kHandshake);
+    beast::get_lowest_layer(ws_).expires_after(
+        std::chrono::milliseconds(sockets_.config.header_ms));
     parser_.emplace();
     constexpr std::uint32_t kMaxHeaderBytes = 16 * 1024;
     parser_->header_limit(kMaxHeaderBytes);
@@ -231,9 +281,12 @@ void Viewer::start() {
 
 void Viewer::on_request(error_code error) {
     if (ended_) return;
+    if (is_malformed(error))
+        return answer(http::status::bad_request, "text/plain", "this is no request of HTTP\n");
     if (error) return end();
     const auto& request = parser_->get();
     const std::string_view target = view(request.target());
+    if (const auto refusal = refuse_host()) return answer(*refusal);
     if (!websocket::is_upgrade(request)) {
         const bool head = request.method() == http::verb::head;
         if (!head && request.method() != http::verb::get)
@@ -251,39 +304,53 @@ void Viewer::on_request(error_code error) {
         return answer(http::status::not_found,
                       "text/plain",
                       "the page's WebSocket is at /page, Foxglove's wants its subprotocol\n");
-    const auto origin = request.find(http::field::origin);
-    std::vector<std::string> own;
-    if (foxglove) own = sockets_.config.foxglove_origins;
-    if (!wire::is_loopback_address(sockets_.config.bind_address))
-        own.push_back(fmt::format("http://{}:{}", sockets_.config.bind_address, sockets_.port()));
-    const auto admission =
-        wire::admit(sockets_.config.token,
-                    own,
-                    target,
-                    origin == request.end() ? std::nullopt : std::optional(view(origin->value())));
-    if (admission == wire::Admission::wrong_origin)
-        return answer(http::status::forbidden, "text/plain", "this page's origin is not allowed\n");
-    if (admission == wire::Admission::wrong_token)
-        return answer(
-            http::status::unauthorized, "text/plain", "the URL needs the token: ?token=...\n");
-    if (sockets_.viewers() >= sockets_.config.max_viewers)
+    if (const auto refusal = refuse_socket(foxglove.has_value())) return answer(*refusal);
+    if (!sockets_.enter(name_))
         return answer(
             http::status::service_unavailable, "text/plain", "too many pages look already\n");
     upgrade(foxglove);
+}
+
+/// Every request, of files and of sockets: is it meant for the page?
+std::optional<Viewer::Refusal> Viewer::refuse_host() {
+    const auto& request = parser_->get();
+    const auto [first, last] = request.equal_range(http::field::host);
+    if (std::distance(first, last) != 1 || !view(request.target()).starts_with('/'))
+        return Refusal{http::status::bad_request,
+                       "a request needs one Host and a path that begins with /\n"};
+    const PageAddress address = sockets_.address();
+    if (!is_own_host(address, view(first->value())))
+        return Refusal{http::status::misdirected_request, wrong_host_text(address)};
+    host_ = view(first->value());
+    return std::nullopt;
+}
+
+std::optional<Viewer::Refusal> Viewer::refuse_socket(bool is_foxglove) const {
+    const auto& request = parser_->get();
+    const auto header = request.find(http::field::origin);
+    if (header != request.end()) {  // a program that is no browser sends none
+        const std::string_view origin = view(header->value());
+        const auto& foxglove = sockets_.config.foxglove_origins;
+        const bool is_friend =
+            is_foxglove && std::find(foxglove.begin(), foxglove.end(), origin) != foxglove.end();
+        if (!is_friend && !is_own_origin(sockets_.address(), host_, origin))
+            return Refusal{
+                http::status::forbidden,
+                "only the page itself may connect, not a page of another host or port\n"};
+    }
+    if (wire::admit(sockets_.config.token, {}, view(request.target()), std::nullopt) !=
+        wire::Admission::welcome)
+        return Refusal{http::status::unauthorized, "the URL needs the token: ?token=...\n"};
+    return std::nullopt;
 }
 
 void Viewer::answer(http::status status, std::string_view type, std::string body) {
     constexpr unsigned kHttp11 = 11;
     response_ = {status, kHttp11};
     response_.set(http::field::content_type, beast::string_view(type.data(), type.size()));
-    response_.set("X-Content-Type-Options", "nosniff");
-    response_.set(http::field::cache_control, "no-cache");
     response_.body() = std::move(body);
-    response_.keep_alive(false);
     response_.prepare_payload();
-    http::async_write(ws_.next_layer(),
-                      response_,
-                      [self = shared_from_this()](error_code, std::size_t) { self->end(); });
+    send_response();
 }
 
 void Viewer::send_file(std::string_view path, bool head) {
@@ -295,12 +362,19 @@ void Viewer::send_file(std::string_view path, bool head) {
     const std::string_view type = content_type_of(file->path);
     response_.set(http::field::content_type, beast::string_view(type.data(), type.size()));
     response_.set(http::field::content_encoding, "gzip");
-    response_.set("X-Content-Type-Options", "nosniff");
-    // The page of this program, not of the one that ran here before.
-    response_.set(http::field::cache_control, "no-cache");
     if (!head) response_.body() = std::string(file->gzip);
     response_.content_length(file->gzip.size());
+    send_response();
+}
+
+void Viewer::send_response() {
+    for (const auto& [name, value] : security_headers(host_))
+        response_.set(beast::string_view(name.data(), name.size()), value);
+    // The page of this program, not of the one that ran here before.
+    response_.set(http::field::cache_control, "no-cache");
     response_.keep_alive(false);
+    beast::get_lowest_layer(ws_).expires_after(
+        std::chrono::milliseconds(sockets_.config.answer_ms));
     http::async_write(ws_.next_layer(),
                       response_,
                       [self = shared_from_this()](error_code, std::size_t) { self->end(); });
@@ -322,11 +396,13 @@ void Viewer::upgrade(std::optional<std::string_view> protocol) {
     if (protocol) {
         foxglove_.emplace(sockets_.foxglove.name(), sockets_.session);
         ws_.read_message_max(kMaxFoxgloveText_bytes);
-        ws_.set_option(websocket::stream_base::decorator(
-            [name = std::string(*protocol)](websocket::response_type& response) {
-                response.set(http::field::sec_websocket_protocol, name);
-            }));
     }
+    ws_.set_option(websocket::stream_base::decorator(
+        [name = std::string(protocol.value_or("")), host = host_](websocket::response_type& r) {
+            for (const auto& [key, value] : security_headers(host))
+                r.set(beast::string_view(key.data(), key.size()), value);
+            if (!name.empty()) r.set(http::field::sec_websocket_protocol, name);
+        }));
     looks_ = true;
     ws_.async_accept(parser_->get(), [self = shared_from_this()](error_code error) {
         if (self->ended_) return;
@@ -353,7 +429,11 @@ void Viewer::on_message() {
     const Status heard = hear({static_cast<const char*>(bytes.data()), bytes.size()});
     buffer_.clear();
     if (!heard) return say_goodbye(heard.error().message);
-    if (!ended_) read();
+    if (ended_) return;
+    has_asked_ = true;
+    sockets_.slots.listens(name_, true);
+    sockets_.slots.served(name_, steady_ns(), 0);
+    read();
 }
 
 Status Viewer::hear(std::string_view bytes) {
@@ -498,8 +578,10 @@ void Viewer::say_recording(std::int64_t now_ns) {
 }
 
 void Viewer::on_tick(std::int64_t now_ns) {
+    if (write_since_ns_ && now_ns - *write_since_ns_ > sockets_.config.write_ms * kMs_ns)
+        return end();
     // What it has not taken yet is followed by the newest, not by all between.
-    if (ended_ || !open_ || is_writing_ || !waiting_.empty()) return;
+    if (ended_ || !open_ || write_since_ns_ || !waiting_.empty()) return;
     if (foxglove_) {
         auto messages = foxglove_->next(sockets_.foxglove, now_ns);
         std::move(messages.begin(), messages.end(), std::back_inserter(waiting_));
@@ -525,16 +607,18 @@ void Viewer::on_tick(std::int64_t now_ns) {
 }
 
 void Viewer::write() {
-    if (ended_ || is_writing_ || waiting_.empty()) return;
+    if (ended_ || write_since_ns_ || waiting_.empty()) return;
     writing_ = std::move(waiting_.front());
     waiting_.pop_front();
-    is_writing_ = true;
+    write_since_ns_ = steady_ns();
     ws_.text(writing_.is_text);
     ws_.async_write(net::buffer(writing_.bytes),
                     [self = shared_from_this()](error_code error, std::size_t) {
                         if (self->ended_) return;
-                        self->is_writing_ = false;
+                        self->write_since_ns_.reset();
                         if (error) return self->end();
+                        if (self->has_asked_)
+                            self->sockets_.slots.served(self->name_, steady_ns(), 0);
                         self->write();
                     });
 }
@@ -604,12 +688,35 @@ void PageSockets::accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
         accepting_ = false;
         if (error) return;  // no handles left, or gone already: the next tick tries again
-        if (connections_.size() < config.max_connections) {
-            connections_.push_back(std::make_shared<Viewer>(*this, std::move(socket)));
-            connections_.back()->start();
-        }
+        admit(std::move(socket));
         accept();
     });
+}
+
+void PageSockets::admit(tcp::socket socket) {
+    const std::uint64_t name = ++connections_so_far_;
+    end(slots.arrive(name, peer_of(socket), steady_ns()));
+    connections_.push_back(std::make_shared<Viewer>(*this, name, std::move(socket)));
+    connections_.back()->start();
+}
+
+bool PageSockets::enter(std::uint64_t name) {
+    const auto entry = slots.enter(name, wire::Rank::low, steady_ns());
+    end(entry.ended);
+    return entry.granted;
+}
+
+/// Another connection needs its place.
+void PageSockets::end(std::optional<wire::Slots::Id> name) {
+    if (!name) return;
+    const auto found = std::find_if(connections_.begin(), connections_.end(), [&](const auto& c) {
+        return c->name() == *name;
+    });
+    if (found != connections_.end()) std::shared_ptr(*found)->end();
+}
+
+PageAddress PageSockets::address() const {
+    return {config.bind_address, port_, names_, config.origins};
 }
 
 void PageSockets::wait_for_tick() {
@@ -637,6 +744,7 @@ void PageSockets::on_tick() {
 
 void PageSockets::leave(const Viewer& viewer) {
     controls.steering.leave(viewer.name());
+    slots.leave(viewer.name());
     std::erase_if(connections_, [&](const auto& other) { return other.get() == &viewer; });
 }
 
@@ -648,7 +756,9 @@ std::size_t PageSockets::viewers() const {
 const char* PageServerConfig::problem() const {
     if (!wire::is_loopback_address(bind_address) && token.empty())
         return "the page is served beyond this machine with a token alone (--token-file)";
-    return nullptr;
+    if (header_ms <= 0 || answer_ms <= 0 || write_ms <= 0)
+        return "header_ms, answer_ms, write_ms: above 0";
+    return slots.problem();
 }
 
 Result<std::unique_ptr<PageServer>> PageServer::open(const PageServerConfig& config,

@@ -14,6 +14,7 @@
 #include "server/page/playback.hpp"
 #include "server/page/recording_desk.hpp"
 #include "server/page/steering.hpp"
+#include "server/wire/slots.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::page {
@@ -23,10 +24,15 @@ struct PageServerConfig {
     std::uint16_t port = 8080;               ///< 0 = any free one
     int more_ports = 16;                     ///< tried after it, where others are taken
     std::string token;                       ///< of the WebSocket's URL, as ?token=
+    /// Where the page is reached through a proxy or a tunnel, as "https://robot.example".
+    std::vector<std::string> origins;
     /// Of Foxglove, where it is a web page of another machine, or a file (file://).
     std::vector<std::string> foxglove_origins;
-    std::size_t max_viewers = 16;
-    std::size_t max_connections = 64;  ///< with those that fetch files
+    /// Clients are those who look. Requests for files are answered at the door.
+    wire::SlotLimits slots{16, 0, 256, 8};
+    int header_ms = 5000;   ///< from the connection to the last byte of its request
+    int answer_ms = 20000;  ///< for a file to leave
+    int write_ms = 10000;   ///< for a message to a viewer to leave
 
     /// The first problem in words, or nullptr.
     [[nodiscard]] const char* problem() const;
@@ -46,7 +52,10 @@ class PageSockets;
 /// at every other path the WebSocket protocol of Foxglove to whoever offers its subprotocol; all on
 /// the thread that calls `run`. A viewer that is slow is sent less often, never what is old: the
 /// next message is made when the last one has left. Who sends what is not understood is told so and
-/// let go.
+/// let go. A request must name the page by a name or address of this computer and its own port, and
+/// a web page that opens a socket must be the page itself (page_door.hpp). A connection that is
+/// slow with its request, or takes nothing, is ended; wire::Slots says which one when all are
+/// taken.
 class PageServer {
   public:
     /// Listens. Errors name the address and what is in the way.

@@ -177,12 +177,54 @@ class LivePage(PageTest):
             page.listen(0.5)
         self.assertEqual(page.joints[-1], ())
 
+    def first_line(self, path, host, *headers):
+        """Of the answer to a WebSocket's request."""
+        with socket.create_connection(("127.0.0.1", self.port), timeout=5) as plain:
+            plain.sendall("\r\n".join((f"GET {path} HTTP/1.1", f"Host: {host}", "Upgrade: websocket", "Connection: Upgrade",
+                                       "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==", "Sec-WebSocket-Version: 13", *headers,
+                                       "", "")).encode())
+            return plain.recv(64).decode().split("\r\n")[0]
+
     def test_pages_of_other_sites_see_nothing(self):
-        for origin, status in (("http://evil.example", b"403"), ("http://127.0.0.1:1", b"101")):
-            with socket.create_connection(("127.0.0.1", self.port), timeout=5) as plain:
-                plain.sendall(f"GET /page HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nOrigin: {origin}\r\n"
-                              "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode())
-                self.assertIn(status, plain.recv(64))
+        own = f"127.0.0.1:{self.port}"
+        for origin, status in (("http://evil.example", "403"), ("http://127.0.0.1:1", "403"), (f"http://localhost:{self.port}", "101"),
+                               (f"http://{own}", "101")):
+            self.assertIn(status, self.first_line("/page", own, f"Origin: {origin}"), origin)
+
+    def test_a_name_that_was_moved_to_this_machine_gets_nothing(self):
+        """DNS rebinding: a stranger's page asks this machine under the stranger's name."""
+        evil = f"evil.example:{self.port}"
+        for path in ("/page", "/"):
+            self.assertIn("421", self.first_line(path, evil, f"Origin: http://{evil}", "Sec-WebSocket-Protocol: foxglove.sdk.v1"))
+        for path in ("/", "/index.html", "/machine.urdf", "/nowhere"):
+            connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=5)
+            self.addCleanup(connection.close)
+            connection.request("GET", path, headers={"Host": evil})
+            self.assertEqual(connection.getresponse().status, 421, path)
+
+    def test_every_answer_forbids_frames_foreign_scripts_and_guessed_types(self):
+        for path, method, status in (("/", "GET", 200), ("/nowhere", "GET", 404), ("/machine.urdf", "GET", 200), ("/", "POST", 405)):
+            answer, _ = self.get(path, method)
+            self.assertEqual(answer.status, status)
+            self.assertEqual(answer.headers["X-Content-Type-Options"], "nosniff", path)
+            self.assertEqual(answer.headers["X-Frame-Options"], "DENY", path)
+            self.assertIn("frame-ancestors 'none'", answer.headers["Content-Security-Policy"], path)
+            self.assertIn("script-src 'self';", answer.headers["Content-Security-Policy"], path)
+
+    def test_no_script_of_the_page_is_inline(self):
+        """The policy would stop it."""
+        _, body = self.get("/")
+        page = gzip.decompress(body).decode()
+        self.assertEqual(re.findall(r"<script(?![^>]*\ssrc=)", page), [])
+        self.assertNotRegex(page, r"<[^>]*\s(on\w+|style)=")
+
+    def test_a_crowd_of_half_open_requests_keeps_nobody_out(self):
+        crowd = [socket.create_connection(("127.0.0.1", self.port), timeout=5) for _ in range(100)]
+        for half in crowd:
+            self.addCleanup(half.close)
+            half.sendall(b"GET / HTTP/1.1\r\nHost: ")
+        self.assertEqual(self.get("/nowhere")[0].status, 404)
+        self.assertTrue(self.page().listen(1.0).told("hello"))
 
     def test_a_page_hears_who_is_there_and_how_it_goes(self):
         page = self.page().listen(1.5)

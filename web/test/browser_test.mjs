@@ -739,6 +739,36 @@ for (const [width, height] of [
       }
     }));
 
+test("a script that is not the page's own does not run", () =>
+  withPage({}, async (page) => {
+    await page.evaluate(() => {
+      const script = document.createElement("script");
+      script.textContent = "window.foreign = true";
+      document.body.append(script);
+      document.body.insertAdjacentHTML("beforeend", `<img src="." onerror="window.foreign = true">`);
+    });
+    await page.waitForTimeout(300);
+    assert.equal(await page.evaluate(() => window.foreign), undefined);
+    const refused = page.complaints.splice(0);
+    assert.ok(refused.some((text) => /Content Security Policy/.test(text)), String(refused));
+  }));
+
+test("no other page can frame it", () =>
+  withPage({}, async (page, service) => {
+    const other = await browser.newPage();
+    try {
+      await other.setContent(`<iframe src="http://127.0.0.1:${service.port}/"></iframe>`);
+      await other.waitForFunction(() => {
+        const frame = document.querySelector("iframe");
+        return frame && !frame.contentDocument;
+      });
+      const inside = other.frames().find((frame) => frame.parentFrame());
+      assert.match(inside.url(), /^chrome-error:/);
+    } finally {
+      await other.close();
+    }
+  }));
+
 test("the page weighs at most 1 MB compressed", () => {
   const folder = new URL("../dist/", import.meta.url);
   const bytes = readdirSync(folder, { recursive: true, withFileTypes: true })

@@ -326,8 +326,14 @@ export const kSettings = [
   ),
 ];
 
+/// What the real service sends with every answer: the page must work under it.
+const { about: _, ...kHeaders } = contract.http_headers;
+
 /// Only files of the built page: no way leads out of its folder.
 function serveFile(request, response) {
+  const host = new URL(`http://${request.headers.host}`).hostname;
+  for (const [name, value] of Object.entries(kHeaders))
+    response.setHeader(name, value.replaceAll("HOST", host));
   if (request.url === kMachine.model) return void response.end(readFileSync(kUrdf));
   const path = normalize(new URL(request.url, "http://page").pathname).replace(/^\/$/, "/index.html");
   try {
