@@ -64,7 +64,7 @@ class MiddleburyReader {
     int side(const char* key) {
         const double side_px = number(key);
         if (side_px >= 1.0 && side_px <= kMaxRigSide_px && side_px == std::floor(side_px))
-            return static_cast<int>(side_px);
+            return static_cast<int>(side_px);  // in range, as checked
         fail(fmt::format(
             "{}: {}: {} is no image side of 1 .. {} px", file_, key, side_px, kMaxRigSide_px));
         return 1;

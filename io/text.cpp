@@ -112,7 +112,7 @@ std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) n
         if (!value) return std::nullopt;
         const double scaled = std::round(*value * static_cast<double>(scale));
         if (!(std::abs(scaled) < kMax)) return std::nullopt;
-        return static_cast<std::int64_t>(scaled);
+        return static_cast<std::int64_t>(scaled);  // in range, as checked
     }
     const std::size_t dot = std::min(digits.find('.'), digits.size());
     const std::string_view whole = digits.substr(0, dot);
