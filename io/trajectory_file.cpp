@@ -186,7 +186,8 @@ Result<std::vector<std::int64_t>> parse_times(std::string_view text, const std::
     while (const auto line = lines.next()) {
         const std::string_view content = trimmed(*line);
         if (content.empty() || is_comment(content)) continue;
-        if (!parse_double(content)) return at_line(file, lines.number(), "stamp " + why_no_number(content));
+        if (!parse_double(content))
+            return at_line(file, lines.number(), "stamp " + why_no_number(content));
         words.push_back(content);
         line_of.push_back(lines.number());
     }
