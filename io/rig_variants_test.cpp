@@ -318,6 +318,10 @@ TEST(RigVariants, OpenCvSaysWhichCameraIsMissing) {
               "'M1': give both the same name but for 1 and 2, left and right, or l and r");
     EXPECT_TRUE(contains(message(opencv(replaced(opencv_file(kUsualNames), "D1:", "E1:"))),
                          "distortion of the left camera: not found; the other camera's is 'D2'"));
+    const std::string from_zero = opencv_file({"K0", "D0", "K1", "D1", "R", "T"});
+    EXPECT_TRUE(contains(message(opencv(replaced(from_zero, "D0:", "E0:"))),
+                         "distortion of the left camera: not found; the other camera's is 'D1'"))
+        << "beside K0 and K1, D1 is the right camera's";
     EXPECT_TRUE(contains(message(opencv("camera_matrix: [700, 0, 640, 0, 700, 360, 0, 0, 1]\n"
                                         "distortion_coefficients: [0, 0, 0, 0, 0]\n")),
                          "looks like an OpenCV calibration of one camera; a rig needs"));

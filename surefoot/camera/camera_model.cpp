@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "surefoot/camera/rig_units.hpp"
+
 namespace surefoot::camera {
 namespace {
 
@@ -31,6 +33,9 @@ std::optional<std::string> Camera::problem() const {
                            kMaxSide_px);
     }
     if (auto found = std::visit([](const auto& m) { return m.problem(); }, model)) return found;
+    const Eigen::Vector2d focal_px =
+        std::visit([](const auto& m) { return Eigen::Vector2d(m.fx_px, m.fy_px); }, model);
+    if (auto found = focal_problem(focal_px.maxCoeff())) return found;
     const Eigen::Vector2d centre =
         std::visit([](const auto& m) { return Eigen::Vector2d(m.cx_px, m.cy_px); }, model);
     if (centre.x() < 0.0 || centre.y() < 0.0 || centre.x() > width - 1 || centre.y() > height - 1) {

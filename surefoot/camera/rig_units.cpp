@@ -68,6 +68,12 @@ std::optional<std::string> baseline_warning(double length_m) {
         likely_units(length_m));
 }
 
+std::optional<std::string> focal_problem(double focal_px) {
+    constexpr double kMaxFocal_px = 1e6;
+    if (focal_px <= kMaxFocal_px) return std::nullopt;
+    return fmt::format("focal length {:g} px exceeds {:g} px", focal_px, kMaxFocal_px);
+}
+
 std::optional<std::string> focal_warning(double focal_px, int width_px) {
     constexpr double kLeastOfWidth = 0.05;  // 2 atan(10) = 168.6 deg
     if (!(focal_px < kLeastOfWidth * width_px)) return std::nullopt;

@@ -22,6 +22,10 @@ inline constexpr double kMaxBaseline_m = 5.0;
 /// check. Nothing for all others.
 [[nodiscard]] std::optional<std::string> baseline_warning(double length_m);
 
+/// Why a focal length cannot be one of any camera: longer than a million pixels (a telescope of 3 m
+/// in front of pixels of 3 um). Camera::problem asks.
+[[nodiscard]] std::optional<std::string> focal_problem(double focal_px);
+
 /// A focal length that is so short for a pinhole image of this width [px] that it must be in
 /// another unit: a field of view beyond 168 deg. Fisheyes have such views, pinholes do not.
 [[nodiscard]] std::optional<std::string> focal_warning(double focal_px, int width_px);

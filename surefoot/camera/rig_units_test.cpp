@@ -20,6 +20,13 @@ TEST(RigUnits, AFocalLengthInMillimetresIsNamed) {
     EXPECT_FALSE(focal_warning(350.0, 672));
 }
 
+TEST(RigUnits, NoCameraHasAFocalLengthBeyondAMillionPixels) {
+    StereoRig rig = test::euroc_rig();
+    EXPECT_FALSE(rig.problem());
+    std::get<PinholeRadTan>(rig.right->model).fy_px = 4e13;
+    EXPECT_TRUE(contains(rig.problem(), "right camera: focal length 4e+13 px exceeds 1e+06 px"));
+}
+
 TEST(RigUnits, ABaselineNamesTheUnitThatWasMeant) {
     struct Case {
         double length_m;
