@@ -107,10 +107,14 @@ std::vector<Pair> compare(const std::vector<Placed>& found,
     out.found = found.size();
     out.matched = pairs.size();
     for (std::size_t i = 0; i < truth.size(); ++i) {
-        if (taken_truth[i] == 0) out.missed.push_back(truth[i].pose);
+        if (taken_truth[i] != 0) continue;
+        out.missed.push_back(truth[i].pose);
+        out.missed_at.push_back(i);
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
-        if (taken_found[i] == 0) out.extra.push_back(found[i].pose);
+        if (taken_found[i] != 0) continue;
+        out.extra.push_back(found[i].pose);
+        out.extra_at.push_back(i);
     }
     out.across = figures_of(across_m);
     out.height = figures_of(height_m);

@@ -31,8 +31,10 @@ struct KindErrors {
     std::size_t matched = 0;
     std::vector<stairs::FeaturePose> missed;  ///< of the truth
     std::vector<stairs::FeaturePose> extra;   ///< found where the truth has none
-    MatchErrors across;                       ///< of its place, along the way over it
-    MatchErrors height;                       ///< riser of flights; sill of doors
+    std::vector<std::size_t> missed_at;       ///< where in their lists they stand
+    std::vector<std::size_t> extra_at;
+    MatchErrors across;  ///< of its place, along the way over it
+    MatchErrors height;  ///< riser of flights; sill of doors
 
     [[nodiscard]] double recall() const;     ///< NaN without a truth
     [[nodiscard]] double precision() const;  ///< NaN without one found

@@ -243,7 +243,7 @@ constexpr const char* kHeader =
 
 Result<std::string> judge_run(const std::vector<std::string>& folders, const Settings& settings) {
     stairs::FeatureFinder finder(settings.pipeline.stairs);
-    stairs::FeatureFollower follower(settings.pipeline.stairs.follow);
+    stairs::FeatureFollower follower(settings.pipeline.stairs);
     TerrainFeatures found;
     TerrainFeatures followed;
     Account alone;

@@ -48,7 +48,8 @@ int measure(const std::vector<std::string>& words) {
     const std::uint64_t first = std::strtoull(words[1].c_str(), nullptr, 10);
     const std::uint64_t seeds = std::strtoull(words[2].c_str(), nullptr, 10);
     auto out = fmt::output_file(words[0]);
-    out.print("seed,kind,slope_deg,sigma_mm,correlation_mm,stated,flights,kerbs,drops,edges,find_us\n");
+    out.print(
+        "seed,kind,slope_deg,sigma_mm,correlation_mm,stated,flights,kerbs,drops,edges,find_us\n");
     stairs::FeatureFinder finder{stairs::StairsConfig{}};
     stairs::TerrainFeatures found;
     for (std::uint64_t seed = first; seed < first + seeds; ++seed) {

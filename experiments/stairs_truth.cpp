@@ -146,7 +146,7 @@ constexpr const char* kHeader =
 class Judge {
   public:
     explicit Judge(const stairs::StairsConfig& config)
-        : finder_(config), follower_(config.follow) {}
+        : finder_(config), follower_(config) {}
 
     void look(const Look& look) { (void)look_once(look); }
 

@@ -10,6 +10,7 @@
 
 #include "apps/surefoot/ground_box.hpp"
 #include "apps/surefoot/run_output.hpp"
+#include "apps/surefoot/stairs_json.hpp"
 #include "apps/surefoot/suite_rows.hpp"
 #include "server/wire/json_text.hpp"
 #include "server/wire/verdict_json.hpp"
@@ -23,15 +24,6 @@ using wire::Json;
 using wire::number;
 
 constexpr double kDegPerRad = 180.0 / M_PI;
-
-const char* name_of(grid::GravitySource source) {
-    switch (source) {
-        case grid::GravitySource::imu: return "imu";
-        case grid::GravitySource::plane: return "plane";
-        case grid::GravitySource::assumed: return "assumed";
-    }
-    return "assumed";
-}
 
 Json counts_json(const FusionCounts& f) {
     return {{"points", f.points},
@@ -261,7 +253,7 @@ Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
         {"waited_frames", record.waited_frames},
         {"complete", record.complete()},
         {"error", record.error ? Json(record.error->message) : Json(nullptr)},
-        {"gravity_source", name_of(alignment.gravity_source)},
+        {"gravity_source", gravity_name(alignment.gravity_source)},
         {"gravity_reason", alignment.reason},
         {"ground_height_m",
          alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},

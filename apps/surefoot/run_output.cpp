@@ -14,9 +14,11 @@
 
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/map_layers.hpp"
+#include "apps/surefoot/run_features.hpp"
 #include "apps/surefoot/run_report.hpp"
 #include "apps/surefoot/stairs_json.hpp"
 #include "apps/surefoot/stairs_text.hpp"
+#include "apps/surefoot/terrain_map.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
@@ -27,6 +29,7 @@
 #include "io/trajectory_file.hpp"
 #include "surefoot/camera/reproject.hpp"
 #include "surefoot/elevation/map_region.hpp"
+#include "surefoot/stairs/feature_finder.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -152,6 +155,20 @@ grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geome
     return layer.empty() ? grid::Layer(geometry.nx, geometry.ny, std::nanf("")) : layer;
 }
 
+/// What was followed, beside what the files of the map show: `surefoot stairs` of the folder reads
+/// the same files.
+RunFeatures run_features(const RunOptions& options,
+                         const Settings& settings,
+                         const pipeline::Pipeline& pipeline) {
+    StairsOptions map_of_run;
+    map_of_run.map = options.out_dir;
+    const auto map = load_terrain(map_of_run);
+    if (!map) return split_by_confirmation(pipeline.features());  // an empty map, or a full disk
+    stairs::TerrainFeatures final_map;
+    stairs::FeatureFinder(settings.pipeline.stairs).find(map->terrain(), final_map);
+    return compare_with_final_map(pipeline.features(), std::move(final_map));
+}
+
 Status write_results(const RunOptions& options,
                      const Settings& settings,
                      const std::optional<io::MachineFile>& machine,
@@ -184,9 +201,6 @@ Status write_results(const RunOptions& options,
     }
     writes += io::write_ply(out + "/map.ply", map_cloud(pipeline));
     const stairs::GroundClasses classes = pipeline.ground_classes();
-    writes +=
-        io::write_file(out + "/stairs.json",
-                       stairs_json(pipeline.features(), classes, geometry.resolution_m, {}) + "\n");
     writes += io::write_esri_grid(out + "/treads.asc", geometry, classes.tread_height_m);
 
     const auto snapshot = std::make_unique<grid::MapSnapshot>();
@@ -194,6 +208,15 @@ Status write_results(const RunOptions& options,
     writes +=
         sealed.ok() ? io::write_snapshot(out + "/map.snapshot", *snapshot) : std::move(sealed);
 
+    const RunFeatures features = run_features(options, settings, pipeline);
+    writes += io::write_file(out + "/stairs.json",
+                             stairs_json(features.confirmed,
+                                         classes,
+                                         {.resolution_m = geometry.resolution_m,
+                                          .gravity_source = pipeline.alignment().gravity_source,
+                                          .assumed = {},
+                                          .unconfirmed = &features.unconfirmed}) +
+                                 "\n");
     if (!options.save_map.empty())
         writes += save_map(options.save_map, hash_of(settings), pipeline, record);
     writes += write_pictures_and_report(options, settings, machine, pipeline, record);
@@ -309,7 +332,11 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
             trim->row_error_px,
             trim->row_error_left_px);
     }
-    if (!pipeline.features().edges.empty()) text += features_count_text(pipeline.features()) + "\n";
+    if (!pipeline.features().edges.empty()) {
+        text += features_count_text(split_by_confirmation(pipeline.features())) + "\n";
+        const std::string note = gravity_note(pipeline.alignment().gravity_source);
+        if (!note.empty()) text += note + "\n";
+    }
     if (const std::string note = modelled_note(record.source); !note.empty()) text += note + "\n";
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         text += fmt::format("the map is empty: {}\n", reason);

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "apps/surefoot/ground_box.hpp"
+#include "apps/surefoot/run_features.hpp"
+#include "apps/surefoot/stairs_json.hpp"
 #include "apps/surefoot/stairs_text.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "eval/classes_picture.hpp"
@@ -123,8 +125,11 @@ eval::ReportSection stairs_section(const pipeline::Pipeline& pipeline,
         {"Ticks point to the lower ground; steps are numbered as they are walked", png, true});
     section.pictures.push_back(
         {"What the ground is, cell by cell; hatched is unknown or unsure", classes_png, true});
-    section.tables.push_back(features_table(pipeline.features()));
-    section.note = features_count_text(pipeline.features()) + ".";
+    const RunFeatures features = split_by_confirmation(pipeline.features());
+    section.tables.push_back(features_table(features.confirmed));
+    section.note = features_count_text(features) + ".";
+    if (const std::string note = gravity_note(pipeline.alignment().gravity_source); !note.empty())
+        section.note += " " + note + ".";
     return section;
 }
 

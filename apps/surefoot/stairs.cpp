@@ -43,6 +43,8 @@ Status write_pictures(const StairsOptions& options, const TerrainMap& map, const
     eval::ReportContent content;
     content.title = fmt::format("Surefoot: stairs of {}", options.map);
     content.summary.push_back(features_count_text(found.features));
+    if (const std::string note = gravity_note(map.gravity_source); !note.empty())
+        content.summary.push_back(note);
     for (const std::string& sentence : map.assumed)
         content.summary.push_back("assumed: " + sentence);
     content.sections.push_back({"What the ground is",
@@ -58,7 +60,11 @@ Status write_pictures(const StairsOptions& options, const TerrainMap& map, const
 }
 
 std::string json_of(const TerrainMap& map, const Found& found) {
-    return stairs_json(found.features, found.classes, map.geometry.resolution_m, map.assumed);
+    return stairs_json(found.features,
+                       found.classes,
+                       {.resolution_m = map.geometry.resolution_m,
+                        .gravity_source = map.gravity_source,
+                        .assumed = map.assumed});
 }
 
 Status write_results(const StairsOptions& options,
@@ -78,6 +84,8 @@ void print_text(const StairsOptions& options,
                 const TerrainMap& map,
                 const stairs::TerrainFeatures& features) {
     fmt::print("{}{}\n", features_text(features), features_count_text(features));
+    if (const std::string note = gravity_note(map.gravity_source); !note.empty())
+        fmt::print("{}\n", note);
     for (const std::string& sentence : map.assumed) fmt::print("assumed: {}\n", sentence);
     if (!options.out_dir.empty())
         fmt::print("stairs.json, treads.asc, stairs.png, classes.png and report.html in {}/\n",

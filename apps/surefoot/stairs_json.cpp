@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 
 #include "server/page/feature_lists.hpp"
@@ -223,13 +224,83 @@ std::string feature_errors_json(const eval::FeatureErrors& errors,
     return json.dump(2);
 }
 
+namespace {
+
+Json log10_of(double log_ratio) {
+    return number(log_ratio / std::numbers::ln10);
+}
+
+/// A flight is as sure as its least sure step.
+double least_log_ratio(const stairs::Flight& flight) {
+    double least = std::numeric_limits<double>::quiet_NaN();
+    for (const stairs::Edge& edge : flight.edges)
+        if (!(least <= edge.log_step_ratio)) least = edge.log_step_ratio;
+    return least;
+}
+
+void add_evidence(const stairs::Flight& flight, Json& json) {
+    json["log10_step_ratio"] = log10_of(least_log_ratio(flight));
+}
+void add_evidence(const stairs::LineFeature& line, Json& json) {
+    json["log10_step_ratio"] = log10_of(line.log_step_ratio);
+}
+void add_evidence(const stairs::Edge& edge, Json& json) {
+    json["log10_step_ratio"] = log10_of(edge.log_step_ratio);
+}
+void add_evidence(const stairs::Door&, Json&) {}
+
+template <typename Feature>
+void add_marks(const std::vector<Feature>& features, bool gravity_assumed, Json& list) {
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        add_evidence(features[i], list[i]);
+        const stairs::Followed& followed = features[i].followed;
+        if (followed.in_final_map) {
+            list[i]["looks"] = followed.looks;
+            list[i]["in_final_map"] = *followed.in_final_map;
+        }
+        if (gravity_assumed) list[i]["gravity_assumed"] = true;
+    }
+}
+
+/// Pages have the lists by the same names, without the marks.
+Json marked_lists(const stairs::TerrainFeatures& features, bool gravity_assumed) {
+    Json json = page::feature_lists(features);
+    add_marks(features.flights, gravity_assumed, json["flights"]);
+    add_marks(features.drops, gravity_assumed, json["drops"]);
+    add_marks(features.kerbs, gravity_assumed, json["kerbs"]);
+    add_marks(features.sills, gravity_assumed, json["sills"]);
+    add_marks(features.doors, gravity_assumed, json["doors"]);
+    add_marks(features.edges, gravity_assumed, json["edges"]);
+    return json;
+}
+
+}  // namespace
+
+const char* gravity_name(grid::GravitySource source) {
+    switch (source) {
+        case grid::GravitySource::imu: return "imu";
+        case grid::GravitySource::plane: return "plane";
+        case grid::GravitySource::assumed: return "assumed";
+    }
+    return "assumed";
+}
+
+std::string gravity_note(grid::GravitySource source) {
+    if (source != grid::GravitySource::assumed) return "";
+    return "gravity was assumed: all heights, slopes, steps and drops lean by the unknown tilt of "
+           "the camera (run with an IMU, or set mount.pitch_deg)";
+}
+
 std::string stairs_json(const stairs::TerrainFeatures& features,
                         const stairs::GroundClasses& classes,
-                        double resolution_m,
-                        const std::vector<std::string>& assumed) {
-    Json json = page::feature_lists(features);  // pages have them by the same names
-    json["classes"] = classes_json(classes, resolution_m);
-    json["assumed"] = assumed;
+                        const StairsContext& context) {
+    const bool gravity_assumed = context.gravity_source == grid::GravitySource::assumed;
+    Json json = marked_lists(features, gravity_assumed);
+    json["classes"] = classes_json(classes, context.resolution_m);
+    json["assumed"] = context.assumed;
+    json["gravity_source"] = gravity_name(context.gravity_source);
+    if (context.unconfirmed != nullptr)
+        json["unconfirmed"] = marked_lists(*context.unconfirmed, gravity_assumed);
     return json.dump(2);
 }
 

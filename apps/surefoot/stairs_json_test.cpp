@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/surefoot/run_features.hpp"
+
 namespace surefoot::app {
 namespace {
 
@@ -23,7 +25,10 @@ std::string packed(const std::string& json) {
 
 std::string json_of(const stairs::TerrainFeatures& features,
                     const std::vector<std::string>& assumed) {
-    return stairs_json(features, {}, 0.025, assumed);
+    return stairs_json(
+        features,
+        {},
+        {.resolution_m = 0.025, .gravity_source = grid::GravitySource::imu, .assumed = assumed});
 }
 
 stairs::LineFeature line(double height_m) {
@@ -62,7 +67,7 @@ TEST(StairsJson, CellsAreCountedByTheirClass) {
     classes.of_cell = Image<stairs::GroundClass>(4, 2, stairs::GroundClass::floor);
     classes.of_cell.at(1, 1) = stairs::GroundClass::unknown;
     classes.of_cell.at(2, 1) = classes.of_cell.at(3, 1) = stairs::GroundClass::tunnel;
-    const std::string json = packed(stairs_json({}, classes, 0.5, {}));
+    const std::string json = packed(stairs_json({}, classes, {.resolution_m = 0.5}));
     for (const char* part : {R"("classes":{"unknown":{"cells":1,"area_m2":0.25},)",
                              R"("floor":{"cells":5,"area_m2":1.25})",
                              R"("tread":{"cells":0,"area_m2":0.0})",
@@ -73,7 +78,7 @@ TEST(StairsJson, CellsAreCountedByTheirClass) {
 TEST(StairsJson, NothingIsEmptyLists) {
     EXPECT_EQ(packed(json_of({}, {})),
               R"({"flights":[],"drops":[],"kerbs":[],"sills":[],"doors":[],"edges":[],)" +
-                  no_cells() + R"("assumed":[]})");
+                  no_cells() + R"("assumed":[],"gravity_source":"imu"})");
 }
 
 TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
@@ -102,7 +107,7 @@ TEST(StairsJson, AFlightHasEveryNameOfTheContract) {
                         R"("going_spread_m":1.75,"width_m":2.25,"landing_m":2.5,"turn_rad":2.75,)"
                         R"("cut":true,"open":true,"left":{"kind":"wall","rail_m":null},)"
                         R"("right":{"kind":"open","rail_m":0.875},)" +
-                        pose_text() + "}],"),
+                        pose_text() + R"(,"log10_step_ratio":null}],)"),
               std::string::npos)
         << json_of(features, {});
 }
@@ -133,7 +138,8 @@ TEST(StairsJson, DropsAndKerbsHavePositiveHeights) {
     features.sills = {line(0.5)};
     const auto common = [](const char* height, const char* seen) {
         return pose_text() + R"(,"height_m":)" + height +
-               R"(,"length_m":2.0,"sigma_m":0.5,"bottom_seen":)" + seen + "}";
+               R"(,"length_m":2.0,"sigma_m":0.5,"bottom_seen":)" + seen +
+               R"(,"log10_step_ratio":null})";
     };
     const std::string json = packed(json_of(features, {}));
     EXPECT_NE(
@@ -156,7 +162,7 @@ TEST(StairsJson, WhatWasFollowedHasAnIdAndHowOftenAndHowLongAgoItWasSeen) {
     features.doors.emplace_back().followed = followed;
     features.edges.emplace_back().followed = followed;
     const std::string json = packed(json_of(features, {}));
-    const std::string said = R"("id":7,"looks":12,"last_seen_s":2.5})";
+    const std::string said = R"("id":7,"looks":12,"last_seen_s":2.5)";
     int times = 0;
     for (std::size_t at = json.find(said); at != std::string::npos; at = json.find(said, at + 1))
         ++times;
@@ -178,10 +184,82 @@ TEST(StairsJson, DoorsEdgesAndWhatWasAssumed) {
             .find(R"("doors":[{"width_m":0.75,"width_std_m":0.5,"sill_m":0.25,"clearance_m":2.0,)" +
                   pose_text() +
                   R"(}],"edges":[{"from":[1.0,2.0],"to":[3.0,4.0],"upper_m":0.5,"lower_m":-0.25,)"
-                  R"("lower_seen":false,"sigma_m":0.125}],)" +
-                  no_cells() + R"("assumed":["zis\"up\""]})"),
+                  R"("lower_seen":false,"sigma_m":0.125,"log10_step_ratio":null}],)" +
+                  no_cells() + R"("assumed":["zis\"up\""],"gravity_source":"imu"})"),
         std::string::npos)
         << json_of(features, {});
+}
+
+TEST(StairsJson, EachEdgeStatesHowMuchMoreLikelyAStepItIsThanSmoothGround) {
+    stairs::TerrainFeatures features;
+    features.edges = {edge()};
+    features.edges[0].log_step_ratio = 2.5 * std::log(10.0);
+    features.drops = {stairs::line_feature(features.edges[0], true)};
+    stairs::Flight flight;
+    flight.edges = {edge(), features.edges[0], edge()};
+    flight.edges[0].log_step_ratio = 4.0 * std::log(10.0);  // the third one was not asked
+    features.flights = {flight};
+    const std::string json = packed(json_of(features, {}));
+    int times = 0;
+    const std::string said = R"("log10_step_ratio":2.5)";
+    for (std::size_t at = json.find(said); at != std::string::npos; at = json.find(said, at + 1))
+        ++times;
+    EXPECT_EQ(times, 3) << "edge, drop and flight, which is as sure as its least sure step\n"
+                        << json;
+}
+
+TEST(StairsJson, WhereGravityWasAssumedEachFeatureSaysSo) {
+    stairs::TerrainFeatures features;
+    features.flights.emplace_back();
+    features.drops.emplace_back();
+    features.kerbs.emplace_back();
+    features.doors.emplace_back();
+    features.edges = {edge()};
+    const auto marks = [&](grid::GravitySource source) {
+        const std::string json =
+            packed(stairs_json(features, {}, {.resolution_m = 0.025, .gravity_source = source}));
+        const std::string named = std::string(R"("gravity_source":")") + gravity_name(source) + '"';
+        EXPECT_NE(json.find(named), std::string::npos) << json;
+        int times = 0;
+        const std::string said = R"("gravity_assumed":true)";
+        for (std::size_t at = json.find(said); at != std::string::npos;
+             at = json.find(said, at + 1))
+            ++times;
+        return times;
+    };
+    EXPECT_EQ(marks(grid::GravitySource::assumed), 5);
+    EXPECT_EQ(marks(grid::GravitySource::plane), 0);
+    EXPECT_EQ(marks(grid::GravitySource::imu), 0);
+    EXPECT_FALSE(gravity_note(grid::GravitySource::assumed).empty());
+    EXPECT_TRUE(gravity_note(grid::GravitySource::imu).empty());
+}
+
+stairs::LineFeature seen(double x_m, int looks) {
+    stairs::LineFeature drop = line(-0.5);
+    drop.pose.p_m.x() = x_m;
+    drop.followed = {.id = 3, .looks = looks, .last_seen_ns = 0, .seen_now = true};
+    return drop;
+}
+
+TEST(RunFeatures, WhatWasSeenOnceIsUnconfirmedAndTheFinalMapIsToldApart) {
+    stairs::TerrainFeatures followed;
+    followed.drops = {seen(1.0, 5), seen(3.0, 4), seen(5.0, 1)};
+    stairs::TerrainFeatures final_map;
+    final_map.drops = {seen(1.05, 1), seen(9.0, 1)};
+    for (stairs::LineFeature& drop : final_map.drops) drop.followed = {};
+    const RunFeatures said = compare_with_final_map(followed, final_map);
+    ASSERT_EQ(said.confirmed.drops.size(), 2U);
+    EXPECT_EQ(said.confirmed.drops[0].followed.in_final_map, true);
+    EXPECT_EQ(said.confirmed.drops[1].followed.in_final_map, false) << "remembered, not in the map";
+    ASSERT_EQ(said.unconfirmed.drops.size(), 2U) << "no drop is left out";
+    EXPECT_EQ(said.unconfirmed.drops[0].followed.in_final_map, false);
+    EXPECT_EQ(said.unconfirmed.drops[1].followed.looks, 0) << "the final map alone has it";
+    EXPECT_EQ(said.unconfirmed.drops[1].followed.in_final_map, true);
+    const std::string json = packed(
+        stairs_json(said.confirmed, {}, {.resolution_m = 0.025, .unconfirmed = &said.unconfirmed}));
+    EXPECT_NE(json.find(R"("unconfirmed":{"flights":[],"drops":[{)"), std::string::npos) << json;
+    EXPECT_NE(json.find(R"("looks":0,"in_final_map":true)"), std::string::npos) << json;
+    EXPECT_NE(json.find(R"("in_final_map":false)"), std::string::npos) << json;
 }
 
 TEST(StairsJson, WhatIsWrittenIsRead) {

@@ -170,6 +170,7 @@ Result<TerrainMap> from_folder(const std::string& folder) {
     const double yaw = std::atan2(s.body_sin_yaw, s.body_cos_yaw);
     T_odom_body.rotation = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
     map.T_odom_body = T_odom_body;
+    map.gravity_source = s.gravity_source;
     return map;
 }
 

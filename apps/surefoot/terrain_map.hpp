@@ -10,6 +10,7 @@
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
 #include "surefoot/stairs/terrain.hpp"
 
 namespace surefoot::app {
@@ -26,6 +27,8 @@ struct TerrainMap {
     Image<std::uint32_t> looks;
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
     std::optional<Pose> T_odom_body;  ///< where a machine stood
+    /// Of the run that made the map; grids, images and clouds do not say.
+    grid::GravitySource gravity_source = grid::GravitySource::assumed;
     std::vector<std::string> assumed;
 
     /// Views of the layers; the map must outlive them.

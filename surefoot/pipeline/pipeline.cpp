@@ -120,7 +120,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
       map_(config.elevation),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
       feature_finder_(config.stairs),
-      feature_follower_(config.stairs.follow),
+      feature_follower_(config.stairs),
       imu_mount_(rig.imu),
       mount_monitor_(config.mount),
       level_keeper_(config.level) {}

@@ -269,6 +269,8 @@ void EdgeFollower::take(const SeenEdge& seen,
     edge.upper_walkable = look.upper_walkable;
     edge.lower_walkable = look.lower_walkable;
     edge.open = look.open;
+    edge.log_step_ratio = look.log_step_ratio;
+    edge.hidden = look.hidden;
     name(seen, config_, track);
     take_ends(look, terrain, track);
     if (track.drop) hold_back(look, edge);
@@ -343,9 +345,23 @@ bool EdgeFollower::make_room_for(const EdgeTrack& track) {
     return true;
 }
 
+/// Ground that slopes is as high on neither side, and no drop. An edge whose place is not sure may
+/// lie beyond the ground that is weighed.
+bool EdgeFollower::is_seen_to_be_smooth(const Terrain& terrain, const Edge& edge) {
+    constexpr double kReach_m = 0.35;  ///< of ground on either side
+    constexpr double kSure_m = 0.05;
+    if (edge.across_sigma_m > kSure_m) return false;
+    const Vector2d middle_m = edge.middle_m();
+    if (!is_looked_at(terrain, {middle_m.x(), middle_m.y(), edge.upper_m})) return false;
+    const StepEvidence evidence = evidence_.weigh(terrain, edge, kReach_m, kReach_m);
+    return !evidence.is_hidden && evidence.log_ratio < least_log_ratio_;
+}
+
 void EdgeFollower::miss(const Terrain& terrain, EdgeTrack& track) {
     ++track.missed;
-    const PlaceOfEdge place = place_of(track.edge, terrain);
+    PlaceOfEdge place = place_of(track.edge, terrain);
+    if (place == PlaceOfEdge::uneven && track.drop && is_seen_to_be_smooth(terrain, track.edge))
+        place = PlaceOfEdge::level;
     if (place != PlaceOfEdge::unknown) ++track.place_known;
     track.level_looks = place == PlaceOfEdge::level ? track.level_looks + 1 : 0;
 }

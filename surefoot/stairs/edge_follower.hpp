@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,6 +10,8 @@
 #include "surefoot/stairs/features.hpp"
 #include "surefoot/stairs/follow_config.hpp"
 #include "surefoot/stairs/look_weight.hpp"
+#include "surefoot/stairs/stairs_config.hpp"
+#include "surefoot/stairs/step_evidence.hpp"
 #include "surefoot/stairs/terrain.hpp"
 
 namespace surefoot::stairs {
@@ -37,7 +40,7 @@ struct EdgeTrack {
     int kerb_missed = 0;  ///< looks in a row that found it and called it no kerb
     int missed = 0;       ///< looks in a row that did not find it
     int place_known = 0;  ///< of these, those that know the ground at its place
-    int level_looks = 0;  ///< in a row, that know the ground and find it level
+    int level_looks = 0;  ///< in a row, that know the ground and find it level or smooth
 };
 
 /// Counts the ids of all features that are followed together; 0 is none.
@@ -54,7 +57,9 @@ class EdgeFollower {
   public:
     static constexpr std::size_t kMaxEdges = 128;
 
-    explicit EdgeFollower(const FollowConfig& config) : config_(config) {
+    /// `evidence`: what tells a drop from smooth ground (StepEvidenceFinder).
+    explicit EdgeFollower(const FollowConfig& config, const StairsConfig& evidence = {})
+        : config_(config), least_log_ratio_(std::log(evidence.drop_ratio)), evidence_(evidence) {
         tracks_.reserve(kMaxEdges);
     }
     /// `first`: nothing was looked at before, so that nothing can be asked for twice.
@@ -92,12 +97,15 @@ class EdgeFollower {
                         bool first,
                         IdCounter& ids);
     [[nodiscard]] bool make_room_for(const EdgeTrack& track);
-    static void miss(const Terrain& terrain, EdgeTrack& track);
+    void miss(const Terrain& terrain, EdgeTrack& track);
+    [[nodiscard]] bool is_seen_to_be_smooth(const Terrain& terrain, const Edge& edge);
     [[nodiscard]] bool is_over(const Terrain& terrain, const EdgeTrack& track) const;
     [[nodiscard]] bool is_now_another(const EdgeTrack& track);
     void remove(const Terrain& terrain);
 
     FollowConfig config_;
+    double least_log_ratio_;
+    StepEvidenceFinder evidence_;
     std::vector<EdgeTrack> tracks_;
     std::vector<Pair> pairs_;
     std::vector<int> track_of_seen_;  ///< -1 = none yet

@@ -209,7 +209,7 @@ bool FeatureFinder::add_seen(std::vector<Edge>& edges) {
 }
 
 void FeatureFinder::weigh_one(const Terrain& terrain, Edge& edge) {
-    if (!edge.lower_seen) return;  // there is nothing to be explained
+    if (!edge.lower_seen) return;       // there is nothing to be explained
     constexpr double kBeside_m = 0.05;  ///< the next riser is spread so far over its tread
     constexpr double kLeast_m = 0.15;
     constexpr double kMost_m = 1.2;
@@ -229,8 +229,7 @@ void FeatureFinder::weigh(const Terrain& terrain, std::vector<Edge>& edges) {
         keep_steps(chain, edges);
     }
     std::erase_if(chains_, [](const std::vector<Edge>& chain) { return chain.empty(); });
-    for (Edge& edge : edges)
-        if (std::isnan(edge.log_step_ratio)) weigh_one(terrain, edge);
+    for (Edge& edge : edges) weigh_one(terrain, edge);
     const double least = std::log(config_.drop_ratio);
     std::erase_if(edges, [&](const Edge& edge) {
         return edge.lower_seen && !edge.hidden && edge.log_step_ratio < least;

@@ -37,6 +37,12 @@ Edge edge_of(const LineFeature& line) {
 FeatureFollower::FeatureFollower(const FollowConfig& config)
     : edges_(config), flights_(config), doors_(config), sills_(config) {}
 
+FeatureFollower::FeatureFollower(const StairsConfig& config)
+    : edges_(config.follow, config),
+      flights_(config.follow),
+      doors_(config.follow),
+      sills_(config.follow) {}
+
 void FeatureFollower::forget() {
     edges_.forget();
     flights_.forget();

@@ -30,9 +30,9 @@ struct Moment {
 ///   looks at one map. What was not found in this look has sigmas that grow with the drift.
 /// - Unknown is never safe. A drop is reported from the first look on, not farther away than this
 ///   look says by more than its sigma, and as long as it is. It goes when `level_looks` looks in a
-///   row know level ground on both sides of it, when it has left the map, or when as many looks in
-///   a row found it just beside, as another edge. One that this look finds is always reported (of
-///   more than EdgeFollower::kMaxEdges the nearest).
+///   row know level ground on both sides of it, or see smooth ground that slopes, when it has left
+///   the map, or when as many looks in a row found it just beside, as another edge. One that this
+///   look finds is always reported (of more than EdgeFollower::kMaxEdges the nearest).
 /// - All else is reported from the second look on: a wrong match has the sigma of a right one, but
 ///   not twice the same place. (In the first look after nothing there was none to ask.) It goes
 ///   when looks see its place and do not find it, `missed_looks` times in a row.
@@ -45,6 +45,8 @@ struct Moment {
 class FeatureFollower {
   public:
     explicit FeatureFollower(const FollowConfig& config);
+    /// With the settings by which the finder tells a drop from smooth ground.
+    explicit FeatureFollower(const StairsConfig& config);
 
     /// `found`: by a look at `terrain`. Its order does not matter but for ties. A drift that is not
     /// bounded forgets all that came before.

@@ -302,6 +302,20 @@ TEST(FeatureFollower, level_ground_seen_several_times_in_a_row_takes_a_drop_away
     EXPECT_TRUE(looks.out().edges.empty());
 }
 
+TEST(FeatureFollower, a_slope_seen_several_times_in_a_row_takes_a_drop_away_and_a_real_one_stays) {
+    Looks slope([](double x_m, double) { return -0.5 * x_m; });
+    Looks step([](double x_m, double) { return x_m < 1.0 ? 0.0 : -0.2; });
+    const int enough = FollowConfig{}.level_looks;
+    for (Looks* looks : {&slope, &step}) {
+        const double upper_m = looks == &slope ? -0.45 : 0.0;
+        looks->look(drop_found(edge_ahead(1.0, upper_m, upper_m - 0.1)));
+        for (int k = 1; k < enough; ++k) EXPECT_EQ(looks->look({}).drops.size(), 1U) << k;
+        for (int k = 0; k < 20; ++k) looks->look({});
+    }
+    EXPECT_TRUE(slope.out().drops.empty());
+    EXPECT_EQ(step.out().drops.size(), 1U);
+}
+
 TEST(FeatureFollower, a_drop_whose_place_drifted_goes_only_where_all_of_that_place_is_level) {
     // The drop lies 0.18 m farther than it is remembered, within two sigma of the drift.
     Looks looks([](double x_m, double) { return x_m < 1.18 ? 0.0 : -0.2; });

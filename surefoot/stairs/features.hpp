@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace surefoot::stairs {
@@ -14,6 +15,12 @@ struct Followed {
     int looks = 1;                  ///< that found it
     std::int64_t last_seen_ns = 0;  ///< stamp of the last of them
     bool seen_now = true;           ///< by the last look of all
+    /// The map that a run left shows it by itself, looked at without images (`surefoot stairs` of
+    /// its folder). Nothing = was not asked.
+    std::optional<bool> in_final_map = std::nullopt;
+
+    /// One look alone may be a wrong match.
+    [[nodiscard]] bool is_confirmed() const { return looks >= 2; }
 };
 
 /// A straight piece of a line at which the ground changes its height. Frame of the map [m].
@@ -71,7 +78,8 @@ struct LineFeature {
     double sigma_m = 0.0;         ///< one sigma of the height
     double across_sigma_m = 0.0;  ///< one sigma of its place, along the yaw
     bool bottom_seen = true;      ///< false: the ground behind it lies at least so deep
-    Followed followed;            ///< drops and kerbs: that of their edge
+    double log_step_ratio = std::numeric_limits<double>::quiet_NaN();  ///< of its edge
+    Followed followed;  ///< drops and kerbs: that of their edge
 };
 
 /// An edge as met by who goes down or up over it.

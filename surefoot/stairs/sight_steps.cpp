@@ -190,8 +190,8 @@ double SightSteps::log_ratio(std::span<const SightBin> bins, double height_m, st
     double cost = 0.0;
     for (std::size_t level = 0; level <= steps; ++level)
         for (int k = levels_[level].begin; k < levels_[level].end; ++k)
-            cost += SightFlight::cost_of_bin(bins[static_cast<std::size_t>(k)],
-                                             levels_[level].depth_m);
+            cost +=
+                SightFlight::cost_of_bin(bins[static_cast<std::size_t>(k)], levels_[level].depth_m);
     const double slope = even_.cost_of_slope(
         bins.subspan(begin, end - begin), height_m, noses_.front().run_m, 2.0 * config_.smear_m);
     // Of neighbouring bins those within kSightRows_px share one error. A step has a place and a

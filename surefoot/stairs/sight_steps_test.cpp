@@ -56,6 +56,24 @@ TEST(SightSteps, treads_in_sight_as_strips_of_a_few_pixels_are_steps) {
     }
 }
 
+TEST(SightSteps, steps_are_likelier_than_a_slope_and_a_slope_is_no_step) {
+    const double proven = std::log(StairsConfig{}.step_ratio);
+    for (std::uint64_t seed = 21; seed < 25; ++seed) {
+        Scene steps(flight(6, 0.17, 0.29), 0.75, 0.1);
+        steps.add_noise(0.3, seed);
+        for (const Edge& edge : steps.find()) EXPECT_GE(edge.log_step_ratio, proven) << seed;
+        for (const double slope_deg : {15.0, 22.0, 30.0, 35.0}) {
+            // So many low steps are none.
+            constexpr double kPiece_m = 0.01;
+            Scene slope(
+                flight(300, kPiece_m * std::tan(slope_deg * kRadPerDeg), kPiece_m), 0.75, 0.1);
+            slope.add_noise(0.3, seed);
+            for (const Edge& edge : slope.find())
+                EXPECT_LT(edge.log_step_ratio, proven) << slope_deg << " deg, seed " << seed;
+        }
+    }
+}
+
 /// A matcher comes down from tread to tread over 0.15 m of the second one.
 TEST(SightSteps, a_blurred_tread_ends_no_flight) {
     std::vector<Tread> treads = flight(6, 0.17, 0.27);

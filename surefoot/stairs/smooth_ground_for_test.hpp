@@ -68,9 +68,34 @@ class SmoothGround {
     Eigen::Vector2d middle_m_ = Eigen::Vector2d::Zero();
 };
 
+/// Errors of the heights of `cells` x `cells` cells. Those of neighbouring cells are independent,
+/// or hang together as means over squares of `correlation_m` do.
+inline grid::Layer height_errors(
+    int cells, double cell_m, double sigma_m, double correlation_m, std::uint64_t seed) {
+    grid::Layer errors_m(cells, cells, 0.0F);
+    if (!(sigma_m > 0.0)) return errors_m;
+    Rng rng(mix_seed(seed, 1));
+    for (std::size_t i = 0; i < errors_m.size(); ++i)
+        errors_m.data()[i] = static_cast<float>(sigma_m * rng.normal());
+    if (!(correlation_m > 0.0)) return errors_m;
+    const int reach = std::max(1, static_cast<int>(std::lround(0.5 * correlation_m / cell_m)));
+    for (const bool rows : {true, false}) {
+        const grid::Layer from = errors_m;
+        for (int iy = 0; iy < cells; ++iy) {
+            for (int ix = 0; ix < cells; ++ix) {
+                double sum = 0.0;
+                for (int k = -reach; k <= reach; ++k)
+                    sum += static_cast<double>(from.at(rows ? (ix + k + cells) % cells : ix,
+                                                       rows ? iy : (iy + k + cells) % cells));
+                errors_m.at(ix, iy) = static_cast<float>(sum / std::sqrt(2.0 * reach + 1.0));
+            }
+        }
+    }
+    return errors_m;
+}
+
 /// A map of 6 x 6 m about the origin, of the heights at the middles of its cells of 25 mm, with
-/// errors of `sigma_m`. Errors of neighbouring cells are independent, or hang together over about
-/// `correlation_m`, as a matcher's do. One stands at the origin.
+/// errors. One stands at the origin.
 class SmoothMap {
   public:
     SmoothMap(const SmoothGround& ground,
@@ -78,18 +103,13 @@ class SmoothMap {
               double correlation_m,
               bool states_variance,
               std::uint64_t seed)
-        : height_m_(kCells, kCells, 0.0F), var_m2_(kCells, kCells, 0.0F) {
+        : height_m_(height_errors(kCells, kCell_m, sigma_m, correlation_m, seed)),
+          var_m2_(kCells, kCells, 0.0F) {
         geometry_ = {kCell_m, kCells, kCells, Eigen::Vector2d::Constant(-0.5 * kCells * kCell_m)};
-        Rng rng(mix_seed(seed, 1));
-        for (std::size_t i = 0; i < height_m_.size(); ++i)
-            height_m_.data()[i] = static_cast<float>(sigma_m > 0.0 ? rng.normal() : 0.0);
-        if (correlation_m > 0.0 && sigma_m > 0.0) smooth(correlation_m);
         for (int iy = 0; iy < kCells; ++iy) {
             for (int ix = 0; ix < kCells; ++ix) {
                 const Eigen::Vector2d p_m = geometry_.center_m({ix, iy});
-                float& z_m = height_m_.at(ix, iy);
-                z_m = static_cast<float>(sigma_m * static_cast<double>(z_m) +
-                                         ground.at(p_m.x(), p_m.y()));
+                height_m_.at(ix, iy) += static_cast<float>(ground.at(p_m.x(), p_m.y()));
             }
         }
         if (states_variance) var_m2_.fill(static_cast<float>(sigma_m * sigma_m));
@@ -106,24 +126,6 @@ class SmoothMap {
     static constexpr int kCells = 240;
     static constexpr double kCell_m = 0.025;
 
-    /// Means over squares of `side_m`, with their standard deviation of 1 again.
-    void smooth(double side_m) {
-        const int reach = std::max(1, static_cast<int>(std::lround(0.5 * side_m / kCell_m)));
-        for (const bool rows : {true, false}) {
-            const grid::Layer from = height_m_;
-            for (int iy = 0; iy < kCells; ++iy) {
-                for (int ix = 0; ix < kCells; ++ix) {
-                    double sum = 0.0;
-                    for (int k = -reach; k <= reach; ++k) {
-                        const int x = (rows ? ix + k + kCells : ix) % kCells;
-                        const int y = (rows ? iy : iy + k + kCells) % kCells;
-                        sum += static_cast<double>(from.at(x, y));
-                    }
-                    height_m_.at(ix, iy) = static_cast<float>(sum / std::sqrt(2.0 * reach + 1.0));
-                }
-            }
-        }
-    }
     grid::GridGeometry geometry_;
     grid::Layer height_m_;
     grid::Layer var_m2_;

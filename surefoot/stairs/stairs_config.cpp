@@ -47,12 +47,13 @@ void StairsConfig::describe(ConfigVisitor& visitor) {
     visitor.number("drop_m", drop_m, 0.01, 1.0, "ground that lies lower by more is a drop");
     visitor.number("step_ratio",
                    step_ratio,
-                   1.0,
+                   0.0,
                    1e12,
-                   "likelihood ratio, step over smooth ground, from which an edge is a step");
+                   "likelihood ratio, step over smooth ground, from which an edge is a step; "
+                   "0: each edge is");
     visitor.number("drop_ratio",
                    drop_ratio,
-                   1e-12,
+                   0.0,
                    1e12,
                    "the same, from which an edge that goes down is a drop");
     visitor.number("evidence_shared_m",

@@ -40,8 +40,8 @@ struct StairsConfig {
     double drop_m = 0.05;          ///< what goes down by more is a drop (the gate's limit)
 
     /// So many times more likely a step than smooth ground (StepEvidenceFinder) must the heights of
-    /// an edge be for a flight or a kerb. A map has some thirty lines that might be one, and at most
-    /// one map in thirty may invent one.
+    /// an edge be for a flight or a kerb. A map has some thirty lines that might be one, and at
+    /// most one map in thirty may invent one.
     double step_ratio = 1000.0;
     /// The same for a drop: what is as likely one as not is said. A drop whose ground is not seen
     /// is not asked.

@@ -38,7 +38,7 @@ constexpr double square(double value) {
 }  // namespace
 
 bool is_step_of(const StairsConfig& config, const Edge& edge) {
-    return edge.log_step_ratio >= std::log(config.step_ratio);
+    return !(config.step_ratio > 0.0) || edge.log_step_ratio >= std::log(config.step_ratio);
 }
 
 void StepEvidenceFinder::gather(const Terrain& terrain,
@@ -85,8 +85,10 @@ void StepEvidenceFinder::gather(const Terrain& terrain,
 /// slopes the middle one. What stands on the line, and slices that a riser crosses, are few.
 double StepEvidenceFinder::slope_along(double length_m) {
     slopes_.clear();
-    const auto in_order = [](const Cell& a, const Cell& b) { return a.slice < b.slice; };
-    std::stable_sort(cells_.begin(), cells_.end(), in_order);
+    std::sort(cells_.begin(), cells_.end(), [](const Cell& a, const Cell& b) {
+        if (a.slice != b.slice) return a.slice < b.slice;
+        return a.y != b.y ? a.y < b.y : a.x < b.x;
+    });
     for (std::size_t begin = 0; begin < cells_.size();) {
         std::size_t end = begin;
         std::array<std::vector<double>, 2>& z_m = halves_;
@@ -228,8 +230,9 @@ StepEvidenceFinder::Fit StepEvidenceFinder::fit_planes(double from_m,
     const double width_m = to_m - from_m;
     for (const Slice& slice : slices_) {
         const double s_m = slice.s_m;
-        const double share =
-            s_m < from_m ? 0.0 : s_m >= to_m ? 1.0 : (s_m - from_m) / std::max(width_m, 1e-9);
+        const double share = s_m < from_m  ? 0.0
+                             : s_m >= to_m ? 1.0
+                                           : (s_m - from_m) / std::max(width_m, 1e-9);
         const Eigen::Vector4d basis(
             1.0, std::min(s_m - from_m, 0.0), share, std::max(s_m - to_m, 0.0));
         normal.noalias() += slice.weight_per_m2 * basis * basis.transpose();

@@ -10,7 +10,8 @@
 
 namespace surefoot::stairs {
 
-/// What the heights on both sides of an edge say of the two explanations "step" and "smooth ground".
+/// What the heights on both sides of an edge say of the two explanations "step" and "smooth
+/// ground".
 struct StepEvidence {
     /// Natural logarithm of the likelihood ratio, step over smooth ground. NaN = the map knows too
     /// little of one side.
@@ -35,13 +36,14 @@ struct StepEvidence {
 /// columns of the map. The variance is the measured scatter of cells along the edge, or what the
 /// map states where that is more. Beside it all cells of a slice along the edge, and slices within
 /// kCorrelation_m of each other, share an error of `evidence_shared_m`: what neither a map nor a
-/// plane is true to, however long the edge. Explanations with more parameters pay for them (Schwarz 1978, BIC).
+/// plane is true to, however long the edge. Explanations with more parameters pay for them (Schwarz
+/// 1978, BIC).
 ///
 /// Holds the working memory; not thread-safe. The same result for the same map.
 class StepEvidenceFinder {
   public:
-    static constexpr double kSteepest = 0.84;        ///< rise over run of 40 deg
-    static constexpr double kMostBend_per_m = 4.0;   ///< radius of 0.25 m
+    static constexpr double kSteepest = 0.84;       ///< rise over run of 40 deg
+    static constexpr double kMostBend_per_m = 4.0;  ///< radius of 0.25 m
 
     explicit StepEvidenceFinder(const StairsConfig& config) : config_(config) {}
     /// `upper_m` and `lower_m`: how much ground is looked at above and below the edge [m].

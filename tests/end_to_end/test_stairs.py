@@ -8,12 +8,12 @@ from surefoot_cli import CliTest, png_of, read_asc, surefoot
 
 NAMES = {
     "flights": "kind steps riser_m riser_std_m riser_spread_m going_m going_std_m going_spread_m width_m landing_m "
-               "turn_rad cut open left right pose",
-    "drops": "pose height_m length_m sigma_m bottom_seen",
-    "kerbs": "kind pose height_m length_m sigma_m bottom_seen",
-    "sills": "pose height_m length_m sigma_m bottom_seen",
+               "turn_rad cut open left right pose log10_step_ratio",
+    "drops": "pose height_m length_m sigma_m bottom_seen log10_step_ratio",
+    "kerbs": "kind pose height_m length_m sigma_m bottom_seen log10_step_ratio",
+    "sills": "pose height_m length_m sigma_m bottom_seen log10_step_ratio",
     "doors": "width_m width_std_m sill_m clearance_m pose",
-    "edges": "from to upper_m lower_m lower_seen sigma_m",
+    "edges": "from to upper_m lower_m lower_seen sigma_m log10_step_ratio",
 }
 CLASSES = "unknown floor tread riser ramp kerb sill drop wall table tunnel".split()
 CELL_M = 0.025
@@ -46,13 +46,20 @@ def write_grid(path, height_of, nx=160, ny=60, x0=0.0, y0=0.0, cell=CELL_M):
 
 
 class Stairs(CliTest):
-    def check_names(self, answer, followed=""):
-        self.assertEqual(list(answer), [*NAMES, "classes", "assumed"])
+    def check_names(self, answer, of_run=False):
+        self.assertEqual(list(answer), [*NAMES, "classes", "assumed", "gravity_source", *["unconfirmed"][:of_run]])
         self.assertEqual(list(answer["classes"]), CLASSES)
+        gravity = ["gravity_assumed"] if answer["gravity_source"] == "assumed" else []
+        followed = ["id", "looks", "last_seen_s", "in_final_map"] if of_run else []
         for kind, names in NAMES.items():
             for thing in answer[kind]:
-                self.assertEqual(set(thing), set(names.split() + followed.split()), kind)
+                self.assertEqual(set(thing), {*names.split(), *followed, *gravity}, kind)
                 self.assertEqual(len(thing.get("pose", [0] * 4)), 4)
+                if of_run:
+                    self.assertGreaterEqual(thing["looks"], 2, "what one frame showed is not confirmed")
+            for thing in answer["unconfirmed"][kind] if of_run else []:
+                self.assertLess(thing["looks"], 2)
+                self.assertIn("in_final_map", thing)
 
     def fails(self, code, *call):
         """The one sentence of a call that fails."""
@@ -103,6 +110,16 @@ class Stairs(CliTest):
         self.assertEqual(len(levels), 160 * 60)
         found = sorted({round(z, 3) for z in levels if z > -9000})
         self.assertEqual(found, [RISER_M, 2 * RISER_M, round(3 * RISER_M, 3)])
+
+    def test_a_smooth_slope_is_no_stair_and_gravity_that_was_assumed_is_said(self):
+        for slope_deg in (22, 26, 30):
+            rise = CELL_M * math.tan(math.radians(slope_deg))
+            file = write_grid(self.dir / "slope.asc", lambda ix, iy: max(0, ix - 32) * rise, nx=120, y0=-0.75)
+            answer = self.json_of("stairs", file, "--from", "0.1,0", "--out", self.dir / "out")
+            self.check_names(answer)
+            self.assertEqual((answer["flights"], answer["kerbs"]), ([], []), slope_deg)
+            self.assertEqual(answer["gravity_source"], "assumed")
+            self.assertIn("gravity was assumed", (self.dir / "out" / "report.html").read_text())
 
     def test_the_same_steps_from_above_go_down_and_begin_with_a_drop(self):
         file = write_grid(self.dir / "up.asc", lambda ix, iy: height_of_stairs(ix), y0=-0.75)
@@ -228,11 +245,16 @@ class Stairs(CliTest):
                            "--out", out)
         self.assertTrue(run["complete"])
         of_run = json.loads((out / "stairs.json").read_text())
-        self.check_names(of_run, "id looks last_seen_s")
+        self.check_names(of_run, of_run=True)
         self.assertGreater(of_run["flights"][0]["looks"], 1)
         self.assertEqual(of_run["flights"][0]["last_seen_s"], 0.0)
         again = self.json_of("stairs", out, "--out", self.dir / "again")
         self.check_names(again)
+        self.assertEqual(of_run["gravity_source"], run["gravity_source"])
+        self.assertEqual(again["gravity_source"], run["gravity_source"])
+        for kind in NAMES:  # the same story of the same map
+            in_map = sum(thing["in_final_map"] for thing in of_run[kind] + of_run["unconfirmed"][kind])
+            self.assertEqual(in_map, len(again[kind]), kind)
         self.assertTrue(any("base_link of map.snapshot" in line for line in again["assumed"]), again["assumed"])
         print(f"run: {[(f['kind'], f['steps'], f['riser_m'], f['going_m']) for f in of_run['flights']]}")
         self.assertTrue(of_run["flights"], of_run)
@@ -266,7 +288,7 @@ class Stairs(CliTest):
         (out / "stairs.json").write_text("of an earlier run")
         self.run_ok("run", "sim:floor", "--set", "sim.sensor=analytic", "--max-frames", 3, "--out", out)
         answer = json.loads((out / "stairs.json").read_text())
-        self.check_names(answer)
+        self.check_names(answer, of_run=True)
         self.assertEqual({kind: answer[kind] for kind in NAMES}, {kind: [] for kind in NAMES})
         self.assertEqual(answer["assumed"], [])
 
