@@ -91,7 +91,8 @@ class CellReducer {
             const auto group = z_m.subspan(begin, end - begin);
             if (std::isnan(ground.z_m)) {
                 // Below what hangs, mirror images of it lie too: they are fewer.
-                const int twice = end < z_m.size() ? 2 * wanted : wanted;
+                const int twice =
+                    end < z_m.size() ? std::max(wanted, 2 * rules_.reduction.min_points) : wanted;
                 ground.z_m = surface_m(heights, group, twice, ix, iy);
                 ground.points = static_cast<float>(group.size());
             } else if (static_cast<int>(group.size()) >= wanted) {  // a surface or not: it hangs

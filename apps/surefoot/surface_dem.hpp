@@ -42,7 +42,7 @@ using EachBlock =
 
 /// Highest supported surface of each cell that does not hang. The heights of a cell's points fall
 /// into groups with at least `min_overhead_m` between them; the ground is in the lowest group that
-/// has a surface, and twice the points for it that a surface needs where something hangs above
+/// has a surface, and twice the fewest points for it where something hangs above
 /// (what is below a floor are its mirror images), and there it is the highest surface that enough
 /// points share and that is denser than an even scatter of them, and than a fifth of the surfaces
 /// around: points in flight between two surfaces are scattered or few. A cell with fewer
