@@ -66,7 +66,7 @@ GateBench::GateBench(const Machine& machine,
       now_ns_(kStart_ns),
       next_tick_ns_(kStart_ns + kTick_ns),
       end_ns_(kStart_ns + kPatience_ns) {
-    auto writer = wire::SnapshotWriter::create(path_);
+    auto writer = wire::SnapshotWriter::create({path_, {}});
     if (!writer) {  // no shared memory, no bench
         fmt::print(stderr, "{}\n", writer.error().message);
         std::exit(1);
@@ -87,7 +87,10 @@ GateBench::~GateBench() {
 
 void GateBench::start_gate() {
     keeper_ = std::make_unique<wire::Gatekeeper>(
-        machine_, limits_, path_, [this](const auto& judgement, const grid::MapSnapshot& map) {
+        machine_,
+        limits_,
+        wire::ChannelAddress{path_, {}},
+        [this](const auto& judgement, const grid::MapSnapshot& map) {
             if (audit_) audit_(judgement, map);
         });
 }

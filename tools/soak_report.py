@@ -16,7 +16,7 @@ MOST_HANDLES_PER_H = 1.0
 BLOCK_S = 300.0  # handles: the fewest in such a time, so that passing crowds do not count
 PERCEPTION_GONE = ("perception_pause", "perception_hang", "perception_kill")
 ASKED_AGAIN_S = 0.3  # the first question over a connection that is dead comes so late at most
-ORPHAN_S = 6.0  # a gate whose parent was killed ends after 5 s
+ORPHAN_S = 6.0  # a killed perception takes its gate with it; the next gate listens within this time
 Sample = collections.namedtuple("Sample", "elapsed_s name pid rss_kb anon_kb threads handles ticks shm_files shm_kb "
                                           "audit_kb load")
 Query = collections.namedtuple("Query", "sent received verdict reason decided valid_until port")  # times: steady ns
@@ -99,7 +99,7 @@ def overlaps(query, fault, before_s=0.0, after_s=0.0):
 
 
 def is_lost_rightly(query, faults):
-    """The gate was killed, or was the orphan of a killed perception, or stood."""
+    """The gate was killed, or ended with a killed perception, or stood."""
     for fault in faults:
         if fault.kind in ("gate_kill", "gate_pause") and overlaps(query, fault, 0.1, ASKED_AGAIN_S):
             return True

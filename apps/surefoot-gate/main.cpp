@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The step gate as a process: newest map through shared memory, questions over a WebSocket, every
 // verdict into the audit log. One thread decides; the log writes on its own.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -21,6 +24,7 @@
 #include "io/machine_file.hpp"
 #include "server/wire/audit_log.hpp"
 #include "server/wire/gatekeeper.hpp"
+#include "server/wire/port_holder.hpp"
 #include "server/wire/token_file.hpp"
 #include "server/wire/websocket_server.hpp"
 
@@ -30,8 +34,8 @@ namespace {
 constexpr int kExitOk = 0;
 constexpr int kExitFailed = 1;
 constexpr int kExitUsage = 2;
-/// So long an orphan tells its clients that perception is gone before it ends.
-constexpr std::int64_t kOrphanLife_ns = 5'000'000'000;
+/// The gate of an ended serve needs milliseconds to let go of the port.
+constexpr std::int64_t kPortPatience_ns = 1'500'000'000;
 
 std::atomic<bool> stop_wanted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
@@ -44,7 +48,8 @@ struct Options {
     std::string audit_dir;
     bool assured = false;
     int audit_mb = 1024;
-    bool orphan_ends = false;
+    std::string key_file;
+    int parent_fd = -1;
     double vouch_radius_m = 0.0;
     wire::ServerConfig server;
 };
@@ -58,6 +63,79 @@ std::int64_t clock_ns(clockid_t clock) {
 int fail(const Error& error) {
     fmt::print(stderr, "surefoot-gate: {}\n", error.message);
     return error.code == ErrorCode::usage ? kExitUsage : kExitFailed;
+}
+
+/// The key of the channel: from the program that started the gate, or from a file. A gate without
+/// one trusts no map.
+Result<wire::ChecksumKey> channel_key(const Options& options) {
+    if (options.parent_fd >= 0) {
+        std::array<char, 16> bytes{};
+        if (::recv(options.parent_fd, bytes.data(), bytes.size(), MSG_WAITALL) !=
+            static_cast<ssize_t>(bytes.size()))
+            return usage_error("--parent-fd: only `surefoot serve` uses this option");
+        ::fcntl(options.parent_fd, F_SETFD, FD_CLOEXEC);
+        return wire::key_of({bytes.data(), bytes.size()});
+    }
+    if (!options.key_file.empty()) return wire::read_checksum_key(options.key_file);
+    fmt::print(stderr,
+               "surefoot-gate: warning: without the key of the channel no map is trusted and every "
+               "answer is ERROR; name the file that `surefoot serve --channel-key` got "
+               "(--channel-key)\n");
+    return wire::new_checksum_key();
+}
+
+/// The program that started the gate has ended, however it ended.
+bool is_orphan(int parent_fd) {
+    char byte = 0;
+    return parent_fd >= 0 && ::recv(parent_fd, &byte, 1, MSG_DONTWAIT) == 0;
+}
+
+/// Says on stderr what becomes of the channel.
+class ChannelNews {
+  public:
+    explicit ChannelNews(std::string path) : path_(std::move(path)) {}
+    void tell(wire::ChannelState state) {
+        if (state == told_) return;
+        const bool was_lost = told_ == wire::ChannelState::lost;
+        told_ = state;
+        if (state == wire::ChannelState::lost)
+            say("the channel was deleted, replaced or cut off; nothing is allowed until perception "
+                "has made it anew");
+        if (state == wire::ChannelState::open && was_lost) say("the channel is open again");
+        if (state == wire::ChannelState::forged)
+            say("another process has changed a map; the gate is in FAULT until an operator re-arms "
+                "it. Find that process first: only this user and root can write there");
+    }
+
+  private:
+    void say(const char* what) const {
+        fmt::print(stderr, "surefoot-gate: {}: {}\n", path_, what);
+        std::fflush(stderr);
+    }
+    std::string path_;
+    wire::ChannelState told_ = wire::ChannelState::absent;
+};
+
+/// Listens; waits a moment for the gate of an ended serve, and names who has the port.
+Result<std::unique_ptr<wire::WebsocketServer>> listen(const wire::ServerConfig& config,
+                                                      wire::StepGate& gate,
+                                                      const wire::WebsocketServer::Tick& tick) {
+    const std::int64_t end_ns = clock_ns(CLOCK_MONOTONIC) + kPortPatience_ns;
+    while (true) {
+        auto server = wire::WebsocketServer::open(config, gate, tick);
+        if (server || config.port == 0) return server;
+        const auto holder = wire::holder_of_port(config.port);
+        if (!holder) return server;
+        if (clock_ns(CLOCK_MONOTONIC) > end_ns)
+            return Error{server.error().code,
+                         fmt::format("{}; {} listens there{}; end that process, or name another "
+                                     "port (--port)",
+                                     server.error().message,
+                                     wire::words_of(*holder),
+                                     holder->parent == 1 ? ", whose parent has ended" : "")};
+        constexpr timespec kPause{0, 20'000'000};
+        ::nanosleep(&kPause, nullptr);
+    }
 }
 
 gate::ReadinessLimits limits_of(const io::MachineFile& file) {
@@ -102,13 +180,15 @@ Result<std::unique_ptr<wire::AuditLog>> open_log(const Options& options, const M
 }
 
 int serve(const Options& options, const io::MachineFile& file) {
+    const auto key = channel_key(options);
+    if (!key) return fail(key.error());
     auto log = open_log(options, file.machine);
     if (!log) return fail(log.error());
     wire::AuditLog* const audit = log->get();
     wire::Gatekeeper keeper(
         file.machine,
         limits_of(file),
-        options.snapshots,
+        {options.snapshots, *key},
         [audit](const wire::Judgement& j, const grid::MapSnapshot& map) {
             if (audit != nullptr)
                 audit->push(wire::AuditedVerdict{j.query, j.health, j.now_ns, map, j.verdict});
@@ -120,19 +200,16 @@ int serve(const Options& options, const io::MachineFile& file) {
         if (auto status = keeper.vouch_when_ready(options.vouch_radius_m); !status)
             return fail(status.error());
     }
-    const pid_t parent = ::getppid();
-    std::int64_t orphan_since_ns = 0;
+    ChannelNews news(options.snapshots);
     wire::WebsocketServer* running = nullptr;
     const auto tick = [&](std::int64_t now_ns) {
         keeper.poll(now_ns, clock_ns(CLOCK_BOOTTIME));
+        news.tell(keeper.channel_state());
         if (options.assured && audit != nullptr)
             keeper.set_log_failing(audit->state(now_ns) != wire::AuditState::ok);
-        if (options.orphan_ends && ::getppid() != parent && orphan_since_ns == 0)
-            orphan_since_ns = now_ns;
-        if (stop_wanted || (orphan_since_ns != 0 && now_ns - orphan_since_ns > kOrphanLife_ns))
-            running->stop();
+        if (stop_wanted || is_orphan(options.parent_fd)) running->stop();
     };
-    const auto server = wire::WebsocketServer::open(options.server, keeper, tick);
+    auto server = listen(options.server, keeper, tick);
     if (!server) return fail(server.error());
     running = server->get();
     fmt::print("listening on {}://{}:{}\n",
@@ -143,6 +220,7 @@ int serve(const Options& options, const io::MachineFile& file) {
     ask_for_short_slices();
     running->run();
     keeper.stop();
+    server->reset();  // the port is free while the log is written to its end
     if (audit != nullptr) audit->stop();
     return kExitOk;
 }
@@ -231,9 +309,12 @@ int main_with_arguments(int argc, char** argv) {
                    "far around the machine; void after leaving")
         ->check(CLI::NonNegativeNumber)
         ->type_name("M");
-    app.add_flag("--orphan-ends",
-                 options.orphan_ends,
-                 "end a few seconds after the program that started the gate");
+    app.add_option("--channel-key",
+                   options.key_file,
+                   "file with the key of the maps, as given to `surefoot serve`; 32 hexadecimal "
+                   "digits, rights 600")
+        ->type_name("FILE");
+    app.add_option("--parent-fd", options.parent_fd)->group("");  // of `surefoot serve` alone
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -2,15 +2,17 @@
 #include "apps/surefoot/gate_child.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
+#include <tuple>
 #include <utility>
 
 namespace surefoot::app {
@@ -29,11 +31,18 @@ Result<std::string> find_program() {
     return input_error("the program surefoot-gate is not beside " + self.string());
 }
 
-/// The first line that it writes, or what came until it closed.
+/// A gate that does not say where it listens within this time does not work.
+constexpr int kStart_ms = 20'000;
+
+/// The first line that it writes, or what came until it closed or time was up.
 std::string first_line(int file) {
     std::string line;
     char byte = 0;
     while (line.size() < 4096) {
+        pollfd wait{file, POLLIN, 0};
+        const int ready = ::poll(&wait, 1, kStart_ms);
+        if (ready < 0 && errno == EINTR) continue;
+        if (ready <= 0) break;
         const ssize_t got = ::read(file, &byte, 1);
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0 || byte == '\n') break;
@@ -51,59 +60,88 @@ std::uint16_t port_of(const std::string& line) {
     return port;
 }
 
+/// In the new process, before it is the gate: only calls that are safe after a fork.
+[[noreturn]] void become_gate(
+    const char* program, char* const* words, int output, int line, pid_t parent) {
+    ::dup2(output, STDOUT_FILENO);
+    ::fcntl(line, F_SETFD, 0);  // it stays open
+    // Linux shares the processor between sessions before it looks at nice values: what
+    // perception used up shall not make the gate wait. The keyboard's interrupt is for serve.
+    ::setsid();
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() == parent) ::execv(program, words);
+    ::_exit(127);
+}
+
 }  // namespace
 
-Result<GateChild> GateChild::start(std::vector<std::string> arguments,
-                                   const std::vector<std::string>& first_arguments) {
+Result<GateChild> GateChild::start(Start how) {
     auto program = find_program();
     if (!program) return program.error();
     GateChild child;
     child.program_ = std::move(program).value();
-    child.arguments_ = std::move(arguments);
-    std::vector<std::string> first = child.arguments_;
-    first.insert(first.end(), first_arguments.begin(), first_arguments.end());
-    if (auto launched = child.launch(first); !launched) return launched.error();
+    child.how_ = std::move(how);
+    std::vector<std::string> first = child.how_.arguments;
+    first.insert(first.end(), child.how_.first_arguments.begin(), child.how_.first_arguments.end());
+    if (auto launched = child.launch(std::move(first)); !launched) return launched.error();
     return child;
 }
 
 GateChild::GateChild(GateChild&& other) noexcept
     : program_(std::move(other.program_)),
-      arguments_(std::move(other.arguments_)),
+      how_(std::move(other.how_)),
       process_(std::exchange(other.process_, -1)),
+      line_(std::exchange(other.line_, -1)),
       port_(other.port_),
       restarts_(other.restarts_),
       next_start_ns_(other.next_start_ns_) {}
 
 GateChild::~GateChild() {
-    if (process_ <= 0) return;
-    ::kill(process_, SIGTERM);
-    ::waitpid(process_, nullptr, 0);
+    if (process_ > 0) {
+        ::kill(process_, SIGTERM);
+        ::waitpid(process_, nullptr, 0);
+    }
+    hang_up();
 }
 
-Status GateChild::launch(const std::vector<std::string>& arguments) {
-    std::vector<char*> words{program_.data()};
-    std::vector<std::string> copies = arguments;
-    for (std::string& word : copies) words.push_back(word.data());
-    words.push_back(nullptr);
-    int pipe_ends[2];
-    if (::pipe2(pipe_ends, O_CLOEXEC) != 0)
+void GateChild::hang_up() noexcept {
+    if (line_ >= 0) ::close(line_);
+    line_ = -1;
+}
+
+Status GateChild::launch(std::vector<std::string> arguments) {
+    hang_up();
+    int output[2];
+    int line[2];  // no pipe: another process of this user could open its end in /proc and read
+    if (::pipe2(output, O_CLOEXEC) != 0)
         return input_error("the gate process cannot be started: no pipe");
-    process_ = ::fork();
-    if (process_ == 0) {
-        ::dup2(pipe_ends[1], STDOUT_FILENO);
-        // Linux shares the processor between sessions before it looks at nice values: what
-        // perception used up shall not make the gate wait. The keyboard's interrupt is for serve.
-        ::setsid();
-        ::execv(program_.c_str(), words.data());
-        ::_exit(127);
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line) != 0) {
+        ::close(output[0]);
+        ::close(output[1]);
+        return input_error("the gate process cannot be started: no socket pair");
     }
-    ::close(pipe_ends[1]);
-    const std::string line = process_ > 0 ? first_line(pipe_ends[0]) : "";
-    ::close(pipe_ends[0]);
-    port_ = port_of(line);
+    arguments.insert(arguments.end(), {"--parent-fd", std::to_string(line[1])});
+    std::vector<char*> words{program_.data()};
+    for (std::string& word : arguments) words.push_back(word.data());
+    words.push_back(nullptr);
+    const std::string key = wire::bytes_of(how_.key);
+    std::ignore = ::send(line[0], key.data(), key.size(), MSG_NOSIGNAL);
+    const pid_t parent = ::getpid();
+    process_ = ::fork();
+    if (process_ == 0) become_gate(program_.c_str(), words.data(), output[1], line[1], parent);
+    ::close(output[1]);
+    ::close(line[1]);
+    line_ = line[0];
+    const std::string said = process_ > 0 ? first_line(output[0]) : "";
+    ::close(output[0]);
+    port_ = port_of(said);
     if (port_ != 0) return {};
-    if (process_ > 0) ::waitpid(process_, nullptr, 0);
+    if (process_ > 0) {
+        ::kill(process_, SIGKILL);  // where it hangs
+        ::waitpid(process_, nullptr, 0);
+    }
     process_ = -1;
+    hang_up();
     return input_error("the gate process did not start (its reason is above): " + program_);
 }
 
@@ -114,7 +152,7 @@ Result<bool> GateChild::watch(std::int64_t now_ns) {
     }
     if (now_ns < next_start_ns_) return false;
     next_start_ns_ = now_ns + kRestartEvery_ns;
-    if (auto launched = launch(arguments_); !launched) return launched.error();  // tried again
+    if (auto launched = launch(how_.arguments); !launched) return launched.error();  // tried again
     ++restarts_;
     return true;
 }

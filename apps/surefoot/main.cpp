@@ -490,6 +490,11 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
         ->type_name("DIR");
     verb->add_option("--channel", o.channel, "file in shared memory for the maps")
         ->type_name("FILE");
+    verb->add_option("--channel-key",
+                     o.channel_key,
+                     "file with the key of the maps, for a surefoot-gate that you start yourself: "
+                     "32 hexadecimal digits, rights 600; else a new key at every start")
+        ->type_name("FILE");
     verb->add_option("--nice",
                      o.niceness,
                      "how far perception stands back so that the gate answers in time "

@@ -44,17 +44,31 @@ namespace {
 constexpr double kRemembered_s = 10.0;  ///< of a simulated walk: no frame shows what is older
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
 
-/// A name in shared memory that is free again when the program ends.
-class ChannelFile {
+/// The writer of the channel, whose file is gone when the program ends.
+class Channel {
   public:
-    explicit ChannelFile(std::string path) : path_(std::move(path)) {}
-    ~ChannelFile() { ::unlink(path_.c_str()); }
-    ChannelFile(const ChannelFile&) = delete;
-    ChannelFile& operator=(const ChannelFile&) = delete;
-    [[nodiscard]] const std::string& path() const noexcept { return path_; }
+    explicit Channel(wire::SnapshotWriter its_writer) : writer(std::move(its_writer)) {}
+    ~Channel() { writer.remove(); }
+    Channel(const Channel&) = delete;
+    Channel& operator=(const Channel&) = delete;
+
+    /// Mends the file a few times a second, and says what had happened to it.
+    void look_after(std::int64_t now_ns) {
+        if (now_ns < next_ns_) return;
+        next_ns_ = now_ns + kMendEvery_ns;
+        const auto mended = writer.mend();
+        if (mended && *mended)
+            log_warning(fmt::format("the snapshot channel was made anew: {}", **mended));
+        if (!mended && mended.error().message != told_) log_error(mended.error().message);
+        told_ = mended ? "" : mended.error().message;
+    }
+
+    wire::SnapshotWriter writer;
 
   private:
-    std::string path_;
+    static constexpr std::int64_t kMendEvery_ns = 250'000'000;
+    std::int64_t next_ns_ = 0;
+    std::string told_;  ///< an error that was said already
 };
 
 /// The gate's answers come first, then who looks after it: the first thread, which starts it again
@@ -116,8 +130,7 @@ std::vector<std::string> gate_arguments(const ServeOptions& options, const std::
                                    "--port",
                                    std::to_string(options.port),
                                    "--bind",
-                                   options.bind_address,
-                                   "--orphan-ends"};
+                                   options.bind_address};
     const auto add = [&words](const char* option, const std::string& value) {
         if (value.empty()) return;
         words.emplace_back(option);
@@ -237,7 +250,7 @@ class Service {
                                            wire::SnapshotWriter& writer);
     Status perceive_beside(GateChild& gate,
                            std::unique_ptr<camera::FrameSource> source,
-                           wire::SnapshotWriter& writer);
+                           Channel& channel);
     Status introduce(const camera::FrameSource& source,
                      const wire::Access& access,
                      std::uint16_t gate_port);
@@ -252,7 +265,7 @@ class Service {
     bool follow_pages(LiveSession& session, const wire::SnapshotWriter& writer);
     std::optional<int> next_jump(LiveSession::End end);
     void tell_where(const GateChild& gate);
-    void look_after(GateChild& gate);
+    void look_after(GateChild& gate, Channel& channel);
     void remember_word(const LiveSession& session);
     void draw(const AskedStep& step, const grid::MapSnapshot& map);
 
@@ -287,7 +300,8 @@ void Service::tell_where(const GateChild& gate) {
     page_->introduce(hello_, machine_);
 }
 
-void Service::look_after(GateChild& gate) {
+void Service::look_after(GateChild& gate, Channel& channel) {
+    channel.look_after(steady_now_ns());
     const auto started = gate.watch(steady_now_ns());
     if (!started) log_error(started.error().message);
     if (!started || !*started) return;
@@ -417,16 +431,16 @@ Status Service::perceive(std::unique_ptr<camera::FrameSource> source,
 
 Status Service::perceive_beside(GateChild& gate,
                                 std::unique_ptr<camera::FrameSource> source,
-                                wire::SnapshotWriter& writer) {
+                                Channel& channel) {
     Status perceived;
     std::atomic<bool> ended{false};
     std::thread perception([&] {
         if (options_.niceness != 0) std::ignore = be_nice(options_.niceness);
-        perceived = perceive(std::move(source), writer);
+        perceived = perceive(std::move(source), channel.writer);
         ended = true;
     });
     while (!ended) {
-        look_after(gate);
+        look_after(gate, channel);
         std::this_thread::sleep_for(kLookEvery);
     }
     perception.join();
@@ -534,13 +548,17 @@ Status Service::run() {
         wire::load_access(options_.token_file, options_.guests, options_.bind_address);
     if (!loaded) return loaded.error();
     fmt::print(stderr, "{}", loaded->news);
-    const ChannelFile channel(channel_path(options_));
-    auto writer = wire::SnapshotWriter::create(channel.path());
+    auto key = options_.channel_key.empty() ? wire::new_checksum_key()
+                                            : wire::read_checksum_key(options_.channel_key);
+    if (!key) return key.error();
+    const std::string path = channel_path(options_);
+    auto writer = wire::SnapshotWriter::create({path, *key});
     if (!writer) return writer.error();
-    std::vector<std::string> first;
+    Channel channel(std::move(*writer));
+    GateChild::Start how{gate_arguments(options_, path), {}, *key};
     if (options_.vouch_radius_m > 0.0)
-        first = {"--vouch", fmt::format("{}", options_.vouch_radius_m)};
-    auto gate = GateChild::start(gate_arguments(options_, channel.path()), first);
+        how.first_arguments = {"--vouch", fmt::format("{}", options_.vouch_radius_m)};
+    auto gate = GateChild::start(std::move(how));
     if (!gate) return gate.error();
     if (auto introduced = introduce(**source, loaded->access, gate->port()); !introduced)
         return introduced;
@@ -554,11 +572,11 @@ Status Service::run() {
     watch_for_interrupts();
     if (auto steered = steer(**source, loaded->access.rider, gate->port()); !steered)
         return steered;
-    Status perceived = perceive_beside(*gate, std::move(source).value(), *writer);
+    Status perceived = perceive_beside(*gate, std::move(source).value(), channel);
     walk_.reset();
     if (!perceived) return perceived;
     while (!options_.once && !interrupted()) {  // whoever asks now hears that the frames are old
-        look_after(*gate);
+        look_after(*gate, channel);
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     return {};

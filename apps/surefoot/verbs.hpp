@@ -126,6 +126,7 @@ struct ServeOptions {
     bool joystick = false;        ///< pages steer a simulated REX
     std::string out_dir;          ///< pictures of each movement that was asked for
     std::string channel;          ///< file in shared memory; empty = one of its own
+    std::string channel_key;      ///< file with its key; empty = a new key at every start
     int niceness = 10;            ///< of perception beside the gate
     int page_port = 8080;         ///< 0 = any free one
     std::vector<std::string> foxglove_origins;  ///< of other machines, that may look

@@ -38,11 +38,11 @@ Status refuse_attestation(const std::string& why) {
 
 Gatekeeper::Gatekeeper(const Machine& machine,
                        const gate::ReadinessLimits& limits,
-                       std::string channel_path,
+                       ChannelAddress channel,
                        Audit audit,
                        AuditAct audit_act)
     : machine_(machine),
-      channel_path_(std::move(channel_path)),
+      channel_(std::move(channel)),
       audit_(std::move(audit)),
       audit_act_(std::move(audit_act)),
       readiness_(machine, limits),
@@ -65,17 +65,34 @@ void Gatekeeper::poll(std::int64_t now_ns, std::int64_t boottime_ns) {
 }
 
 void Gatekeeper::open_channel(std::int64_t now_ns) {
-    if (reader_ || now_ns < next_open_ns_) return;
+    const bool wanted =
+        channel_state_ == ChannelState::absent || channel_state_ == ChannelState::lost;
+    if (!wanted || now_ns < next_open_ns_) return;
     next_open_ns_ = now_ns + kOpenEvery_ns;
-    auto reader = SnapshotReader::open(channel_path_);
+    if (reader_) {
+        if (reader_->reopen()) channel_state_ = ChannelState::open;
+        return;
+    }
+    auto reader = SnapshotReader::open(channel_);
     if (!reader) return;
     reader_.emplace(std::move(*reader));
+    channel_state_ = ChannelState::open;
     readiness_.resume_fault(reader_->kept_faults());
 }
 
-void Gatekeeper::fetch(std::int64_t now_ns) {
+SnapshotReader::Read Gatekeeper::read_channel(std::int64_t now_ns) {
     open_channel(now_ns);
     const auto read = reader_ ? reader_->read(*incoming_) : SnapshotReader::Read::nothing;
+    if (read == SnapshotReader::Read::lost) channel_state_ = ChannelState::lost;
+    if (read == SnapshotReader::Read::forged) {
+        channel_state_ = ChannelState::forged;
+        readiness_.snapshot_forged(now_ns);
+    }
+    return read;
+}
+
+void Gatekeeper::fetch(std::int64_t now_ns) {
+    const auto read = read_channel(now_ns);
     if (reader_ && reader_->writer() != writer_) {
         writer_ = reader_->writer();
         has_map_ = false;
@@ -209,6 +226,7 @@ Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
                      "there is nothing to re-arm: the gate is in no fault, or in one that only a "
                      "restart with a valid configuration ends"};
     vouching_.revoke();
+    if (channel_state_ == ChannelState::forged) channel_state_ = ChannelState::open;
     if (reader_) {  // the map that a fault left behind is not believed again
         reader_->keep_faults(0);
         reader_->want_restart();

@@ -28,6 +28,14 @@ struct Judgement {
     gate::Verdict verdict;
 };
 
+/// How the gate finds the channel of its maps.
+enum class ChannelState : std::uint8_t {
+    absent,  ///< not there yet
+    open,
+    lost,   ///< deleted, replaced or cut off; opened again when perception has mended it
+    forged  ///< a snapshot was not made by perception: a fault, until an operator re-arms the gate
+};
+
 /// The step gate of the gate process: newest snapshot of the channel, state machine, canaries, the
 /// operator's word, and decide(). One thread; no clock, all times come with the calls. Needs
 /// `poll` every few milliseconds, also while nobody asks.
@@ -41,7 +49,7 @@ class Gatekeeper final : public StepGate {
     /// The channel need not be there yet.
     Gatekeeper(const Machine& machine,
                const gate::ReadinessLimits& limits,
-               std::string channel_path,
+               ChannelAddress channel,
                Audit audit = {},
                AuditAct audit_act = {});
 
@@ -56,6 +64,8 @@ class Gatekeeper final : public StepGate {
     [[nodiscard]] Status vouch_when_ready(double radius_m);
     /// The process ends: nothing is OK any more.
     void stop() noexcept { readiness_.stop(); }
+
+    [[nodiscard]] ChannelState channel_state() const noexcept { return channel_state_; }
 
     [[nodiscard]] Answer ask_step(const StepQuestion& question, std::int64_t now_ns) override;
     [[nodiscard]] Answer ask_goal(const GoalQuestion& question, std::int64_t now_ns) override;
@@ -76,6 +86,7 @@ class Gatekeeper final : public StepGate {
   private:
     void fetch(std::int64_t now_ns);
     void open_channel(std::int64_t now_ns);
+    [[nodiscard]] SnapshotReader::Read read_channel(std::int64_t now_ns);
     void ask_canary(std::int64_t now_ns);
     void give_starters_word(std::int64_t now_ns);
     [[nodiscard]] std::int64_t least_radius_tenth_mm() const;
@@ -89,7 +100,7 @@ class Gatekeeper final : public StepGate {
     Machine machine_;
     std::array<std::uint8_t, Machine::kMovementCodes> movements_{};  ///< the first movement_count_
     std::size_t movement_count_ = 0;
-    std::string channel_path_;
+    ChannelAddress channel_;
     Audit audit_;
     AuditAct audit_act_;
     TokenBucket refusals_{{10, 100}};  ///< that are passed on to the log
@@ -98,6 +109,7 @@ class Gatekeeper final : public StepGate {
     gate::Vouching vouching_;
     std::unique_ptr<gate::Canaries> canaries_;
     std::optional<SnapshotReader> reader_;
+    ChannelState channel_state_ = ChannelState::absent;
     std::unique_ptr<grid::MapSnapshot> map_;       ///< the newest whole one
     std::unique_ptr<grid::MapSnapshot> incoming_;  ///< being fetched
     bool has_map_ = false;

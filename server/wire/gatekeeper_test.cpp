@@ -21,6 +21,8 @@ using gate::Reason;
 using gate::testing::kForward;
 using gate::testing::kMs;
 
+constexpr ChecksumKey kKey{3, 4};
+
 /// Perception at 15 Hz on one side of a channel, the gatekeeper on the other, and the time of both.
 class GatekeeperTest : public ::testing::Test {
   protected:
@@ -38,7 +40,7 @@ class GatekeeperTest : public ::testing::Test {
         keeper_ = std::make_unique<Gatekeeper>(
             gate::testing::rex(),
             gate::ReadinessLimits{},
-            path_,
+            ChannelAddress{path_, kKey},
             [this](const Judgement& judgement, const grid::MapSnapshot& map) {
                 audited_.push_back(judgement);
                 audited_versions_.push_back(map.version);
@@ -46,7 +48,8 @@ class GatekeeperTest : public ::testing::Test {
             [this](const Act& act) { acts_.push_back(act); });
     }
     void start_perception() {
-        auto writer = SnapshotWriter::create(path_);
+        writer_.reset();
+        auto writer = SnapshotWriter::create({path_, kKey});
         ASSERT_TRUE(writer.ok()) << writer.error().message;
         writer_ = std::make_unique<SnapshotWriter>(std::move(*writer));
         map_->version = 0;
@@ -221,7 +224,8 @@ TEST_F(GatekeeperTest, a_gate_that_fails_its_self_test_cannot_be_re_armed) {
     for (Movement& movement : machine.movements)  // next to no step: one canary finds no new ground
         movement.forward_tenth_mm = movement.left_tenth_mm = movement.forward_tenth_mm / 20;
     ASSERT_FALSE(std::make_unique<gate::Canaries>(machine)->judge_all().passed);
-    keeper_ = std::make_unique<Gatekeeper>(machine, gate::ReadinessLimits{}, path_);
+    keeper_ =
+        std::make_unique<Gatekeeper>(machine, gate::ReadinessLimits{}, ChannelAddress{path_, kKey});
     start_perception();
     run(20.0);  // every single canary has been asked
     ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
@@ -439,6 +443,55 @@ TEST_F(GatekeeperTest, an_assured_gate_gives_no_ok_without_its_log) {
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_));
 }
 
+// A map that another process wrote into the channel, sealed as every map is: its checksum is of
+// another key.
+TEST_F(GatekeeperTest, a_forged_map_is_a_fault_until_an_operator_re_arms) {
+    become_ready();
+    ASSERT_EQ(keeper_->channel_state(), ChannelState::open);
+    {
+        const std::string true_path = path_ + ".true";
+        std::filesystem::rename(path_, true_path);
+        auto forger = SnapshotWriter::create({path_, {kKey.low, kKey.high + 1}});
+        ASSERT_TRUE(forger.ok());
+        run(0.15, false);  // the gate opens what has the name now
+        ++map_->version;
+        map_->frame_time_ns = map_->pose_time_ns = now_ns_;
+        gate::testing::seal(*map_);
+        forger->publish(*map_);
+        EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+        std::filesystem::rename(true_path, path_);
+    }
+    EXPECT_EQ(keeper_->channel_state(), ChannelState::forged);
+    EXPECT_EQ(keeper_->report(now_ns_).why, Reason::internal);
+    run(4.0);
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::fault);
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+    ASSERT_TRUE(keeper_->rearm(1, now_ns_).ok());
+    writer_->begin_anew();
+    run(4.0);
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_));
+    EXPECT_EQ(keeper_->channel_state(), ChannelState::open);
+}
+
+TEST_F(GatekeeperTest, a_lost_channel_is_opened_again_when_it_is_mended) {
+    for (const bool deleted : {true, false}) {
+        become_ready();
+        if (deleted)
+            std::filesystem::remove(path_);
+        else
+            std::filesystem::resize_file(path_, 10'000);
+        run(0.01, false);
+        EXPECT_EQ(keeper_->channel_state(), ChannelState::lost);
+        run(0.5, false);
+        EXPECT_FALSE(ask().verdict.allows_step(now_ns_)) << "its map is too old";
+        EXPECT_EQ(keeper_->report(now_ns_).why, Reason::frame_stale);
+        ASSERT_TRUE(writer_->mend()->has_value());
+        run(2.0);
+        EXPECT_EQ(keeper_->channel_state(), ChannelState::open);
+        EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << "no fault, and no warm-up";
+    }
+}
+
 TEST_F(GatekeeperTest, after_stopping_nothing_is_ok) {
     become_ready();
     keeper_->stop();
@@ -449,7 +502,8 @@ TEST_F(GatekeeperTest, after_stopping_nothing_is_ok) {
 }
 
 TEST_F(GatekeeperTest, a_machine_that_is_not_valid_never_allows_anything) {
-    keeper_ = std::make_unique<Gatekeeper>(Machine{}, gate::ReadinessLimits{}, path_);
+    keeper_ = std::make_unique<Gatekeeper>(
+        Machine{}, gate::ReadinessLimits{}, ChannelAddress{path_, kKey});
     start_perception();
     run(5.0);
     EXPECT_EQ(ask().verdict.decision, Decision::error);

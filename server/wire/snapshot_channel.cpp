@@ -1,211 +1,294 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/wire/snapshot_channel.hpp"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
-#include <cerrno>
+#include <cstddef>
 #include <cstring>
-#include <random>
+#include <mutex>
+#include <span>
+#include <type_traits>
 #include <utility>
+
+#include "server/wire/memory_checksum.hpp"
 
 namespace surefoot::wire {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x4c4e484354465253;  // "SRFTCHNL"
-constexpr std::uint32_t kLayout = 2;
+constexpr std::uint32_t kLayout = 3;
 constexpr std::uint64_t kSlots = 3;
-using Atomic = std::atomic<std::uint64_t>;
-static_assert(Atomic::is_always_lock_free, "the other process would not see the lock");
-constexpr std::size_t kWords = sizeof(grid::MapSnapshot) / sizeof(std::uint64_t);
-static_assert(sizeof(grid::MapSnapshot) % sizeof(std::uint64_t) == 0);
+constexpr std::size_t kPage = 4096;
 
-struct Slot {
-    alignas(64) Atomic sequence;  ///< odd while the words change
-    alignas(64) std::array<Atomic, kWords> words;
+/// The file begins with it; each number is read and written by itself.
+struct Head {
+    ChannelBegin begin;
+    std::uint32_t layout = kLayout;
+    std::uint32_t snapshot_bytes = sizeof(grid::MapSnapshot);
+    std::uint64_t writer = 0;          ///< number of the present writer, 0 while it begins
+    std::uint64_t published = 0;       ///< snapshots so far; the newest is in slot published % 3
+    std::uint64_t restart_wanted = 0;  ///< number of the writer that shall begin anew
+    std::uint64_t faults = 0;          ///< of the gate, until an operator re-arms it; 0 = none
+    std::uint64_t faults_checksum = 0;
 };
+static_assert(sizeof(Head) <= kPage && std::is_trivially_copyable_v<Head>);
 
-}  // namespace
+/// A slot is a snapshot and then its checksum.
+constexpr std::size_t kSlotBytes =
+    (sizeof(grid::MapSnapshot) + sizeof(std::uint64_t) + kPage - 1) / kPage * kPage;
+constexpr std::size_t kFileBytes = kPage + kSlots * kSlotBytes;
 
-/// The snapshot travels as words that are each read and written whole, so that reading while the
-/// other side writes is defined; the sequence then tells that what was read belongs together
-/// (Boehm, Can seqlocks get along with programming language memory models?, MSPC 2012).
-struct ChannelMemory {
-    std::uint64_t magic;
-    std::uint32_t layout;
-    std::uint32_t snapshot_bytes;
-    Atomic writer;          ///< number of the present writer, 0 while it begins
-    Atomic published;       ///< snapshots so far; the newest lies in slot published % 3
-    Atomic restart_wanted;  ///< number of the writer that shall begin anew
-    Atomic faults;          ///< of the gate, until an operator re-arms it; 0 = none
-    std::array<Slot, kSlots> slots;
-};
-
-namespace {
-
-Error failure(const std::string& path, const std::string& what) {
-    return {ErrorCode::input, "snapshot channel " + path + ": " + what};
-}
-
-std::string system_words() {
-    return std::strerror(errno);  // NOLINT(concurrency-mt-unsafe): before any thread
+constexpr std::size_t slot_at(std::uint64_t published) noexcept {
+    return kPage + static_cast<std::size_t>(published % kSlots) * kSlotBytes;
 }
 
 /// Never 0, and hardly ever the same twice.
-std::uint64_t new_number() {
-    std::random_device device;
-    const std::uint64_t high = device();
-    return (high << 32U | device()) | 1U;
+Result<std::uint64_t> new_number() {
+    const auto random = new_checksum_key();
+    if (!random) return random.error();
+    return random->low | 1U;
 }
 
-void store_words(Slot& slot, const grid::MapSnapshot& map) noexcept {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&map);
-    for (std::size_t i = 0; i < kWords; ++i) {
-        std::uint64_t word = 0;
-        std::memcpy(&word, bytes + i * sizeof(word), sizeof(word));
-        slot.words[i].store(word, std::memory_order_relaxed);
-    }
+/// Checksums of a channel say what they belong to.
+enum class Kind : std::uint64_t { snapshot = 1, faults = 2 };
+
+std::uint64_t checksum_of(const ChecksumKey& key,
+                          std::uint64_t writer,
+                          std::uint64_t published,
+                          const grid::MapSnapshot& map) noexcept {
+    return memory_checksum(key,
+                           {static_cast<std::uint64_t>(Kind::snapshot), writer, published},
+                           std::span(reinterpret_cast<const unsigned char*>(&map), sizeof(map)));
 }
 
-void load_words(const Slot& slot, grid::MapSnapshot& map) noexcept {
-    auto* bytes = reinterpret_cast<unsigned char*>(&map);
-    for (std::size_t i = 0; i < kWords; ++i) {
-        const std::uint64_t word = slot.words[i].load(std::memory_order_relaxed);
-        std::memcpy(bytes + i * sizeof(word), &word, sizeof(word));
-    }
+std::uint64_t checksum_of_faults(const ChecksumKey& key, std::uint64_t bits) noexcept {
+    KeyedChecksum checksum(key);
+    checksum.add(static_cast<std::uint64_t>(Kind::faults));
+    checksum.add(bits);
+    return checksum.finish();
+}
+
+bool read_head(const ChannelFile& file, Head& head) noexcept {
+    return file.read(&head, sizeof(head), 0);
+}
+
+bool is_channel(const Head& head) noexcept {
+    return head.begin.magic == kMagic && head.layout == kLayout &&
+           head.snapshot_bytes == sizeof(grid::MapSnapshot);
+}
+
+bool write_number(const ChannelFile& file, std::size_t offset, std::uint64_t number) noexcept {
+    // What was written before is seen before.
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    return file.write(&number, sizeof(number), offset);
 }
 
 }  // namespace
 
-ChannelMapping::ChannelMapping(ChannelMapping&& other) noexcept
-    : memory_(std::exchange(other.memory_, nullptr)) {}
+struct SnapshotWriter::State {
+    State(ChannelAddress its_address, ChannelFile its_file)
+        : address(std::move(its_address)), file(std::move(its_file)) {}
 
-ChannelMapping& ChannelMapping::operator=(ChannelMapping&& other) noexcept {
-    std::swap(memory_, other.memory_);
-    return *this;
+    [[nodiscard]] Head own_head() const noexcept {
+        Head head;
+        head.begin = {kMagic, static_cast<std::uint64_t>(::getpid())};
+        head.writer = writer;
+        head.published = shown;
+        return head;
+    }
+    /// What is wrong with the file; nothing when it is as it should be.
+    [[nodiscard]] std::optional<std::string> damage() const;
+    /// The file as it should be, and what the gate keeps there.
+    [[nodiscard]] Status restore(const Head& kept);
+
+    const ChannelAddress address;
+    std::mutex mutex;  ///< `publish` and `mend` are called by two threads
+    ChannelFile file;
+    std::uint64_t writer = 0;
+    std::uint64_t published = 0;
+    std::uint64_t shown = 0;  ///< as in the head: `published`, or 0 while the slots are empty
+    bool failed = false;      ///< a snapshot was not taken whole
+};
+
+std::optional<std::string> SnapshotWriter::State::damage() const {
+    if (!file.is_at(address.path)) return "it was deleted or replaced";
+    if (file.size() < kFileBytes) return "it was cut off";
+    Head head;
+    const Head own = own_head();
+    const bool unchanged = read_head(file, head) && is_channel(head) &&
+                           head.begin.owner == own.begin.owner && head.writer == own.writer &&
+                           head.published == own.published;
+    if (!unchanged) return "another process has changed it";
+    if (failed) return "a snapshot could not be written into it";
+    return std::nullopt;
 }
 
-ChannelMapping::~ChannelMapping() {
-    if (memory_ != nullptr) ::munmap(memory_, sizeof(ChannelMemory));
+Status SnapshotWriter::State::restore(const Head& kept) {
+    if (auto sized = file.resize(kFileBytes); !sized)
+        return channel_error(address.path, sized.error().message);
+    shown = 0;  // what was cut off is lost
+    Head head = own_head();
+    head.restart_wanted = kept.restart_wanted;
+    head.faults = kept.faults;
+    head.faults_checksum = kept.faults_checksum;
+    if (!file.write(&head, sizeof(head), 0))
+        return channel_error(address.path, "it cannot be written");
+    failed = false;
+    return {};
 }
 
-Result<ChannelMapping> ChannelMapping::open(const std::string& path, bool create) {
-    const int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | (create ? O_CREAT : 0);
-    const int file = ::open(path.c_str(), flags, 0600);
-    if (file < 0) return failure(path, "cannot be opened: " + system_words());
-    struct stat info {};
-    const auto wanted = static_cast<off_t>(sizeof(ChannelMemory));
-    const bool sized = ::fstat(file, &info) == 0 && S_ISREG(info.st_mode) &&
-                       (info.st_size == wanted || (create && ::ftruncate(file, wanted) == 0));
-    void* memory =
-        sized ? ::mmap(nullptr, sizeof(ChannelMemory), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
-              : MAP_FAILED;
-    const std::string why = sized ? system_words() : "it is no channel of this version";
-    ::close(file);
-    if (memory == MAP_FAILED) return failure(path, "cannot be used: " + why);
-    ChannelMapping mapping;
-    mapping.memory_ = static_cast<ChannelMemory*>(memory);
-    const ChannelMemory& m = *mapping.memory_;
-    if (!create && !(m.magic == kMagic && m.layout == kLayout &&
-                     m.snapshot_bytes == sizeof(grid::MapSnapshot)))
-        return failure(path, "it is no channel of this version; start both programs anew");
-    return mapping;
-}
+SnapshotWriter::SnapshotWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SnapshotWriter::SnapshotWriter(SnapshotWriter&& other) noexcept = default;
+SnapshotWriter::~SnapshotWriter() = default;
 
-Result<SnapshotWriter> SnapshotWriter::create(const std::string& path) {
-    auto mapping = ChannelMapping::open(path, true);
-    if (!mapping) return mapping.error();
-    ChannelMemory& m = *mapping->memory();
-    m.magic = kMagic;
-    m.layout = kLayout;
-    m.snapshot_bytes = sizeof(grid::MapSnapshot);
-    m.faults.store(0, std::memory_order_seq_cst);
-    SnapshotWriter writer(std::move(*mapping));
-    writer.begin_anew();
-    return writer;
+Result<SnapshotWriter> SnapshotWriter::create(ChannelAddress address) {
+    auto file = ChannelFile::lock(address.path, kMagic);
+    if (!file) return file.error();
+    auto state = std::make_unique<State>(std::move(address), std::move(*file));
+    const auto number = new_number();
+    if (!number) return number.error();
+    state->writer = *number;
+    Head head;  // the gate's faults end with a new start of perception
+    head.faults_checksum = checksum_of_faults(state->address.key, 0);
+    if (auto restored = state->restore(head); !restored) return restored.error();
+    return SnapshotWriter(std::move(state));
 }
 
 void SnapshotWriter::begin_anew() noexcept {
-    ChannelMemory& m = *mapping_.memory();
-    m.writer.store(0, std::memory_order_seq_cst);  // nobody believes the slots meanwhile
-    published_ = 0;
-    m.published.store(0, std::memory_order_seq_cst);
-    for (Slot& slot : m.slots) {  // one who died while writing left an odd sequence
-        const std::uint64_t sequence = slot.sequence.load(std::memory_order_relaxed);
-        slot.sequence.store((sequence | 1U) + 1U, std::memory_order_seq_cst);
-    }
-    m.writer.store(new_number(), std::memory_order_seq_cst);
+    const std::scoped_lock lock(state_->mutex);
+    State& s = *state_;
+    write_number(s.file, offsetof(Head, writer), 0);  // nobody believes the slots meanwhile
+    // The number only has to be another one: without random numbers it is the next.
+    const auto number = new_number();
+    s.writer = number ? *number : s.writer + 2;
+    s.published = s.shown = 0;
+    write_number(s.file, offsetof(Head, published), 0);
+    write_number(s.file, offsetof(Head, writer), s.writer);
 }
 
 void SnapshotWriter::publish(const grid::MapSnapshot& map) noexcept {
-    ChannelMemory& m = *mapping_.memory();
-    Slot& slot = m.slots[(published_ + 1) % kSlots];
-    const std::uint64_t sequence = slot.sequence.load(std::memory_order_relaxed);
-    slot.sequence.store(sequence + 1, std::memory_order_relaxed);
-    std::atomic_thread_fence(std::memory_order_release);
-    store_words(slot, map);
-    slot.sequence.store(sequence + 2, std::memory_order_release);
-    m.published.store(++published_, std::memory_order_release);
+    const std::scoped_lock lock(state_->mutex);
+    State& s = *state_;
+    const std::uint64_t number = s.published + 1;
+    const std::size_t slot = slot_at(number);
+    s.failed = !s.file.write(&map, sizeof(map), slot) ||
+               !write_number(
+                   s.file, slot + sizeof(map), checksum_of(s.address.key, s.writer, number, map));
+    if (s.failed) return;
+    s.published = s.shown = number;
+    write_number(s.file, offsetof(Head, published), number);
 }
 
 bool SnapshotWriter::restart_wanted() const noexcept {
-    const ChannelMemory& m = *mapping_.memory();
-    return m.restart_wanted.load(std::memory_order_acquire) ==
-           m.writer.load(std::memory_order_relaxed);
+    const std::scoped_lock lock(state_->mutex);
+    Head head;
+    return read_head(state_->file, head) && head.restart_wanted == state_->writer;
 }
 
-Result<SnapshotReader> SnapshotReader::open(const std::string& path) {
-    auto mapping = ChannelMapping::open(path, false);
-    if (!mapping) return mapping.error();
-    return SnapshotReader(std::move(*mapping));
+Result<std::optional<std::string>> SnapshotWriter::mend() {
+    const std::scoped_lock lock(state_->mutex);
+    State& s = *state_;
+    const auto damage = s.damage();
+    if (!damage) return damage;
+    Head kept;
+    if (!read_head(s.file, kept)) {
+        kept = Head{};
+        kept.faults_checksum = checksum_of_faults(s.address.key, 0);
+    }
+    if (!s.file.is_at(s.address.path)) {
+        auto file = ChannelFile::lock(s.address.path, kMagic);
+        if (!file) return file.error();
+        s.file = std::move(*file);
+    }
+    if (auto restored = s.restore(kept); !restored) return restored.error();
+    return damage;
+}
+
+void SnapshotWriter::remove() noexcept {
+    const std::scoped_lock lock(state_->mutex);
+    if (state_->file.is_at(state_->address.path)) ::unlink(state_->address.path.c_str());
+}
+
+Result<SnapshotReader> SnapshotReader::open(ChannelAddress address) {
+    auto file = ChannelFile::open(address.path);
+    if (!file) return file.error();
+    SnapshotReader reader(std::move(address), std::move(*file));
+    Head head;
+    if (reader.file_.size() < kFileBytes || !read_head(reader.file_, head) || !is_channel(head))
+        return channel_error(reader.address_.path,
+                             "it is no channel of this version; restart both programs");
+    return reader;
+}
+
+Status SnapshotReader::reopen() {
+    auto now = open(address_);
+    if (!now) return now.error();
+    file_ = std::move(now->file_);
+    return {};
 }
 
 bool SnapshotReader::has_fresh() const noexcept {
-    const ChannelMemory& m = *mapping_.memory();
-    return m.published.load(std::memory_order_acquire) != seen_ ||
-           m.writer.load(std::memory_order_acquire) != writer_;
+    Head head;
+    return read_head(file_, head) && (head.published != seen_ || head.writer != writer_);
+}
+
+bool SnapshotReader::is_whole() const noexcept {
+    return file_.is_at(address_.path) && file_.size() >= kFileBytes;
+}
+
+bool SnapshotReader::is_genuine(std::uint64_t published, grid::MapSnapshot& out) const noexcept {
+    if (published < seen_ || published == forged_) return false;
+    const std::size_t slot = slot_at(published);
+    std::uint64_t checksum = 0;
+    return file_.read(&out, sizeof(out), slot) &&
+           file_.read(&checksum, sizeof(checksum), slot + sizeof(out)) &&
+           checksum == checksum_of(address_.key, writer_, published, out);
 }
 
 SnapshotReader::Read SnapshotReader::read(grid::MapSnapshot& out) noexcept {
-    const ChannelMemory& m = *mapping_.memory();
     for (int attempt = 0; attempt < 3; ++attempt) {
-        const std::uint64_t writer = m.writer.load(std::memory_order_acquire);
-        const std::uint64_t published = m.published.load(std::memory_order_acquire);
-        if (writer != writer_) {
-            writer_ = writer;
-            seen_ = 0;
+        Head head;
+        if (!is_whole() || !read_head(file_, head) || !is_channel(head)) return Read::lost;
+        if (head.writer != writer_) {
+            writer_ = head.writer;
+            seen_ = forged_ = 0;
         }
-        if (writer == 0 || published == 0) return Read::nothing;
-        if (published == seen_) return Read::same;
-        const Slot& slot = m.slots[published % kSlots];
-        const std::uint64_t before = slot.sequence.load(std::memory_order_acquire);
-        if (before % 2 != 0) continue;
-        load_words(slot, out);
-        std::atomic_thread_fence(std::memory_order_acquire);
-        const bool whole = slot.sequence.load(std::memory_order_relaxed) == before &&
-                           m.writer.load(std::memory_order_relaxed) == writer;
-        if (!whole) continue;
-        seen_ = published;
-        return Read::fresh;
+        if (writer_ == 0 || head.published == 0) return Read::nothing;
+        if (head.published == seen_) return Read::same;
+        if (is_genuine(head.published, out)) {
+            seen_ = head.published;
+            return Read::fresh;
+        }
+        // The writer comes back to this slot two publications later: while the numbers stay, only
+        // another process changes it.
+        std::atomic_thread_fence(std::memory_order_seq_cst);
+        Head after;
+        if (!is_whole() || !read_head(file_, after)) return Read::lost;
+        if (after.writer == head.writer && after.published == head.published) {
+            forged_ = head.published;
+            return Read::forged;
+        }
     }
     return Read::torn;
 }
 
 void SnapshotReader::keep_faults(std::uint64_t bits) noexcept {
-    mapping_.memory()->faults.store(bits, std::memory_order_release);
+    const std::uint64_t kept[2] = {bits, checksum_of_faults(address_.key, bits)};
+    static_assert(offsetof(Head, faults_checksum) == offsetof(Head, faults) + sizeof(kept[0]));
+    file_.write(kept, sizeof(kept), offsetof(Head, faults));
 }
 
 std::uint64_t SnapshotReader::kept_faults() const noexcept {
-    return mapping_.memory()->faults.load(std::memory_order_acquire);
+    Head head;
+    if (!read_head(file_, head)) return 0;
+    const bool ours = head.faults_checksum == checksum_of_faults(address_.key, head.faults);
+    return ours ? head.faults : std::uint64_t{1} << 63U;
 }
 
 void SnapshotReader::want_restart() noexcept {
-    ChannelMemory& m = *mapping_.memory();
-    m.restart_wanted.store(m.writer.load(std::memory_order_acquire), std::memory_order_release);
+    Head head;
+    if (read_head(file_, head)) write_number(file_, offsetof(Head, restart_wanted), head.writer);
 }
 
 }  // namespace surefoot::wire

@@ -128,6 +128,10 @@ bool Readiness::has_jumped(const grid::MapSnapshot& map) const noexcept {
     return !(magnitude(sine) <= turn_rad && cosine > 0.0);
 }
 
+void Readiness::snapshot_forged(std::int64_t now_ns) noexcept {
+    if (time_runs(now_ns)) latch(Reason::internal, now_ns);
+}
+
 void Readiness::tick(std::int64_t now_ns) noexcept {
     if (!time_runs(now_ns)) return;
     present_.add(stale_stamps(now_ns));

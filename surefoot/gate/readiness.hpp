@@ -52,6 +52,8 @@ class Readiness {
     void self_tested(bool passed, std::int64_t now_ns) noexcept;
     /// A snapshot came, of a newer version than the one before.
     void observe(const grid::MapSnapshot& map, std::int64_t now_ns) noexcept;
+    /// A snapshot came that was not made by perception: a latched fault.
+    void snapshot_forged(std::int64_t now_ns) noexcept;
     /// Nothing came. To be called more often than frames are expected.
     void tick(std::int64_t now_ns) noexcept;
     /// Steady time without and with the time that the computer slept.

@@ -67,6 +67,17 @@ TEST(Readiness, nothing_is_allowed_before_the_self_test_and_the_whole_warm_up) {
     EXPECT_TRUE(station.ask().reasons.contains(Reason::warmup));
 }
 
+TEST(Readiness, a_forged_snapshot_is_a_latched_fault) {
+    Station station;
+    station.become_ready();
+    ASSERT_TRUE(station.allows());
+    station.readiness.snapshot_forged(station.now_ns);
+    EXPECT_EQ(station.readiness.state(), GateState::fault);
+    EXPECT_TRUE(station.readiness.latched().contains(Reason::internal));
+    station.frames(5.0);
+    EXPECT_FALSE(station.allows()) << "until an operator re-arms";
+}
+
 /// docs/safety.md and surefoot/gate/README.md promise these; the other tests read them.
 TEST(Readiness, the_times_are_those_that_are_promised) {
     const ReadinessLimits limits;
