@@ -30,7 +30,7 @@ Result<camera::StereoRig> read_opencv(YamlNode root,
                                       std::optional<ImageSize> size) {
     const std::string beside = join_path(folder_of(path), "extrinsics.yml");
     if (has_any(root, {"R", "T"}) || !is_file(beside)) return opencv_rig(root, path, size);
-    const Result<std::string> text = read_file(beside);
+    const Result<std::string> text = read_file(beside, limits::kSettingsBytes);
     if (!text) return text.error();
     const Result<YamlNode> more = parse_yaml(*text, beside);
     if (!more) return more.error();
@@ -76,9 +76,9 @@ Result<RigFile> read_ros(const std::string& left_file) {
                         "with 'left' in its name, and put the same name with 'right' beside it",
                         left_file));
     }
-    Result<std::string> left = read_file(left_file);
+    Result<std::string> left = read_file(left_file, limits::kSettingsBytes);
     if (!left) return left.error();
-    Result<std::string> right = read_file(*right_file);
+    Result<std::string> right = read_file(*right_file, limits::kSettingsBytes);
     if (!right) return right.error();
     return parse_ros_rig({std::move(left).value(), left_file},
                          {std::move(right).value(), *right_file});
@@ -133,7 +133,7 @@ Result<RigFile> read_rig_file(const std::string& path, std::optional<ImageSize> 
         const std::string inner = join_path(path, "mav0");
         return with_format(read_euroc_rig(is_folder(inner) ? inner : path), RigFormat::euroc);
     }
-    const Result<std::string> text = read_file(path);
+    const Result<std::string> text = read_file(path, limits::kSettingsBytes);
     if (!text) return text.error();
     if (is_zed(path, *text)) return parse_zed_rig(*text, path, size);
     if (text->starts_with("P0:")) {

@@ -143,7 +143,8 @@ Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
                           settings.sim,
                           settings.live,
                           {},
-                          first_frame};
+                          first_frame,
+                          options.reading};
     request.sim.commanded = options.joystick || !options.walk.empty();
     return open_source(request, executor);
 }
@@ -159,7 +160,7 @@ class PageService {
         config.port = static_cast<std::uint16_t>(options.page_port);
         config.foxglove_origins = options.foxglove_origins;
         if (!options.token_file.empty()) {
-            auto token = io::read_file(options.token_file);
+            auto token = io::read_file(options.token_file, io::limits::kKeyBytes);
             if (!token) return token.error();
             config.token = std::string(io::trimmed(*token));
         }

@@ -29,7 +29,9 @@ class LimitedSource final : public camera::FrameSource {
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override {
         if (left_-- <= 0) return std::optional<StereoFrame>{};
-        return source_->next();
+        auto frame = source_->next();
+        info_.broken = source_->info().broken;
+        return frame;
     }
 
   private:
@@ -66,10 +68,18 @@ Result<std::unique_ptr<camera::FrameSource>> open_recording(const SourceRequest&
     if (!request.rig_file.empty()) options.rig_file = request.rig_file;
     if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
     options.first_frame = request.first_frame;
+    apply(request.reading, options);
     return io::open_source(request.source, options);
 }
 
 }  // namespace
+
+void apply(const ReadingOptions& reading, io::OpenOptions& options) {
+    options.pair_tolerance_s = reading.pair_tolerance_s;
+    options.depth_codes_per_m = reading.depth_codes_per_m;
+    options.image_bits = reading.image_bits;
+    options.skip_broken = reading.skip_broken;
+}
 
 Result<std::unique_ptr<sim::SceneSource>> open_simulation(const SourceRequest& request,
                                                           Executor& executor) {
