@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 get_property(_modules GLOBAL PROPERTY SUREFOOT_MODULES)
 install(TARGETS ${_modules} EXPORT surefoot_targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-foreach(folder surefoot sim io eval)
+foreach(folder surefoot files sim io eval)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
     FILES_MATCHING PATTERN "*.hpp")
 endforeach()

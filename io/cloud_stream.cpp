@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
+#include "files/input_file.hpp"
 #include "io/cloud_rows.hpp"
 #include "io/file.hpp"
 #include "io/text_cloud.hpp"
@@ -19,36 +18,6 @@ constexpr std::uint64_t kBlockRows = 1U << 16U;
 constexpr std::size_t kBlockBytes = 4U << 20U;
 /// Where the head of a file must end for its rows to be found.
 constexpr std::size_t kHeadBytes = 1U << 16U;
-
-/// A part of a file; fewer bytes where it ends.
-class ByteFile {
-  public:
-    explicit ByteFile(std::string path) : path_(std::move(path)), in_(path_, std::ios::binary) {
-        std::error_code error;
-        size_ = std::filesystem::file_size(path_, error);
-        if (error) in_.setstate(std::ios::failbit);
-    }
-    [[nodiscard]] bool good() const { return in_.good(); }
-    [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
-
-    [[nodiscard]] Result<std::string> read(std::uint64_t at, std::uint64_t count) {
-        std::string bytes(static_cast<std::size_t>(std::min(count, size_ - std::min(at, size_))),
-                          '\0');
-        in_.clear();
-        in_.seekg(static_cast<std::streamoff>(at));
-        in_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        if (in_.bad() || in_.gcount() != static_cast<std::streamsize>(bytes.size())) {
-            return input_error(
-                fmt::format("{}: cannot read {} bytes from {} on", path_, bytes.size(), at));
-        }
-        return bytes;
-    }
-
-  private:
-    std::string path_;
-    std::ifstream in_;
-    std::uint64_t size_ = 0;
-};
 
 }  // namespace
 
@@ -64,13 +33,13 @@ class CloudStream::Part {
 /// Rows of one size.
 class CloudStream::Rows final : public Part {
   public:
-    Rows(std::string path, ByteFile file, CloudRows rows)
+    Rows(std::string path, files::InputFile file, CloudRows rows)
         : path_(std::move(path)), file_(std::move(file)), rows_(std::move(rows)) {}
     Result<PointCloud> next() override {
         const std::uint64_t count = std::min(kBlockRows, rows_.rows - next_);
         if (count == 0) return PointCloud{};
         auto bytes =
-            file_.read(rows_.first_byte + next_ * rows_.row_bytes, count * rows_.row_bytes);
+            file_.read_at(rows_.first_byte + next_ * rows_.row_bytes, count * rows_.row_bytes);
         if (!bytes) return bytes.error();
         next_ += count;
         auto block = parse_cloud(rows_.head(count) + *bytes, path_);
@@ -87,7 +56,7 @@ class CloudStream::Rows final : public Part {
 
   private:
     std::string path_;
-    ByteFile file_;
+    files::InputFile file_;
     CloudRows rows_;
     std::vector<std::string> notes_;  ///< of the blocks so far, each once
     std::uint64_t next_ = 0;
@@ -96,11 +65,11 @@ class CloudStream::Rows final : public Part {
 /// Text with a point a line.
 class CloudStream::Lines final : public Part {
   public:
-    Lines(std::string path, ByteFile file)
+    Lines(std::string path, files::InputFile file)
         : path_(std::move(path)), file_(std::move(file)), parser_(path_) {}
     Result<PointCloud> next() override {
         while (at_ < file_.size()) {
-            auto bytes = file_.read(at_, kBlockBytes);
+            auto bytes = file_.read_at(at_, kBlockBytes);
             if (!bytes) return bytes.error();
             if (at_ + bytes->size() < file_.size()) {
                 const std::size_t feed = bytes->rfind('\n');
@@ -126,7 +95,7 @@ class CloudStream::Lines final : public Part {
 
   private:
     std::string path_;
-    ByteFile file_;
+    files::InputFile file_;
     TextCloudParser parser_;
     std::uint64_t at_ = 0;
 };
@@ -173,19 +142,19 @@ CloudStream& CloudStream::operator=(CloudStream&&) noexcept = default;
 
 Result<CloudStream> CloudStream::open(const std::string& path) {
     const std::string extension = extension_of(path);
-    if (is_file(path)) {
-        ByteFile file(path);
-        if (file.good() && is_text_cloud(extension))
-            return CloudStream(std::make_unique<Lines>(path, std::move(file)));
-        const auto head = file.good() ? file.read(0, kHeadBytes) : Result<std::string>("");
-        if (!head) return head.error();
-        auto rows = extension == ".ply"   ? ply_rows(*head, file.size())
-                    : extension == ".pcd" ? pcd_rows(*head, file.size())
-                    : extension == ".las" ? las_rows(*head, file.size())
-                                          : std::nullopt;
-        if (rows)
-            return CloudStream(
-                std::make_unique<Rows>(path, std::move(file), std::move(rows).value()));
+    auto file = files::InputFile::open(path, files::limits::kStreamBytes);
+    if (!file) return file.error();
+    if (is_text_cloud(extension))
+        return CloudStream(std::make_unique<Lines>(path, std::move(file).value()));
+    const auto head = file->read_at(0, kHeadBytes);
+    if (!head) return head.error();
+    auto rows = extension == ".ply"   ? ply_rows(*head, file->size())
+                : extension == ".pcd" ? pcd_rows(*head, file->size())
+                : extension == ".las" ? las_rows(*head, file->size())
+                                      : std::nullopt;
+    if (rows) {
+        return CloudStream(
+            std::make_unique<Rows>(path, std::move(file).value(), std::move(rows).value()));
     }
     auto cloud = read_cloud(path);  // or the reason why not
     if (!cloud) return cloud.error();

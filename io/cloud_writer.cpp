@@ -51,8 +51,8 @@ Result<CloudWriter> CloudWriter::create(const std::string& path, const CloudForm
     }
     const Kind kind = text ? Kind::text : extension == ".ply" ? Kind::ply : Kind::pcd;
     CloudWriter writer(path, kind, format, -1);
-    writer.descriptor_ =
-        ::open(writer.part_path().c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
+    writer.descriptor_ = ::open(
+        writer.part_path().c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_NONBLOCK | O_CLOEXEC, 0666);
     if (writer.descriptor_ < 0) return cannot_write(path, errno);
     return writer;
 }

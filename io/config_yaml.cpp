@@ -276,7 +276,7 @@ Status change_config(const std::string& key,
 }
 
 Status read_config(const std::string& path, const DescribeConfig& describe) {
-    const Result<std::string> text = read_file(path);
+    const Result<std::string> text = read_file(path, limits::kSettingsBytes);
     if (!text) return usage_error(text.error().message);
     return parse_config(*text, path, describe);
 }

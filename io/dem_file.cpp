@@ -243,7 +243,7 @@ Result<Dem> parse_esri_grid(std::string_view text, const std::string& file) {
 }
 
 Result<Dem> read_esri_grid(const std::string& path) {
-    const Result<std::string> text = read_file(path);
+    const Result<std::string> text = read_file(path, limits::kMapBytes);
     if (!text) return text.error();
     return parse_esri_grid(*text, path);
 }
@@ -316,7 +316,7 @@ Result<Dem> parse_dem_image(std::string_view bytes,
 }
 
 Result<Dem> read_dem_image(const std::string& path, double scale_m, double full_height_m) {
-    const Result<std::string> bytes = read_file(path);
+    const Result<std::string> bytes = read_file(path, limits::kImageBytes);
     if (!bytes) return bytes.error();
     return parse_dem_image(*bytes, path, scale_m, full_height_m);
 }

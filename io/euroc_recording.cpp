@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <unordered_map>
-
 #include "io/file.hpp"
+#include "io/pairing.hpp"
 #include "io/recording.hpp"
 #include "io/rig_file.hpp"
 
@@ -23,25 +22,27 @@ Result<camera::StereoRig> choose_rig(const std::string& folder,
                             : read_euroc_rig(folder);
 }
 
-/// Pairs the rows of both cameras by equal stamps, in the order of the left one.
+std::vector<std::int64_t> times_of(const std::vector<CsvRow>& rows) {
+    std::vector<std::int64_t> times_ns;
+    times_ns.reserve(rows.size());
+    for (const CsvRow& row : rows) times_ns.push_back(row.time_ns);
+    return times_ns;
+}
+
+/// Pairs the rows of both cameras by their stamps, in the order of the left one.
 void pair_rows(const std::string& folder,
                const std::vector<CsvRow>& left,
                const std::vector<CsvRow>& right,
                Recording& out) {
-    std::unordered_map<std::int64_t, const CsvRow*> partners;
-    for (const CsvRow& row : right) partners.emplace(row.time_ns, &row);
+    const Partners partners = pair_stamps(times_of(left), times_of(right), out);
     const std::string left_csv = join_path(folder, "cam0/data.csv");
-    for (const CsvRow& row : left) {
-        const auto partner = partners.find(row.time_ns);
-        if (partner == partners.end()) {
-            ++out.unpaired;
-            continue;
-        }
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        if (!partners[i]) continue;
         FrameEntry entry;
-        entry.time_ns = row.time_ns;
-        entry.left = join_path(folder, "cam0/data/" + row.value);
-        entry.right = join_path(folder, "cam1/data/" + partner->second->value);
-        entry.where = fmt::format("{}:{}", left_csv, row.line);
+        entry.time_ns = left[i].time_ns;
+        entry.left = join_path(folder, "cam0/data/" + left[i].value);
+        entry.right = join_path(folder, "cam1/data/" + right[*partners[i]].value);
+        entry.where = fmt::format("{}:{}", left_csv, left[i].line);
         out.frames.push_back(std::move(entry));
     }
 }
@@ -58,28 +59,35 @@ Result<Recording> index_euroc(const std::string& folder, const OpenOptions& opti
     if (!left) return left.error();
     const Result<std::vector<CsvRow>> right = read_frames(join_path(folder, "cam1/data.csv"));
     if (!right) return right.error();
+    set_pair_tolerance(options, fifth_of_frame_time_ns(times_of(*left)), recording);
     pair_rows(folder, *left, *right, recording);
     if (recording.frames.empty()) {
         return input_error(
-            fmt::format("{}: no frames: {} rows of cam0 and {} of cam1 have no stamp in common",
+            fmt::format("{}: no frames: {} rows of cam0 and {} of cam1 have no stamp in common "
+                        "within {:g} ms; --pair-tolerance allows more",
                         folder,
                         left->size(),
-                        right->size()));
+                        right->size(),
+                        1e3 * recording.pair_tolerance_s));
     }
     Result<camera::StereoRig> rig = choose_rig(folder, options, recording.frames.front().left);
     if (!rig) return rig.error();
     recording.rig = std::move(rig).value();
-    const std::string imu_csv = join_path(folder, "imu0/data.csv");
-    if (recording.rig.imu && is_file(imu_csv)) {
-        const Result<std::string> text = read_file(imu_csv);
-        if (!text) return text.error();
-        Result<std::vector<ImuSample>> samples = parse_euroc_imu_samples(*text, imu_csv);
-        if (!samples) return samples.error();
-        recording.imu = std::move(samples).value();
-    }
+    if (Status status = read_euroc_imu(folder, recording); !status) return status.error();
     recording.info.frames = static_cast<int>(recording.frames.size());
-    recording.info.has_imu = !recording.imu.empty();
     return recording;
+}
+
+Status read_euroc_imu(const std::string& folder, Recording& recording) {
+    const std::string imu_csv = join_path(folder, "imu0/data.csv");
+    if (!recording.rig.imu || !is_file(imu_csv)) return {};
+    const Result<std::string> text = read_file(imu_csv);
+    if (!text) return text.error();
+    Result<std::vector<ImuSample>> samples = parse_euroc_imu_samples(*text, imu_csv);
+    if (!samples) return samples.error();
+    recording.imu = std::move(samples).value();
+    recording.info.has_imu = !recording.imu.empty();
+    return {};
 }
 
 }  // namespace surefoot::io

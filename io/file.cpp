@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,10 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string reason(int error) {
-    return std::generic_category().message(error);
-}
-
 /// Writes everything, or returns errno.
 int write_all(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
@@ -41,8 +36,11 @@ int write_all(int descriptor, std::string_view bytes) {
 /// Opens, writes and closes; errno or 0. The result of close counts: some file systems report a
 /// full disk only there.
 int write_and_close(const std::string& path, int flags, std::string_view bytes) {
-    const int descriptor = ::open(path.c_str(), flags | O_WRONLY | O_CLOEXEC, 0666);
+    // A FIFO without a reader is an error here, not a wait.
+    const int descriptor =
+        ::open(path.c_str(), flags | O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666);
     if (descriptor < 0) return errno;
+    ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
     const int write_error = write_all(descriptor, bytes);
     const int close_error = ::close(descriptor) == 0 ? 0 : errno;
     return write_error != 0 ? write_error : close_error;
@@ -57,41 +55,6 @@ std::string temporary_name(const std::string& path) {
 }
 
 }  // namespace
-
-Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) {
-        return input_error(fmt::format("{}: cannot read: {}", path, reason(errno)));
-    }
-    struct stat status = {};
-    std::string content;
-    if (::fstat(descriptor, &status) == 0 && status.st_size > 0) {
-        // The announced size is only a hint for the first allocation.
-        content.reserve(static_cast<std::size_t>(
-            std::min<std::uint64_t>(static_cast<std::uint64_t>(status.st_size), max_bytes)));
-    }
-    constexpr std::size_t kBlock = 1 << 18;
-    int error = 0;
-    while (true) {
-        const std::size_t size = content.size();
-        content.resize(size + kBlock);
-        const ssize_t got = ::read(descriptor, content.data() + size, kBlock);
-        if (got < 0 && errno == EINTR) {
-            content.resize(size);
-            continue;
-        }
-        if (got < 0) error = errno;
-        content.resize(size + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
-        if (got <= 0 || content.size() > max_bytes) break;
-    }
-    ::close(descriptor);
-    if (error != 0) return input_error(fmt::format("{}: cannot read: {}", path, reason(error)));
-    if (content.size() > max_bytes) {
-        return input_error(
-            fmt::format("{}: larger than the limit of {} bytes for such a file", path, max_bytes));
-    }
-    return content;
-}
 
 Status write_file(const std::string& path, std::span<const std::uint8_t> bytes) {
     return write_file(path,
@@ -192,7 +155,9 @@ Result<AppendFile> AppendFile::resume(const std::string& path) {
 
 Result<AppendFile> AppendFile::open(const std::string& path, int flags) {
     const int descriptor =
-        ::open(path.c_str(), flags | O_CREAT | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
+        ::open(path.c_str(),
+               flags | O_CREAT | O_WRONLY | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC,
+               0666);
     if (descriptor < 0) return cannot_write(path, errno);
     AppendFile file(path, descriptor);
     file.size_ = std::max<std::int64_t>(0, ::lseek(descriptor, 0, SEEK_END));  // 0: a device

@@ -8,17 +8,15 @@
 #include <string_view>
 #include <vector>
 
+#include "files/input_file.hpp"
 #include "surefoot/core/result.hpp"
 
 /// Whole files in and out, with the system's reason in every error.
 namespace surefoot::io {
 
-/// Nothing that we read is larger; a bigger file is an error, not a full memory.
-inline constexpr std::uint64_t kMaxFileBytes = 4ULL << 30;
-
-/// Content of a regular file (or pipe).
-[[nodiscard]] Result<std::string> read_file(const std::string& path,
-                                            std::uint64_t max_bytes = kMaxFileBytes);
+/// Reading is in `files`: regular files alone, and no more bytes than the format may have.
+namespace limits = files::limits;
+using files::read_file;
 
 /// Replaces a file in one step: writes a temporary file in the same folder, then renames it, so
 /// that a reader sees the old content or the whole new one. What is no regular file (a device, a

@@ -86,7 +86,7 @@ Status write_encoded(const std::string& path, const Image<Pixel>& image) {
 
 template <typename T, typename Parser>
 Result<T> read_with(const std::string& path, Parser parser) {
-    const Result<std::string> bytes = read_file(path);
+    const Result<std::string> bytes = read_file(path, limits::kImageBytes);
     if (!bytes) return bytes.error();
     return parser(*bytes, path);
 }

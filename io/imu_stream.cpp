@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/imu_stream.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
-#include <system_error>
 #include <utility>
 
 #include "io/recording.hpp"
@@ -28,6 +24,7 @@ class SourceWithImu final : public camera::FrameSource {
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override {
         Result<std::optional<StereoFrame>> frame = source_->next();
+        info_.broken = source_->info().broken;
         if (!frame || !frame->has_value()) return frame;
         Result<std::vector<ImuSample>> samples = imu_.take_until((*frame)->time_ns);
         if (!samples) return samples.error();
@@ -51,47 +48,31 @@ class SourceWithImu final : public camera::FrameSource {
 }  // namespace
 
 Result<ImuStream> ImuStream::open(const std::string& path) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) {
-        return input_error(
-            fmt::format("{}: cannot be read: {}", path, std::generic_category().message(errno)));
-    }
-    return ImuStream(path, descriptor);
-}
-
-ImuStream::ImuStream(ImuStream&& other) noexcept
-    : path_(std::move(other.path_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      unread_(std::move(other.unread_)),
-      waiting_(std::move(other.waiting_)),
-      last_time_ns_(other.last_time_ns_) {}
-
-ImuStream::~ImuStream() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+    Result<files::InputFile> file =
+        files::InputFile::open(path, files::limits::kStreamBytes, files::Accept::regular_or_fifo);
+    if (!file) return file.error();
+    return ImuStream(std::move(file).value());
 }
 
 Result<bool> ImuStream::read_some() {
     std::array<char, 1 << 14> chunk{};
-    const ssize_t count = ::read(descriptor_, chunk.data(), chunk.size());
-    if (count < 0) {
-        if (errno == EAGAIN || errno == EINTR) return false;
-        return input_error(
-            fmt::format("{}: cannot be read: {}", path_, std::generic_category().message(errno)));
-    }
-    if (count == 0) return false;
-    unread_.append(chunk.data(), static_cast<std::size_t>(count));
+    const Result<files::InputFile::Piece> piece = file_.read(chunk);
+    if (!piece) return piece.error();
+    if (piece->bytes == 0) return false;
+    unread_.append(chunk.data(), piece->bytes);
     const std::size_t end = unread_.rfind('\n');
     const std::size_t whole = end == unread_.npos ? 0 : end + 1;
     if (unread_.size() - whole > kMaxLine)
-        return input_error(path_ +
+        return input_error(file_.path() +
                            ": a line without end: not IMU rows 'stamp_ns,wx,wy,wz,ax,ay,az'");
-    const auto samples = parse_euroc_imu_samples(std::string_view(unread_).substr(0, whole), path_);
+    const auto samples =
+        parse_euroc_imu_samples(std::string_view(unread_).substr(0, whole), file_.path());
     if (!samples) return samples.error();
     unread_.erase(0, whole);
     for (const ImuSample& sample : *samples) {
         if (sample.time_ns <= last_time_ns_) {
             return input_error(fmt::format("{}: IMU stamp {} ns does not grow: {} ns came before",
-                                           path_,
+                                           file_.path(),
                                            sample.time_ns,
                                            last_time_ns_));
         }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "files/input_file.hpp"
 #include "surefoot/camera/frame_source.hpp"
 
 namespace surefoot::io {
@@ -20,20 +21,16 @@ inline constexpr std::int64_t kFirstImuSpan_ns = 1'000'000'000;
 class ImuStream {
   public:
     [[nodiscard]] static Result<ImuStream> open(const std::string& path);
-    ~ImuStream();
-    ImuStream(ImuStream&& other) noexcept;
-    ImuStream& operator=(ImuStream&&) = delete;
 
     /// All samples up to a time that were not taken before, in time order. Stamps must grow.
     [[nodiscard]] Result<std::vector<ImuSample>> take_until(std::int64_t time_ns);
 
   private:
-    ImuStream(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+    explicit ImuStream(files::InputFile file) : file_(std::move(file)) {}
     /// Whether anything came.
     [[nodiscard]] Result<bool> read_some();
 
-    std::string path_;
-    int descriptor_ = -1;
+    files::InputFile file_;
     std::string unread_;  ///< the beginning of a line
     std::deque<ImuSample> waiting_;
     std::int64_t last_time_ns_ = -1;

@@ -313,7 +313,7 @@ Result<MapFile> parse_map(std::string_view bytes, const std::string& file) {
 }
 
 Result<MapFile> read_map(const std::string& path) {
-    const Result<std::string> bytes = read_file(path);
+    const Result<std::string> bytes = read_file(path, limits::kMapBytes);
     if (!bytes) return bytes.error();
     return parse_map(*bytes, path);
 }

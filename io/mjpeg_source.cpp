@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
+#include "files/input_file.hpp"
 #include "io/bytes.hpp"
 #include "io/image_file.hpp"
 #include "io/jpeg_scan.hpp"
@@ -19,7 +19,7 @@ constexpr std::size_t kMaxImageBytes = std::size_t{64} << 20;
 
 class MjpegSource final : public camera::FrameSource {
   public:
-    MjpegSource(std::string path, std::ifstream file, camera::StereoRig rig, double rate_hz)
+    MjpegSource(std::string path, files::InputFile file, camera::StereoRig rig, double rate_hz)
         : file_(std::move(file)), rig_(std::move(rig)), rate_hz_(rate_hz) {
         rig_.rate_hz = rate_hz;
         info_.kind = "mjpeg";
@@ -29,9 +29,11 @@ class MjpegSource final : public camera::FrameSource {
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override {
         const std::string what = fmt::format("frame {}: {}", index_, info_.path);
-        const std::optional<JpegSpan> span = find_next();
+        const Result<std::optional<JpegSpan>> found = find_next();
+        if (!found) return end_with(found.error());
+        const std::optional<JpegSpan>& span = *found;
         if (!span) {
-            if (rest_.size() > kMaxImageBytes || (index_ == 0 && !file_))
+            if (rest_.size() > kMaxImageBytes || (index_ == 0 && at_end_))
                 return end_with(input_error(info_.path + ": no JPEG images in this file"));
             if (rest_.find(kStart) != rest_.npos)
                 return end_with(input_error(what + ": truncated: the end of the image is missing"));
@@ -54,21 +56,24 @@ class MjpegSource final : public camera::FrameSource {
     /// Said once; afterwards the source has ended.
     Error end_with(Error error) {
         rest_.clear();
-        file_.setstate(std::ios::eofbit);
+        at_end_ = true;
         index_ = std::max(index_, 1);
         return error;
     }
-    std::optional<JpegSpan> find_next() {
+    Result<std::optional<JpegSpan>> find_next() {
         while (true) {
             if (const auto span = first_jpeg(rest_)) return span;
-            if (!file_ || rest_.size() > kMaxImageBytes) return std::nullopt;
+            if (at_end_ || rest_.size() > kMaxImageBytes) return std::optional<JpegSpan>();
             std::string chunk(std::size_t{1} << 18, '\0');
-            file_.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-            rest_.append(chunk, 0, static_cast<std::size_t>(file_.gcount()));
+            const Result<files::InputFile::Piece> piece = file_.read(chunk);
+            if (!piece) return piece.error();
+            at_end_ = piece->bytes == 0;
+            rest_.append(chunk, 0, piece->bytes);
         }
     }
 
-    std::ifstream file_;
+    files::InputFile file_;
+    bool at_end_ = false;
     camera::StereoRig rig_;
     camera::SourceInfo info_;
     double rate_hz_;
@@ -104,10 +109,10 @@ std::optional<JpegSpan> first_jpeg(std::string_view bytes) {
 Result<std::unique_ptr<camera::FrameSource>> open_mjpeg(const std::string& path,
                                                         const camera::StereoRig& rig,
                                                         double rate_hz) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return input_error(path + ": cannot be read");
+    Result<files::InputFile> file = files::InputFile::open(path, files::limits::kStreamBytes);
+    if (!file) return file.error();
     return std::unique_ptr<camera::FrameSource>(
-        std::make_unique<MjpegSource>(path, std::move(file), rig, rate_hz));
+        std::make_unique<MjpegSource>(path, std::move(file).value(), rig, rate_hz));
 }
 
 }  // namespace surefoot::io

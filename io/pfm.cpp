@@ -80,7 +80,7 @@ Result<Image<float>> parse_pfm(std::string_view bytes, const std::string& file) 
 }
 
 Result<Image<float>> read_pfm(const std::string& path) {
-    const Result<std::string> bytes = read_file(path);
+    const Result<std::string> bytes = read_file(path, limits::kImageBytes);
     if (!bytes) return bytes.error();
     return parse_pfm(*bytes, path);
 }

@@ -220,7 +220,7 @@ Result<PlaceFile> parse_place(std::string_view bytes, const std::string& file) {
 }
 
 Result<PlaceFile> read_place(const std::string& path) {
-    const Result<std::string> bytes = read_file(path);
+    const Result<std::string> bytes = read_file(path, limits::kMapBytes);
     if (!bytes) return bytes.error();
     return parse_place(*bytes, path);
 }

@@ -15,7 +15,8 @@
 namespace surefoot::io {
 Result<PlyStream> PlyStream::create(const std::string& path,
                                     const std::vector<std::string>& scalars) {
-    const int descriptor = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
+    const int descriptor =
+        ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_NONBLOCK | O_CLOEXEC, 0666);
     if (descriptor < 0) return cannot_write(path, errno);
     PlyStream stream(path, descriptor, scalars);
     if (Status status = write_at(stream.descriptor_, 0, stream.header(), stream.path_); !status)

@@ -46,6 +46,21 @@ Result<PointCloud> parse_cloud(std::string_view bytes, const std::string& file) 
     return parse_text_cloud(bytes, file);
 }
 
+namespace {
+
+/// A file of gigabytes that is no cloud is refused by its first bytes: each format of clouds begins
+/// with text, or LAS with four letters.
+Status check_beginning(const std::string& path) {
+    auto file = files::InputFile::open(path, limits::kCloudBytes);
+    if (!file) return file.error();
+    const Result<std::string> head = file->read_at(0, 4);
+    if (!head) return head.error();
+    if (head->find('\0') == head->npos) return {};
+    return input_error(path + ": not a cloud: it begins with zero bytes; check the file");
+}
+
+}  // namespace
+
 Result<PointCloud> read_cloud(const std::string& path) {
     const std::string extension = extension_of(path);
     const bool named =
@@ -58,7 +73,8 @@ Result<PointCloud> read_cloud(const std::string& path) {
                 : "clouds are read from .ply .pcd .las .vtk .xyz .asc .txt .csv .pts";
         return input_error(fmt::format("{}: unknown cloud format '{}'; {}", path, extension, hint));
     }
-    const Result<std::string> bytes = read_file(path);
+    if (Status status = check_beginning(path); !status) return status.error();
+    const Result<std::string> bytes = read_file(path, limits::kCloudBytes);
     if (!bytes) return bytes.error();
     return parse_cloud(*bytes, path);
 }

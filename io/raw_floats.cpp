@@ -27,7 +27,7 @@ Result<std::vector<float>> parse_floats(std::string_view bytes,
 }
 
 Result<std::vector<float>> read_floats(const std::string& path, std::optional<std::size_t> count) {
-    const Result<std::string> bytes = read_file(path);
+    const Result<std::string> bytes = read_file(path, limits::kMapBytes);
     if (!bytes) return bytes.error();
     return parse_floats(*bytes, path, count);
 }

@@ -72,6 +72,12 @@ struct RecordingInfo {
     std::int64_t bytes = 0;  ///< of all images
     int imu_samples = 0;
     double imu_rate_hz = 0.0;
+    /// Of a video: what its container announces; `frames` are those that can be decoded.
+    std::optional<int> announced_frames = {};
+    std::string incomplete = {};    ///< the first frame of a video that cannot be had; empty = none
+    double pair_tolerance_s = 0.0;  ///< by which both images were paired; 0 = not by stamps
+    double largest_pair_difference_s = 0.0;
+    std::vector<std::string> notes = {};  ///< what a user should know about how it was opened
     bool has_truth = false;  ///< groundtruth.tum, groundtruth.txt or poses.txt is there
 };
 

@@ -18,10 +18,10 @@ std::int64_t median(std::vector<std::int64_t> values) {
     return *middle;
 }
 
-void describe_stamps(const std::vector<FrameEntry>& frames, RecordingInfo& info) {
+void describe_stamps(const std::vector<std::int64_t>& times_ns, RecordingInfo& info) {
     std::vector<std::int64_t> intervals_ns;
-    for (std::size_t i = 1; i < frames.size(); ++i) {
-        const std::int64_t interval_ns = frames[i].time_ns - frames[i - 1].time_ns;
+    for (std::size_t i = 1; i < times_ns.size(); ++i) {
+        const std::int64_t interval_ns = times_ns[i] - times_ns[i - 1];
         if (interval_ns > 0) {
             intervals_ns.push_back(interval_ns);
         } else {
@@ -29,7 +29,7 @@ void describe_stamps(const std::vector<FrameEntry>& frames, RecordingInfo& info)
         }
     }
     if (intervals_ns.empty()) return;
-    info.duration_s = seconds_from_ns(frames.back().time_ns - frames.front().time_ns);
+    info.duration_s = seconds_from_ns(times_ns.back() - times_ns.front());
     const std::int64_t typical_ns = median(intervals_ns);
     info.rate_hz = 1e9 / static_cast<double>(typical_ns);
     for (const std::int64_t interval_ns : intervals_ns) {
@@ -64,15 +64,30 @@ void describe_imu(const std::vector<ImuSample>& samples, RecordingInfo& info) {
     if (!intervals_ns.empty()) info.imu_rate_hz = 1e9 / static_cast<double>(median(intervals_ns));
 }
 
+/// Decodes a video to its end: its container may announce frames that are not there.
 Result<RecordingInfo> inspect_video(const std::string& path, const OpenOptions& options) {
     const auto source = open_video(path, options);
     if (!source) return source.error();
     RecordingInfo info;
-    info.kind = (*source)->info().kind;
+    std::vector<std::int64_t> times_ns;
+    while (true) {
+        const auto frame = (*source)->next();
+        if (!frame) {
+            if (info.incomplete.empty()) info.incomplete = frame.error().message;
+            continue;
+        }
+        if (!frame->has_value()) break;
+        times_ns.push_back((*frame)->time_ns);
+    }
+    if (times_ns.empty() && !info.incomplete.empty()) return input_error(info.incomplete);
+    const camera::SourceInfo& about = (*source)->info();
+    info.kind = about.kind;
+    info.notes = about.notes;
     info.rig = (*source)->rig();
-    info.frames = (*source)->info().frames.value_or(0);
+    info.frames = static_cast<int>(times_ns.size());
+    info.announced_frames = about.frames;
     info.rate_hz = info.rig.rate_hz;
-    info.duration_s = info.frames > 1 ? (info.frames - 1) / info.rate_hz : 0.0;
+    describe_stamps(times_ns, info);
     std::error_code ignored;
     info.bytes = static_cast<std::int64_t>(std::filesystem::file_size(path, ignored));
     return info;
@@ -89,7 +104,12 @@ Result<RecordingInfo> inspect(const std::string& path, const OpenOptions& option
     info.rig = recording->rig;
     info.frames = static_cast<int>(recording->frames.size());
     info.unpaired = recording->unpaired;
-    describe_stamps(recording->frames, info);
+    info.pair_tolerance_s = recording->pair_tolerance_s;
+    info.largest_pair_difference_s = recording->largest_pair_difference_s;
+    info.notes = recording->info.notes;
+    std::vector<std::int64_t> times_ns;
+    for (const FrameEntry& frame : recording->frames) times_ns.push_back(frame.time_ns);
+    describe_stamps(times_ns, info);
     describe_files(recording->frames, info);
     describe_imu(recording->imu, info);
     for (const char* name : {"groundtruth.tum", "groundtruth.txt", "poses.txt"}) {

@@ -34,14 +34,38 @@ Status check_size(const GreyImage& image, const camera::StereoRig& rig, const st
                     rig.left.height));
 }
 
-Status load_pair(const FrameEntry& entry, const camera::StereoRig& rig, StereoFrame& frame) {
-    Result<GreyImage> left = read_grey_image(entry.left);
+/// A camera image; of one with 16 bits the upper 8 of `bits`.
+Result<GreyImage> read_camera_image(const std::string& path, int bits) {
+    if (bits == 8) return read_grey_image(path);
+    const Result<DepthCodes> codes = read_depth_codes(path);
+    if (!codes) return codes.error();
+    GreyImage image(codes->width(), codes->height());
+    for (std::size_t i = 0; i < codes->size(); ++i) {
+        const int value = codes->data()[i] >> (bits - 8);
+        if (value > 255) {
+            return input_error(fmt::format(
+                "{}: value {} needs more than {} bits; give --image-bits 16 (or as many as the "
+                "camera has)",
+                path,
+                codes->data()[i],
+                bits));
+        }
+        image.data()[i] = static_cast<std::uint8_t>(value);
+    }
+    return image;
+}
+
+Status load_pair(const FrameEntry& entry,
+                 const camera::StereoRig& rig,
+                 int bits,
+                 StereoFrame& frame) {
+    Result<GreyImage> left = read_camera_image(entry.left, bits);
     if (!left) return left.error();
     if (!is_file(entry.right)) {
         return input_error(
             fmt::format("{}: the right image of this frame is missing", entry.right));
     }
-    Result<GreyImage> right = read_grey_image(entry.right);
+    Result<GreyImage> right = read_camera_image(entry.right, bits);
     if (!right) return right.error();
     if (!same_size(*left, *right)) {
         return input_error(
@@ -57,7 +81,10 @@ Status load_pair(const FrameEntry& entry, const camera::StereoRig& rig, StereoFr
     return {};
 }
 
-Status load_rgbd(const FrameEntry& entry, const camera::StereoRig& rig, StereoFrame& frame) {
+Status load_rgbd(const FrameEntry& entry,
+                 const camera::StereoRig& rig,
+                 float codes_per_m,
+                 StereoFrame& frame) {
     Result<GreyImage> grey = read_grey_image(entry.left);
     if (!grey) return grey.error();
     const Result<DepthCodes> codes = read_depth_codes(entry.right);
@@ -75,7 +102,7 @@ Status load_rgbd(const FrameEntry& entry, const camera::StereoRig& rig, StereoFr
     for (std::size_t i = 0; i < codes->size(); ++i) {
         const std::uint16_t code = codes->data()[i];
         frame.depth_m.data()[i] = code == 0 ? std::numeric_limits<float>::quiet_NaN()
-                                            : static_cast<float>(code) / kDepthCodesPerMetre;
+                                            : static_cast<float>(code) / codes_per_m;
     }
     return {};
 }
@@ -84,11 +111,13 @@ Status load_rgbd(const FrameEntry& entry, const camera::StereoRig& rig, StereoFr
 
 Status RecordingSource::load_images(const FrameEntry& entry, StereoFrame& frame) const {
     switch (recording_.storage) {
-        case Recording::Storage::pair: return load_pair(entry, recording_.rig, frame);
-        case Recording::Storage::rgbd: return load_rgbd(entry, recording_.rig, frame);
+        case Recording::Storage::pair:
+            return load_pair(entry, recording_.rig, recording_.image_bits, frame);
+        case Recording::Storage::rgbd:
+            return load_rgbd(entry, recording_.rig, recording_.depth_codes_per_m, frame);
         case Recording::Storage::side_by_side: break;
     }
-    const Result<GreyImage> both = read_grey_image(entry.left);
+    const Result<GreyImage> both = read_camera_image(entry.left, recording_.image_bits);
     if (!both) return both.error();
     return split_side_by_side(*both, recording_.rig, entry.left, frame);
 }
@@ -134,10 +163,31 @@ Result<std::unique_ptr<camera::FrameSource>> open_video_at(const std::string& pa
     return source;
 }
 
-}  // namespace
+/// Passes over what is broken; see skip_broken_frames.
+class SkippingSource final : public camera::FrameSource {
+  public:
+    explicit SkippingSource(std::unique_ptr<camera::FrameSource> source)
+        : source_(std::move(source)), info_(source_->info()) {}
+    [[nodiscard]] const camera::StereoRig& rig() const override { return source_->rig(); }
+    [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
+    [[nodiscard]] Result<std::optional<StereoFrame>> next() override {
+        for (int passed_over = 0;; ++passed_over) {
+            Result<std::optional<StereoFrame>> frame = source_->next();
+            if (frame) {
+                if (frame->has_value()) (*frame)->arrival.damaged += passed_over;
+                return frame;
+            }
+            if (info_.broken.count++ == 0) info_.broken.first = frame.error().message;
+        }
+    }
 
-Result<std::unique_ptr<camera::FrameSource>> open_source(const std::string& path,
-                                                         const OpenOptions& options) {
+  private:
+    std::unique_ptr<camera::FrameSource> source_;
+    camera::SourceInfo info_;
+};
+
+Result<std::unique_ptr<camera::FrameSource>> open_any(const std::string& path,
+                                                      const OpenOptions& options) {
     if (is_file(path)) {
         if (is_video_name(path)) return open_video_at(path, options);
         return input_error(
@@ -151,6 +201,20 @@ Result<std::unique_ptr<camera::FrameSource>> open_source(const std::string& path
     if (!recording) return recording.error();
     return std::unique_ptr<camera::FrameSource>(
         std::make_unique<RecordingSource>(std::move(recording).value(), options.first_frame));
+}
+
+}  // namespace
+
+std::unique_ptr<camera::FrameSource> skip_broken_frames(
+    std::unique_ptr<camera::FrameSource> source) {
+    return std::make_unique<SkippingSource>(std::move(source));
+}
+
+Result<std::unique_ptr<camera::FrameSource>> open_source(const std::string& path,
+                                                         const OpenOptions& options) {
+    auto source = open_any(path, options);
+    if (!source || !options.skip_broken) return source;
+    return skip_broken_frames(std::move(source).value());
 }
 
 }  // namespace surefoot::io

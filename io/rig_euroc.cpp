@@ -88,7 +88,7 @@ double read_rate(YamlReader& yaml) {
 }
 
 Result<EurocCamera> read_euroc_camera(const std::string& path) {
-    const Result<std::string> text = read_file(path);
+    const Result<std::string> text = read_file(path, limits::kSettingsBytes);
     if (!text) return text.error();
     return parse_euroc_camera(*text, path);
 }
@@ -188,7 +188,7 @@ Result<camera::StereoRig> read_euroc_rig(const std::string& mav_folder) {
     const std::string imu_folder = join_path(mav_folder, "imu0");
     const std::string imu_file = join_path(imu_folder, "sensor.yaml");
     if (is_file(imu_file)) {
-        const Result<std::string> text = read_file(imu_file);
+        const Result<std::string> text = read_file(imu_file, limits::kSettingsBytes);
         if (!text) return text.error();
         const Result<camera::ImuMount> imu = parse_euroc_imu(*text, imu_file);
         if (!imu) return imu.error();

@@ -20,7 +20,7 @@ Result<RigFile> read_opencv(YamlNode root, const std::string& path, std::optiona
     const OpenCvNames names = find_opencv_names(root);
     if (names.R.node != nullptr || names.T.node != nullptr || !is_file(beside))
         return opencv_rig(root, path, size);
-    const Result<std::string> text = read_file(beside);
+    const Result<std::string> text = read_file(beside, limits::kSettingsBytes);
     if (!text) return text.error();
     const Result<YamlNode> more = parse_yaml(*text, beside);
     if (!more) return more.error();
@@ -55,7 +55,7 @@ Result<RigFile> parse_kitti(const std::string& text,
 }
 
 Result<std::string> read_ros_text(const std::string& file) {
-    Result<std::string> text = read_file(file);
+    Result<std::string> text = read_file(file, limits::kSettingsBytes);
     if (!text) return text;
     const Result<YamlNode> root = parse_yaml(*text, file);
     if (!root) return root.error();
@@ -177,7 +177,7 @@ Result<RigFile> parse_rig_file(const std::string& text,
 
 Result<RigFile> read_rig_file(const std::string& path, std::optional<ImageSize> size) {
     if (is_folder(path)) return read_folder(path, size);
-    const Result<std::string> text = read_file(path);
+    const Result<std::string> text = read_file(path, limits::kSettingsBytes);
     if (!text) return text.error();
     if (auto other = parse_other(*text, path, size)) return std::move(*other);
     const Result<YamlNode> root = parse_mapping(*text, path);

@@ -20,8 +20,9 @@ Result<Recording> index_side_by_side(const std::string& folder, const OpenOption
     if (names->empty()) {
         return input_error(fmt::format(
             "{}: no recording here; looked for mav0/cam0 (EuRoC), image_0 + image_1 + calib.txt "
-            "(KITTI), "
-            "rgb.txt + depth.txt (TUM RGB-D), side-by-side images (.png .jpg .pgm .ppm) + rig.yaml",
+            "(KITTI), image_00 + image_01 (KITTI raw), left + right, cam0 + cam1, left* with "
+            "right*, rgb.txt + depth.txt or associations.txt (TUM RGB-D), side-by-side images "
+            "(.png .jpg .pgm .ppm) + rig.yaml",
             folder));
     }
     const Result<std::optional<camera::StereoRig>> rig =

@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <string>
 
+#include "files/input_file.hpp"
 #include "sim/embedded_scenes.hpp"
 #include "sim/scene_file.hpp"
 #include "surefoot/core/assert.hpp"
@@ -41,11 +40,9 @@ Result<ScriptedScene> scene_of_file(const std::string& path,
                                     const std::string& name,
                                     std::uint64_t seed,
                                     std::optional<Carrier> carrier) {
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) return input_error(fmt::format("{}: cannot be opened for reading", path));
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (stream.bad()) return input_error(fmt::format("{}: cannot be read", path));
-    return read_scene({path, text}, name, seed, carrier);
+    const Result<std::string> text = files::read_file(path, files::limits::kSettingsBytes);
+    if (!text) return text.error();
+    return read_scene({path, *text}, name, seed, carrier);
 }
 
 }  // namespace

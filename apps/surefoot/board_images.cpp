@@ -146,16 +146,17 @@ Status load(const Entry& entry, bool stereo, BoardImages& images) {
     return {};
 }
 
-Status for_video(const std::string& path, bool stereo, const Use& use) {
+Status for_video(const std::string& path, bool stereo, const Use& use, BoardSource& about) {
     auto video = io::VideoFrames::open(path);
     if (!video) return video.error();
     const int step = std::max(1, video->count() / kMostVideoViews);
     for (int index = 0;; ++index) {
         auto frame = video->next();
-        if (!frame) return frame.error();
-        if (!frame->has_value()) return {};
+        if (!frame && index == 0) return frame.error();
+        if (!frame) about.notes.push_back(frame.error().message + ".");
+        if (!frame || !frame->has_value()) return {};
         if (index % step != 0) continue;
-        BoardImages images{fmt::format("frame {}", index), std::move(**frame), {}};
+        BoardImages images{fmt::format("frame {}", index), std::move((*frame)->image), {}};
         if (stereo) {
             if (Status status = split(images); !status) return status;
         }
@@ -171,7 +172,8 @@ Result<BoardSource> for_board_images(const std::string& source,
                                      const Use& use) {
     BoardSource about;
     if (io::is_file(source) && io::is_video_name(source)) {
-        if (const Status status = for_video(source, stereo, use); !status) return status.error();
+        if (const Status status = for_video(source, stereo, use, about); !status)
+            return status.error();
         return about;
     }
     const auto entries = stereo ? stereo_entries(source, about) : mono_entries(source, eye);

@@ -268,13 +268,14 @@ int calibrate(const CalibrateOptions& options) {
     if (const Status status = check_found(run); !status) return report(status.error());
     advise(run);
     if (const Status status = solve(chosen, run); !status) return report(status.error());
-    if (const Status status = write_results(options, run); !status) return report(status.error());
+    // A calibration that does not fit on the disk is printed all the same.
+    const Status written = write_results(options, run);
     if (options.common.json) {
         print_answer(calibration_json(run));
     } else {
         print_result(run, options.out_dir);
     }
-    return kExitOk;
+    return written ? kExitOk : report(written.error());
 }
 
 }  // namespace surefoot::app

@@ -53,6 +53,7 @@ Copied copy_frames(const std::string& label,
     while (true) {
         const auto copied_one = copy_one(source, recorder, after_frame);
         copied.frames = recorder.frames();
+        copied.broken = source.info().broken;
         if (!copied_one) copied.error = copied_one.error();
         if (!copied_one || !*copied_one) break;
         progress.advance(copied.frames);

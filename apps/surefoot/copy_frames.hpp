@@ -13,6 +13,7 @@ namespace surefoot::app {
 /// How far copying got, and why it ended early.
 struct Copied {
     int frames = 0;
+    camera::BrokenFrames broken = {};  ///< that the source passed over
     std::optional<Error> error;  ///< of source, recorder or `after_frame`; or the user's interrupt
 };
 

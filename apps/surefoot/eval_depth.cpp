@@ -51,7 +51,7 @@ Result<Truth> read_truth(const std::string& path, double scale) {
                 static_cast<float>(static_cast<double>(truth_px->data()[i]) / scale);
         return Truth{std::move(truth_px).value(), scale};
     }
-    const auto bytes = io::read_file(path);
+    const auto bytes = io::read_file(path, io::limits::kImageBytes);
     if (!bytes) return bytes.error();
     const auto header = io::check_image(*bytes, path);
     if (!header) return header.error();

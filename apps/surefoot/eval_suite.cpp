@@ -173,7 +173,8 @@ int eval_suite(const EvalSuiteOptions& options) {
         print_answer(suite_json(results));
     } else {
         print_summary(summarise(results));
-        fmt::print("{} cases in {}/suite.html\n", results.size(), options.out_dir);
+        if (writes.first())
+            fmt::print("{} cases in {}/suite.html\n", results.size(), options.out_dir);
     }
     if (!writes.first()) log_error(writes.first().error().message);
     if (!done) return report(done.error());

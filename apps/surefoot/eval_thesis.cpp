@@ -303,7 +303,8 @@ int eval_thesis(const EvalSuiteOptions& options) {
         print_answer(thesis_json(results, *conditions));
     } else {
         print_thesis(results, *conditions);
-        fmt::print("{} recordings in {}/thesis.html\n", results.runs.size(), options.out_dir);
+        if (writes.first())
+            fmt::print("{} recordings in {}/thesis.html\n", results.runs.size(), options.out_dir);
     }
     if (!writes.first()) log_error(writes.first().error().message);
     if (!done) return report(done.error());

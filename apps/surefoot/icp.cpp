@@ -38,7 +38,7 @@ Result<Pose> parse_guess(const std::string& guess) {
         return usage_error(
             fmt::format("--guess {}: neither a file nor x,y,z,yaw (metres and degrees)", guess));
     }
-    const auto text = io::read_file(guess);
+    const auto text = io::read_file(guess, io::limits::kSettingsBytes);
     if (!text) return text.error();
     const std::vector<double> n = numbers_of(*text);
     if (n.size() != 16 && n.size() != 12) {

@@ -42,6 +42,7 @@ int info(const InfoOptions& options) {
     if (options.source.starts_with(kLivePrefix)) return info_of_camera(options);
     io::OpenOptions open;
     if (!options.rig_file.empty()) open.rig_file = options.rig_file;
+    apply(options.reading, open);
     const auto found = io::inspect(options.source, open);
     if (!found) return report(found.error());
     if (options.common.json) {
@@ -55,6 +56,18 @@ int info(const InfoOptions& options) {
                i.duration_s,
                i.rate_hz,
                static_cast<double>(i.bytes) * 1e-6);
+    if (i.announced_frames && *i.announced_frames != i.frames) {
+        fmt::print("the container announces {} frames, {} of them can be decoded\n",
+                   *i.announced_frames,
+                   i.frames);
+    }
+    if (!i.incomplete.empty()) fmt::print("incomplete: {}\n", i.incomplete);
+    if (i.pair_tolerance_s > 0.0) {
+        fmt::print("pairs: stamps differ by up to {:.3f} ms, {:g} ms are allowed\n",
+                   1e3 * i.largest_pair_difference_s,
+                   1e3 * i.pair_tolerance_s);
+    }
+    for (const std::string& note : i.notes) fmt::print("note: {}\n", note);
     fmt::print("gaps: {} (longest {:.3f} s), frames without partner: {}, missing images: {}{}\n",
                i.gaps,
                i.longest_gap_s,

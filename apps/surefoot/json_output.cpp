@@ -240,33 +240,55 @@ Json place_json(const PlaceRecord& place) {
             {"left_as_it_was", reason.empty() ? Json(nullptr) : Json(reason)}};
 }
 
-Json run_object(const RunRecord& record, const pipeline::Pipeline& pipeline) {
+void add_broken(const camera::BrokenFrames& broken, Json& object) {
+    object["broken_frames"] = broken.count;
+    object["first_broken"] = broken.count > 0 ? Json(broken.first) : Json(nullptr);
+}
+
+Json source_json(const camera::SourceInfo& source) {
+    Json modelled = Json::array();
+    if (source.modelled_motion) modelled.push_back("odometry");
+    if (source.modelled_depth) modelled.push_back("depth");
+    Json object = {{"kind", source.kind},
+                   {"path", source.path},
+                   {"modelled", modelled},
+                   {"announced_frames", source.frames ? Json(*source.frames) : Json(nullptr)},
+                   {"notes", source.notes}};
+    add_broken(source.broken, object);
+    return object;
+}
+
+/// Why a run is not complete: it ended early, or its results could not be written.
+Json error_json(const RunRecord& record, const Status& written) {
+    if (record.error) return record.error->message;
+    return written ? Json(nullptr) : Json(written.error().message);
+}
+
+Json run_object(const RunRecord& record,
+                const pipeline::Pipeline& pipeline,
+                const Status& written) {
     const pipeline::Alignment& alignment = pipeline.alignment();
     const auto& geometry = pipeline.map().geometry();
-    Json modelled = Json::array();
-    if (record.source.modelled_motion) modelled.push_back("odometry");
-    if (record.source.modelled_depth) modelled.push_back("depth");
-    Json object = {
-        {"source",
-         {{"kind", record.source.kind}, {"path", record.source.path}, {"modelled", modelled}}},
-        {"frames", record.frames.size()},
-        {"waited_frames", record.waited_frames},
-        {"complete", record.complete()},
-        {"error", record.error ? Json(record.error->message) : Json(nullptr)},
-        {"gravity_source", gravity_name(alignment.gravity_source)},
-        {"gravity_reason", alignment.reason},
-        {"ground_height_m",
-         alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
-        {"trim", trim_json(pipeline.trim())},
-        {"health", health_json(record)},
-        {"counts", counts_json(record.fusion)},
-        {"arrivals", arrivals_json(record.arrivals)},
-        {"camera", camera_json(pipeline.rig())},
-        {"map",
-         {{"known_cells", pipeline.map().known_cells()},
-          {"cells", geometry.nx * geometry.ny},
-          {"resolution_m", geometry.resolution_m},
-          {"reason", empty_map_reason(record, pipeline)}}}};
+    Json object = {{"source", source_json(record.source)},
+                   {"frames", record.frames.size()},
+                   {"waited_frames", record.waited_frames},
+                   {"complete", record.complete() && written.ok()},
+                   {"error", error_json(record, written)},
+                   {"gravity_source", gravity_name(alignment.gravity_source)},
+                   {"gravity_reason", alignment.reason},
+                   {"ground_height_m",
+                    alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
+                   {"trim", trim_json(pipeline.trim())},
+                   {"health", health_json(record)},
+                   {"counts", counts_json(record.fusion)},
+                   {"arrivals", arrivals_json(record.arrivals)},
+                   {"camera", camera_json(pipeline.rig())},
+                   {"map",
+                    {{"known_cells", pipeline.map().known_cells()},
+                     {"cells", geometry.nx * geometry.ny},
+                     {"resolution_m", geometry.resolution_m},
+                     {"reason", empty_map_reason(record, pipeline)}}}};
+    if (!written) object["output_error"] = written.error().message;
     if (record.place) object["place"] = place_json(*record.place);
     if (record.truth) object["truth"] = truth_json(*record.truth);
     object["timing"] = timing_json(record);
@@ -333,16 +355,17 @@ Json event_json(const RexLinkRow& row) {
 std::string report_json(const RunRecord& record,
                         const pipeline::Pipeline& pipeline,
                         const Status& written) {
-    Json object = run_object(record, pipeline);
-    if (!written) object["output_error"] = written.error().message;
+    Json object = run_object(record, pipeline, written);
     Json frames = Json::array();
     for (const FrameReport& frame : record.frames) frames.push_back(frame_json(frame));
     object["per_frame"] = frames;
     return object.dump(kIndent);
 }
 
-std::string run_json(const RunRecord& record, const pipeline::Pipeline& pipeline) {
-    return run_object(record, pipeline).dump(kIndent);
+std::string run_json(const RunRecord& record,
+                     const pipeline::Pipeline& pipeline,
+                     const Status& written) {
+    return run_object(record, pipeline, written).dump(kIndent);
 }
 
 std::string failure_json(const std::string& error, int exit_code) {
@@ -628,22 +651,29 @@ std::string scenes_json(const std::vector<sim::SceneInfo>& scenes) {
 }
 
 std::string recording_json(const io::RecordingInfo& info) {
-    const Json object = {{"kind", info.kind},
-                         {"frames", info.frames},
-                         {"duration_s", info.duration_s},
-                         {"rate_hz", info.rate_hz},
-                         {"gaps", info.gaps},
-                         {"longest_gap_s", info.longest_gap_s},
-                         {"unpaired", info.unpaired},
-                         {"missing_images", info.missing_images},
-                         {"bad_stamps", info.bad_stamps},
-                         {"bytes", info.bytes},
-                         {"imu_samples", info.imu_samples},
-                         {"imu_rate_hz", info.imu_rate_hz},
-                         {"has_truth", info.has_truth},
-                         {"width", info.rig.left.width},
-                         {"height", info.rig.left.height},
-                         {"baseline_m", info.rig.T_left_right.translation_m.norm()}};
+    const auto optional = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
+    const Json object = {
+        {"kind", info.kind},
+        {"frames", info.frames},
+        {"announced_frames", optional(info.announced_frames)},
+        {"incomplete", info.incomplete.empty() ? Json(nullptr) : Json(info.incomplete)},
+        {"duration_s", info.duration_s},
+        {"rate_hz", info.rate_hz},
+        {"gaps", info.gaps},
+        {"longest_gap_s", info.longest_gap_s},
+        {"unpaired", info.unpaired},
+        {"pair_tolerance_s", info.pair_tolerance_s},
+        {"largest_pair_difference_s", info.largest_pair_difference_s},
+        {"notes", info.notes},
+        {"missing_images", info.missing_images},
+        {"bad_stamps", info.bad_stamps},
+        {"bytes", info.bytes},
+        {"imu_samples", info.imu_samples},
+        {"imu_rate_hz", info.imu_rate_hz},
+        {"has_truth", info.has_truth},
+        {"width", info.rig.left.width},
+        {"height", info.rig.left.height},
+        {"baseline_m", info.rig.T_left_right.translation_m.norm()}};
     return object.dump(kIndent);
 }
 
@@ -680,10 +710,11 @@ std::string rig_json(const io::RigFile& file, const std::vector<std::string>& wr
 }
 
 std::string copied_json(const Copied& copied, const std::string& folder) {
-    const Json object = {{"frames", copied.frames},
-                         {"complete", !copied.error.has_value()},
-                         {"error", copied.error ? Json(copied.error->message) : Json(nullptr)},
-                         {"folder", folder}};
+    Json object = {{"frames", copied.frames},
+                   {"complete", !copied.error.has_value()},
+                   {"error", copied.error ? Json(copied.error->message) : Json(nullptr)},
+                   {"folder", folder}};
+    add_broken(copied.broken, object);
     return object.dump(kIndent);
 }
 
@@ -702,11 +733,17 @@ std::string scan_json(const Scanned& scanned) {
     return object.dump(kIndent);
 }
 
-std::string replay_json(const std::vector<FrameReport>& frames, double speed, std::int64_t late) {
+std::string replay_json(const std::vector<FrameReport>& frames,
+                        double speed,
+                        std::int64_t late,
+                        const camera::SourceInfo& source) {
     Json list = Json::array();
     for (const FrameReport& frame : frames) list.push_back(frame_json(frame));
-    const Json object = {
-        {"frames", frames.size()}, {"late", late}, {"speed", speed}, {"per_frame", list}};
+    const Json object = {{"source", source_json(source)},
+                         {"frames", frames.size()},
+                         {"late", late},
+                         {"speed", speed},
+                         {"per_frame", list}};
     return object.dump(kIndent);
 }
 

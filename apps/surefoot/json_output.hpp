@@ -55,7 +55,9 @@ struct ReportCamera {
 /// Images of a board that were drawn.
 [[nodiscard]] std::string rendered_boards_json(std::size_t views, const std::string& folder);
 /// The same without the list of frames, for stdout.
-[[nodiscard]] std::string run_json(const RunRecord& record, const pipeline::Pipeline& pipeline);
+[[nodiscard]] std::string run_json(const RunRecord& record,
+                                   const pipeline::Pipeline& pipeline,
+                                   const Status& written);
 /// A verb that failed before it had anything to tell.
 [[nodiscard]] std::string failure_json(const std::string& error, int exit_code);
 [[nodiscard]] std::string verdict_json(const gate::Verdict& verdict,
@@ -101,7 +103,8 @@ struct TruthScale {
 [[nodiscard]] std::string scan_json(const Scanned& scanned);
 [[nodiscard]] std::string replay_json(const std::vector<FrameReport>& frames,
                                       double speed,
-                                      std::int64_t late);
+                                      std::int64_t late,
+                                      const camera::SourceInfo& source);
 /// One event of the REX link; the file of a tone, where there is one.
 struct RexLinkRow {
     rex_link::LinkEvent event;

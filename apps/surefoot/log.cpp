@@ -5,6 +5,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdio>
 #include <cstdlib>
 
 #include "apps/surefoot/verbs.hpp"
@@ -37,15 +38,25 @@ bool answered() noexcept {
     return has_answered;
 }
 
+// What was printed before comes before, also where stdout is a pipe or a file: an error that is
+// followed by a line of results would read as if it were mended.
 void log_info(const std::string& message) {
+    std::fflush(stdout);
     logger().info(message);
 }
 void log_warning(const std::string& message) {
+    std::fflush(stdout);
     logger().warn(message);
 }
 void log_error(const std::string& message) {
+    std::fflush(stdout);
     if (first_error_sentence.empty()) first_error_sentence = message;
     logger().error(message);
+}
+
+Status close_stdout() {
+    const bool flushed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    return flushed ? Status() : Status(output_error("stdout: cannot write: is the disk full?"));
 }
 
 const std::string& first_error() noexcept {

@@ -20,6 +20,9 @@ void log_error(const std::string& message);
 /// The first sentence that log_error was given; empty when nothing failed.
 [[nodiscard]] const std::string& first_error() noexcept;
 
+/// Writes what stdout still holds. A failure of any earlier print counts: the answer is not whole.
+[[nodiscard]] Status close_stdout();
+
 /// Logs the error and returns the exit code that belongs to it.
 [[nodiscard]] int report(const Error& error);
 

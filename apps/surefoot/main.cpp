@@ -60,6 +60,34 @@ void add_common(CLI::App* verb, CommonOptions& common) {
         "--seed", common.seed, "seed of simulated scenes, the only thing that is random");
 }
 
+/// How recordings of other people are read.
+void add_reading(CLI::App* verb, ReadingOptions& reading) {
+    verb->add_option("--pair-tolerance",
+                     reading.pair_tolerance_s,
+                     "largest difference between the stamps of both images of a frame (default: a "
+                     "fifth of the frame time; TUM RGB-D: 0.02)")
+        ->type_name("S")
+        ->check(number_in(0.0, 10.0));
+    verb->add_option("--depth-factor",
+                     reading.depth_codes_per_m,
+                     "RGB-D: codes of a metre in the depth images (TUM: 5000, millimetres: 1000)")
+        ->type_name("N")
+        ->check(number_in(1.0, 1e6));
+    verb->add_option("--image-bits",
+                     reading.image_bits,
+                     "16-bit camera images: bits of the largest value, of which the upper 8 are "
+                     "used")
+        ->type_name("N")
+        ->check(CLI::Range(9, 16));
+}
+void add_skip_broken(CLI::App* verb, ReadingOptions& reading) {
+    verb->add_flag(
+        "--skip-broken",
+        reading.skip_broken,
+        "pass over frames of a recording that cannot be read, and count them, instead of "
+        "ending at the first");
+}
+
 /// Which settings a verb reads. For those that read none --config, --set and --preset are still
 /// checked, so that one call serves all verbs, and the user is told that they change nothing here.
 enum class Reads { settings, own_settings, no_settings };
@@ -163,6 +191,8 @@ void add_run(CLI::App& app, RunOptions& o, int& exit_code) {
         ->check(number_in(0.01, 1000.0));
     verb->add_option("--max-frames", o.max_frames, "stop after this many frames")
         ->check(positive_number());
+    add_reading(verb, o.reading);
+    add_skip_broken(verb, o.reading);
     verb->add_option("--depth-every",
                      o.depth_every,
                      "depth and map on every n-th frame; odometry runs on all")
@@ -422,6 +452,8 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
                      "what the machine looks like on the page: a model file or a built-in name; "
                      "unless given the built-in one of the machine's name")
         ->type_name("FILE|NAME");
+    add_reading(verb, o.reading);
+    add_skip_broken(verb, o.reading);
     verb->add_option("--rate", o.rate_hz, "frames per second of a source without stamps")
         ->type_name("HZ");
     verb->add_option("--max-frames", o.max_frames, "ends after so many")->type_name("N");
@@ -1249,6 +1281,8 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     record_verb->add_option("--out", all.record.out_dir, "folder for the recording")
         ->required()
         ->type_name("DIR");
+    add_reading(record_verb, all.record.reading);
+    add_skip_broken(record_verb, all.record.reading);
     record_verb->add_option("--rig", all.record.rig_file, "calibration")->type_name("FILE");
     record_verb->add_option("--imu", all.record.imu_file, "as for run")->type_name("FILE");
     record_verb->add_option("--rate", all.record.rate_hz, "frame rate of a source without stamps")
@@ -1267,6 +1301,8 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     replay_verb->add_option("source", all.replay.source, "as for run")
         ->required()
         ->type_name("SOURCE");
+    add_reading(replay_verb, all.replay.reading);
+    add_skip_broken(replay_verb, all.replay.reading);
     replay_verb->add_option("--rig", all.replay.rig_file, "calibration")->type_name("FILE");
     replay_verb
         ->add_option(
@@ -1285,6 +1321,7 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
              info,
              exit_code,
              Reads::no_settings);
+    add_reading(info_verb, all.info.reading);
     info_verb->add_option("source", all.info.source, "as for run")->required()->type_name("SOURCE");
     info_verb->add_option("--rig", all.info.rig_file, "calibration")->type_name("FILE");
 }
@@ -1387,7 +1424,12 @@ int main_with_arguments(int argc, char** argv) {
         log_error(std::string("internal error: ") + error.what());
         exit_code = kExitFailed;
     }
-    return answer_failure(app, json, exit_code);
+    exit_code = answer_failure(app, json, exit_code);
+    if (const Status written = close_stdout(); !written && exit_code == kExitOk) {
+        log_error(written.error().message);
+        return app.got_subcommand("gate") ? kExitGateError : kExitFailed;
+    }
+    return exit_code;
 }
 
 }  // namespace surefoot::app

@@ -128,7 +128,7 @@ int map_export(const MapExportOptions& options) {
         of_known_cells(region,
                        [&](std::size_t i) { return std::sqrt(region.height_var_m2.data()[i]); }),
         eval::height_sigma_style());
-    if (!out.writes.first()) log_error(out.writes.first().error().message);
+    const Status written = out.writes.first();
     if (options.common.json) {
         print_answer(map_export_json(region, out.files, options.out_dir));
     } else {
@@ -138,7 +138,7 @@ int map_export(const MapExportOptions& options) {
                    out.files.size(),
                    options.out_dir);
     }
-    return out.writes.first() ? kExitOk : kExitFailed;
+    return written ? kExitOk : report(written.error());
 }
 
 }  // namespace surefoot::app

@@ -4,6 +4,7 @@
 #include "apps/surefoot/copy_frames.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
@@ -21,7 +22,9 @@ int record(const RecordOptions& options) {
                                options.common.seed,
                                settings->sim,
                                settings->live,
-                               options.imu_file},
+                               options.imu_file,
+                               0,
+                               options.reading},
                               *executor);
     if (!source) return report(source.error());
     auto recorder = start_recording(options.out_dir, **source);
@@ -30,7 +33,11 @@ int record(const RecordOptions& options) {
     if (options.common.json) {
         print_answer(copied_json(copied, options.out_dir));
     } else {
-        fmt::print("{} frames recorded in {}/\n", copied.frames, options.out_dir);
+        fmt::print("{} frames recorded in {}/{}\n{}",
+                   copied.frames,
+                   options.out_dir,
+                   copied.error ? " before the error" : "",
+                   broken_text(copied.broken));
     }
     return copied.error ? report(*copied.error) : kExitOk;
 }

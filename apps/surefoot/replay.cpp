@@ -10,6 +10,7 @@
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
@@ -104,7 +105,10 @@ int replay(const ReplayOptions& options) {
                                0,
                                options.common.seed,
                                settings->sim,
-                               settings->live},
+                               settings->live,
+                               {},
+                               0,
+                               options.reading},
                               *executor);
     if (!source) return report(source.error());
     auto pipeline = pipeline::Pipeline::make(
@@ -117,12 +121,13 @@ int replay(const ReplayOptions& options) {
         return frame.work == Work::odometry && frame.arrival.is_new_and_whole();
     });
     if (options.common.json) {
-        print_answer(replay_json(seen, options.speed, late));
+        print_answer(replay_json(seen, options.speed, late, (*source)->info()));
     } else {
-        fmt::print("{} frames at {:g} times real time, {} late (odometry only)\n",
+        fmt::print("{} frames at {:g} times real time, {} late (odometry only)\n{}",
                    seen.size(),
                    options.speed,
-                   late);
+                   late,
+                   broken_text((*source)->info().broken));
     }
     return played ? kExitOk : report(played.error());
 }

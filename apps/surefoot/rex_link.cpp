@@ -57,7 +57,7 @@ Result<rex_link::Joystick> make_joystick(const RexLinkOptions& options) {
             return interrupted() ? std::nullopt : keyboard->poll();
         });
     }
-    const auto text = io::read_file(options.script_file);
+    const auto text = io::read_file(options.script_file, io::limits::kSettingsBytes);
     if (!text) return text.error();
     auto script = parse_joystick_script(*text, options.script_file);
     if (!script) return script.error();

@@ -26,7 +26,9 @@ int run(const RunOptions& options) {
                                options.common.seed,
                                settings->sim,
                                settings->live,
-                               options.imu_file},
+                               options.imu_file,
+                               0,
+                               options.reading},
                               *executor);
     if (!source) return report(source.error());
     const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);
@@ -69,15 +71,19 @@ int run(const RunOptions& options) {
     const RunRecord& record = session.record();
 
     writes += write_results(options, *settings, *machine, *pipeline, record);
-    const Status& written = writes.first();
+    const Status written = writes.first();
     if (options.common.json) {
-        print_answer(run_json(record, *pipeline));
+        print_answer(run_json(record, *pipeline, written));
     } else {
         fmt::print("{}", run_summary(record, *pipeline));
         if (written) fmt::print("results in {0}/, start with {0}/report.html\n", options.out_dir);
     }
     // Both may have failed; each is said once, the run's own error decides the exit code.
-    if (!written) log_error(written.error().message);
+    if (!written) {
+        log_error(fmt::format("{}; {} holds only a part of the results: make room and run again",
+                              written.error().message,
+                              options.out_dir));
+    }
     if (!record.complete()) return report(*record.error);
     return written ? kExitOk : kExitFailed;
 }

@@ -307,6 +307,14 @@ std::string modelled_note(const camera::SourceInfo& source) {
     return source.modelled_motion ? "Motion was not measured: the source told it." : "";
 }
 
+std::string broken_text(const camera::BrokenFrames& broken) {
+    if (broken.count == 0) return "";
+    return fmt::format("{} broken frame{} passed over (--skip-broken); the first: {}\n",
+                       broken.count,
+                       broken.count == 1 ? " was" : "s were",
+                       broken.first);
+}
+
 std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     const Percentiles frame = frame_percentiles(record);
     std::string text =
@@ -337,6 +345,7 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
         const std::string note = gravity_note(pipeline.alignment().gravity_source);
         if (!note.empty()) text += note + "\n";
     }
+    text += broken_text(record.source.broken);
     if (const std::string note = modelled_note(record.source); !note.empty()) text += note + "\n";
     if (const std::string reason = empty_map_reason(record, pipeline); !reason.empty()) {
         text += fmt::format("the map is empty: {}\n", reason);

@@ -28,6 +28,9 @@ namespace surefoot::app {
 /// What must be said of results that were not all measured; empty when they were.
 [[nodiscard]] std::string modelled_note(const camera::SourceInfo& source);
 
+/// A line about frames that the source passed over; empty when there are none.
+[[nodiscard]] std::string broken_text(const camera::BrokenFrames& broken);
+
 /// Why the map holds no cell, in one sentence; empty when it holds some.
 [[nodiscard]] std::string empty_map_reason(const RunRecord& record,
                                            const pipeline::Pipeline& pipeline);

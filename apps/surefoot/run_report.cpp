@@ -150,6 +150,9 @@ std::vector<std::string> summary_lines(const RunRecord& record,
                     pipeline.map().known_cells()),
         fmt::format("Gravity and ground: {}.", pipeline.alignment().reason)};
     if (std::string note = modelled_note(record.source); !note.empty()) lines.push_back(note);
+    for (const std::string& note : record.source.notes)
+        lines.push_back(fmt::format("About the source: {}.", note));
+    if (record.source.broken.count > 0) lines.push_back(broken_text(record.source.broken));
     lines.push_back(record.complete()
                         ? "The run is complete."
                         : fmt::format("The run ended early: {}", record.error->message));

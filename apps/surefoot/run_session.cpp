@@ -48,9 +48,16 @@ void RunSession::drive(const std::string& label, const AfterFrame& after_frame) 
                                                 record_.frames.size(),
                                                 error.what()));
     }
+    record_.source.broken = source_.info().broken;
     if (record_.frames.empty() && !record_.error) {
-        record_.error =
-            input_error(fmt::format("{}: the source holds no frame", record_.source.path));
+        const camera::BrokenFrames& broken = record_.source.broken;
+        record_.error = input_error(fmt::format(
+            "{}: the source holds no {}frame{}",
+            record_.source.path,
+            broken.count > 0 ? "whole " : "",
+            broken.count > 0
+                ? fmt::format(" ({} are broken; the first: {})", broken.count, broken.first)
+                : ""));
     }
     record_.truth = truth_.figures(pipeline_, record_.frames, maps_);
     record_.wall_s = seconds_from_ns(steady_now_ns() - start_ns);

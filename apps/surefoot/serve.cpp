@@ -161,7 +161,8 @@ Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
                           settings.sim,
                           settings.live,
                           {},
-                          first_frame};
+                          first_frame,
+                          options.reading};
     request.sim.commanded = options.joystick || !options.walk.empty();
     return open_source(request, executor);
 }

@@ -16,7 +16,7 @@ namespace {
 /// A comment line for a file that the call names; nothing for a built-in name.
 Result<std::string> file_line(const std::string& path) {
     if (!io::is_file(path)) return std::string();
-    const auto bytes = io::read_file(path);
+    const auto bytes = io::read_file(path, io::limits::kSettingsBytes);
     if (!bytes) return bytes.error();
     return fmt::format("# {}: {:016x}\n", path, fnv1a(*bytes));
 }
@@ -40,7 +40,8 @@ Result<std::string> sim_config(const SimOptions& options, const Settings& settin
 }
 
 SimFolder compare_folder(const std::string& folder, const std::string& config) {
-    const auto there = io::read_file(io::join_path(folder, "config.yaml"));
+    const auto there =
+        io::read_file(io::join_path(folder, "config.yaml"), io::limits::kSettingsBytes);
     if (!there) return {};
     if (*there == config) return {io::Recorder::Existing::renew, ""};
     io::LineReader theirs(*there);

@@ -225,9 +225,10 @@ int simulate(const SimOptions& options) {
     if (options.common.json) {
         print_answer(copied_json(copied, options.out_dir));
     } else {
-        fmt::print("{} frames of {} with ground truth in {}/\n",
+        fmt::print("{} frames of {} {} in {}/\n",
                    copied.frames,
                    options.scene,
+                   copied.error ? "before the error" : "with ground truth",
                    options.out_dir);
     }
     return copied.error ? report(*copied.error) : kExitOk;

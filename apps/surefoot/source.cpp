@@ -30,7 +30,9 @@ class LimitedSource final : public camera::FrameSource {
     [[nodiscard]] const camera::SourceInfo& info() const override { return info_; }
     [[nodiscard]] Result<std::optional<StereoFrame>> next() override {
         if (left_-- <= 0) return std::optional<StereoFrame>{};
-        return source_->next();
+        auto frame = source_->next();
+        info_.broken = source_->info().broken;
+        return frame;
     }
 
   private:
@@ -85,6 +87,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_recording(const SourceRequest&
     if (!request.rig_file.empty()) options.rig_file = request.rig_file;
     if (request.rate_hz > 0.0) options.rate_hz = request.rate_hz;
     options.first_frame = request.first_frame;
+    apply(request.reading, options);
     auto source = io::open_source(request.source, options);
     if (source) log_rig_notes(request, (*source)->rig());
     return source;
@@ -97,6 +100,13 @@ Result<camera::StereoRig> read_noted_rig(const std::string& path) {
     if (!file) return file.error();
     for (const std::string& note : file->notes) log_warning(path + ": " + note);
     return std::move(file->rig);
+}
+
+void apply(const ReadingOptions& reading, io::OpenOptions& options) {
+    options.pair_tolerance_s = reading.pair_tolerance_s;
+    options.depth_codes_per_m = reading.depth_codes_per_m;
+    options.image_bits = reading.image_bits;
+    options.skip_broken = reading.skip_broken;
 }
 
 Result<std::unique_ptr<sim::SceneSource>> open_simulation(const SourceRequest& request,

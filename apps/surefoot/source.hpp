@@ -9,6 +9,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "io/live_camera.hpp"
 #include "io/machine_file.hpp"
+#include "io/recording.hpp"
 #include "sim/scene_source.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/core/executor.hpp"
@@ -26,7 +27,11 @@ struct SourceRequest {
     io::CameraConfig live = {};  ///< and a live camera
     std::string imu_file = {};   ///< samples of another device, see io::with_imu
     int first_frame = 0;         ///< of a recording; those before it are passed over
+    ReadingOptions reading = {};
 };
+
+/// Hands the options of the command line on to the readers.
+void apply(const ReadingOptions& reading, io::OpenOptions& options);
 
 /// What begins the name of a live camera.
 inline constexpr std::string_view kLivePrefix = "v4l2:";

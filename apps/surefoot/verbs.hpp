@@ -28,8 +28,17 @@ struct CommonOptions {
     std::uint64_t seed = 1;
 };
 
+/// How recordings of other people are read.
+struct ReadingOptions {
+    std::optional<double> pair_tolerance_s;
+    std::optional<double> depth_codes_per_m;
+    std::optional<int> image_bits;
+    bool skip_broken = false;
+};
+
 struct RunOptions {
     CommonOptions common;
+    ReadingOptions reading;
     std::string source;
     std::string out_dir;
     std::string rig_file;
@@ -101,6 +110,7 @@ int gate(const GateOptions& options);
 
 struct ServeOptions {
     CommonOptions common;
+    ReadingOptions reading;
     std::string source;
     std::string rig_file;
     std::string machine = "rex";
@@ -364,6 +374,7 @@ int bench(const BenchOptions& options);
 
 struct RecordOptions {
     CommonOptions common;
+    ReadingOptions reading;
     std::string source;
     std::string out_dir;
     std::string rig_file;
@@ -375,6 +386,7 @@ int record(const RecordOptions& options);
 
 struct ReplayOptions {
     CommonOptions common;
+    ReadingOptions reading;
     std::string source;
     std::string rig_file;
     std::string machine;
@@ -424,6 +436,7 @@ int map_export(const MapExportOptions& options);
 
 struct InfoOptions {
     CommonOptions common;
+    ReadingOptions reading;
     std::string source;
     std::string rig_file;
 };

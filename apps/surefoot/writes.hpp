@@ -1,23 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <utility>
 
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::app {
 
-/// Many writes, of which each is tried whatever became of those before; remembers the first
-/// failure.
+/// Many writes, of which each is tried whatever became of those before.
 class Writes {
   public:
     void operator+=(Status status) {
-        if (!status && first_.ok()) first_ = std::move(status);
+        if (status) return;
+        ++failed_;
+        if (first_.ok()) first_ = std::move(status);
     }
-    [[nodiscard]] const Status& first() const noexcept { return first_; }
+    /// The first failure; its message counts the others, so that none is lost silently.
+    [[nodiscard]] Status first() const {
+        if (failed_ < 2) return first_;
+        return Error{first_.error().code,
+                     first_.error().message + " (and " + std::to_string(failed_ - 1) +
+                         (failed_ == 2 ? " other result" : " other results") +
+                         " could not be written)"};
+    }
 
   private:
     Status first_;
+    int failed_ = 0;
 };
 
 }  // namespace surefoot::app

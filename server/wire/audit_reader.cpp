@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
+#include "files/input_file.hpp"
 #include "surefoot/core/fnv1a.hpp"
 
 namespace surefoot::wire {
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Far above what the writer makes; a larger file is an error, not a full memory.
-constexpr std::uintmax_t kMaxFileBytes = 4ULL << 30U;
+constexpr std::uintmax_t kMaxFileBytes = 256ULL << 20U;
 
 bool is_zero(std::string_view bytes) noexcept {
     return bytes.find_first_not_of('\0') == bytes.npos;
@@ -32,16 +32,7 @@ bool begins_like_a_frame(std::string_view bytes) noexcept {
 }
 
 Result<std::string> whole_file(const std::string& path) {
-    std::error_code error;
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error) return input_error(path + ": " + error.message());
-    if (size > kMaxFileBytes)
-        return input_error(fmt::format("{}: {} bytes are too many for a log file", path, size));
-    std::string bytes(size, '\0');
-    std::ifstream file(path, std::ios::binary);
-    file.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (!file) return input_error(path + ": cannot be read to its end");
-    return bytes;
+    return files::read_file(path, kMaxFileBytes);
 }
 
 }  // namespace

@@ -12,6 +12,12 @@
 
 namespace surefoot::camera {
 
+/// Frames that a source passed over because they cannot be had.
+struct BrokenFrames {
+    int count = 0;
+    std::string first;  ///< why the first of them cannot be had
+};
+
 struct SourceInfo {
     std::string kind;  ///< "euroc", "kitti", "side_by_side", "tum_rgbd", "sim", ...
     std::string path;
@@ -24,6 +30,7 @@ struct SourceInfo {
     /// base_link of the first frame in odom (z up, the ground at 0), where the source knows.
     std::optional<Pose> T_odom_first_body = {};
     std::vector<std::string> notes = {};  ///< what a user should know about how it was opened
+    BrokenFrames broken = {};             ///< up to now
 };
 
 /// Where frames come from: a recording, a video, a camera, a simulated scene. Frames come in time

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "surefoot/core/result.hpp"
+
+/// The one place where a user's file is opened for reading.
+namespace surefoot::files {
+
+/// The largest file of each format. A larger one is refused before anything of it is read.
+namespace limits {
+inline constexpr std::uint64_t kKeyBytes = 4096;              ///< tokens
+inline constexpr std::uint64_t kSettingsBytes = 4ULL << 20U;  ///< settings, rigs, machines, scenes
+inline constexpr std::uint64_t kTextBytes = 512ULL << 20U;    ///< lists, trajectories, IMU, reports
+inline constexpr std::uint64_t kImageBytes = 512ULL << 20U;   ///< PNG, JPEG, PGM, PPM, PFM
+inline constexpr std::uint64_t kMapBytes = 2ULL << 30U;       ///< grids, map regions, places
+inline constexpr std::uint64_t kCloudBytes = 4ULL << 30U;     ///< clouds that are read whole
+inline constexpr std::uint64_t kStreamBytes = 1ULL << 42U;    ///< videos and clouds read in pieces
+}  // namespace limits
+
+/// What a path may be.
+enum class Accept : std::uint8_t {
+    regular,          ///< a regular file, also through links
+    regular_or_fifo,  ///< also a FIFO; `read` then says `would_wait` instead of waiting
+};
+
+/// Error unless `path` can be opened for reading, is what `accept` allows, and holds at most
+/// `max_bytes`. For readers that open the file by its name themselves (videos).
+[[nodiscard]] Status check_input(const std::string& path,
+                                 std::uint64_t max_bytes,
+                                 Accept accept = Accept::regular);
+
+/// A file that is open for reading. Opening never waits. One thread at a time.
+class InputFile {
+  public:
+    /// Errors (ErrorCode::input) name the path, what it is instead of a regular file, or its size
+    /// and the limit.
+    [[nodiscard]] static Result<InputFile> open(const std::string& path,
+                                                std::uint64_t max_bytes,
+                                                Accept accept = Accept::regular);
+    ~InputFile();
+    InputFile(InputFile&& other) noexcept;
+    InputFile& operator=(InputFile&& other) noexcept;
+
+    /// When it was opened; 0 for a FIFO and for files of the kernel.
+    [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+    [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+    struct Piece {
+        std::size_t bytes = 0;    ///< read into the buffer
+        bool would_wait = false;  ///< a FIFO that holds nothing now
+    };
+    /// The next bytes; none at the end.
+    [[nodiscard]] Result<Piece> read(std::span<char> buffer);
+    /// `count` bytes from `offset` on, fewer where the file as it was opened ends. An error when
+    /// the file became shorter.
+    [[nodiscard]] Result<std::string> read_at(std::uint64_t offset, std::uint64_t count);
+
+  private:
+    InputFile(std::string path, int descriptor, std::uint64_t size)
+        : path_(std::move(path)), descriptor_(descriptor), size_(size) {}
+    std::string path_;
+    int descriptor_ = -1;
+    std::uint64_t size_ = 0;
+};
+
+/// Content of a regular file.
+[[nodiscard]] Result<std::string> read_file(const std::string& path,
+                                            std::uint64_t max_bytes = limits::kTextBytes);
+
+}  // namespace surefoot::files
