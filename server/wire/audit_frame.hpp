@@ -27,7 +27,7 @@ struct FrameHeader {
 };
 
 inline constexpr std::uint32_t kFrameMagic = 0x00414653;  // "SFA", the last byte is the version
-inline constexpr std::uint32_t kFrameVersion = 2;
+inline constexpr std::uint32_t kFrameVersion = 3;
 inline constexpr std::size_t kFrameHeaderBytes = 36;
 inline constexpr std::size_t kFrameHashBytes = 8;
 /// No payload is longer, packed or not.

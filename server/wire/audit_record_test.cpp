@@ -158,7 +158,7 @@ TEST(AuditRecord, holds_every_field_of_its_version) {
     Case c;
     c.map = std::make_unique<grid::MapSnapshot>();
     c.decide();
-    EXPECT_EQ(record_of(c).size(), 432U);
+    EXPECT_EQ(record_of(c).size(), 436U);
     EXPECT_EQ(format_machine(c.machine).size(), 1277U);
     EXPECT_EQ(sizeof(gate::Query), 96U);
     EXPECT_EQ(sizeof(gate::GateHealth), 16U);
