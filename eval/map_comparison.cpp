@@ -5,6 +5,8 @@
 #include <limits>
 #include <span>
 
+#include "surefoot/grid/tilt_variance.hpp"
+
 namespace surefoot::eval {
 namespace {
 
@@ -70,9 +72,11 @@ MapComparison compare_maps(const MapPair& maps, const EvalMapsConfig& config) {
     result.traversability = traversability_errors(result.calls, {});
 
     const grid::Layer error_m = masked(result.error_m, away);
-    const grid::Layer sigma_m = maps.live_var_m2.empty()
-                                    ? grid::Layer(error_m.width(), error_m.height(), std::nanf(""))
-                                    : sigma_of(maps.live_var_m2);
+    const grid::Layer sigma_m =
+        maps.live_var_m2.empty()
+            ? grid::Layer(error_m.width(), error_m.height(), std::nanf(""))
+            : sigma_of(grid::with_tilt_variance(
+                  maps.live_var_m2.view(), maps.geometry, maps.tilt_sigma_rad));
     result.sigma = sigma_coverage(values_of(error_m), values_of(sigma_m));
     result.edges = error_figures(height_jumps(maps.live_m, floor, {}).jump_m);
     result.floor = floor_spread(maps.geometry, maps.live_m, floor);

@@ -23,6 +23,9 @@ struct MapPair {
     grid::GridGeometry geometry;
     grid::Layer live_m;
     grid::Layer live_var_m2;  ///< may be empty
+    /// One sigma of the angle between the live map's z axis and the vertical, about any horizontal
+    /// axis: what it does to heights counts in `MapComparison::sigma`. NaN = not known.
+    double tilt_sigma_rad = 0.0;
     grid::Layer live_traversability;
     grid::Layer truth_m;
     /// The true surface that each live height is compared with, where that is not the highest one:

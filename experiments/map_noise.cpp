@@ -408,6 +408,7 @@ Status snapshot_of(const MadeMap& map, const Pose& T_odom_body, grid::MapSnapsho
     input.T_odom_body = T_odom_body;
     input.frame_time_ns = input.pose_time_ns = kNow_ns;
     input.gravity_source = grid::GravitySource::plane;
+    input.tilt_sigma_rad = 0.0;
     input.health = grid::SnapshotHealth::ok;
     input.camera = CameraState::ok;
     input.version = 1;

@@ -29,6 +29,7 @@ std::unique_ptr<MapSnapshot> random_snapshot(int nx, int ny, std::uint64_t seed)
     s->body_cos_yaw = 0.6;
     s->body_sin_yaw = -0.8;
     s->gravity_source = grid::GravitySource::imu;
+    s->tilt_sigma_urad = 34567;
     s->health = grid::SnapshotHealth::degraded;
     s->camera = CameraState::frozen;
     for (std::size_t i = 0; i < static_cast<std::size_t>(nx * ny); ++i) {

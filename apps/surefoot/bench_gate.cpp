@@ -55,6 +55,7 @@ Result<std::unique_ptr<grid::MapSnapshot>> level_ground(float drift_m) {
     input.drift_m = drifts_m.view();
     input.T_odom_body.translation_m.z() = 0.99;
     input.gravity_source = grid::GravitySource::plane;
+    input.tilt_sigma_rad = 0.0;
     input.health = grid::SnapshotHealth::ok;
     input.camera = CameraState::ok;
     auto snapshot = std::make_unique<grid::MapSnapshot>();

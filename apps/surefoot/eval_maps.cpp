@@ -61,6 +61,7 @@ Status add_track(const EvalMapsOptions& options, const Settings& settings, eval:
     if (!io::is_file(report_file)) return {};
     const auto text = io::read_file(report_file);
     if (!text) return text.error();
+    maps.tilt_sigma_rad = parse_report_tilt_sigma_rad(*text);
     const auto camera = parse_report_camera(*text);
     if (!camera) return {};
     eval::CameraTrack seen;

@@ -1,15 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "io/point_cloud.hpp"
-#include "surefoot/ground/ground_observation.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/ground/ground_search.hpp"
 
 namespace surefoot::app {
+namespace {
+
+/// The ground of a camera that may look 0-60 deg down, in its optical axes.
+ground::GroundSighting searched(const ground::GroundConfig& config,
+                                const std::vector<Eigen::Vector3d>& points_optical_m,
+                                const Eigen::Vector3d& sensor_optical_m,
+                                std::uint64_t seed) {
+    const Pose T_body_optical = surefoot::T_body_optical();
+    std::vector<Eigen::Vector3d> points_body_m;
+    points_body_m.reserve(points_optical_m.size());
+    for (const auto& p : points_optical_m)
+        points_body_m.push_back(T_body_optical.rotation * (p - sensor_optical_m));
+    ground::GroundSighting sighting = ground::search_ground(
+        config, ground::with_nominal_noise(points_body_m, Eigen::Vector3d::Zero()), seed);
+    GroundObservation& plane = sighting.observation;
+    plane.normal = T_body_optical.rotation.conjugate() * plane.normal;
+    return sighting;
+}
+
+/// What was searched, and what to do.
+std::string failure(const GroundOptions& options,
+                    const ground::GroundConfig& config,
+                    const ground::GroundSighting& sighting,
+                    bool optical) {
+    if (optical)
+        return fmt::format(
+            "{}: no ground plane: {}: tilt 0-{:g} deg is searched; {:.0f} % of the points look "
+            "like floor; is --origin ({}) where the sensor was, and is the cloud in optical axes "
+            "as taken (--frame)? ground.search_down_deg, ground.min_image_share = {:g} and "
+            "ground.max_search_rms_m = {:g} can be set wider",
+            options.cloud,
+            to_string(sighting.reason),
+            config.search_down_deg,
+            100.0 * sighting.image_share,
+            options.origin,
+            config.min_image_share,
+            config.max_search_rms_m);
+    return fmt::format(
+        "{}: no ground plane: {}; is --origin ({}) where the sensor was, and is the cloud in body "
+        "axes as taken (--frame)? ground.max_tilt_deg = {:g}, ground.max_range_m = {:g} and "
+        "ground.tolerance_m = {:g} can be set wider",
+        options.cloud,
+        to_string(sighting.reason),
+        options.origin,
+        config.max_tilt_deg,
+        config.max_range_m,
+        config.tolerance_m);
+}
+
+}  // namespace
 
 int ground(const GroundOptions& options) {
     const auto settings = load_settings(options.common);
@@ -20,19 +75,14 @@ int ground(const GroundOptions& options) {
     if (!cloud) return report(cloud.error());
     // Organised clouds come straight from a camera: optical axes, y down. Others have z up.
     const bool optical = options.frame.empty() ? cloud->organised() : options.frame == "optical";
-    const Eigen::Vector3d up =
-        optical ? Eigen::Vector3d(0.0, -1.0, 0.0) : Eigen::Vector3d(0.0, 0.0, 1.0);
-    // A camera may look far down: with optical axes the hint is only a direction to begin with.
-    constexpr double kAnyMountTilt_deg = 60.0;
-    ground::GroundConfig config = settings->pipeline.ground;
-    if (optical) config.max_tilt_deg = std::max(config.max_tilt_deg, kAnyMountTilt_deg);
-
+    const Eigen::Vector3d sensor((*origin)[0], (*origin)[1], (*origin)[2]);
+    const ground::GroundConfig& config = settings->pipeline.ground;
+    // Optical axes are those of a camera, and nothing says how it is mounted.
     const auto sighting =
-        ground::sight_ground(config,
-                             cloud->points_m,
-                             up,
-                             Eigen::Vector3d((*origin)[0], (*origin)[1], (*origin)[2]),
-                             options.common.seed);
+        optical
+            ? searched(config, cloud->points_m, sensor, options.common.seed)
+            : ground::sight_ground(
+                  config, cloud->points_m, Eigen::Vector3d::UnitZ(), sensor, options.common.seed);
     if (options.common.json) {
         print_answer(ground_json(sighting));
     } else if (sighting.observation.accepted) {
@@ -43,17 +93,7 @@ int ground(const GroundOptions& options) {
                    1e3 * sighting.observation.rms_m);
     }
     if (!sighting.observation.accepted) {
-        return report(input_error(fmt::format(
-            "{}: no ground plane: {}; is --origin ({}) where the sensor was, and is the cloud in "
-            "{} axes as taken (--frame)? ground.max_tilt_deg = {:g}, ground.max_range_m = {:g} and "
-            "ground.tolerance_m = {:g} can be set wider",
-            options.cloud,
-            to_string(sighting.reason),
-            options.origin,
-            optical ? "optical" : "body",
-            config.max_tilt_deg,
-            config.max_range_m,
-            config.tolerance_m)));
+        return report(input_error(failure(options, config, sighting, optical)));
     }
     return kExitOk;
 }

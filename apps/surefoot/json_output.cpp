@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "apps/surefoot/ground_box.hpp"
@@ -276,6 +277,7 @@ Json run_object(const RunRecord& record,
                    {"error", error_json(record, written)},
                    {"gravity_source", gravity_name(alignment.gravity_source)},
                    {"gravity_reason", alignment.reason},
+                   {"tilt_sigma_deg", number(alignment.tilt_sigma_rad * kDegPerRad)},
                    {"ground_height_m",
                     alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
                    {"trim", trim_json(pipeline.trim())},
@@ -443,6 +445,14 @@ std::string audit_replay_json(const wire::AuditSummary& summary, const AuditRepl
     }
     object["first_difference"] = first;
     return object.dump(kIndent);
+}
+
+double parse_report_tilt_sigma_rad(const std::string& report_json) {
+    const Json report = Json::parse(report_json, nullptr, false);
+    if (!report.is_object() || !report.contains("tilt_sigma_deg")) return 0.0;
+    const Json& sigma_deg = report["tilt_sigma_deg"];
+    if (!sigma_deg.is_number()) return std::numeric_limits<double>::quiet_NaN();
+    return sigma_deg.get<double>() / kDegPerRad;
 }
 
 std::optional<ReportCamera> parse_report_camera(const std::string& report_json) {
@@ -621,6 +631,7 @@ std::string dem_json(const grid::GridGeometry& geometry,
 
 std::string ground_json(const ground::GroundSighting& sighting) {
     const GroundObservation& o = sighting.observation;
+    const bool known = sighting.uncertainty.height_var_m2 > 0.0;
     const Json object = {
         {"accepted", o.accepted},
         {"reason", to_string(sighting.reason)},
@@ -628,6 +639,10 @@ std::string ground_json(const ground::GroundSighting& sighting) {
         {"height_m", number(o.height_m)},
         {"inlier_ratio", number(o.inlier_ratio)},
         {"rms_m", number(o.rms_m)},
+        {"tilt_sigma_deg",
+         known ? number(sighting.uncertainty.tilt_sigma_rad() * kDegPerRad) : Json(nullptr)},
+        {"height_sigma_m",
+         known ? number(std::sqrt(sighting.uncertainty.height_var_m2)) : Json(nullptr)},
         {"normal", {number(o.normal.x()), number(o.normal.y()), number(o.normal.z())}}};
     return object.dump(kIndent);
 }

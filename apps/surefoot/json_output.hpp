@@ -51,6 +51,9 @@ struct ReportCamera {
     Pose T_body_camera;  ///< rectified left optical frame in base_link
 };
 /// Nothing where the report has no camera, or one that is not whole (an older or damaged file).
+/// One sigma of the vertical in a report.json: NaN where the run did not know it, 0 in the reports
+/// of versions that did not say.
+[[nodiscard]] double parse_report_tilt_sigma_rad(const std::string& report_json);
 [[nodiscard]] std::optional<ReportCamera> parse_report_camera(const std::string& report_json);
 /// Images of a board that were drawn.
 [[nodiscard]] std::string rendered_boards_json(std::size_t views, const std::string& folder);

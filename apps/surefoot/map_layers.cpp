@@ -7,6 +7,7 @@
 
 #include "apps/surefoot/run_output.hpp"
 #include "surefoot/elevation/height_bounds.hpp"
+#include "surefoot/grid/tilt_variance.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"
 
 namespace surefoot::app {
@@ -62,8 +63,10 @@ std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline) {
     const auto& rating = pipeline.rating();
     grid::Layer lower_m;
     grid::Layer upper_m;
+    const grid::Layer variance_m2 = grid::with_tilt_variance(
+        map.height_var_m2.view(), geometry, pipeline.alignment().tilt_sigma_rad);
     elevation::HeightBounds().compute({map.height_m.view(),
-                                       map.height_var_m2.view(),
+                                       variance_m2.view(),
                                        map.horizontal_drift_m.view(),
                                        geometry.resolution_m},
                                       serial(),

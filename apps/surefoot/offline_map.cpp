@@ -48,6 +48,7 @@ Result<OfflineMap> map_from_grids(const std::string& folder) {
     input.variance_m2 = variance->values.view();
     input.drift_m = no_drift.view();
     input.gravity_source = grid::GravitySource::plane;
+    input.tilt_sigma_rad = 0.0;
     input.health = grid::SnapshotHealth::ok;
     input.camera = CameraState::ok;
     input.version = 1;

@@ -50,6 +50,7 @@ std::unique_ptr<grid::MapSnapshot> level_map(double x_m, double known_from_m) {
     input.drift_m = drift_m.view();
     input.T_odom_body.translation_m = {x_m, 0.0, 0.99};
     input.gravity_source = grid::GravitySource::plane;
+    input.tilt_sigma_rad = 0.0;
     input.health = grid::SnapshotHealth::ok;
     input.camera = CameraState::ok;
     input.version = 1;

@@ -96,8 +96,9 @@ HeaderState parse_frame_header(std::string_view bytes, FrameHeader& header) noex
     if (!reader.ok()) return HeaderState::damaged;
     if ((magic & 0xffffffU) != kFrameMagic) return HeaderState::no_frame;
     if (check != check_of(bytes)) return HeaderState::damaged;
-    const std::uint32_t version = magic >> 24U;
-    if (version < kOldestFrameVersion || version > kFrameVersion) return HeaderState::other_version;
+    header.version = magic >> 24U;
+    if (header.version < kOldestFrameVersion || header.version > kFrameVersion)
+        return HeaderState::other_version;
     const bool sound = zero == 0 && header.stored_bytes <= kMaxPayloadBytes &&
                        header.plain_bytes <= kMaxPayloadBytes;
     return sound ? HeaderState::sound : HeaderState::damaged;

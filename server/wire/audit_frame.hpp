@@ -19,6 +19,7 @@ enum class FrameKind : std::uint8_t { file = 1, verdict = 2, gap = 3, act = 4 };
 enum class FrameEncoding : std::uint8_t { plain = 0, zstd = 1 };
 
 struct FrameHeader {
+    std::uint32_t version = kFrameVersion;  ///< of the format, as the frame was written
     FrameKind kind = FrameKind::file;
     FrameEncoding encoding = FrameEncoding::plain;
     std::uint32_t stored_bytes = 0;   ///< of the payload in the file
@@ -28,7 +29,6 @@ struct FrameHeader {
 };
 
 inline constexpr std::uint32_t kFrameMagic = 0x00414653;  // "SFA", the last byte is the version
-inline constexpr std::uint32_t kFrameVersion = 3;         ///< that is written
 inline constexpr std::uint32_t kOldestFrameVersion = 2;   ///< that is read; it has no acts
 inline constexpr std::size_t kFrameHeaderBytes = 36;
 inline constexpr std::size_t kFrameHashBytes = 8;

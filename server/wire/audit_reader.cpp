@@ -169,7 +169,7 @@ bool AuditReader::take_file_head(const Frame& frame) {
 }
 
 bool AuditReader::take_verdict(const Frame& frame) {
-    if (const Status status = parse_record(frame.payload, record_); !status)
+    if (const Status status = parse_record(frame.payload, record_, frame.header.version); !status)
         return damaged(status.error().message, frame.header.sequence);
     if (record_.machine_hash != head_->machine_hash)
         return damaged("a verdict about another machine than the file's", frame.header.sequence);

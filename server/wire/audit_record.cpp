@@ -45,6 +45,28 @@ void for_each_row(Layer& layer, const MapSnapshot& map, const CellBox& zone, Cop
     }
 }
 
+/// The first version of the format whose snapshots hold the uncertainty of the vertical.
+constexpr std::uint32_t kTiltVersion = 3;
+constexpr std::uint32_t kLayoutWithoutTilt = 4;  ///< MapSnapshot::kLayout of that time
+
+/// Reads the fields that a version of the format has.
+class FieldReader {
+  public:
+    FieldReader(ByteReader& reader, std::uint32_t version) : reader_(reader), version_(version) {}
+    template <typename T>
+    void operator()(const char* name, T& value) noexcept {
+        if (version_ < kTiltVersion && std::string_view(name) == "tilt_sigma_urad") {
+            value = T{};
+            return;
+        }
+        reader_(name, value);
+    }
+
+  private:
+    ByteReader& reader_;
+    std::uint32_t version_;
+};
+
 /// Everything of a record but edges and cells.
 template <typename Record, typename Map, typename Visit>
 void for_each_record_field(Record& record, Map& map, Visit& visit) {
@@ -161,10 +183,13 @@ void write_record(std::uint64_t machine_hash,
     });
 }
 
-Status parse_record(std::string_view bytes, AuditRecord& record) {
+Status parse_record(std::string_view bytes, AuditRecord& record, std::uint32_t version) {
     MapSnapshot& map = *record.map;
     ByteReader reader(bytes);
-    for_each_record_field(record, map, reader);
+    FieldReader fields(reader, version);
+    for_each_record_field(record, map, fields);
+    if (version < kTiltVersion && map.layout == kLayoutWithoutTilt)
+        map.layout = MapSnapshot::kLayout;
     if (!reader.ok()) return input_error("the record is too short, or a yes/no in it is neither");
     const CellBox& zone = record.zone;
     if (zone != CellBox{} && !is_inside(zone, map))

@@ -55,8 +55,14 @@ void write_record(std::uint64_t machine_hash,
                   const AuditedVerdict& audited,
                   const CellBox& zone,
                   char* out) noexcept;
-/// Any bytes may come. `record` means nothing after an error.
-[[nodiscard]] Status parse_record(std::string_view bytes, AuditRecord& record);
+/// The version of the format that is written (docs/audit_format.md).
+inline constexpr std::uint32_t kFrameVersion = 3;
+/// Any bytes may come. `record` means nothing after an error. `version`: of the format that the
+/// record was written in. A snapshot of version 2 has no uncertainty of the vertical: it counts as
+/// 0, so that the gate gives the verdict of that time again.
+[[nodiscard]] Status parse_record(std::string_view bytes,
+                                  AuditRecord& record,
+                                  std::uint32_t version = kFrameVersion);
 
 /// The verdict anew, from nothing but the record and the machine of its file.
 [[nodiscard]] gate::Verdict replay(const Machine& machine, const AuditRecord& record) noexcept;

@@ -36,6 +36,23 @@ TEST(AuditRecord, the_zone_alone_gives_every_verdict_again) {
     EXPECT_GT(refused, 100);
 }
 
+TEST(AuditRecord, a_record_of_the_version_before_gives_its_verdict_again) {
+    Rng rng(26);
+    for (int round = 0; round < 50; ++round) {
+        Case c = random_case(rng);
+        c.map->tilt_sigma_urad = 0;  // what a program of that version decided by
+        seal(*c.map);
+        c.decide();
+        AuditRecord record;
+        const std::string bytes = record_of_version_2(c);
+        ASSERT_TRUE(parse_record(bytes, record, 2));
+        EXPECT_EQ(record.map->tilt_sigma_urad, 0U);
+        const auto found = differences(c.verdict, replay(c.machine, record));
+        EXPECT_TRUE(found.empty()) << "round " << round << ": " << words(found);
+        EXPECT_FALSE(parse_record(bytes, record, 3)) << "it lacks a field of version 3";
+    }
+}
+
 TEST(AuditRecord, verdicts_about_what_is_broken_come_again_too) {
     Rng rng(24);
     const auto map = random_ground(rng);
@@ -158,7 +175,7 @@ TEST(AuditRecord, holds_every_field_of_its_version) {
     Case c;
     c.map = std::make_unique<grid::MapSnapshot>();
     c.decide();
-    EXPECT_EQ(record_of(c).size(), 432U);
+    EXPECT_EQ(record_of(c).size(), 436U);
     EXPECT_EQ(format_machine(c.machine).size(), 1277U);
     EXPECT_EQ(sizeof(gate::Query), 96U);
     EXPECT_EQ(sizeof(gate::GateHealth), 16U);

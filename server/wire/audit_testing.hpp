@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -142,6 +143,28 @@ inline std::string record_of(const Case& c) {
     std::string bytes(record_bytes(c.audited(), zone), '\0');
     write_record(hash_of(c.machine), c.audited(), zone, bytes.data());
     return bytes;
+}
+
+/// The same as version 2 of the format had it: without the uncertainty of the vertical, in a
+/// snapshot of the layout of that time.
+inline std::string record_of_version_2(const Case& c) {
+    constexpr std::uint32_t kLayoutOfVersion2 = 4;
+    grid::MapSnapshot map = *c.map;
+    map.layout = kLayoutOfVersion2;
+    const CellBox zone = c.zone();
+    const auto written = [&](std::uint32_t tilt_sigma_urad) {
+        map.tilt_sigma_urad = tilt_sigma_urad;
+        const AuditedVerdict audited{c.query, c.health, c.now_ns, map, c.verdict};
+        std::string bytes(record_bytes(audited, zone), '\0');
+        write_record(hash_of(c.machine), audited, zone, bytes.data());
+        return bytes;
+    };
+    // The field lies where records of two values differ.
+    const std::string bytes = written(0);
+    const std::string other = written(0xffffffff);
+    const auto at = std::mismatch(bytes.begin(), bytes.end(), other.begin()).first - bytes.begin();
+    return bytes.substr(0, static_cast<std::size_t>(at)) +
+           bytes.substr(static_cast<std::size_t>(at) + sizeof(map.tilt_sigma_urad));
 }
 
 /// All differences in one line, for failure messages.

@@ -47,6 +47,7 @@ void make_level(grid::MapSnapshot& map) noexcept {
     map.body_cos_yaw = kCosYaw;
     map.body_sin_yaw = kSinYaw;
     map.gravity_source = grid::GravitySource::imu;
+    map.tilt_sigma_urad = 0;
     map.health = grid::SnapshotHealth::ok;
     map.camera = CameraState::ok;
     map.height_tenth_mm.fill(0);
@@ -123,6 +124,8 @@ constexpr auto kFaults = std::to_array<Fault>({
      [](const Setting& s) { s.map.pose_time_ns += s.machine.limits.future_tolerance_ns + 1; }},
     {Reason::plane_invalid,
      [](const Setting& s) { s.map.gravity_source = grid::GravitySource::assumed; }},
+    {Reason::plane_invalid,
+     [](const Setting& s) { s.map.tilt_sigma_urad = grid::MapSnapshot::kUnknownTilt; }},
     {Reason::pose_lost, [](const Setting& s) { s.map.health = grid::SnapshotHealth::lost; }},
     {Reason::blind, [](const Setting& s) { s.map.camera = CameraState::dark; }},
     {Reason::exposure, [](const Setting& s) { s.map.camera = CameraState::overexposed; }},

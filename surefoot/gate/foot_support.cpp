@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "surefoot/gate/tilt.hpp"
+
 namespace surefoot::gate {
 namespace {
 
@@ -199,12 +201,11 @@ void check_step(const Landing& landing) noexcept {
 
 /// False when it denies, like check_patch().
 bool check_tilt(const Landing& landing) noexcept {
-    const double tan_sq = landing.plane.tilt_tan_sq();
+    const double tan_sq =
+        steepest_tan_sq(landing.plane.tilt_tan_sq(), landing.scene.ground.vertical_bound_tan());
     Evidence& evidence = landing.findings.evidence;
     evidence.max_tilt_tan_sq = std::max(evidence.max_tilt_tan_sq, tan_sq);
-    // n_z = 1 / sqrt(1 + tan^2) >= limit, without the root.
-    const double min_z = landing.scene.machine.limits.min_normal_z;
-    if (min_z * min_z * (1.0 + tan_sq) <= 1.0) return true;
+    if (keeps_tilt_limit(tan_sq, landing.scene.machine.limits)) return true;
     Finding finding = landing.at(0.0, 0.0, 0, 0);
     finding.severity = rounded(1e6 * std::min(tan_sq, 1e6));
     landing.findings.deny(Reason::slope, finding);

@@ -10,6 +10,7 @@
 #include "surefoot/gate/footprints.hpp"
 #include "surefoot/gate/ground.hpp"
 #include "surefoot/gate/regions.hpp"
+#include "surefoot/gate/tilt.hpp"
 #include "surefoot/gate/tread_support.hpp"
 
 namespace surefoot::gate {
@@ -123,6 +124,9 @@ void judge_snapshot(const GateLimits& limits,
     findings.prove(Proof::gravity_known, [&] {
         if (map.gravity_source != grid::GravitySource::plane &&
             map.gravity_source != grid::GravitySource::imu)
+            findings.deny(Reason::plane_invalid);
+        // So unsure of the vertical that level ground might break the limit.
+        if (!keeps_tilt_limit(steepest_tan_sq(0.0, vertical_bound_tan(map, limits)), limits))
             findings.deny(Reason::plane_invalid);
     });
     findings.prove(Proof::pose_healthy, [&] { check_pose_health(map.health, findings); });

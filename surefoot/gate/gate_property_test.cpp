@@ -219,6 +219,7 @@ TEST(GateProperty, random_bytes_never_crash_and_never_pass) {
         map->origin_x_tenth_mm = any(1'000'000'000);
         map->origin_y_tenth_mm = any(1'000'000'000);
         map->gravity_source = grid::GravitySource::imu;
+        map->tilt_sigma_urad = 0;
         map->health = grid::SnapshotHealth::ok;
         map->camera = CameraState::ok;
         map->frame_time_ns = map->pose_time_ns = kNowNs;

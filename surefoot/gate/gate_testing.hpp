@@ -96,6 +96,7 @@ struct Terrain {
         input.frame_time_ns = kNowNs - 50 * kMs;
         input.pose_time_ns = kNowNs - 10 * kMs;
         input.gravity_source = grid::GravitySource::imu;
+        input.tilt_sigma_rad = 0.0;
         input.health = grid::SnapshotHealth::ok;
         input.camera = CameraState::ok;
         input.version = 42;

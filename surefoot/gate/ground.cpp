@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "surefoot/gate/tilt.hpp"
+
 namespace surefoot::gate {
 namespace {
 
@@ -16,6 +18,7 @@ Ground::Ground(const grid::MapSnapshot& map, const Query& query, const GateLimit
     : map_(map),
       grid_{map.origin_x_tenth_mm, map.origin_y_tenth_mm, map.resolution_tenth_mm},
       vouched_(query.vouched.active ? query.vouched : VouchedArea{}),
+      vertical_bound_tan_(gate::vertical_bound_tan(map, limits)),
       drop_tenth_mm_(limits.drop_tenth_mm) {
     // The word is void as soon as base_link is outside of the area.
     const std::int64_t dx = query.x_tenth_mm - vouched_.center_x_tenth_mm;

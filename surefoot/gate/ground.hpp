@@ -80,6 +80,8 @@ class Ground {
                                                   std::int64_t iy,
                                                   grid::FixedPoint origin) const noexcept;
     [[nodiscard]] bool is_vouching() const noexcept { return vouching_; }
+    /// Tangent of the largest angle between the map's z axis and the vertical (tilt.hpp).
+    [[nodiscard]] double vertical_bound_tan() const noexcept { return vertical_bound_tan_; }
     /// What a verdict about `sweep` may read: the sweep and the vouched area, with a ring of cells
     /// beside both (`all_around`, `ReachableSurfaces::add_beside_vouched`).
     [[nodiscard]] Extent zone_of(const Sweep& sweep) const noexcept;
@@ -104,6 +106,7 @@ class Ground {
     const grid::MapSnapshot& map_;
     grid::FixedGrid grid_;
     VouchedArea vouched_;
+    double vertical_bound_tan_;
     std::int32_t drop_tenth_mm_;
     bool vouching_ = false;
 };

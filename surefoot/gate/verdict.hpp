@@ -56,7 +56,9 @@ struct Evidence {
     std::int64_t known_cells = 0;             ///< of these measured or vouched
     std::int64_t vouched_cells = 0;           ///< of these on an operator's word
     std::int64_t height_delta_tenth_mm = 0;   ///< of the landing foot that differs most from stance
-    double max_tilt_tan_sq = 0.0;             ///< squared tangent of the steeper foot plane's tilt
+    /// Squared tangent of the steeper foot plane's tilt, at worst: the uncertainty of the vertical
+    /// is added.
+    double max_tilt_tan_sq = 0.0;
     double max_patch_sigma_sq_tenth_mm2 = 0.0;
     std::int64_t max_drift_tenth_mm = 0;
     std::int64_t min_clearance_tenth_mm =

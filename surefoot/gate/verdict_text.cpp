@@ -3,19 +3,13 @@
 
 #include <cstdio>
 
+#include "surefoot/gate/tilt.hpp"
+
 namespace surefoot::gate {
 namespace {
 
 double magnitude(double value) {
     return value < 0.0 ? -value : value;
-}
-
-/// Square root after Newton: this folder calls no libm, not even for words. 0 for 0 and below.
-double root(double square) {
-    if (!(square > 0.0)) return 0.0;
-    double value = square > 1.0 ? square : 1.0;
-    for (int i = 0; i < 60; ++i) value = 0.5 * (value + square / value);
-    return value;
 }
 
 double metres(std::int64_t tenth_mm) {

@@ -40,7 +40,7 @@ struct SnapshotEdge {
 /// cell (ix, iy) covers [origin + i * resolution, origin + (i + 1) * resolution) in odom.
 struct MapSnapshot {
     static constexpr std::uint32_t kMagic = 0x54465253;  // "SRFT"
-    static constexpr std::uint32_t kLayout = 4;
+    static constexpr std::uint32_t kLayout = 5;
     static constexpr int kMaxSide = 256;
     static constexpr int kMaxCells = kMaxSide * kMaxSide;
     static constexpr int kBlockCells = 1024;  ///< cells in a row in memory that are summed together
@@ -48,6 +48,7 @@ struct MapSnapshot {
     static constexpr int kMaxEdges = 128;
     static constexpr std::int32_t kUnknownHeight = std::numeric_limits<std::int32_t>::min();
     static constexpr std::uint16_t kNoCeiling = 0xffff;
+    static constexpr std::uint32_t kUnknownTilt = 0xffffffff;
     static constexpr std::uint16_t kNoComponent = 0;
 
     std::uint32_t magic = kMagic;
@@ -71,7 +72,10 @@ struct MapSnapshot {
     GravitySource gravity_source = GravitySource::assumed;
     SnapshotHealth health = SnapshotHealth::lost;
     CameraState camera = CameraState::unknown;
-    std::array<std::uint8_t, 5> padding{};
+    std::array<std::uint8_t, 1> padding{};
+    /// One sigma, about any horizontal axis, of the angle between odom's z axis and the vertical
+    /// [1e-6 rad], rounded up. kUnknownTilt makes the gate answer ERROR.
+    std::uint32_t tilt_sigma_urad = kUnknownTilt;
 
     /// Of a measured cell the ground; of an unknown one what lines of sight over it showed: ground
     /// there lies lower. kUnknownHeight = nothing is known.

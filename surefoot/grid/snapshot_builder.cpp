@@ -25,6 +25,14 @@ std::uint16_t saturated_up(double length_m) {
     return static_cast<std::uint16_t>(scaled);
 }
 
+/// The same for an angle; what is not known or too large stays unknown.
+std::uint32_t microradians_up(double angle_rad) {
+    const double scaled = std::ceil(angle_rad * 1e6);
+    constexpr double kLargest = 1e9;
+    if (!(scaled >= 0.0 && scaled <= kLargest)) return MapSnapshot::kUnknownTilt;
+    return static_cast<std::uint32_t>(scaled);
+}
+
 /// The part of the grid that fits into a snapshot: first cell of it, and its size.
 struct Window {
     int x = 0;
@@ -101,6 +109,7 @@ void write_header(const SnapshotInput& input, const Window& window, MapSnapshot&
     out.body_cos_yaw = std::cos(yaw);
     out.body_sin_yaw = std::sin(yaw);
     out.gravity_source = input.gravity_source;
+    out.tilt_sigma_urad = microradians_up(input.tilt_sigma_rad);
     out.health = input.health;
     out.camera = input.camera;
     out.padding = {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "surefoot/core/pose.hpp"
@@ -41,6 +42,9 @@ struct SnapshotInput {
     std::int64_t frame_time_ns = 0;
     std::int64_t pose_time_ns = 0;
     GravitySource gravity_source = GravitySource::assumed;
+    /// One sigma, about any horizontal axis, of the angle between odom's z axis and the vertical.
+    /// NaN = not known, which the gate refuses.
+    double tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
     SnapshotHealth health = SnapshotHealth::lost;
     CameraState camera = CameraState::unknown;
     std::uint64_t version = 0;

@@ -77,6 +77,7 @@ TEST(MapSnapshot, checksum_sees_every_field_and_any_single_bit) {
     flip_everywhere(&s.body_cos_yaw, sizeof(s.body_cos_yaw), 10, "cosine");
     flip_everywhere(&s.gravity_source, 1, 4, "gravity");
     flip_everywhere(&s.health, 1, 4, "health");
+    flip_everywhere(&s.tilt_sigma_urad, sizeof(s.tilt_sigma_urad), 10, "tilt");
     flip_everywhere(&s.camera, 1, 4, "camera");
     flip_everywhere(s.height_tenth_mm.data(), sizeof(s.height_tenth_mm), 60, "height");
     flip_everywhere(s.sigma_tenth_mm.data(), sizeof(s.sigma_tenth_mm), 60, "sigma");

@@ -28,6 +28,7 @@ void for_each_header_field(Snapshot& s, Visit&& visit) {
     visit("gravity_source", s.gravity_source);
     visit("health", s.health);
     visit("camera", s.camera);
+    visit("tilt_sigma_urad", s.tilt_sigma_urad);
 }
 
 /// visit(layer): one element a cell.

@@ -19,6 +19,23 @@ const char* to_string(CalibrationReason reason) noexcept {
     return "unknown";
 }
 
+namespace {
+
+PlaneUncertainty uncertainty_of(const std::vector<const GroundSighting*>& group,
+                                const GroundAlignment& mean) {
+    PlaneUncertainty sum;
+    for (const GroundSighting* sighting : group) {
+        const Eigen::Vector3d off = sighting->observation.normal - mean.normal_body;
+        const double off_m = sighting->observation.height_m - mean.height_m;
+        sum.normal_covariance += sighting->uncertainty.normal_covariance + off * off.transpose();
+        sum.height_var_m2 += sighting->uncertainty.height_var_m2 + off_m * off_m;
+    }
+    const auto count = static_cast<double>(group.size());
+    return {sum.normal_covariance / count, sum.height_var_m2 / count};
+}
+
+}  // namespace
+
 Eigen::Quaterniond tilt_rotation(const Eigen::Vector3d& normal_body) {
     // The quaternion (1 + cos, axis sin) points along (cos(angle / 2), axis sin(angle / 2)).
     const Eigen::Vector3d axis = normal_body.cross(Eigen::Vector3d::UnitZ());
@@ -28,10 +45,10 @@ Eigen::Quaterniond tilt_rotation(const Eigen::Vector3d& normal_body) {
     return Eigen::Quaterniond(w, axis.x(), axis.y(), axis.z()).normalized();
 }
 
-void GroundCalibration::add(const GroundObservation& observation_body) {
-    if (!observation_body.accepted) return;
-    if (!observation_body.normal.allFinite() || !std::isfinite(observation_body.height_m)) return;
-    window_.push_back(observation_body);
+void GroundCalibration::add(const GroundSighting& sighting_body) {
+    const GroundObservation& seen = sighting_body.observation;
+    if (!seen.accepted || !seen.normal.allFinite() || !std::isfinite(seen.height_m)) return;
+    window_.push_back(sighting_body);
     while (window_.size() > static_cast<std::size_t>(config_.window)) window_.pop_front();
 }
 
@@ -46,19 +63,19 @@ GroundAlignment GroundCalibration::alignment() const {
     if (window_.empty()) return result;
 
     // The sighting with which most others agree stands for its group; the newest wins a tie.
-    std::vector<const GroundObservation*> group;
+    std::vector<const GroundSighting*> group;
     for (const auto& candidate : window_) {
-        std::vector<const GroundObservation*> others;
+        std::vector<const GroundSighting*> others;
         for (const auto& other : window_) {
-            if (agree(candidate, other)) others.push_back(&other);
+            if (agree(candidate.observation, other.observation)) others.push_back(&other);
         }
         if (others.size() >= group.size()) group = std::move(others);
     }
 
     std::vector<Eigen::Quaterniond> rotations;
-    for (const GroundObservation* observation : group) {
-        rotations.push_back(tilt_rotation(observation->normal));
-        result.height_m += observation->height_m;
+    for (const GroundSighting* sighting : group) {
+        rotations.push_back(tilt_rotation(sighting->observation.normal));
+        result.height_m += sighting->observation.height_m;
     }
     result.height_m /= static_cast<double>(group.size());
     // Unique: the rotations lie within twice the allowed disagreement of each other.
@@ -66,6 +83,7 @@ GroundAlignment GroundCalibration::alignment() const {
     result.T_ground_body = {mean, Eigen::Vector3d(0.0, 0.0, result.height_m)};
     result.normal_body = mean.conjugate() * Eigen::Vector3d::UnitZ();
     result.tilt_rad = std::atan2(result.normal_body.head<2>().norm(), result.normal_body.z());
+    result.uncertainty = uncertainty_of(group, result);
     result.agreeing = static_cast<int>(group.size());
     result.rejected = static_cast<int>(window_.size() - group.size());
 

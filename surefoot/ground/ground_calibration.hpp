@@ -6,8 +6,8 @@
 #include <deque>
 
 #include "surefoot/core/pose.hpp"
-#include "surefoot/core/report.hpp"
 #include "surefoot/ground/ground_config.hpp"
+#include "surefoot/ground/ground_observation.hpp"
 
 namespace surefoot::ground {
 
@@ -30,6 +30,10 @@ struct GroundAlignment {
     Eigen::Vector3d normal_body = Eigen::Vector3d::UnitZ();  ///< unit, up
     double tilt_rad = 0.0;  ///< between the normal and the body's z axis
     double height_m = 0.0;  ///< of the body's origin above the plane
+    /// Of `normal_body` and `height_m`: what the sightings state on the average, and how they
+    /// scatter. More of them do not make it smaller: errors of a calibration and of matching are
+    /// the same in all images of one place.
+    PlaneUncertainty uncertainty;
     /// Frame "ground": z along the normal, origin at the foot of the perpendicular from the body's
     /// origin, turned from the body by the tilt alone (no yaw).
     Pose T_ground_body;
@@ -48,7 +52,7 @@ class GroundCalibration {
     explicit GroundCalibration(const GroundConfig& config) : config_(config) {}
 
     /// Sightings that are not accepted are ignored.
-    void add(const GroundObservation& observation_body);
+    void add(const GroundSighting& sighting_body);
     void clear() { window_.clear(); }
     [[nodiscard]] GroundAlignment alignment() const;
 
@@ -56,7 +60,7 @@ class GroundCalibration {
     [[nodiscard]] bool agree(const GroundObservation& a, const GroundObservation& b) const;
 
     GroundConfig config_;
-    std::deque<GroundObservation> window_;
+    std::deque<GroundSighting> window_;
 };
 
 }  // namespace surefoot::ground

@@ -16,17 +16,15 @@ constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr double kRounding = 1e-12;
 
 /// What a body sees that leans by `roll_deg`, `pitch_deg` at a height.
-GroundObservation sighting(double roll_deg,
-                           double pitch_deg,
-                           double height_m,
-                           bool accepted = true) {
+GroundSighting sighting(double roll_deg, double pitch_deg, double height_m, bool accepted = true) {
     const Eigen::Quaterniond R_world_body =
         exp_so3({0.0, pitch_deg * kDeg, 0.0}) * exp_so3({roll_deg * kDeg, 0.0, 0.0});
-    GroundObservation observation;
+    GroundSighting sighting;
+    GroundObservation& observation = sighting.observation;
     observation.accepted = accepted;
     observation.normal = R_world_body.conjugate() * Eigen::Vector3d::UnitZ();
     observation.height_m = height_m;
-    return observation;
+    return sighting;
 }
 
 TEST(TiltRotation, TakesTheNormalToZWithoutYaw) {
@@ -65,15 +63,16 @@ TEST(GroundCalibration, SingleShotIsNotEnough) {
 
 TEST(GroundCalibration, PoseTakesGroundPointsToZeroHeight) {
     GroundCalibration calibration{GroundConfig{}};
-    const GroundObservation seen = sighting(4.0, -7.0, 0.95);
+    const GroundSighting seen = sighting(4.0, -7.0, 0.95);
     for (int i = 0; i < 10; ++i) calibration.add(seen);
     const GroundAlignment alignment = calibration.alignment();
     ASSERT_TRUE(alignment.accepted);
     EXPECT_NEAR(alignment.height_m, 0.95, kRounding);
-    EXPECT_NEAR(alignment.tilt_rad, std::acos(seen.normal.z()), 1e-9);
-    const Eigen::Vector3d foot_body = -seen.height_m * seen.normal;
+    EXPECT_NEAR(alignment.tilt_rad, std::acos(seen.observation.normal.z()), 1e-9);
+    const Eigen::Vector3d foot_body = -seen.observation.height_m * seen.observation.normal;
     EXPECT_LE((alignment.T_ground_body * foot_body).norm(), 1e-9);
-    const Eigen::Vector3d on_plane_body = foot_body + seen.normal.cross(Eigen::Vector3d(1, 2, 3));
+    const Eigen::Vector3d on_plane_body =
+        foot_body + seen.observation.normal.cross(Eigen::Vector3d(1, 2, 3));
     EXPECT_NEAR((alignment.T_ground_body * on_plane_body).z(), 0.0, 1e-9);
     EXPECT_NEAR((alignment.T_ground_body * Eigen::Vector3d::Zero()).z(), 0.95, 1e-9);
 }
@@ -92,7 +91,7 @@ TEST(GroundCalibration, NoiseAveragesOut) {
     }
     const GroundAlignment alignment = calibration.alignment();
     ASSERT_TRUE(alignment.accepted);
-    const Eigen::Vector3d truth = sighting(3.0, -2.0, 1.04).normal;
+    const Eigen::Vector3d truth = sighting(3.0, -2.0, 1.04).observation.normal;
     const double sigmas = 4.0 / std::sqrt(100.0);
     EXPECT_LE(std::acos(std::min(1.0, alignment.normal_body.dot(truth))),
               sigmas * std::sqrt(2.0) * kTilt_deg * kDeg);
@@ -137,10 +136,10 @@ TEST(GroundCalibration, WindowForgetsABadStart) {
 
 TEST(GroundCalibration, SightingsThatAreNotFiniteAreIgnored) {
     GroundCalibration calibration{GroundConfig{}};
-    GroundObservation bad = sighting(0.0, 0.0, std::numeric_limits<double>::quiet_NaN());
+    GroundSighting bad = sighting(0.0, 0.0, std::numeric_limits<double>::quiet_NaN());
     calibration.add(bad);
     bad = sighting(0.0, 0.0, 1.0);
-    bad.normal.x() = std::numeric_limits<double>::quiet_NaN();
+    bad.observation.normal.x() = std::numeric_limits<double>::quiet_NaN();
     calibration.add(bad);
     EXPECT_EQ(calibration.alignment().reason, CalibrationReason::no_observation);
 }

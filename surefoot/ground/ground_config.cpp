@@ -29,6 +29,32 @@ void GroundConfig::describe(ConfigVisitor& visitor) {
         5.0,
         "base_link over the ground it stands on; of several planes the one that fits wins, "
         "so that a landing below is not taken for it. 0 = unknown: the lowest plane wins");
+    visitor.number("search_up_deg",
+                   search_up_deg,
+                   0.0,
+                   60.0,
+                   "a camera whose mount is not known looks so far above the horizon at most");
+    visitor.number("search_down_deg",
+                   search_down_deg,
+                   0.0,
+                   85.0,
+                   "and so far below it; beyond 65 walls ahead of a raised camera look alike");
+    visitor.number("search_roll_deg", search_roll_deg, 0.0, 60.0, "and is rolled by so much");
+    visitor.number("min_image_share",
+                   min_image_share,
+                   0.0,
+                   1.0,
+                   "least share of the image on the ground where the mount is not known");
+    visitor.number("max_search_sigma_deg",
+                   max_search_sigma_deg,
+                   0.01,
+                   30.0,
+                   "largest one sigma of its tilt there");
+    visitor.number("max_search_rms_m",
+                   max_search_rms_m,
+                   0.001,
+                   1.0,
+                   "largest scatter of the ground there: mulch 0.023, boulders 0.04");
     visitor.integer("window", window, 1, 1000, "sightings that are averaged");
     visitor.integer("min_agreeing", min_agreeing, 1, 1000, "agreeing sightings needed");
     visitor.number("max_disagreement_deg",

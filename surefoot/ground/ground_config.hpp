@@ -21,6 +21,15 @@ struct GroundConfig {
     double expected_height_m =
         0.0;  ///< of base_link over its own ground (machine file); 0 = unknown
 
+    /// Where nobody says how the camera is mounted (ground_search.hpp): optical axis above and
+    /// below the horizon, and roll. Steeper down a wall is hardly told from a floor.
+    double search_up_deg = 10.0;
+    double search_down_deg = 65.0;
+    double search_roll_deg = 20.0;
+    double min_image_share = 0.04;  ///< pixels on the ground; half of a floor may not be matched
+    double max_search_sigma_deg = 1.2;  ///< of the tilt: a strip fixes one axis alone
+    double max_search_rms_m = 0.045;    ///< boulders of 0.1 m scatter by 0.04
+
     int window = 10;                    ///< last sightings that are averaged
     int min_agreeing = 5;               ///< of them, to be accepted
     double max_disagreement_deg = 1.5;  ///< a sighting farther from the others is left out

@@ -238,12 +238,13 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
 
 /// See `sight_ground` and `observe_ground`; without sigmas the noise is not known.
 GroundSighting sight(const GroundConfig& config,
-                     std::span<const Eigen::Vector3d> points,
-                     std::span<const double> inverse_range_sigma,
-                     const Eigen::Vector3d& sensor,
+                     const FramePoints& seen,
                      const Eigen::Vector3d& base,
                      const Eigen::Vector3d& up_hint,
                      std::uint64_t seed) {
+    const std::vector<Eigen::Vector3d>& points = seen.points_body_m;
+    const std::vector<double>& inverse_range_sigma = seen.inverse_range_sigma;
+    const Eigen::Vector3d& sensor = seen.camera_body_m;
     GroundSighting sighting;
     const double hint_length = up_hint.norm();
     if (!(hint_length > 0.0) || !std::isfinite(hint_length)) {
@@ -277,6 +278,11 @@ GroundSighting sight(const GroundConfig& config,
         for (const NearSide& side : best->sides) keep(side, whole);
         best->plane = settle(whole, best->plane);
         best->height_m = best->plane.signed_distance_m(cloud.base);
+        sighting.uncertainty = plane_uncertainty(
+            best->plane,
+            covariance_of_m(whole.points, whole.inverse_range_sigma, best->plane, whole.band_m) +
+                seen.calibration_covariance,
+            cloud.base);
     }
     const Eigen::Vector3d& normal = best->plane.normal;
     sighting.reason = best->reason;
@@ -300,6 +306,7 @@ const char* to_string(GroundReason reason) noexcept {
         case GroundReason::no_plane: return "no_plane";
         case GroundReason::few_inliers: return "few_inliers";
         case GroundReason::small: return "small";
+        case GroundReason::not_lowest: return "not_lowest";
         case GroundReason::rough: return "rough";
     }
     return "unknown";
@@ -310,21 +317,17 @@ GroundSighting sight_ground(const GroundConfig& config,
                             const Eigen::Vector3d& up_hint,
                             const Eigen::Vector3d& sensor_origin,
                             std::uint64_t seed) {
-    return sight(config, points, {}, sensor_origin, sensor_origin, up_hint, seed);
+    FramePoints seen;
+    seen.camera_body_m = sensor_origin;
+    seen.points_body_m.assign(points.begin(), points.end());
+    return sight(config, seen, sensor_origin, up_hint, seed);
 }
 
-GroundObservation observe_ground(const GroundConfig& config,
-                                 const FramePoints& seen,
-                                 const Eigen::Vector3d& up_hint_body,
-                                 std::uint64_t seed) {
-    return sight(config,
-                 seen.points_body_m,
-                 seen.inverse_range_sigma,
-                 seen.camera_body_m,
-                 Eigen::Vector3d::Zero(),
-                 up_hint_body,
-                 seed)
-        .observation;
+GroundSighting observe_ground(const GroundConfig& config,
+                              const FramePoints& seen,
+                              const Eigen::Vector3d& up_hint_body,
+                              std::uint64_t seed) {
+    return sight(config, seen, Eigen::Vector3d::Zero(), up_hint_body, seed);
 }
 
 }  // namespace surefoot::ground

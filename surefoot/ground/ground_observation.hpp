@@ -7,6 +7,7 @@
 
 #include "surefoot/core/report.hpp"
 #include "surefoot/ground/ground_config.hpp"
+#include "surefoot/ground/plane_covariance.hpp"
 #include "surefoot/ground/sample_points.hpp"
 
 namespace surefoot::ground {
@@ -19,6 +20,7 @@ enum class GroundReason : std::uint8_t {
     no_plane,     ///< no plane within the tilt limit, below the sensor at an allowed height
     few_inliers,  ///< inlier ratio below its limit
     small,        ///< area or extent below its limit
+    not_lowest,   ///< more than a high step below it there is something else
     rough,  ///< scatter of the inliers above its limit, or no surface that ends above and below
 };
 [[nodiscard]] const char* to_string(GroundReason reason) noexcept;
@@ -30,6 +32,10 @@ struct GroundSighting {
     GroundReason reason = GroundReason::few_points;
     double tilt_rad = 0.0;  ///< between normal and hint
     double area_m2 = 0.0;   ///< occupied squares of two voxel sides, seen along the normal
+    /// Pixels on it among those that were looked at; 0 where the points are not those of an image.
+    double image_share = 0.0;
+    /// Zero where the noise of the points is not known.
+    PlaneUncertainty uncertainty;
 };
 
 /// Finds the ground (RANSAC within the cone of allowed normals, thesis 4.3.1). The ground is
@@ -51,9 +57,9 @@ struct GroundSighting {
 /// The same for what a frame saw, with the height of base_link. The noise of the points is known:
 /// levels closer together than `tolerance_m` are told apart, and the plane is as true as all points
 /// together (`settle_plane`).
-[[nodiscard]] GroundObservation observe_ground(const GroundConfig& config,
-                                               const FramePoints& seen,
-                                               const Eigen::Vector3d& up_hint_body,
-                                               std::uint64_t seed);
+[[nodiscard]] GroundSighting observe_ground(const GroundConfig& config,
+                                            const FramePoints& seen,
+                                            const Eigen::Vector3d& up_hint_body,
+                                            std::uint64_t seed);
 
 }  // namespace surefoot::ground

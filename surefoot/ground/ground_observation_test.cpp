@@ -188,8 +188,9 @@ void expect_ground(const std::vector<test::Surface>& surfaces,
                    double tilt_limit_deg,
                    double height_limit_m) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-        const auto ground = observe_ground(
-            {}, test::seen(surfaces, {.seed = seed}), Eigen::Vector3d::UnitZ(), seed);
+        const auto ground =
+            observe_ground({}, test::seen(surfaces, {.seed = seed}), Eigen::Vector3d::UnitZ(), seed)
+                .observation;
         ASSERT_TRUE(ground.accepted) << "seed " << seed;
         EXPECT_LE(angle_rad(ground.normal, Eigen::Vector3d::UnitZ()), tilt_limit_deg * kDeg)
             << "seed " << seed;
@@ -337,9 +338,9 @@ TEST(GroundObservation, HeightIsTakenFromTheSensorInAnyFrame) {
 
 TEST(GroundObservation, SameSeedGivesTheSameBytesAndAnotherSeedTheSameGround) {
     const FramePoints seen = test::seen({{}, {.z_m = 0.5, .min_x_m = 1.0}});
-    const auto first = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 1);
-    const auto again = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 1);
-    const auto other = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 2);
+    const auto first = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 1).observation;
+    const auto again = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 1).observation;
+    const auto other = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), 2).observation;
     ASSERT_TRUE(first.accepted && other.accepted);
     EXPECT_EQ(first.normal, again.normal);
     EXPECT_EQ(first.height_m, again.height_m);

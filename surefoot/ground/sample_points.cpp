@@ -7,6 +7,25 @@
 
 namespace surefoot::ground {
 
+namespace {
+
+/// Disparities of a calibrated rig err by so much alike, and by so much more at the side and at the
+/// upper or lower rim of the image. ASSUMPTION: what is left after boards and self-calibration.
+constexpr double kCalibrationSigma_px = 0.05;
+
+/// d = f b m . (x, y, 1) over the image plane: a constant error of d is one of m along the optical
+/// axis, one that grows along the image is one across it.
+Eigen::Matrix3d calibration_covariance(const camera::RectifiedRig& rig) {
+    const double fb_px_m = rig.depth_to_disparity_px_m();
+    const Eigen::Vector3d sigma =
+        kCalibrationSigma_px / fb_px_m *
+        Eigen::Vector3d(2.0 * rig.fx_px / rig.width, 2.0 * rig.fy_px / rig.height, 1.0);
+    const Eigen::Matrix3d R = rig.T_body_camera.R();
+    return R * sigma.cwiseAbs2().asDiagonal() * R.transpose();
+}
+
+}  // namespace
+
 void sample_points(const camera::RectifiedRig& rig,
                    const camera::DepthImage& depth,
                    int step_px,
@@ -16,12 +35,15 @@ void sample_points(const camera::RectifiedRig& rig,
     seen.camera_body_m = rig.T_body_camera.translation_m;
     seen.points_body_m.clear();
     seen.inverse_range_sigma.clear();
+    seen.pixels = 0;
+    seen.calibration_covariance = calibration_covariance(rig);
     const Eigen::Matrix3d R_body_camera = rig.T_body_camera.R();
     for (int v = step_px / 2; v < depth.disparity_px.height(); v += step_px) {
         const float* disparity = depth.disparity_px.row(v);
         const float* sigma = depth.sigma_px.row(v);
         const float* outlier = depth.outlier_probability.row(v);
         for (int u = step_px / 2; u < depth.disparity_px.width(); u += step_px) {
+            ++seen.pixels;
             const auto d_px = static_cast<double>(disparity[u]);
             const auto sigma_px = static_cast<double>(sigma[u]);
             if (!(d_px > 0.0 && std::isfinite(d_px))) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "surefoot/camera/depth_image.hpp"
@@ -16,6 +17,11 @@ struct FramePoints {
     /// One sigma [1/m] of the inverse of the distance between each point and the camera. In it the
     /// disparity's noise is linear, and so is a plane (`settle_plane`).
     std::vector<double> inverse_range_sigma;
+    std::size_t pixels = 0;  ///< looked at, with and without depth
+    /// What an imperfect calibration does to every plane alike: covariance of m = -n / h
+    /// (`settle_plane`) [1/m^2]. An error of all disparities that grows by the place in the image
+    /// adds a constant to m.
+    Eigen::Matrix3d calibration_covariance = Eigen::Matrix3d::Zero();
 };
 
 /// Replaces `seen` by every `step_px`-th pixel of every `step_px`-th row whose disparity and its

@@ -91,7 +91,7 @@ TEST(SamplePoints, FeedsTheGroundObservation) {
     sample_points(rig, floor_depth(rig), 2, seen);
     GroundConfig config;
     config.min_height_m = 0.0;  // base_link is at the floor
-    const auto ground = observe_ground(config, seen, Eigen::Vector3d::UnitZ(), 1);
+    const auto ground = observe_ground(config, seen, Eigen::Vector3d::UnitZ(), 1).observation;
     ASSERT_TRUE(ground.accepted);
     EXPECT_NEAR(ground.height_m, 0.0, 1e-5) << "of base_link";
     EXPECT_NEAR(ground.normal.z(), 1.0, 1e-9);
@@ -109,7 +109,7 @@ TEST(SamplePoints, MatchingNoiseLeavesTheGroundAccurate) {
         }
         FramePoints seen;
         sample_points(rig, depth, 1, seen);
-        const auto ground = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), seed);
+        const auto ground = observe_ground({}, seen, Eigen::Vector3d::UnitZ(), seed).observation;
         ASSERT_TRUE(ground.accepted) << "seed " << seed;
         EXPECT_NEAR(ground.height_m, 0.0, 0.003) << "seed " << seed;
         EXPECT_LE(std::acos(std::min(ground.normal.z(), 1.0)), 0.15 * std::numbers::pi / 180.0)

@@ -8,14 +8,9 @@
 namespace surefoot::pipeline {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 /// Of the known height: far more than a mount or a kerb brings about.
 constexpr double kMostHeightShare = 0.35;
 constexpr double kDegPerRad = 180.0 / M_PI;
-
-double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b)) * kDegPerRad;
-}
 
 /// Rotation that takes `up_body` to odom z and keeps the heading of base_link at zero yaw.
 Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {
@@ -31,15 +26,99 @@ Eigen::Quaterniond level(const Eigen::Vector3d& up_body) {
     return Eigen::Quaterniond(R_odom_body).normalized();
 }
 
+double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// What hinders the best plane of a search.
+const char* obstacle(ground::GroundReason reason) {
+    switch (reason) {
+        case ground::GroundReason::rough: return ", too uneven for a plane";
+        case ground::GroundReason::not_lowest: return ", but something lies far below it";
+        default: return "";
+    }
+}
+
 /// Why there is no plane, and what helps.
-std::string without_plane(ground::CalibrationReason reason) {
-    const char* const advice =
-        reason == ground::CalibrationReason::disagreement
-            ? "hold the camera still over one level floor while the first frames are taken"
-            : "let more level floor be in view of the first frames; where the camera looks steeply "
-              "down, give a machine file with the height and pitch of its mount, or set "
-              "mount.pitch_deg (and ground.expected_height_m, of base_link)";
-    return fmt::format("ground plane: {}: {}", to_string(reason), advice);
+std::string without_plane(ground::CalibrationReason reason, const GroundLook& look) {
+    if (reason == ground::CalibrationReason::disagreement)
+        return fmt::format(
+            "ground plane: {}: hold the camera still over one level floor while the first frames "
+            "are taken",
+            to_string(reason));
+    if (look.searched)
+        return fmt::format(
+            "ground plane: {}: tilt 0-{:.0f} deg is searched; {:.0f} % of the image looks like "
+            "floor{}: point the camera lower so that more level floor is in view of the first "
+            "frames, or give mount.pitch_deg or a machine file",
+            to_string(reason),
+            look.search_down_deg,
+            100.0 * look.image_share,
+            obstacle(look.reason));
+    return fmt::format(
+        "ground plane: {}: let more level floor be in view of the first frames, or give a machine "
+        "file with the height and pitch of the mount, or set mount.pitch_deg (and "
+        "ground.expected_height_m, of base_link)",
+        to_string(reason));
+}
+
+std::string sightings(const ground::GroundAlignment& ground) {
+    return fmt::format("{} sightings agree, {} do not", ground.agreeing, ground.rejected);
+}
+
+/// Up by whatever tells it; fills the source, the uncertainty and the reason.
+Direction find_up(const AlignmentConfig& config,
+                  const ground::GroundAlignment& ground,
+                  const std::optional<Direction>& up_imu,
+                  const GroundLook& look,
+                  Alignment& alignment) {
+    const Direction normal{ground.normal_body, ground.uncertainty.normal_covariance};
+    Direction up{assumed_up(config), {}};
+    if (up_imu && ground.accepted) {
+        const FusedUp fused = fuse_up(config.gravity, normal, *up_imu);
+        up = fused.up;
+        alignment.gravity_source = grid::GravitySource::imu;
+        alignment.ground_lean_rad = angle_rad(normal.unit_body, up.unit_body);
+        alignment.tilt_sigma_rad = up.sigma_rad();
+        alignment.reason = fmt::format(
+            "tilt from the accelerometer and the ground plane, 1 sigma {:.2f} deg; the ground "
+            "leans {:.2f} deg and is built level with a probability of {:.0f} %; height from the "
+            "plane, {}",
+            kDegPerRad * alignment.tilt_sigma_rad,
+            kDegPerRad * alignment.ground_lean_rad,
+            100.0 * fused.level_probability,
+            sightings(ground));
+    } else if (up_imu) {
+        up = *up_imu;
+        alignment.gravity_source = grid::GravitySource::imu;
+        alignment.tilt_sigma_rad = up.sigma_rad();
+        alignment.reason = fmt::format("tilt from the accelerometer, 1 sigma {:.2f} deg; {}",
+                                       kDegPerRad * alignment.tilt_sigma_rad,
+                                       without_plane(ground.reason, look));
+    } else if (ground.accepted) {
+        up = up_from_plane(config.gravity, normal);
+        alignment.gravity_source = grid::GravitySource::plane;
+        alignment.tilt_sigma_rad = up.sigma_rad();
+        alignment.reason = fmt::format(
+            "tilt and height from the ground plane, {}{}; the plane itself is known within "
+            "{:.2f} deg, but nothing tells its slope: 1 sigma of the vertical {:.1f} deg, which "
+            "the gate takes off its tilt limit (an IMU would tell)",
+            sightings(ground),
+            look.searched ? fmt::format(" (mount not known: tilt 0-{:.0f} deg was searched, {:.0f} "
+                                        "% of the image is ground)",
+                                        look.search_down_deg,
+                                        100.0 * look.image_share)
+                          : "",
+            kDegPerRad * normal.sigma_rad(),
+            kDegPerRad * alignment.tilt_sigma_rad);
+    } else {
+        alignment.reason = fmt::format(
+            "tilt assumed from mount.pitch_deg = {:.1f}, and the gate answers ERROR on such a map: "
+            "no accelerometer at rest; {}",
+            config.pitch_deg,
+            without_plane(ground.reason, look));
+    }
+    return up;
 }
 
 }  // namespace
@@ -61,12 +140,7 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    0.0,
                    5.0,
                    "largest deviation of the mean specific force from 9.81 when standing");
-    visitor.number(
-        "plane_imu_limit_deg",
-        plane_imu_limit_deg,
-        0.1,
-        45.0,
-        "plane and accelerometer farther apart than this: the floor is a ramp, gravity wins");
+    visitor.group("gravity", gravity);
     visitor.number("max_lean_deg",
                    max_lean_deg,
                    0.1,
@@ -97,28 +171,6 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    "ground.expected_height_m is known");
 }
 
-std::optional<Eigen::Vector3d> up_from_imu(const AlignmentConfig& config,
-                                           const Pose& T_body_imu,
-                                           std::span<const StereoFrame> frames) {
-    Eigen::Vector3d force_sum = Eigen::Vector3d::Zero();
-    double gyro_sum = 0.0;
-    int samples = 0;
-    for (const StereoFrame& frame : frames) {
-        for (const ImuSample& sample : frame.imu) {
-            force_sum += sample.specific_force_m_s2;
-            gyro_sum += sample.angular_velocity_rad_s.norm();
-            ++samples;
-        }
-    }
-    constexpr int kMinSamples = 10;
-    if (samples < kMinSamples) return std::nullopt;
-    const Eigen::Vector3d force = force_sum / samples;
-    const bool still = gyro_sum / samples <= config.still_gyro_rad_s &&
-                       std::abs(force.norm() - kGravity_m_s2) <= config.still_force_m_s2;
-    if (!still) return std::nullopt;
-    return (T_body_imu.rotation * force).normalized();
-}
-
 Eigen::Vector3d assumed_up(const AlignmentConfig& config) {
     // base_link pitched down by p: x_body = (cos p, 0, -sin p), z_body = (sin p, 0, cos p) in level
     // axes, so up = (0, 0, 1) has the components -sin p along x_body and cos p along z_body.
@@ -128,42 +180,16 @@ Eigen::Vector3d assumed_up(const AlignmentConfig& config) {
 
 Alignment place_odom(const AlignmentConfig& config,
                      const ground::GroundAlignment& ground,
-                     const std::optional<Eigen::Vector3d>& up_imu_body,
-                     double expected_height_m) {
+                     const std::optional<Direction>& up_imu,
+                     double expected_height_m,
+                     const GroundLook& look) {
     Alignment alignment;
-    const double ramp_deg =
-        ground.accepted && up_imu_body ? angle_deg(ground.normal_body, *up_imu_body) : 0.0;
-    Eigen::Vector3d up_body = assumed_up(config);
-    if (ground.accepted && ramp_deg <= config.plane_imu_limit_deg) {
-        up_body = ground.normal_body;
-        alignment.gravity_source = grid::GravitySource::plane;
-        alignment.reason =
-            fmt::format("tilt and height from the ground plane, {} sightings agree, {} do not",
-                        ground.agreeing,
-                        ground.rejected);
-    } else if (up_imu_body) {
-        up_body = *up_imu_body;
-        alignment.gravity_source = grid::GravitySource::imu;
-        alignment.reason =
-            ground.accepted
-                ? fmt::format(
-                      "tilt from the accelerometer: the ground leans {:.1f} deg "
-                      "(limit {:.1f}), a ramp",
-                      ramp_deg,
-                      config.plane_imu_limit_deg)
-                : fmt::format("tilt from the accelerometer; {}", without_plane(ground.reason));
-    } else {
-        alignment.reason = fmt::format(
-            "tilt assumed from mount.pitch_deg = {:.1f}, and the gate answers ERROR on such a map: "
-            "no accelerometer at rest; {}",
-            config.pitch_deg,
-            without_plane(ground.reason));
-    }
-    alignment.T_odom_body.rotation = level(up_body);
+    const Direction up = find_up(config, ground, up_imu, look, alignment);
+    alignment.T_odom_body.rotation = level(up.unit_body);
     if (ground.accepted) {
         // Height along gravity: the point -t up on the plane n . p + h = 0 has t = h / (n . up).
         alignment.has_ground = true;
-        alignment.ground_height_m = ground.height_m / ground.normal_body.dot(up_body.normalized());
+        alignment.ground_height_m = ground.height_m / ground.normal_body.dot(up.unit_body);
         alignment.T_odom_body.translation_m.z() = alignment.ground_height_m;
     }
     const double off_m = std::abs(alignment.ground_height_m - expected_height_m);
@@ -171,6 +197,7 @@ Alignment place_odom(const AlignmentConfig& config,
         off_m > kMostHeightShare * expected_height_m) {
         // Everything else would be off by as much, and nothing else shows it.
         alignment.gravity_source = grid::GravitySource::assumed;
+        alignment.tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
         alignment.reason = fmt::format(
             "the ground lies {:.2f} m below base_link, {:.2f} m are known "
             "(ground.expected_height_m, from the machine file; limit {:.0f} % off): the rig's "

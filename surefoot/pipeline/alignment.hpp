@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/config.hpp"
 #include "surefoot/core/report.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
 #include "surefoot/ground/ground_calibration.hpp"
+#include "surefoot/pipeline/gravity.hpp"
 
 namespace surefoot::pipeline {
 
 struct AlignmentConfig {
-    double pitch_deg = 0.0;            ///< of base_link below the horizon when nothing measures it
-    double still_gyro_rad_s = 0.15;    ///< MEMS bias (EuRoC 0.08) plus noise; above it the
-                                       ///< accelerometer is not taken for gravity
-    double still_force_m_s2 = 0.3;     ///< as above: deviation of the mean force from 9.81
-    double plane_imu_limit_deg = 3.0;  ///< plane and gravity farther apart: the floor is a ramp
+    double pitch_deg = 0.0;          ///< of base_link below the horizon when nothing measures it
+    double still_gyro_rad_s = 0.15;  ///< MEMS bias (EuRoC 0.08) plus noise; above it the
+                                     ///< accelerometer is not taken for gravity
+    double still_force_m_s2 = 0.3;   ///< as above: deviation of the mean force from 9.81
+    GravityConfig gravity;           ///< what plane and accelerometer are worth
     /// The mount has moved (mount_monitor.hpp) when base_link leans more than `max_lean_deg` from
     /// how it stood at the start and does so for `max_lean_still_s` at rest, or for
     /// `max_lean_walking_s` without having come home; at once beyond `max_sway_deg`. ASSUMPTION,
@@ -42,19 +42,27 @@ struct Alignment {
     grid::GravitySource gravity_source = grid::GravitySource::assumed;
     bool has_ground = false;
     double ground_height_m = 0.0;  ///< base_link above the ground; 0 without ground
-    std::string reason;            ///< one sentence: what was used and what was not, and why
+    /// One sigma, about any horizontal axis, of the angle between odom's z axis and the vertical.
+    /// NaN where gravity is assumed.
+    double tilt_sigma_rad = std::numeric_limits<double>::quiet_NaN();
+    double ground_lean_rad = 0.0;  ///< of the ground in odom, where an accelerometer tells
+    std::string reason;            ///< what was used and what was not, and why
 };
 
-/// Gravity direction in base_link measured by the accelerometer while the rig stands still.
-[[nodiscard]] std::optional<Eigen::Vector3d> up_from_imu(const AlignmentConfig& config,
-                                                         const Pose& T_body_imu,
-                                                         std::span<const StereoFrame> frames);
+/// How the ground was looked for, for the words of `Alignment::reason`.
+struct GroundLook {
+    bool searched = false;  ///< the mount is not known: `ground.search_down_deg` says how far
+    double search_down_deg = 0.0;
+    double image_share = 0.0;  ///< of the best plane in any frame
+    ground::GroundReason reason = ground::GroundReason::few_points;  ///< of that plane
+};
 
 /// Direction of up in base_link that a level machine would have with the configured pitch.
 [[nodiscard]] Eigen::Vector3d assumed_up(const AlignmentConfig& config);
 
-/// Combines the averaged ground plane and the accelerometer: tilt from the plane, from the
-/// accelerometer when there is no plane or the two disagree (a ramp), else assumed.
+/// Combines the averaged ground plane and the accelerometer by their covariances (gravity.hpp). The
+/// source of gravity is `imu` where there is an accelerometer, else `plane`, else `assumed`. The
+/// floor's slope is then part of `tilt_sigma_rad`.
 ///
 /// Vision alone cannot tell a wrong baseline: all it sees is larger or smaller by one factor. Where
 /// the height of base_link over its ground is known (`expected_height_m`; 0 = unknown) and the
@@ -62,7 +70,8 @@ struct Alignment {
 /// reason says so: the gate does not work on such a map.
 [[nodiscard]] Alignment place_odom(const AlignmentConfig& config,
                                    const ground::GroundAlignment& ground,
-                                   const std::optional<Eigen::Vector3d>& up_imu_body,
-                                   double expected_height_m = 0.0);
+                                   const std::optional<Direction>& up_imu,
+                                   double expected_height_m = 0.0,
+                                   const GroundLook& look = {});
 
 }  // namespace surefoot::pipeline

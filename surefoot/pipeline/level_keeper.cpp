@@ -27,8 +27,10 @@ void LevelConfig::describe(ConfigVisitor& visitor) {
         "agreeing_share", agreeing_share, 0.0, 1.0, "sightings that must be nearly level");
 }
 
-void LevelKeeper::start_at(const Pose& T_odom_body) {
+void LevelKeeper::start_at(const Pose& T_odom_body, double ground_lean_rad) {
+    const bool is_level = ground_lean_rad <= config_.ignored_deg * kRadPerDeg;
     *this = LevelKeeper(config_);
+    is_floor_level_ = is_level;
     T_odom_body_ = T_odom_body;
 }
 
@@ -70,7 +72,8 @@ void LevelKeeper::see(const GroundObservation& ground_body) {
 }
 
 std::optional<Eigen::Vector2d> LevelKeeper::lean() const {
-    if (seen_s_ < config_.average_s || level_share_ < config_.agreeing_share) return std::nullopt;
+    if (!is_floor_level_ || seen_s_ < config_.average_s || level_share_ < config_.agreeing_share)
+        return std::nullopt;
     return lean_;
 }
 

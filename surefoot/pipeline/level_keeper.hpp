@@ -34,8 +34,10 @@ class LevelKeeper {
   public:
     explicit LevelKeeper(const LevelConfig& config) : config_(config) {}
 
-    /// Forgets what was seen; the first pose will be this one.
-    void start_at(const Pose& T_odom_body);
+    /// Forgets what was seen; the first pose will be this one. `ground_lean_rad`: what the ground
+    /// leans there against gravity, where an accelerometer tells. Beyond `ignored_deg` the floor is
+    /// not built level, and says nothing about drift: nothing is turned back from then on.
+    void start_at(const Pose& T_odom_body, double ground_lean_rad = 0.0);
     /// The odometry's estimate of the next frame, turned by what is known so far.
     [[nodiscard]] MotionEstimate level(const MotionEstimate& motion);
     /// The ground in that frame, in base_link. What is not accepted, or seen while the pose is not
@@ -55,6 +57,7 @@ class LevelKeeper {
     Eigen::Vector2d lean_ = Eigen::Vector2d::Zero();  ///< horizontal part of the mean normal
     double level_share_ = 0.0;                        ///< of the sightings that were nearly level
     double seen_s_ = 0.0;                             ///< time that was averaged
+    bool is_floor_level_ = true;                      ///< where the run began
 };
 
 }  // namespace surefoot::pipeline

@@ -6,7 +6,7 @@
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
-#include "surefoot/ground/ground_observation.hpp"
+#include "surefoot/ground/ground_search.hpp"
 #include "surefoot/ground/sample_points.hpp"
 #include "surefoot/odometry/health.hpp"
 #include "surefoot/pipeline/light.hpp"
@@ -58,9 +58,12 @@ std::int64_t count_valid(const Image<float>& disparity_px) {
 }
 
 /// The plane n . p + h = 0 of a later base_link in the first one.
-GroundObservation in_first_body(GroundObservation ground, const Pose& T_first_body) {
-    ground.normal = T_first_body.rotation * ground.normal;
-    ground.height_m -= ground.normal.dot(T_first_body.translation_m);
+ground::GroundSighting in_first_body(ground::GroundSighting ground, const Pose& T_first_body) {
+    GroundObservation& plane = ground.observation;
+    plane.normal = T_first_body.rotation * plane.normal;
+    plane.height_m -= plane.normal.dot(T_first_body.translation_m);
+    const Eigen::Matrix3d R = T_first_body.R();
+    ground.uncertainty.normal_covariance = R * ground.uncertainty.normal_covariance * R.transpose();
     return ground;
 }
 
@@ -68,6 +71,7 @@ Alignment told(const Pose& T_odom_body) {
     Alignment alignment;
     alignment.T_odom_body = T_odom_body;
     alignment.gravity_source = grid::GravitySource::plane;
+    alignment.tilt_sigma_rad = 0.0;
     alignment.has_ground = true;
     alignment.ground_height_m = T_odom_body.translation_m.z();
     alignment.reason = "told by the source, not measured";
@@ -131,7 +135,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
     trim_right_eye(first_frames);
     alignment_ = T_odom_first_body ? told(*T_odom_first_body) : measure_alignment(first_frames);
     odometry_.start_at(alignment_.T_odom_body);
-    level_keeper_.start_at(alignment_.T_odom_body);
+    level_keeper_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
     feature_follower_.forget();  // odom is another one
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
@@ -140,24 +144,41 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
 
 Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames) {
     const Pose T_body_imu = imu_mount_ ? imu_mount_->T_body_imu : Pose{};
-    const auto up_imu_body = up_from_imu(config_.mount, T_body_imu, first_frames);
-    const Eigen::Vector3d up_hint_body = up_imu_body.value_or(assumed_up(config_.mount));
+    const auto up_imu = up_from_imu(config_.mount.gravity,
+                                    config_.mount.still_gyro_rad_s,
+                                    config_.mount.still_force_m_s2,
+                                    T_body_imu,
+                                    first_frames);
+    const Eigen::Vector3d up_hint_body = up_imu ? up_imu->unit_body : assumed_up(config_.mount);
+    GroundLook look{!up_imu && is_mount_unknown(), config_.ground.search_down_deg, 0.0, {}};
 
     // A scout odometry brings all sightings into the first body frame: the machine may move
     // already.
     odometry::Odometry scout(config_.odometry, *rectifier_);
     scout.start_at(Pose{});
-    ground::GroundCalibration calibration(config_.ground);
+    ground::GroundConfig wanted = config_.ground;
+    // A source of a few frames has no more to show: all of them must agree then.
+    wanted.min_agreeing = std::clamp(static_cast<int>(first_frames.size()), 1, wanted.min_agreeing);
+    ground::GroundCalibration calibration(wanted);
     for (const StereoFrame& frame : first_frames) {
         if (!frame.arrival.is_new_and_whole() || light_of(frame) != Light::lit) continue;
         const MotionEstimate motion = track(frame, scout, Pose{});
         rectify(frame);
         measure_depth(frame);
-        calibration.add(
-            in_first_body(observe_ground(motion.T_odom_body, up_hint_body), motion.T_odom_body));
+        const ground::GroundSighting sighting =
+            look.searched ? search_ground() : observe_ground(motion.T_odom_body, up_hint_body);
+        calibration.add(in_first_body(sighting, motion.T_odom_body));
+        if (sighting.image_share < look.image_share) continue;
+        look.image_share = sighting.image_share;
+        look.reason = sighting.reason;
     }
     return place_odom(
-        config_.mount, calibration.alignment(), up_imu_body, config_.ground.expected_height_m);
+        config_.mount, calibration.alignment(), up_imu, config_.ground.expected_height_m, look);
+}
+
+bool Pipeline::is_mount_unknown() const {
+    return !nominal_rig_.T_body_left && config_.mount.pitch_deg == 0.0 &&
+           config_.ground.expected_height_m == 0.0;
 }
 
 std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFrame> frames) {
@@ -232,7 +253,8 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
         timer.finished(Stage::rectify);
         measure_depth(frame);
         timer.finished(Stage::stereo);
-        report.ground = observe_ground(report.motion.T_odom_body, Eigen::Vector3d::UnitZ());
+        report.ground =
+            observe_ground(report.motion.T_odom_body, Eigen::Vector3d::UnitZ()).observation;
         level_keeper_.see(report.ground);
         watch_mount(report);
         timer.finished(Stage::ground);
@@ -281,13 +303,20 @@ void Pipeline::measure_depth(const StereoFrame& frame) {
     }
 }
 
-GroundObservation Pipeline::observe_ground(const Pose& T_level_body,
-                                           const Eigen::Vector3d& up_level) {
+/// The matcher's errors hang together over more.
+constexpr int kGroundStep_px = 6;
+
+ground::GroundSighting Pipeline::observe_ground(const Pose& T_level_body,
+                                                const Eigen::Vector3d& up_level) {
     // The plane is looked for in base_link: its height is that of the machine, not of odom.
-    constexpr int kStep_px = 6;  // the matcher's errors hang together over more
-    ground::sample_points(rectifier_->rig(), depth_, kStep_px, ground_points_);
+    ground::sample_points(rectifier_->rig(), depth_, kGroundStep_px, ground_points_);
     const Eigen::Vector3d up_body = T_level_body.rotation.conjugate() * up_level;
     return ground::observe_ground(config_.ground, ground_points_, up_body, kGroundSeed);
+}
+
+ground::GroundSighting Pipeline::search_ground() {
+    ground::sample_points(rectifier_->rig(), depth_, kGroundStep_px, ground_points_);
+    return ground::search_ground(config_.ground, ground_points_, kGroundSeed);
 }
 
 void Pipeline::watch_mount(FrameReport& report) {
@@ -417,6 +446,7 @@ Status Pipeline::snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) con
     input.frame_time_ns = last_fused_ns_;
     input.pose_time_ns = last_motion_.time_ns;
     input.gravity_source = alignment_.gravity_source;
+    input.tilt_sigma_rad = alignment_.tilt_sigma_rad;
     input.health = snapshot_health(last_motion_.health);
     input.camera = camera_state();
     input.version = version_;

@@ -15,6 +15,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/ground/ground_observation.hpp"
 #include "surefoot/ground/sample_points.hpp"
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
@@ -118,8 +119,12 @@ class Pipeline {
                                        const Pose& T_odom_first);
     void rectify(const StereoFrame& frame);
     void measure_depth(const StereoFrame& frame);
-    [[nodiscard]] GroundObservation observe_ground(const Pose& T_level_body,
-                                                   const Eigen::Vector3d& up_level);
+    [[nodiscard]] ground::GroundSighting observe_ground(const Pose& T_level_body,
+                                                        const Eigen::Vector3d& up_level);
+    /// For a camera of which nothing tells how it is mounted.
+    [[nodiscard]] ground::GroundSighting search_ground();
+    /// Neither rig nor settings say how the camera is mounted.
+    [[nodiscard]] bool is_mount_unknown() const;
     /// Only where a machine carries the camera: the height of base_link is known.
     void watch_mount(FrameReport& report);
     [[nodiscard]] CameraState camera_state() const noexcept;
