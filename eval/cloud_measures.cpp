@@ -312,7 +312,8 @@ HeightHistogram height_histogram(std::span<const Vector3f> points_m, const Level
 StairMeasures measure_stairs(const SortedSurfaces& surfaces, std::span<const Level> all) {
     const std::vector<Level> flight = flight_of(all);
     const std::span<const Level> levels = flight.empty() ? all : std::span<const Level>(flight);
-    constexpr double kLongestTread_m = 0.5;  // what is longer is a landing
+    constexpr double kLongestTread_m = 0.5;   // what is longer is a landing
+    constexpr double kShortestTread_m = 0.1;  // no foot stands on less: not one flight
     StairMeasures measures;
     std::vector<double> rises_m;
     for (std::size_t i = 1; i < levels.size(); ++i) {
@@ -329,7 +330,8 @@ StairMeasures measure_stairs(const SortedSurfaces& surfaces, std::span<const Lev
             const auto riser_m = is_step(levels[i - 1], levels[i])
                                      ? line.riser_m(levels[i - 1], levels[i])
                                      : std::nullopt;
-            if (riser_m && last_m && *riser_m - *last_m <= kLongestTread_m)
+            if (riser_m && last_m && *riser_m - *last_m >= kShortestTread_m &&
+                *riser_m - *last_m <= kLongestTread_m)
                 goings_m.push_back(*riser_m - *last_m);
             last_m = riser_m;
         }

@@ -156,6 +156,23 @@ TEST(StairMeasures, GoingsOfAMapWithoutFaces) {
     EXPECT_NEAR(m.going.mean_m, kGoing_m, 5e-3);
 }
 
+TEST(StairMeasures, LevelsOneBesideTheOtherHaveNoGoing) {
+    // Equal rises, but the third level begins far behind the second.
+    constexpr double kBegin_m[] = {0.0, 1.0, -2.0};
+    constexpr double kLength_m[] = {1.5, 1.5, 6.5};
+    Points points_m;
+    Rng rng(9);
+    for (int level = 0; level < 3; ++level) {
+        for (int i = 0; i < 20000; ++i) {
+            points_m.emplace_back(
+                static_cast<float>(kBegin_m[level] + rng.uniform(0.0, kLength_m[level])),
+                static_cast<float>(rng.uniform(0.0, 1.0)),
+                static_cast<float>(kRiser_m * level + 0.002 * rng.normal()));
+        }
+    }
+    for (const double going_m : measured(points_m).going.values_m) EXPECT_GE(going_m, 0.1);
+}
+
 TEST(StairMeasures, NoStairsNoMeasures) {
     EXPECT_TRUE(std::isnan(measure_stairs({}, {}).riser.mean_m));
     Level floor;
