@@ -50,13 +50,24 @@ std::string_view view(beast::string_view text) {
 class WorkBudget {
   public:
     explicit WorkBudget(int per_tick_us) : per_tick_ns_(per_tick_us * kNsPerUs) {}
-    void refill() noexcept { left_ns_ = std::min(per_tick_ns_, left_ns_ + per_tick_ns_); }
-    void charge(std::int64_t cost_ns) noexcept { left_ns_ -= cost_ns; }
+    void refill() noexcept {
+        left_ns_ = std::min(per_tick_ns_, left_ns_ + per_tick_ns_);
+        ticks_spent_ = is_spent() ? ticks_spent_ + 1 : 0;
+        if (ticks_spent_ < kMostTicks) return;
+        left_ns_ = 1;  // for one piece of work, whatever it costs: nobody waits for ever
+        ticks_spent_ = 0;
+    }
+    void charge(std::int64_t cost_ns) noexcept {
+        left_ns_ = std::max(left_ns_ - cost_ns, -kMostTicks * per_tick_ns_);
+    }
     [[nodiscard]] bool is_spent() const noexcept { return left_ns_ <= 0; }
 
   private:
+    static constexpr std::int64_t kMostTicks = 10;
+
     std::int64_t per_tick_ns_;
     std::int64_t left_ns_ = per_tick_ns_;
+    std::int64_t ticks_spent_ = 0;
 };
 
 /// Closes a socket that nobody took over.
@@ -136,10 +147,12 @@ class SocketServer {
     std::vector<std::shared_ptr<Connection>> waiting_;      // for their turn
     std::unique_ptr<TlsDoor> tls_door_;
     std::int64_t tick_ended_ns_ = 0;  // processor time
+    std::int64_t poll_ended_ns_ = 0;  // the same, where the owner has a loop of its own
     Slots::Id next_slot_ = 1;
     std::uint16_t port_ = 0;
     std::uint64_t next_connection_ = 1;
     int accepts_left_ = 0;
+    bool newcomers_first_ = false;
     bool accepting_ = false;
     bool begun_ = false;
 };
@@ -579,13 +592,16 @@ void SocketServer::run() {
 
 void SocketServer::poll() {
     begin();
-    io_.poll();
+    const std::int64_t start_ns = thread_ns();
+    accounted_ns += start_ns - poll_ended_ns_;  // the owner's
+    if (io_.poll() == 0) accounted_ns += thread_ns() - start_ns;
+    poll_ended_ns_ = thread_ns();
 }
 
 void SocketServer::begin() {
     if (begun_) return;
     begun_ = true;
-    tick_ended_ns_ = thread_ns();
+    tick_ended_ns_ = poll_ended_ns_ = thread_ns();
     accepts_left_ = config.accepts_per_tick;
     timer_.expires_after(std::chrono::milliseconds(config.tick_ms));
     wait_for_tick();
@@ -654,10 +670,12 @@ void SocketServer::take_turns(std::int64_t now_ns) {
     });
     auto newcomer = turns.begin();
     auto client = clients;
-    while (newcomer != clients || client != turns.end()) {
+    newcomers_first_ = !newcomers_first_;  // where there is time for one alone
+    for (bool newcomers_turn = newcomers_first_; newcomer != clients || client != turns.end();
+         newcomers_turn = !newcomers_turn) {
         // Whoever comes when nothing is left waits again.
-        if (client != turns.end()) (*client++)->take_turn();
-        if (newcomer != clients) (*newcomer++)->take_turn();
+        if (newcomers_turn && newcomer != clients) (*newcomer++)->take_turn();
+        if (!newcomers_turn && client != turns.end()) (*client++)->take_turn();
     }
 }
 

@@ -608,13 +608,14 @@ TEST(WebsocketServer, ASlotIsKeptForWhoeverShowsAToken) {
 TEST(WebsocketServer, ARiderWithATokenDoesNotWaitForAFloodOfGuests) {
     ServerConfig config = any_port();
     config.access = testing::three_tokens();
-    config.guest_work_us = 1;  // one message overdraws many ticks
-    config.message_ms = 60'000;
+    config.guest_work_us = 300;  // some questions a tick
+    config.session.messages = {.per_s = 100'000, .burst = 100'000};
     Service service(config);
     Client guest(service, "/", "");
-    for (int i = 0; i < 150; ++i) guest.send(kStep);
+    for (int i = 0; i < 2000; ++i) guest.send(kStep);
     Client rider(service, "/?token=" + kRider, "");
     for (int i = 0; i < 100; ++i) expect_allowed(rider);
+    EXPECT_EQ(guest.receive()["values"]["resultCode"], 0) << "guests are served, too";
     service.end();
     const auto questions_of = [&](std::uint64_t connection) {
         return std::count_if(service.gate.questions.begin(),
@@ -622,22 +623,20 @@ TEST(WebsocketServer, ARiderWithATokenDoesNotWaitForAFloodOfGuests) {
                              [&](const StepQuestion& q) { return q.connection == connection; });
     };
     EXPECT_EQ(questions_of(2), 100);
-    EXPECT_GE(questions_of(1), 1) << "what is left waits for its turn";
-    EXPECT_LT(questions_of(1), 150);
+    EXPECT_LT(questions_of(1), 2000) << "what is left waits for its turn";
 }
 
 TEST(WebsocketServer, AGuestThatAsksSeldomComesBeforeOneThatNeverStops) {
     ServerConfig config = any_port();
-    config.guest_work_us = 20;  // less than a question a tick
-    config.message_ms = 60'000;
+    config.guest_work_us = 300;  // some questions a tick
     config.session.messages = {.per_s = 100'000, .burst = 100'000};
     Service service(config);
     Client flood(service, "/", "");
-    for (int i = 0; i < 5000; ++i) flood.send(kStep);
+    for (int i = 0; i < 2000; ++i) flood.send(kStep);
     Client seldom(service, "/", "");
     for (int i = 0; i < 5; ++i) expect_allowed(seldom);
     service.end();
-    EXPECT_LT(service.gate.questions.size(), 1000U) << "the flood has not been worked off before";
+    EXPECT_LT(service.gate.questions.size(), 2000U) << "the flood has not been worked off before";
 }
 
 Json call(Client& client, const std::string& service, const std::string& args = "[]") {

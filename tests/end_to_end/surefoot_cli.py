@@ -11,6 +11,9 @@ import zlib
 BINARY = pathlib.Path(os.environ["SUREFOOT_BINARY"])
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("SUREFOOT_DATA_DIR", ROOT.parent / "shared" / "data"))
+# A service makes its token file in the user's folder: not in the one of whoever runs the tests.
+STATE = tempfile.TemporaryDirectory(prefix="surefoot-state-")
+os.environ["XDG_STATE_HOME"] = STATE.name
 
 
 def surefoot(*arguments, cwd=None, timeout=600, **options):

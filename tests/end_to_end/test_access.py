@@ -2,13 +2,13 @@
 import http.client
 import json
 import os
-import pathlib
 import re
 import socket
 import ssl
 import stat
 import subprocess
 import unittest
+import warnings
 
 from surefoot_cli import BINARY, CliTest, surefoot
 from websocket_client import RosbridgeClient
@@ -137,6 +137,53 @@ class Roles(AccessTest):
         self.assertEqual(self.get("/health", {"Origin": "file://"})[0], 200)
 
 
+class Serve(AccessTest):
+    def serve(self, *words):
+        process = subprocess.Popen([BINARY, "serve", "sim:walk_floor", "--walk", "0", "--no-page", "--port", "0", "--set",
+                                    "sim.sensor=analytic", "--set", "sim.rate_hz=5", "--speed", "1", "--token-file",
+                                    self.tokens, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        self.said = process.stdout.readline()
+        self.port = int(self.said.rsplit(":", 1)[1])
+        return process
+
+    def test_serve_passes_origins_guests_and_tokens_to_its_gate(self):
+        process = self.serve("--origin", "null", "--guests", "observer")
+        self.assertEqual(self.get("/health", {"Origin": "null"})[0], 200)
+        self.assertEqual(self.get("/health", {"Origin": "http://192.0.2.7"})[0], 403)
+        answer = self.client().call("/step", direction=9)
+        self.assertFalse(answer["result"])
+        self.assertIn("this client is observer", answer["values"])
+        self.assertIn("verdict", self.client(f"/?token={self.token('rider')}").step(9))
+        process.kill()
+        process.wait()
+        shown = process.stderr.read()
+        self.assertEqual(shown.count(self.token("operator")), 1)
+
+    def test_beyond_loopback_serve_asks_for_the_same_as_the_gate(self):
+        process = surefoot("serve", "sim:walk_floor", "--no-page", "--once", "--bind", "0.0.0.0", "--port", 0, "--set",
+                           "sim.sensor=analytic", timeout=60)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("--certificate", process.stderr)
+
+
+class Link(AccessTest):
+    def test_a_rex_link_shows_the_riders_token(self):
+        self.start("--token-file", self.tokens, "--guests", "none")
+        script = self.dir / "script.txt"
+        script.write_text("0.0 0\n0.1 9\n0.5 0\n")
+        words = ("rex-link", "--url", f"ws://127.0.0.1:{self.port}", "--script", script, "--json")
+        alone = surefoot(*words)
+        self.assertNotEqual(alone.returncode, 0)
+        shown = surefoot(*words, "--token-file", self.tokens)
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+        self.assertIn("answer", shown.stdout)
+        self.assertIn("cannot be read", surefoot(*words, "--token-file", self.dir / "none").stderr)
+
+
 class Tls(AccessTest):
     def make_certificate(self):
         self.certificate, self.key = self.dir / "certificate.pem", self.dir / "key.pem"
@@ -158,7 +205,9 @@ class Tls(AccessTest):
         with self.assertRaises(ssl.SSLCertVerificationError):
             self.get("/health", context=ssl.create_default_context())
         old = self.trusting()
-        old.maximum_version = ssl.TLSVersion.TLSv1_1
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)
+            old.minimum_version = old.maximum_version = ssl.TLSVersion.TLSv1_1
         with self.assertRaises((ssl.SSLError, OSError)):
             self.get("/health", context=old)
 

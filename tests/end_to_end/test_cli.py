@@ -13,7 +13,7 @@ from surefoot_cli import BINARY, ROOT, CliTest, grey_png, read_asc, surefoot
 
 # In the order in which one example needs another's results.
 VERBS = [["sim"], ["run"], ["depth"], ["depth-accuracy"], ["rate"], ["stairs"], ["fuse"], ["ground"], ["dem"], ["voxel"], ["sor"], ["icp"], ["measure"], ["gate"],
-         ["serve"], ["rex-link"], ["audit"], ["audit", "verify"], ["audit", "replay"], ["eval"], ["eval", "trajectory"],
+         ["serve"], ["rex-link"], ["audit"], ["audit", "verify"], ["audit", "acts"], ["audit", "replay"], ["eval"], ["eval", "trajectory"],
          ["eval", "maps"], ["eval", "clouds"], ["eval", "depth"], ["eval", "stairs"], ["eval", "suite"], ["calibrate"],
          ["calibrate", "render"], ["calibrate", "mono"], ["calibrate", "stereo"], ["config"], ["doctor"], ["bench"],
          ["record"], ["replay"], ["info"], ["rig"], ["urdf"], ["map"], ["map", "info"], ["map", "merge"], ["map", "export"]]

@@ -30,7 +30,7 @@ class GateProcess(CliTest):
                             (["--snapshots", "x", "--bind", "0.0.0.0"], "token"),
                             (["--snapshots", "x", "--assured"], "--audit"),
                             (["--snapshots", "x", "--vouch", "1.1"], "vouch_radius_m"),
-                            (["--snapshots", "x", "--token-file", self.dir / "none"], "none"),
+                            (["--snapshots", "x", "--token-file", self.dir], "regular file"),
                             ([], "--snapshots")):
             process = subprocess.run([GATE, *words], capture_output=True, text=True, timeout=60)
             self.assertNotEqual(process.returncode, 0, words)

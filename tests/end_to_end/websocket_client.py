@@ -15,6 +15,7 @@ class RosbridgeClient:
         self.socket.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                             f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode())
         if b"101" not in self.stream.readline():
+            self.close()
             raise ConnectionError("the service did not take the connection")
         while self.stream.readline().strip():
             pass
