@@ -247,7 +247,8 @@ class Formats(CliTest):
         process = self.run_ok("dem", self.dir / "a.xyz", "--resolution", 0.1, "--out", self.dir / "d.asc")
         self.assertIn("1 cells hold -9999 m", process.stderr)
         heights = [z for row in read_asc(self.dir / "d.asc")[1] for z in row if z is not None]
-        self.assertEqual((min(heights), len(heights)), (0.0, 400))
+        self.assertEqual(min(heights), 0.0)
+        self.assertLess(max(heights), 0.21)
         self.run_ok("stairs", self.dir / "a.xyz")  # 1e12 was a crash
 
 
