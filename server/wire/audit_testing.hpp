@@ -149,7 +149,8 @@ inline std::string record_of(const Case& c) {
 /// snapshot of the layout of that time.
 inline std::string record_of_version_2(const Case& c) {
     constexpr std::uint32_t kLayoutOfVersion2 = 4;
-    grid::MapSnapshot map = *c.map;
+    const auto copy = std::make_unique<grid::MapSnapshot>(*c.map);
+    grid::MapSnapshot& map = *copy;
     map.layout = kLayoutOfVersion2;
     const CellBox zone = c.zone();
     const auto written = [&](std::uint32_t tilt_sigma_urad) {

@@ -34,9 +34,11 @@ namespace surefoot::gate {
 
 /// Squared tangent of the steepest tilt that ground may have whose tilt against odom's z axis has
 /// the squared tangent `tan_sq`: tan(a + b) = (tan a + tan b) / (1 - tan a tan b). A vertical that
-/// is exactly known leaves `tan_sq` as it is, to the last bit. Infinite from a right angle on.
+/// is exactly known leaves `tan_sq` as it is, to the last bit. Infinite from a right angle on, and
+/// for NaN.
 [[nodiscard]] constexpr double steepest_tan_sq(double tan_sq, double bound_tan) noexcept {
     if (bound_tan == 0.0) return tan_sq;
+    if (!(tan_sq >= 0.0)) return std::numeric_limits<double>::infinity();  // NaN
     const double tan = root(tan_sq);
     const double rest = 1.0 - tan * bound_tan;
     if (!(rest > 0.0)) return std::numeric_limits<double>::infinity();  // NaN, too
