@@ -91,16 +91,30 @@ SnapshotReader::Read Gatekeeper::read_channel(std::int64_t now_ns) {
     return read;
 }
 
+/// Whether `incoming_` is to be judged by now. The process may stand still between its look at the
+/// clock and its look at the channel; a frame that came meanwhile is not from the future, and waits
+/// for the next call. Once: a stamp that is wrong stays ahead of the clock.
+bool Gatekeeper::has_arrived(SnapshotReader::Read read, std::int64_t now_ns) noexcept {
+    using Read = SnapshotReader::Read;
+    if (read != Read::fresh && !(read == Read::same && waits_)) {
+        if (read != Read::same) waits_ = false;  // what waited was perhaps overwritten
+        return false;
+    }
+    const bool is_ahead = incoming_->frame_time_ns > now_ns || incoming_->pose_time_ns > now_ns;
+    waits_ = is_ahead && !waits_;
+    return !waits_;
+}
+
 void Gatekeeper::fetch(std::int64_t now_ns) {
     const auto read = read_channel(now_ns);
     if (reader_ && reader_->writer() != writer_) {
         writer_ = reader_->writer();
-        has_map_ = false;
+        has_map_ = waits_ = false;
         map_ = nothing_seen();
         vouching_.revoke();
         readiness_.perception_restarted(now_ns);
     }
-    if (read == SnapshotReader::Read::fresh && writer_ != given_up_) {
+    if (has_arrived(read, now_ns) && writer_ != given_up_) {
         std::swap(map_, incoming_);
         has_map_ = true;
         readiness_.observe(*map_, now_ns);

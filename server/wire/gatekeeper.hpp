@@ -87,6 +87,7 @@ class Gatekeeper final : public StepGate {
     void fetch(std::int64_t now_ns);
     void open_channel(std::int64_t now_ns);
     [[nodiscard]] SnapshotReader::Read read_channel(std::int64_t now_ns);
+    [[nodiscard]] bool has_arrived(SnapshotReader::Read read, std::int64_t now_ns) noexcept;
     void ask_canary(std::int64_t now_ns);
     void give_starters_word(std::int64_t now_ns);
     [[nodiscard]] std::int64_t least_radius_tenth_mm() const;
@@ -113,6 +114,7 @@ class Gatekeeper final : public StepGate {
     std::unique_ptr<grid::MapSnapshot> map_;       ///< the newest whole one
     std::unique_ptr<grid::MapSnapshot> incoming_;  ///< being fetched
     bool has_map_ = false;
+    bool waits_ = false;          ///< `incoming_` is ahead of the time of the last call
     std::uint64_t writer_ = 0;    ///< whose map it is
     std::uint64_t given_up_ = 0;  ///< writer that was asked to begin anew: not believed any more
     std::int64_t next_open_ns_ = 0;

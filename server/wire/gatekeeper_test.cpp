@@ -492,6 +492,48 @@ TEST_F(GatekeeperTest, a_lost_channel_is_opened_again_when_it_is_mended) {
     }
 }
 
+// On a busy computer the gate stands still between its look at the clock and its look at the
+// channel: the frame that came meanwhile must not cost a warm-up.
+TEST_F(GatekeeperTest, a_frame_that_came_since_the_look_at_the_clock_is_not_from_the_future) {
+    become_ready();
+    const auto publish_ahead = [&](std::int64_t ahead_ns) {
+        ++map_->version;
+        map_->frame_time_ns = map_->pose_time_ns = now_ns_ + ahead_ns;
+        gate::testing::seal(*map_);
+        writer_->publish(*map_);
+    };
+    publish_ahead(15 * kMs);  // more than the machine tolerates
+    EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << "by the map of before";
+    now_ns_ += 15 * kMs;  // what the clock showed when the frame was read
+    run(0.005, false);
+    EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
+    EXPECT_EQ(keeper_->report(now_ns_).map_version, map_->version) << "now it is here";
+    // A stamp that is wrong is found by the next call.
+    publish_ahead(500 * kMs);
+    run(0.01, false);
+    EXPECT_EQ(keeper_->report(now_ns_).why, Reason::time_skew);
+    EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
+}
+
+TEST_F(GatekeeperTest, a_frame_that_waits_is_dropped_when_something_else_was_read) {
+    become_ready();
+    const std::uint64_t before = keeper_->report(now_ns_).map_version;
+    ++map_->version;
+    map_->frame_time_ns = map_->pose_time_ns = now_ns_ + 20 * kMs;
+    gate::testing::seal(*map_);
+    writer_->publish(*map_);
+    keeper_->poll(now_ns_, now_ns_ + 17);  // it waits
+    const std::string elsewhere = path_ + ".elsewhere";
+    std::filesystem::rename(path_, elsewhere);
+    now_ns_ += 5 * kMs;
+    keeper_->poll(now_ns_, now_ns_ + 17);
+    ASSERT_EQ(keeper_->channel_state(), ChannelState::lost);
+    std::filesystem::rename(elsewhere, path_);
+    run(0.15, false);
+    ASSERT_EQ(keeper_->channel_state(), ChannelState::open);
+    EXPECT_EQ(keeper_->report(now_ns_).map_version, before);
+}
+
 TEST_F(GatekeeperTest, after_stopping_nothing_is_ok) {
     become_ready();
     keeper_->stop();
