@@ -505,11 +505,11 @@ class Ports(CliTest):
         process = self.run_ok("serve", *SCENE, "--max-frames", 1, "--once", "--port", 0, "--no-page")
         self.assertNotIn("the page", process.stdout + process.stderr)
 
-    def test_beyond_this_machine_it_needs_a_token(self):
+    def test_beyond_this_machine_it_needs_tls_or_a_sentence(self):
         process = subprocess.run([BINARY, "serve", *SCENE, "--once", "--bind", "0.0.0.0", "--port", "0"],
                                  capture_output=True, text=True, timeout=60)
         self.assertNotEqual(process.returncode, 0)
-        self.assertIn("token", process.stderr)
+        self.assertIn("--certificate", process.stderr)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ class GateProcess(CliTest):
 
     def test_wrong_calls_are_said_and_nothing_listens(self):
         for words, said in ((["--snapshots", "x", "--machine", "no_such_machine"], "no_such_machine"),
-                            (["--snapshots", "x", "--bind", "0.0.0.0"], "token"),
+                            (["--snapshots", "x", "--bind", "0.0.0.0"], "--certificate"),
                             (["--snapshots", "x", "--assured"], "--audit"),
                             (["--snapshots", "x", "--vouch", "1.1"], "vouch_radius_m"),
                             (["--snapshots", "x", "--token-file", self.dir], "regular file"),
