@@ -145,8 +145,7 @@ constexpr const char* kHeader =
 /// Looks of one run, one after the other.
 class Judge {
   public:
-    explicit Judge(const stairs::StairsConfig& config)
-        : finder_(config), follower_(config) {}
+    explicit Judge(const stairs::StairsConfig& config) : finder_(config), follower_(config) {}
 
     void look(const Look& look) { (void)look_once(look); }
 

@@ -13,6 +13,7 @@
 #include "io/rig_file.hpp"
 #include "io/text.hpp"
 #include "surefoot/camera/rig_scaling.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -226,7 +227,9 @@ Partners pair_stamps(const std::vector<std::int64_t>& left_ns,
                      const std::vector<std::int64_t>& right_ns,
                      Recording& recording) {
     Partners partners =
-        pair_by_time(left_ns, right_ns, std::llround(1e9 * recording.pair_tolerance_s));
+        pair_by_time(left_ns,
+                     right_ns,
+                     saturated_integer<std::int64_t>(std::round(1e9 * recording.pair_tolerance_s)));
     std::int64_t largest_ns = 0;
     for (std::size_t i = 0; i < partners.size(); ++i) {
         if (!partners[i]) {

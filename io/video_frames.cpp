@@ -10,6 +10,7 @@
 
 #include "io/file.hpp"
 #include "io/image_file.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -33,7 +34,7 @@ class FrameTimes {
         } else {
             last_ms_ += typical_ms();
         }
-        return std::llround(1e6 * last_ms_);
+        return saturated_integer<std::int64_t>(std::round(1e6 * last_ms_));
     }
     /// From the first frame to the end of the last one [s].
     [[nodiscard]] double duration_s(double rate_hz) {
@@ -94,6 +95,7 @@ struct VideoFrames::Impl {
     }
     [[nodiscard]] int count() const {
         const double frames = get(cv::CAP_PROP_FRAME_COUNT);
+        // in range, as checked
         return frames > 0.0 && frames < 1e9 ? static_cast<int>(frames) : 0;
     }
     Result<std::optional<VideoFrame>> decode();
@@ -155,10 +157,10 @@ double VideoFrames::rate_hz() const {
     return impl_->rate_hz();
 }
 int VideoFrames::width() const {
-    return static_cast<int>(impl_->get(cv::CAP_PROP_FRAME_WIDTH));
+    return saturated_integer<int>(impl_->get(cv::CAP_PROP_FRAME_WIDTH));
 }
 int VideoFrames::height() const {
-    return static_cast<int>(impl_->get(cv::CAP_PROP_FRAME_HEIGHT));
+    return saturated_integer<int>(impl_->get(cv::CAP_PROP_FRAME_HEIGHT));
 }
 
 Result<std::optional<VideoFrame>> VideoFrames::next() {

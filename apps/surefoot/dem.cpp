@@ -76,7 +76,7 @@ int dem(const DemOptions& options) {
             {grid.error().code, fmt::format("{}: {}", options.cloud, grid.error().message)});
     }
     auto reduced = options.reduce == "surface" ? highest_surfaces(options, *cloud, *grid)
-                                                     : heights_of(options, *cloud, *grid);
+                                               : heights_of(options, *cloud, *grid);
     if (!reduced) return report(reduced.error());
     grid::Layer& heights_m = *reduced;
     for (const std::string& note : io::drop_impossible_heights(heights_m))

@@ -21,7 +21,7 @@ namespace surefoot::app {
 struct StairsContext {
     double resolution_m = 0.0;  ///< side of a cell
     grid::GravitySource gravity_source = grid::GravitySource::assumed;
-    std::vector<std::string> assumed;
+    std::vector<std::string> assumed = {};
     /// Of a run: what one observation or the final map alone found. Null = nothing was followed.
     const stairs::TerrainFeatures* unconfirmed = nullptr;
 };

@@ -30,7 +30,7 @@ std::uint32_t microradians_up(double angle_rad) {
     const double scaled = std::ceil(angle_rad * 1e6);
     constexpr double kLargest = 1e9;
     if (!(scaled >= 0.0 && scaled <= kLargest)) return MapSnapshot::kUnknownTilt;
-    return static_cast<std::uint32_t>(scaled);
+    return static_cast<std::uint32_t>(scaled);  // in range, as checked
 }
 
 /// The part of the grid that fits into a snapshot: first cell of it, and its size.

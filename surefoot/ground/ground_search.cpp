@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/ground/cloud.hpp"
 #include "surefoot/ground/near_side.hpp"
@@ -95,7 +96,8 @@ View view_of(const GroundConfig& config, const FramePoints& seen) {
         ranges_m.push_back(range_m);
     }
     if (ranges_m.empty()) return view;
-    const auto near = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 5);
+    const auto near =
+        ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() / 5);  // in range: a size
     std::nth_element(ranges_m.begin(), near, ranges_m.end());
     view.scale = std::clamp(*near, kLeastScale, 1.0);
     return view;
@@ -127,7 +129,7 @@ Drawable drawable(const GroundConfig& config, const View& view) {
         std::array<std::int64_t, 3> key{};
         for (int k = 0; k < 3; ++k)
             key[static_cast<std::size_t>(k)] =
-                static_cast<std::int64_t>(std::floor(view.points[i][k] / cube_m));
+                saturated_integer<std::int64_t>(std::floor(view.points[i][k] / cube_m));
         return key;
     };
     std::vector<std::pair<std::array<std::int64_t, 3>, std::size_t>> keyed;
@@ -331,7 +333,8 @@ double least_noise_m(const View& view, const Plane& plane) {
             noise_m.push_back(own_m);
     }
     if (noise_m.empty()) return 0.0;
-    const auto tenth = noise_m.begin() + static_cast<std::ptrdiff_t>(noise_m.size() / 10);
+    const auto tenth =
+        noise_m.begin() + static_cast<std::ptrdiff_t>(noise_m.size() / 10);  // in range: a size
     std::nth_element(noise_m.begin(), tenth, noise_m.end());
     return *tenth;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/ground/settle_plane.hpp"
 
 namespace surefoot::ground {
@@ -40,7 +41,7 @@ std::vector<Member> members_of(std::span<const Eigen::Vector3d> points,
         Member member{{}, seen.ray, inverse_range_sigma[i], seen.off_m / seen.sigma_m};
         for (int k = 0; k < 3; ++k)
             member.tile[static_cast<std::size_t>(k)] =
-                static_cast<std::int64_t>(std::floor(seen.ray[k] / tile_rad));
+                saturated_integer<std::int64_t>(std::floor(seen.ray[k] / tile_rad));
         members.push_back(member);
     }
     std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) {

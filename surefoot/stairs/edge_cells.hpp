@@ -46,7 +46,9 @@ void for_each_cell_about(const grid::GridGeometry& grid,
         keep(t, t_step, length);
         keep(s, s_step, most);
         // A line almost along the rows meets some of them beyond all integers.
-        for (int ix = static_cast<int>(std::ceil(std::min(low, 1.0 * grid.nx))); ix <= high; ++ix) {
+        const int first =
+            static_cast<int>(std::ceil(std::min(low, 1.0 * grid.nx)));  // in range: 0 to nx
+        for (int ix = first; ix <= high; ++ix) {
             const double at_slice = s + s_step * ix;
             if (!(at_slice >= 0.0 && at_slice < most)) continue;  // by rounding
             visit(ix, iy, at_slice, t + t_step * ix);

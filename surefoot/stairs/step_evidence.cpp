@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/stairs/edge_cells.hpp"
 #include "surefoot/stairs/median.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
@@ -46,18 +47,20 @@ void StepEvidenceFinder::gather(const Terrain& terrain,
                                 double upper_m,
                                 double lower_m) {
     resolution_m_ = terrain.geometry.resolution_m;
-    const int upper = static_cast<int>(std::ceil(upper_m / resolution_m_));
-    const int slices = upper + static_cast<int>(std::ceil(lower_m / resolution_m_));
+    // Reaches of half a metre: tens of cells.
+    const int upper = saturated_integer<int>(std::ceil(upper_m / resolution_m_));
+    const int slices = upper + saturated_integer<int>(std::ceil(lower_m / resolution_m_));
     cells_.clear();
     stated_var_m2_ = 0.0;
     std::vector<int>& all = all_in_slice_;
     all.assign(static_cast<std::size_t>(slices), 0);
     int x0 = terrain.geometry.nx, y0 = terrain.geometry.ny, x1 = 0, y1 = 0;
     const auto visit = [&](int ix, int iy, double s_cells, double t_cells) {
+        // in range: visit() gives 0 <= s_cells < slices
         ++all[static_cast<std::size_t>(s_cells)];
         const auto z_m = static_cast<double>(terrain.height_m.row(iy)[ix]);
         if (!std::isfinite(z_m)) return;
-        cells_.push_back({.slice = static_cast<int>(s_cells),
+        cells_.push_back({.slice = static_cast<int>(s_cells),  // in range: as above
                           .x = ix,
                           .y = iy,
                           .s_m = (s_cells - upper) * resolution_m_,
