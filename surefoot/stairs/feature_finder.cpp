@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "surefoot/stairs/edge_relations.hpp"
 
@@ -80,12 +81,15 @@ void FeatureFinder::find_edges(const Terrain& terrain, std::vector<Edge>& edges)
 void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edges) const {
     constexpr double kLeastShare = 0.25;
     constexpr int kDeep_cells = 6;  ///< beyond two, which may be half of either ground
+    // What is narrower than the cells that are asked has other ground behind it: a bar is not
+    // walked on because the floor on its far side is.
+    constexpr double kSame_m = 0.06;
     const double cell_m = terrain.geometry.resolution_m;
     for (Edge& edge : edges) {
         const Vector2d along = edge.along();
         const Vector2d down = edge.down();
         const double length_m = edge.length_m();
-        const auto walkable = [&](double way) {
+        const auto walkable = [&](double way, std::optional<double> level_m) {
             int known = 0, reached = 0;
             for (double t_m = 0.5 * cell_m; t_m < length_m; t_m += cell_m) {
                 for (int k = 3; k < 3 + kDeep_cells; ++k) {
@@ -93,14 +97,19 @@ void FeatureFinder::find_walkable(const Terrain& terrain, std::vector<Edge>& edg
                     const auto cell = terrain.geometry.cell_at(p_m.x(), p_m.y());
                     if (!cell || !terrain.known(cell->ix, cell->iy)) continue;
                     ++known;
+                    const auto z_m = static_cast<double>(terrain.height_m.row(cell->iy)[cell->ix]);
+                    const double sloping_m = StepEvidenceFinder::kSteepest * k * cell_m;
+                    const bool is_other = level_m && std::abs(z_m - *level_m) > kSame_m + sloping_m;
                     const float step_m = walk_step_m_.at(cell->ix, cell->iy);
-                    reached += step_m == step_m ? 1 : 0;
+                    reached += !is_other && step_m == step_m ? 1 : 0;
                 }
             }
             return known > 0 && reached >= kLeastShare * known;
         };
-        edge.upper_walkable = walkable(-1.0);
-        edge.lower_walkable = walkable(+1.0);
+        // Ground below that was not seen has no level, only a bound.
+        edge.upper_walkable = walkable(-1.0, edge.upper_m);
+        edge.lower_walkable =
+            walkable(+1.0, edge.lower_seen ? std::optional(edge.lower_m) : std::nullopt);
     }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -172,6 +173,29 @@ TEST(FeatureFinder, what_cannot_be_walked_to_is_no_drop) {
     EXPECT_TRUE(found.drops.empty());
     EXPECT_TRUE(found.flights.empty());
     EXPECT_TRUE(found.kerbs.empty());
+}
+
+TEST(FeatureFinder, a_bar_that_is_narrower_than_a_foot_is_no_ground_that_ends_in_a_drop) {
+    // It stands on a slope of 45 deg. One can walk to the slope before it, not to its top.
+    for (const double width_m : {0.05, 0.1}) {
+        const TestMap map(
+            [&](double x_m, double) {
+                return std::abs(x_m - 0.35) < 0.5 * width_m ? 1.25 : std::clamp(x_m, 0.0, 0.9);
+            },
+            0.0,
+            {0.0, 0.0});
+        const TerrainFeatures found = find(map.terrain());
+        EXPECT_FALSE(found.edges.empty()) << width_m;
+        EXPECT_TRUE(found.drops.empty()) << width_m;
+    }
+    // What is behind a low sill goes down after all.
+    const TestMap sill(
+        [](double x_m, double) { return x_m < 0.5    ? 0.0
+                                        : x_m < 0.55 ? 0.06
+                                                     : -0.4; },
+        0.0,
+        {0.0, 0.0});
+    EXPECT_FALSE(find(sill.terrain()).drops.empty());
 }
 
 TEST(FeatureFinder, the_rim_of_a_hole_is_a_drop_on_all_sides) {

