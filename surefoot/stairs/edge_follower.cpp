@@ -269,7 +269,8 @@ void EdgeFollower::take(const SeenEdge& seen,
     edge.upper_walkable = look.upper_walkable;
     edge.lower_walkable = look.lower_walkable;
     edge.open = look.open;
-    edge.log_step_ratio = look.log_step_ratio;
+    // Of the last look that saw what lies below it.
+    if (!std::isnan(look.log_step_ratio)) edge.log_step_ratio = look.log_step_ratio;
     edge.hidden = look.hidden;
     name(seen, config_, track);
     take_ends(look, terrain, track);
