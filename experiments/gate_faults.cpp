@@ -424,8 +424,8 @@ std::string broken_text(const std::string& whole, Rng& rng, std::string& variant
 }
 
 void break_messages(GateBench& bench, Rng& rng) {
-    const auto session =
-        std::make_shared<wire::RosbridgeSession>(21, bench.keeper(), wire::SessionLimits{});
+    const auto session = std::make_shared<wire::RosbridgeSession>(
+        21, bench.keeper(), wire::SessionLimits{}, wire::SessionRights{wire::Role::rider});
     const auto draws = std::make_shared<Rng>(rng.next_u64());
     bench.set_ask([&bench, session, draws](std::int64_t now_ns, bool faulty) {
         std::string text = fmt::format(

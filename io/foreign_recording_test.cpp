@@ -124,7 +124,7 @@ TEST(PairTolerance, StampsThatDifferByMicrosecondsArePairedAndItIsSaid) {
     EXPECT_DOUBLE_EQ(info->largest_pair_difference_s, 37e-6);
     options.pair_tolerance_s = 1e-6;
     EXPECT_TRUE(contains(play(folder / "r", options).errors, "no stamp in common within 0.001 ms"));
-    EXPECT_EQ(play(folder / "r", make_euroc(folder / "same", 3, 0)).notes(), "");
+    EXPECT_EQ(play(folder / "same", make_euroc(folder / "same", 3, 0)).notes(), "");
 }
 
 TEST(PairTolerance, AnImageWithoutPartnerIsLeftOutAndCounted) {

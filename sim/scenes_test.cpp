@@ -562,7 +562,7 @@ TEST(ScenesTest, ASceneFileCanBeGivenByItsPath) {
     EXPECT_EQ(from_file.parameters, built_in.parameters);
     EXPECT_EQ(make_scene("sim/scenes/table.yaml", 3)->info.name, "table");
     EXPECT_EQ(make_scene("no/such.yaml", 3).error().message,
-              "no/such.yaml: cannot read: No such file");
+              "no/such.yaml: cannot read: No such file or directory");
     const auto folder = make_scene("sim/scenes/kerb_up.yaml", 3);
     ASSERT_FALSE(folder);
     EXPECT_NE(folder.error().message.find("add '#NAME'"), std::string::npos);

@@ -1421,7 +1421,8 @@ int main_with_arguments(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         exit_code = end_of_parsing(app, error);
     } catch (const std::exception& error) {
-        log_error(std::string("internal error: ") + error.what());
+        const bool is_output = std::ferror(stdout) != 0;  // fmt throws where stdout takes no more
+        log_error(std::string(is_output ? "stdout: " : "internal error: ") + error.what());
         exit_code = kExitFailed;
     }
     exit_code = answer_failure(app, json, exit_code);

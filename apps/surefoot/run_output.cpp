@@ -184,6 +184,7 @@ Status write_results(const RunOptions& options,
     writes += io::write_tum_trajectory(out + "/trajectory_camera.tum",
                                        trajectory_of(record.frames, record.rig.body_from_left()));
     writes += io::write_esri_grid(out + "/elevation.asc", geometry, pipeline.surface_m());
+    writes += io::write_esri_grid(out + "/ground.asc", geometry, layers.height_m.copy());
     writes += io::write_esri_grid(out + "/variance.asc", geometry, layers.height_var_m2.copy());
     writes += io::write_esri_grid(out + "/traversability.asc",
                                   geometry,

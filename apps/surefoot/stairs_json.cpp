@@ -234,7 +234,8 @@ Json log10_of(double log_ratio) {
 double least_log_ratio(const stairs::Flight& flight) {
     double least = std::numeric_limits<double>::quiet_NaN();
     for (const stairs::Edge& edge : flight.edges)
-        if (!(least <= edge.log_step_ratio)) least = edge.log_step_ratio;
+        if (!std::isnan(edge.log_step_ratio) && !(least <= edge.log_step_ratio))
+            least = edge.log_step_ratio;
     return least;
 }
 

@@ -140,15 +140,16 @@ class CellReducer {
         const auto n = static_cast<int>(group.size());
         const float window_m = 2.0F * half_width_m_;
         const float height_m = std::max(group.back() - group.front(), window_m);
-        const float scattered = static_cast<float>(n) * window_m / height_m;
         const float variance_m2 = static_cast<float>(rules_.point_sigma_m * rules_.point_sigma_m);
         for (std::span<const float> rest = group; n - static_cast<int>(rest.size()) <= n / 3;) {
             const std::vector<float> var_m2(rest.size(), variance_m2);
             const auto found = elevation::reduce_cell(config, rest, var_m2);
             if (!found) break;
-            if (height_m <= 2.0F * window_m ||
-                static_cast<float>(found->points) >= kDenser * scattered)
-                return found->z_m;
+            if (height_m <= 2.0F * window_m) return found->z_m;
+            // Points of the others that an equal window would hold.
+            const float scattered =
+                static_cast<float>(n - found->points) * window_m / (height_m - window_m);
+            if (static_cast<float>(found->points) >= kDenser * scattered) return found->z_m;
             const auto end = std::lower_bound(rest.begin(), rest.end(), found->z_m - half_width_m_);
             rest = rest.first(static_cast<std::size_t>(end - rest.begin()));
         }

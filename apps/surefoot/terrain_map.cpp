@@ -138,7 +138,10 @@ Status read_optional_layers(const std::string& folder, TerrainMap& map) {
 }
 
 Result<TerrainMap> from_folder(const std::string& folder) {
-    const std::string height_file = io::join_path(folder, "elevation.asc");
+    // What the map keeps of the ground; a run writes it beside what is to be shown.
+    const std::string ground_file = io::join_path(folder, "ground.asc");
+    const std::string height_file =
+        io::is_file(ground_file) ? ground_file : io::join_path(folder, "elevation.asc");
     if (!io::is_file(height_file)) {
         return input_error(fmt::format(
             "{}: holds no elevation.asc; give the output folder of 'surefoot run', or a height "

@@ -54,7 +54,6 @@ void ElevationCells::for_each_layer(const F& f) {
         f(is_asked_, std::uint8_t{0});
     }
     f(overhead_m_, kNan);
-    f(overhead_top_m_, kNan);
     f(overhead_trust_, std::uint8_t{0});
     f(overhead_hangs_, std::uint8_t{0});
     f(bottom_m_, kNan);
@@ -140,7 +139,6 @@ void ElevationCells::lift(std::size_t cell, double offset_m, double var_m2) {
     layers_.lowest_m.data()[cell] += offset;
     bottom_m_.data()[cell] += offset;
     overhead_m_.data()[cell] += offset;
-    overhead_top_m_.data()[cell] += offset;
     layers_.height_var_m2.data()[cell] += static_cast<float>(var_m2);
     settled_var_m2_.data()[cell] += static_cast<float>(var_m2);
     set_clearance(cell);
@@ -229,9 +227,7 @@ void ElevationCells::forget(std::size_t cell) {
 void ElevationCells::see_above(std::size_t cell, float z_m, int trust, bool hangs) {
     if (hangs) overhead_hangs_.data()[cell] = 1;
     float& overhead_m = overhead_m_.data()[cell];
-    float& top_m = overhead_top_m_.data()[cell];
     overhead_m = std::isnan(overhead_m) ? z_m : std::min(overhead_m, z_m);
-    top_m = std::isnan(top_m) ? z_m : std::max(top_m, z_m);
     std::uint8_t& believed = overhead_trust_.data()[cell];
     believed = static_cast<std::uint8_t>(std::min(believed + trust, kOverheadMost));
     set_clearance(cell);
@@ -247,7 +243,6 @@ void ElevationCells::see_no_more_above(std::size_t cell) {
 
 void ElevationCells::forget_overhead(std::size_t cell) {
     overhead_m_.data()[cell] = kNan;
-    overhead_top_m_.data()[cell] = kNan;
     overhead_trust_.data()[cell] = 0;
     overhead_hangs_.data()[cell] = 0;
 }
@@ -272,7 +267,7 @@ void ElevationCells::surface(grid::Layer& out_m) const {
         const float height_m = layers_.height_m.data()[cell];
         const bool stands = is_sure_of_overhead(cell) && overhead_hangs_.data()[cell] == 0;
         const bool known = !std::isnan(height_m);
-        out_m.data()[cell] = known && stands ? overhead_top_m_.data()[cell] : height_m;
+        out_m.data()[cell] = known && stands ? overhead_m_.data()[cell] : height_m;
     }
 }
 

@@ -75,8 +75,8 @@ class ElevationCells {
     [[nodiscard]] float overhead_m(std::size_t cell) const noexcept {
         return overhead_m_.data()[cell];
     }
-    /// The highest surface of each cell as a person sees it: the height, or the top of a thing that
-    /// stands on known ground and was seen twice (somebody stepped in). NaN = unknown cell. `out_m`
+    /// The highest surface of each cell as a person sees it: the height, or the lowest top that was
+    /// seen of a thing that stands on known ground, in two frames (somebody stepped in). NaN = unknown cell. `out_m`
     /// gets the size of the layers.
     void surface(grid::Layer& out_m) const;
     /// A line of sight passed through the lowest thing above a cell.
@@ -126,7 +126,6 @@ class ElevationCells {
     grid::SlidingLayer<ViewpointHistory::Id> viewpoint_;  ///< of that fusion
     /// Lowest surface seen above the height, and how far it is believed.
     ElevationLayers::Layer overhead_m_;
-    ElevationLayers::Layer overhead_top_m_;  ///< highest surface seen above the height
     grid::SlidingLayer<std::uint8_t> overhead_trust_;
     grid::SlidingLayer<std::uint8_t> overhead_hangs_;  ///< 0: it stands on the ground
     /// Of a known cell, see `Seen`; of an unknown one the lowest line of sight over it.

@@ -83,7 +83,9 @@ class Roles(AccessTest):
         gate = self.start("--token-file", self.tokens)
         gate.terminate()
         gate.wait()
-        self.assertEqual(gate.stderr.read(), "")
+        said = gate.stderr.read()
+        for role in ("observer", "rider", "operator"):
+            self.assertNotIn(self.token(role), said)
         self.assertEqual(self.tokens.read_text(), before)
 
     def test_without_an_option_the_file_is_the_users_own(self):

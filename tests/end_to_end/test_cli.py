@@ -127,6 +127,7 @@ class Verbs(CliTest):
             (["serve", "sim:walk_floor", "--walk", 9, "--vouch", 1, "--port", 0, "--once", "--set",
               "sim.sensor=analytic", "--audit", self.dir / "log"], "movements"),
             (["audit", "verify", self.dir / "log"], "files bytes runs verdicts gaps lost unfinished damage"),
+            (["audit", "acts", self.dir / "log"], "files bytes runs verdicts gaps lost acts unfinished damage list"),
             (["audit", "replay", self.dir / "log"], "verdicts equal different first_difference"),
             (["replay", recording, "--speed", 1000], "frames late speed per_frame"),
             (["info", recording], "kind frames rate_hz gaps imu_samples has_truth"),

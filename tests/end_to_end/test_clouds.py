@@ -249,7 +249,9 @@ class Formats(CliTest):
         heights = [z for row in read_asc(self.dir / "d.asc")[1] for z in row if z is not None]
         self.assertEqual(min(heights), 0.0)
         self.assertLess(max(heights), 0.21)
-        self.run_ok("stairs", self.dir / "a.xyz")  # 1e12 was a crash
+        process = surefoot("stairs", self.dir / "a.xyz")  # 1e12 was a crash
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("none of its", process.stderr)
 
 
 class Measure(CliTest):

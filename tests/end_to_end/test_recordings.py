@@ -77,11 +77,10 @@ class FilesThatAreNone(CliTest):
                 ["map", "export", bad("n.region"), *out], ["depth", grey, bad("r.png"), *out],
                 ["eval", "depth", bad("a.pfm"), bad("b.pfm")], ["eval", "trajectory", bad("t.tum"), bad("u.tum")],
                 ["eval", "stairs", bad("stairs.json"), bad("truth.json")], ["rig", bad("rig.yaml")],
-                ["urdf", bad("model.yaml")], ["audit", "verify", bad("audit-1.log")], ["fuse", bad("steps.txt"), *out],
+                ["urdf", bad("model.yaml")], ["audit", "verify", bad("audit-1.log")], ["fuse", bad("steps.txt"), "--preset", "ethz", *out],
                 ["sim", bad("scene.yaml"), "--frames", "1", *out], ["calibrate", "mono", bad("b.avi"), "--board",
                                                                    "chessboard:4x3:0.1", *out],
-                ["rex-link", "--script", bad("s.csv")], ["depth-accuracy", "--pairs", bad("p.csv"), *out],
-                ["serve", "sim:floor", "--token-file", bad("token"), "--port", "0", "--once"]]
+                ["rex-link", "--script", bad("s.csv")], ["depth-accuracy", "--pairs", bad("p.csv"), "--rig", bad("q.yaml"), *out]]
 
     def refused(self, kind, words):
         made = []
@@ -111,11 +110,11 @@ class FilesThatAreNone(CliTest):
         snapshot = maps / "map.snapshot"
         gate = ["gate", "--map", maps, "--pose", "0,0,0", "--command", "1"]
         os.mkfifo(snapshot)
-        for words in ("this is a FIFO", "this is a socket", "this is a directory"):
+        for words in ("this is a FIFO", "this is a socket", "holds neither map.snapshot"):
             process = surefoot(*gate, timeout=60)
             self.assertEqual(process.returncode, 4, process.stderr)
             self.assertIn(words, process.stdout + process.stderr)
-            snapshot.unlink()
+            snapshot.rmdir() if snapshot.is_dir() else snapshot.unlink()
             if "FIFO" in words:
                 listener = socket.socket(socket.AF_UNIX)
                 self.addCleanup(listener.close)

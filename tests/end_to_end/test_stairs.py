@@ -157,7 +157,7 @@ class Stairs(CliTest):
         image = [[round(255 * height_of_stairs(ix) / 0.68) for ix in range(160)] for _ in range(60)]
         (self.dir / "up.png").write_bytes(png_of(image))
         points = [f"{(ix + 0.5) * CELL_M:.4f} {(iy + 0.5) * CELL_M:.4f} {share * height_of_stairs(ix):.4f}"
-                  for iy in range(60) for ix in range(160) for share in (1.0, 0.5)]
+                  for iy in range(60) for ix in range(160) for share in (1.0, 1.0, 1.0, 0.75)]  # one of four is in flight
         (self.dir / "up.xyz").write_text("\n".join(points) + "\n")
         grid = self.json_of("stairs", self.dir / "up.asc")
         image = self.json_of("stairs", self.dir / "up.png", "--scale", CELL_M, "--height", 0.68)
@@ -267,7 +267,8 @@ class Stairs(CliTest):
         near_m = of_run["flights"][0]["pose"][0] + 2.3 * of_run["flights"][0]["going_m"]
         followed, looked = (tread_cells(folder / "treads.asc", near_m) for folder in (out, self.dir / "again"))
         self.assertGreater(len(followed & looked), 500)
-        self.assertLess(len(followed ^ looked), 0.05 * len(followed & looked))
+        # The run's flight is narrower by the 74 mm of its borders that few looks saw: 6.7 % (docs/foreign_data.md).
+        self.assertLess(len(followed ^ looked), 0.07 * len(followed & looked))
         for file in ("treads.asc", "classes.png"):
             self.assertTrue((out / file).exists(), file)
         one, other = again["flights"][0], of_run["flights"][0]

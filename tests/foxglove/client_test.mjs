@@ -293,7 +293,7 @@ test("who speaks both gets the newer one, the page's own socket stays its own, o
     assert.equal(await statusOf("/", []), 404);
     assert.equal(await statusOf("/", ["foxglove.sdk.v9"]), 404);
     assert.equal(await statusOf("/any/path?x=1", kProtocols), 101);
-    assert.equal(await statusOf("/", kProtocols, "http://localhost:8080"), 101);
+    assert.equal(await statusOf("/", kProtocols, "http://localhost:8080"), 403, "another program's page");
     assert.equal(await statusOf("/", kProtocols, "https://app.foxglove.dev"), 101);
     assert.equal(await statusOf("/", kProtocols, "https://evil.example"), 403);
     assert.equal(await statusOf("/page", [], "https://app.foxglove.dev"), 403, "it is no page");
