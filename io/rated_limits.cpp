@@ -108,6 +108,7 @@ std::optional<std::string> problem_of(const Deviation& deviation,
     const RatedLimit* limit = find_limit(deviation.key);
     if (limit == nullptr) {
         std::vector<std::string> keys;
+        keys.reserve(std::size(kRatedLimits));
         for (const RatedLimit& each : kRatedLimits) keys.emplace_back(each.key);
         return fmt::format(
             "{} is no rated limit{}", quoted(deviation.key), did_you_mean(deviation.key, keys));

@@ -99,7 +99,7 @@ Pose read_raw_pose(RawLines& raw, const std::string& number) {
     if (raw.error()) return {};
     const YamlNode no_document;
     YamlReader reader(raw.file(), no_document);
-    const Pose pose = pose_from_parts(reader, no_document, "R_" + number, R, T);
+    Pose pose = pose_from_parts(reader, no_document, "R_" + number, R, T);
     if (reader.error()) raw.fail(fmt::format("{}: R_{} is no rotation", raw.file(), number));
     return pose;
 }

@@ -138,10 +138,10 @@ RawCamera read_raw_camera(YamlReader& yaml, const std::string& side, ImageSize s
     if (yaml.error()) return {};
     check_focal(yaml, *yaml.root().find(side + ".K"), side + ".K", K);
     check_focal(yaml, *yaml.root().find(side + ".P"), side + ".P", {P[0], 0, 0, 0, P[5]});
-    const YamlNode& D_node = *yaml.root().find(side + ".D");
+    const YamlNode& distortion = *yaml.root().find(side + ".D");
     RawCamera out;
     out.camera = {
-        lens_or_fail(yaml, D_node, side + ".D", pinhole_lens({K[0], K[4], K[2], K[5]}, D)),
+        lens_or_fail(yaml, distortion, side + ".D", pinhole_lens({K[0], K[4], K[2], K[5]}, D)),
         size.width,
         size.height};
     const YamlNode& R_node = *yaml.root().find(side + ".R");

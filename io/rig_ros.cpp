@@ -52,14 +52,14 @@ const YamlNode& required_matrix(YamlReader& yaml, const char* key) {
     return node == nullptr ? yaml.root() : *node;
 }
 
-std::string read_model(YamlReader& yaml, const YamlNode& list, const char* D_key, bool zero) {
+std::string read_model(YamlReader& yaml, const YamlNode& list, const char* key, bool zero) {
     const YamlNode* node = yaml.root().find("distortion_model");
     if (node == nullptr) return "plumb_bob";  // what files without the key mean
     std::string model = yaml.text(*node, "distortion_model");
     if (!model.empty() && model != "none") return model;
     if (zero) return "none";
     yaml.fail(list,
-              D_key,
+              key,
               fmt::format("coefficients of distortion_model {}; name their model (plumb_bob, "
                           "rational_polynomial, equidistant)",
                           quoted(model)));

@@ -66,6 +66,7 @@ Result<Association> read_associations(const std::string& path) {
 
 std::vector<std::int64_t> times_of(const std::vector<CsvRow>& rows) {
     std::vector<std::int64_t> times_ns;
+    times_ns.reserve(rows.size());
     for (const CsvRow& row : rows) times_ns.push_back(row.time_ns);
     return times_ns;
 }

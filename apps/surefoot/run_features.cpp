@@ -55,7 +55,7 @@ RunFeatures split_by_confirmation(stairs::TerrainFeatures followed) {
 }
 
 RunFeatures compare_with_final_map(stairs::TerrainFeatures followed,
-                                   stairs::TerrainFeatures final_map) {
+                                   const stairs::TerrainFeatures& final_map) {
     const eval::FeatureErrors errors = eval::feature_errors(followed, final_map, {});
     compare(errors.edges, final_map.edges, followed.edges);
     compare(errors.drops, final_map.drops, followed.drops);

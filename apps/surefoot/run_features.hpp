@@ -19,7 +19,7 @@ struct RunFeatures {
 /// each feature gets `in_final_map`, and what is in the final map alone joins `unconfirmed`, so
 /// that as many features have it as `final_map` has. Pairs are those of eval::feature_errors.
 [[nodiscard]] RunFeatures compare_with_final_map(stairs::TerrainFeatures followed,
-                                                 stairs::TerrainFeatures final_map);
+                                                 const stairs::TerrainFeatures& final_map);
 
 /// The split alone, where the final map could not be read.
 [[nodiscard]] RunFeatures split_by_confirmation(stairs::TerrainFeatures followed);

@@ -98,7 +98,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_recording(const SourceRequest&
 Result<camera::StereoRig> read_noted_rig(const std::string& path) {
     Result<io::RigFile> file = io::read_rig_file(path);
     if (!file) return file.error();
-    for (const std::string& note : file->notes) log_warning(path + ": " + note);
+    for (const std::string& note : file->notes) log_warning(fmt::format("{}: {}", path, note));
     return std::move(file->rig);
 }
 

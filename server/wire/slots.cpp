@@ -18,7 +18,7 @@ std::int64_t remaining(std::int64_t cost_ns, std::int64_t age_ns) noexcept {
 }
 
 /// Places in the order in which clients of low rank are ended.
-enum Order : int { kSilent, kIdle, kHeavy, kListener, kUseful };
+enum Order : int { order_silent, order_idle, order_heavy, order_listener, order_useful };
 
 }  // namespace
 
@@ -129,10 +129,10 @@ std::size_t Slots::low_clients_of(std::string_view peer) const noexcept {
 
 int Slots::order_of(const Held& held, std::int64_t now_ns) const noexcept {
     const bool idle = !held.was_served || now_ns - held.since_ns >= limits_.useful_ns;
-    if (!held.was_served && !held.listens) return kSilent;
-    if (idle && !held.listens) return kIdle;
-    if (remaining(held.cost_ns, now_ns - held.cost_at_ns) > kHeavy_ns) return kHeavy;
-    return idle ? kListener : kUseful;
+    if (!held.was_served && !held.listens) return order_silent;
+    if (idle && !held.listens) return order_idle;
+    if (remaining(held.cost_ns, now_ns - held.cost_at_ns) > kHeavy_ns) return order_heavy;
+    return idle ? order_listener : order_useful;
 }
 
 std::optional<Slots::Id> Slots::least_useful(Rank newcomer, std::int64_t now_ns) const {
@@ -141,9 +141,9 @@ std::optional<Slots::Id> Slots::least_useful(Rank newcomer, std::int64_t now_ns)
     for (const auto& [id, held] : held_) {
         if (!held.is_client || held.rank == Rank::high) continue;
         const int order = order_of(held, now_ns);
-        if (order == kUseful && newcomer == Rank::low) continue;
+        if (order == order_useful && newcomer == Rank::low) continue;
         const std::int64_t cost_ns =
-            order == kHeavy ? remaining(held.cost_ns, now_ns - held.cost_at_ns) : 0;
+            order == order_heavy ? remaining(held.cost_ns, now_ns - held.cost_at_ns) : 0;
         const std::tuple key{order, -cost_ns, held.since_ns};
         if (!found || key < least) {
             found = id;

@@ -36,7 +36,7 @@ using Outer = net::ssl::stream<tcp::socket>;
 
 constexpr std::size_t kBlock_bytes = 16 * 1024;  // one TLS record
 constexpr unsigned char kTlsHandshake = 22;      // first byte of a ClientHello (RFC 8446, 5.1)
-const char* const kUseTls =
+constexpr const char* kUseTls =
     "HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain\r\nConnection: close\r\n\r\n"
     "TLS is spoken here: connect to wss:// or https://\n";
 

@@ -76,8 +76,8 @@ class ElevationCells {
         return overhead_m_.data()[cell];
     }
     /// The highest surface of each cell as a person sees it: the height, or the lowest top that was
-    /// seen of a thing that stands on known ground, in two frames (somebody stepped in). NaN = unknown cell. `out_m`
-    /// gets the size of the layers.
+    /// seen of a thing that stands on known ground, in two frames (somebody stepped in). NaN =
+    /// unknown cell. `out_m` gets the size of the layers.
     void surface(grid::Layer& out_m) const;
     /// A line of sight passed through the lowest thing above a cell.
     void see_no_more_above(std::size_t cell);

@@ -137,6 +137,7 @@ Drawable drawable(const GroundConfig& config, const View& view) {
     for (const std::size_t i : thinned) keyed.emplace_back(key_of(i), i);
     std::sort(keyed.begin(), keyed.end());
     std::vector<std::size_t> order;
+    order.reserve(keyed.size());
     for (const auto& entry : keyed) order.push_back(entry.second);
     Drawable result{select(view, order), {}};
     result.cube_of.resize(keyed.size());
