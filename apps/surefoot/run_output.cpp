@@ -166,7 +166,7 @@ RunFeatures run_features(const RunOptions& options,
     if (!map) return split_by_confirmation(pipeline.features());  // an empty map, or a full disk
     stairs::TerrainFeatures final_map;
     stairs::FeatureFinder(settings.pipeline.stairs).find(map->terrain(), final_map);
-    return compare_with_final_map(pipeline.features(), std::move(final_map));
+    return compare_with_final_map(pipeline.features(), final_map);
 }
 
 Status write_results(const RunOptions& options,

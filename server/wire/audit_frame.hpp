@@ -21,10 +21,10 @@ enum class FrameEncoding : std::uint8_t { plain = 0, zstd = 1 };
 struct FrameHeader {
     FrameKind kind = FrameKind::file;
     FrameEncoding encoding = FrameEncoding::plain;
-    std::uint32_t stored_bytes = 0;   ///< of the payload in the file
-    std::uint32_t plain_bytes = 0;    ///< of the payload unpacked
-    std::uint64_t sequence = 0;       ///< grows by one with every frame of a run
-    std::uint64_t previous_hash = 0;  ///< of the frame before; 0 = the first of a run
+    std::uint32_t stored_bytes = 0;         ///< of the payload in the file
+    std::uint32_t plain_bytes = 0;          ///< of the payload unpacked
+    std::uint64_t sequence = 0;             ///< grows by one with every frame of a run
+    std::uint64_t previous_hash = 0;        ///< of the frame before; 0 = the first of a run
     std::uint32_t version = kFrameVersion;  ///< of the format, as the frame was written
 };
 
