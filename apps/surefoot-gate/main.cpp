@@ -100,7 +100,7 @@ class ChannelNews {
         told_ = state;
         if (state == wire::ChannelState::lost)
             say("the channel was deleted, replaced or cut off; nothing is allowed until perception "
-                "has made it anew");
+                "has made it again");
         if (state == wire::ChannelState::open && was_lost) say("the channel is open again");
         if (state == wire::ChannelState::forged)
             say("another process has changed a map; the gate is in FAULT until an operator re-arms "

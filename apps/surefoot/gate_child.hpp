@@ -31,8 +31,8 @@ class GateChild {
     /// Ends it.
     ~GateChild();
 
-    /// Starts it anew if it has died, twice a second at most. True in the call that did so. To be
-    /// called by the thread that started it: the gate ends with that thread.
+    /// Restarts the gate if it has died, twice a second at most. True in the call that did so. To
+    /// be called by the thread that started it: the gate ends with that thread.
     [[nodiscard]] Result<bool> watch(std::int64_t now_ns);
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
     [[nodiscard]] int restarts() const noexcept { return restarts_; }
