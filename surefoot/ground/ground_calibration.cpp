@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/ground/ground_calibration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -52,10 +53,22 @@ void GroundCalibration::add(const GroundSighting& sighting_body) {
     while (window_.size() > static_cast<std::size_t>(config_.window)) window_.pop_front();
 }
 
-bool GroundCalibration::agree(const GroundObservation& a, const GroundObservation& b) const {
-    const double angle_rad = std::atan2(a.normal.cross(b.normal).norm(), a.normal.dot(b.normal));
-    return angle_rad <= config_.max_disagreement_deg * std::numbers::pi / 180.0 &&
-           std::abs(a.height_m - b.height_m) <= config_.max_disagreement_m;
+bool GroundCalibration::agree(const GroundSighting& a, const GroundSighting& b) const {
+    // What both state as two sigma, but no more than twice the limit: far and rough ground is seen
+    // less well than the limits ask, and no better by being left out.
+    constexpr double kSigmas = 2.0;
+    const auto within = [](double off, double sigma, double limit) {
+        return off <= std::clamp(kSigmas * sigma, limit, 2.0 * limit);
+    };
+    const Eigen::Vector3d& n = a.observation.normal;
+    const Eigen::Vector3d& m = b.observation.normal;
+    const double angle_rad = std::atan2(n.cross(m).norm(), n.dot(m));
+    return within(angle_rad,
+                  std::hypot(a.uncertainty.tilt_sigma_rad(), b.uncertainty.tilt_sigma_rad()),
+                  config_.max_disagreement_deg * std::numbers::pi / 180.0) &&
+           within(std::abs(a.observation.height_m - b.observation.height_m),
+                  std::sqrt(a.uncertainty.height_var_m2 + b.uncertainty.height_var_m2),
+                  config_.max_disagreement_m);
 }
 
 GroundAlignment GroundCalibration::alignment() const {
@@ -67,7 +80,7 @@ GroundAlignment GroundCalibration::alignment() const {
     for (const auto& candidate : window_) {
         std::vector<const GroundSighting*> others;
         for (const auto& other : window_) {
-            if (agree(candidate.observation, other.observation)) others.push_back(&other);
+            if (agree(candidate, other)) others.push_back(&other);
         }
         if (others.size() >= group.size()) group = std::move(others);
     }

@@ -57,7 +57,7 @@ class GroundCalibration {
     [[nodiscard]] GroundAlignment alignment() const;
 
   private:
-    [[nodiscard]] bool agree(const GroundObservation& a, const GroundObservation& b) const;
+    [[nodiscard]] bool agree(const GroundSighting& a, const GroundSighting& b) const;
 
     GroundConfig config_;
     std::deque<GroundSighting> window_;

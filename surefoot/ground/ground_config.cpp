@@ -57,16 +57,18 @@ void GroundConfig::describe(ConfigVisitor& visitor) {
                    "largest scatter of the ground there: mulch 0.023, boulders 0.04");
     visitor.integer("window", window, 1, 1000, "sightings that are averaged");
     visitor.integer("min_agreeing", min_agreeing, 1, 1000, "agreeing sightings needed");
-    visitor.number("max_disagreement_deg",
-                   max_disagreement_deg,
-                   0.01,
-                   45.0,
-                   "sightings that differ more in tilt do not agree");
+    visitor.number(
+        "max_disagreement_deg",
+        max_disagreement_deg,
+        0.01,
+        45.0,
+        "sightings that differ more in tilt, and by more than they state (two sigma, at most "
+        "twice this), do not agree");
     visitor.number("max_disagreement_m",
                    max_disagreement_m,
                    0.001,
                    1.0,
-                   "sightings that differ more in height do not agree");
+                   "sightings that differ more in height do not agree, likewise");
 }
 
 }  // namespace surefoot::ground

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -61,8 +62,14 @@ struct Candidate {
     double inlier_ratio = 0.0;
     double rms_m = 0.0;
     double area_m2 = 0.0;
+    double support = 0.0;  ///< of its points: compares the bands of one plane
     Eigen::Matrix3d covariance_of_m = Eigen::Matrix3d::Zero();
     double tilt_sigma_rad = 0.0;
+
+    [[nodiscard]] bool holds(const Eigen::Vector3d& p) const {
+        return std::all_of(
+            sides.begin(), sides.end(), [&](const NearSide& side) { return side.contains(p); });
+    }
 };
 
 /// What is searched.
@@ -199,21 +206,21 @@ struct Census {
     std::vector<Eigen::Vector3d> inliers;
     std::size_t fringe = 0;  ///< within twice the band
     double square_sum_m2 = 0.0;
+    double noise_sum_m2 = 0.0;  ///< what the noise of the points makes of it
 };
 
 Census census_of(const View& view, const Candidate& candidate) {
     Census census;
     for (std::size_t i = 0; i < view.points.size(); ++i) {
-        if (std::any_of(candidate.sides.begin(), candidate.sides.end(), [&](const NearSide& s) {
-                return !s.contains(view.points[i]);
-            }))
-            continue;
+        if (!candidate.holds(view.points[i])) continue;
         // Of a point that is noisier than the band nothing can be said.
         if (noise_of(view, i, candidate.plane) > kNoisiest * candidate.band_m) continue;
         const double off_m = candidate.plane.signed_distance_m(view.points[i]);
         if (std::abs(off_m) <= candidate.band_m) {
             census.inliers.push_back(view.points[i]);
             census.square_sum_m2 += off_m * off_m;
+            const double own_m = noise_of(view, i, candidate.plane);
+            census.noise_sum_m2 += own_m * own_m;
         } else if (std::abs(off_m) <= 2.0 * candidate.band_m) {
             ++census.fringe;
         }
@@ -221,23 +228,46 @@ Census census_of(const View& view, const Candidate& candidate) {
     return census;
 }
 
-/// Points that surely lie deeper below a plane than a step.
+/// Scatter of the ground itself about the plane.
+double roughness_m(const Census& census) {
+    const auto count = static_cast<double>(std::max<std::size_t>(census.inliers.size(), 1));
+    return std::sqrt(std::max(census.square_sum_m2 - census.noise_sum_m2, 0.0) / count);
+}
+
+/// Whether a point surely lies deeper below a plane than `step_m`.
+bool is_below(const View& all, std::size_t i, const Plane& plane, double step_m) {
+    if (-plane.signed_distance_m(all.points[i]) <= step_m) return false;
+    // First order in the inverse range, as `Sighting::off_m`: a far point that noise threw behind
+    // the plane is not below it.
+    const Sighting seen = sighting_of(beam_to(all.points[i]), all.inverse_range_sigma[i], plane);
+    constexpr double kSure = 5.0;
+    return !(seen.expected_inverse_range > 0.0) ||
+           seen.expected_inverse_range - seen.inverse_range > kSure * all.inverse_range_sigma[i];
+}
+
+/// Points deeper below a plane than a step, where they are a surface: among the points that are
+/// seen beside each other every fourth at least. Wrong matches lie below it too, one by one.
 std::size_t count_below(const View& all, const Candidate& candidate) {
+    constexpr double kTile_rad = 0.1;
+    constexpr std::size_t kSurface = 4;
     const double step_m =
         candidate.image_share < kSmallShare ? kHighestStepOfFew_m : kHighestStep_m;
-    std::size_t below = 0;
+    struct Counts {
+        std::size_t all = 0;
+        std::size_t below = 0;
+    };
+    std::map<std::array<std::int64_t, 3>, Counts> tiles;
     for (std::size_t i = 0; i < all.points.size(); ++i) {
-        if (-candidate.plane.signed_distance_m(all.points[i]) <= step_m) continue;
-        // First order in the inverse range, as `Sighting::off_m`: a far point that noise threw
-        // behind the plane is not below it.
-        const Sighting seen =
-            sighting_of(beam_to(all.points[i]), all.inverse_range_sigma[i], candidate.plane);
-        constexpr double kSure = 5.0;
-        const bool sure =
-            !(seen.expected_inverse_range > 0.0) ||
-            seen.expected_inverse_range - seen.inverse_range > kSure * all.inverse_range_sigma[i];
-        if (sure) ++below;
+        const Eigen::Vector3d ray = beam_to(all.points[i]).ray / kTile_rad;
+        Counts& tile = tiles[{saturated_integer<std::int64_t>(std::floor(ray.x())),
+                              saturated_integer<std::int64_t>(std::floor(ray.y())),
+                              saturated_integer<std::int64_t>(std::floor(ray.z()))}];
+        ++tile.all;
+        if (is_below(all, i, candidate.plane, step_m)) ++tile.below;
     }
+    std::size_t below = 0;
+    for (const auto& [key, tile] : tiles)
+        if (kSurface * tile.below >= tile.all) below += tile.below;
     return below;
 }
 
@@ -251,7 +281,7 @@ GroundReason judge(const GroundConfig& config,
         return GroundReason::few_inliers;
     const double contrast = static_cast<double>(census.inliers.size()) /
                             static_cast<double>(std::max<std::size_t>(census.fringe, 1));
-    if (contrast < kMinContrast || candidate.rms_m > config.max_search_rms_m)
+    if (contrast < kMinContrast || roughness_m(census) > config.max_search_rms_m)
         return GroundReason::rough;
     if (static_cast<double>(count_below(all, candidate)) >
         kMostBelow * static_cast<double>(census.inliers.size()))
@@ -273,6 +303,25 @@ double scatter_m2(const View& view, const Plane& plane, double band_m) {
         count += 1.0;
     }
     return count > 0.0 ? sum_m2 / count : 0.0;
+}
+
+/// Log-likelihood that a plane as rough as this gains over points that lie anywhere: a band that
+/// leaves out half of a mulch floor gains less than one that holds it, one that takes in the foot
+/// of a wall hardly more.
+double support_of(const View& view, const Candidate& candidate, double roughness_m) {
+    constexpr double kAnywhere_m = 2.0;  // across which other points lie
+    constexpr double kLeastRoughness_m = 0.001;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < view.points.size(); ++i) {
+        if (!candidate.holds(view.points[i])) continue;
+        const double sigma_m = std::hypot(noise_of(view, i, candidate.plane),
+                                          std::max(roughness_m, kLeastRoughness_m));
+        const double off = candidate.plane.signed_distance_m(view.points[i]) / sigma_m;
+        const double gain =
+            std::log(kAnywhere_m * view.scale / (std::sqrt(2.0 * std::numbers::pi) * sigma_m));
+        sum += std::max(0.0, gain - 0.5 * off * off);
+    }
+    return sum;
 }
 
 /// The plane settled within a band, and what speaks for it.
@@ -321,6 +370,7 @@ std::optional<Candidate> within_band(const GroundConfig& config,
     candidate.tilt_sigma_rad =
         plane_uncertainty(*plane, candidate.covariance_of_m, Eigen::Vector3d::Zero())
             .tilt_sigma_rad();
+    candidate.support = support_of(rest, candidate, roughness_m(census));
     candidate.reason = judge(config, scene.all, census, candidate);
     return candidate;
 }
@@ -340,21 +390,18 @@ double least_noise_m(const View& view, const Plane& plane) {
     return *tenth;
 }
 
-/// In the narrowest band that holds all of the surface: mulch and boulders need a wider one than a
-/// parquet, and a strip of floor before a wall one that leaves out the foot of the wall.
+/// In the band that explains most: mulch and boulders need a wider one than a parquet, and a strip
+/// of floor before a wall one that leaves out the foot of the wall.
 std::optional<Candidate> measured(const GroundConfig& config,
                                   const Scene& scene,
                                   const View& rest,
                                   const Plane& found) {
     const double widest_m = 2.0 * config.tolerance_m * rest.scale;
     double band_m = std::clamp(4.0 * least_noise_m(rest, found), 0.1 * widest_m, 0.25 * widest_m);
-    constexpr double kGain = 1.15;
     std::optional<Candidate> best;
     for (; band_m <= widest_m; band_m *= 2.0) {
         const auto now = within_band(config, scene, rest, found, band_m);
-        if (!now) continue;
-        if (best && now->image_share < kGain * best->image_share) break;
-        best = now;
+        if (now && (!best || now->support > best->support)) best = now;
     }
     return best;
 }

@@ -38,7 +38,10 @@ TEST(GroundSearch, FindsTheFloorAtAnyTiltAndHeight) {
             const auto view = test::view_of(room, true, camera, {}, 7);
             const GroundSighting found = find(view);
             ASSERT_TRUE(found.observation.accepted) << to_string(found.reason);
-            EXPECT_LT(tilt_error_deg(found, view.up), 1.5);
+            const double sigma_deg = kDegPerRad * found.uncertainty.tilt_sigma_rad();
+            constexpr double kSigmas = 3.7;  // of two angles one in a thousand is farther off
+            EXPECT_LT(tilt_error_deg(found, view.up), kSigmas * sigma_deg);
+            EXPECT_LT(sigma_deg, 0.6);
             EXPECT_NEAR(found.observation.height_m, height_m, 0.03 * height_m);
         }
     }
@@ -91,6 +94,20 @@ TEST(GroundSearch, ATableOrABedIsNotTheGround) {
             if (!found.observation.accepted) continue;
             EXPECT_NEAR(found.observation.height_m, decoy.top_m + 0.6, 0.06) << seed;
         }
+    }
+}
+
+/// Wrong matches lie below a small floor one by one; what a table stands on lies there in one
+/// piece.
+TEST(GroundSearch, WrongMatchesAreNotLowerGround) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const std::vector<Block> wall{{{0.72, 0.0, 1.5}, {1.0, 20.0, 3.0}}};
+        const Camera camera{.baseline_m = 0.12, .height_m = 0.6, .pitch_deg = 50.0};
+        const auto view = test::view_of(wall, true, camera, {.wrong_share = 0.03}, seed);
+        ASSERT_GT(view.floor_share, 0.08);
+        ASSERT_LT(view.floor_share, 0.25);
+        const GroundSighting found = find(view);
+        EXPECT_TRUE(found.observation.accepted) << seed << to_string(found.reason);
     }
 }
 

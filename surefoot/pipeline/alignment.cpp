@@ -169,6 +169,12 @@ void AlignmentConfig::describe(ConfigVisitor& visitor) {
                    600.0,
                    "so long the ground is looked for where nothing else tells gravity and "
                    "ground.expected_height_m is known");
+    visitor.number("wait_for_search_s",
+                   wait_for_search_s,
+                   0.0,
+                   10.0,
+                   "so long it is looked for where nobody says how the camera is mounted; if none "
+                   "is found, odom is placed by the first frames all the same");
 }
 
 Eigen::Vector3d assumed_up(const AlignmentConfig& config) {

@@ -72,6 +72,8 @@ class Pipeline {
     [[nodiscard]] const PipelineConfig& config() const noexcept { return config_; }
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rectifier_->rig(); }
     [[nodiscard]] const Alignment& alignment() const noexcept { return alignment_; }
+    /// Neither rig nor settings say how the camera is mounted.
+    [[nodiscard]] bool is_mount_unknown() const;
     /// What was corrected; nothing where the calibration fits or nothing could be said.
     [[nodiscard]] const std::optional<stereo::PairTrim>& trim() const noexcept { return trim_; }
     [[nodiscard]] const elevation::ElevationMap& map() const noexcept { return map_; }
@@ -123,8 +125,6 @@ class Pipeline {
                                                         const Eigen::Vector3d& up_level);
     /// For a camera of which nothing tells how it is mounted.
     [[nodiscard]] ground::GroundSighting search_ground();
-    /// Neither rig nor settings say how the camera is mounted.
-    [[nodiscard]] bool is_mount_unknown() const;
     /// Only where a machine carries the camera: the height of base_link is known.
     void watch_mount(FrameReport& report);
     [[nodiscard]] CameraState camera_state() const noexcept;

@@ -25,9 +25,12 @@ struct Start {
 /// * frames too bright or too dark are waited out, `mount.wait_for_light_s` at most;
 /// * where neither ground nor accelerometer told which way is up, the gate could never say OK. If
 ///   the height of base_link over its ground is known there is a ground to be found: it is looked
-///   for five frames later each time, `mount.wait_for_ground_s` at most.
-/// When the source ends or the wait is over, odom is placed by the last frames, whatever they show.
-/// Holds `Pipeline::kAlignmentFrames` frames at a time.
+///   for five frames later each time, `mount.wait_for_ground_s` at most;
+/// * where nobody says how the camera is mounted, a hand may still be lifting it: ground is looked
+///   for likewise, `mount.wait_for_search_s` at most. A recording may show none at all, so that the
+///   frames are kept, and odom is placed by the first ones when none was found.
+/// Otherwise, when the source ends or the wait is over, odom is placed by the last frames, whatever
+/// they show. Holds `Pipeline::kAlignmentFrames` frames at a time, and those that are kept.
 [[nodiscard]] Start align_when_ready(Pipeline& pipeline,
                                      const NextFrame& next,
                                      const std::optional<Pose>& T_odom_first_body = {});

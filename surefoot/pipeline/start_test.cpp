@@ -55,6 +55,7 @@ struct Script {
     std::function<std::uint8_t(int)> grey_dn;
     std::function<bool(int)> floor;
     std::function<void(int, GreyImage&)> paint = [](int, GreyImage&) {};
+    Eigen::Quaterniond lean = Eigen::Quaterniond::Identity();
 };
 
 struct Outcome {
@@ -62,9 +63,11 @@ struct Outcome {
     Alignment alignment;
 };
 
-Outcome start_of(const Script& script, const PipelineConfig& config) {
+Outcome start_of(const Script& script,
+                 const PipelineConfig& config,
+                 const camera::StereoRig& rig = looking_down()) {
     Serial serial;
-    auto pipeline = Pipeline::make(config, looking_down(), serial);
+    auto pipeline = Pipeline::make(config, rig, serial);
     EXPECT_TRUE(pipeline.ok()) << pipeline.error().message;
     int next = 0;
     const auto source = [&]() -> std::optional<StereoFrame> {
@@ -75,7 +78,7 @@ Outcome start_of(const Script& script, const PipelineConfig& config) {
         frame.left = GreyImage(kWidth, kHeight, script.grey_dn(frame.index));
         script.paint(frame.index, frame.left);
         frame.right = frame.left;
-        frame.known_depth = depth_of(pipeline->rig(), script.floor(frame.index));
+        frame.known_depth = depth_of(pipeline->rig(), script.floor(frame.index), script.lean);
         MotionEstimate standing;
         standing.time_ns = frame.time_ns;
         standing.health = Health::ok;
@@ -177,6 +180,29 @@ TEST(Start, GroundIsLookedForWhereTheMachineSaysThereIsSome) {
     const Outcome impatient = start_of({80, mid_grey, wall_first}, config);
     EXPECT_FALSE(impatient.alignment.has_ground);
     EXPECT_LE(impatient.start.frames.back().index, 20);
+}
+
+/// In a hand: nobody says how it is mounted, and it looks at a wall first.
+TEST(Start, GroundIsLookedForWithAMountThatNobodyKnows) {
+    Script script{80, mid_grey, [](int index) { return index >= 20; }};
+    script.lean = Eigen::AngleAxisd(40.0 * M_PI / 180.0, Eigen::Vector3d::UnitY());
+    const camera::StereoRig rig = camera::test::ideal_rig(kWidth, kHeight, kFocal_px);
+    const Outcome found = start_of(script, {}, rig);
+    ASSERT_TRUE(found.alignment.has_ground) << found.alignment.reason;
+    EXPECT_EQ(found.start.waited_frames, 15);
+    EXPECT_EQ(found.start.frames.size(), Pipeline::kAlignmentFrames);
+    EXPECT_EQ(found.start.frames.front().index, 15);
+
+    script.floor = [](int /*index*/) { return false; };
+    const Outcome none = start_of(script, {}, rig);
+    EXPECT_FALSE(none.alignment.has_ground);
+    EXPECT_EQ(none.start.waited_frames, 0) << "nothing of the recording is lost";
+    EXPECT_EQ(none.start.frames.size(), 40U) << "ten, and those of three seconds";
+    EXPECT_EQ(none.start.frames.front().index, 0);
+
+    PipelineConfig impatient;
+    impatient.mount.wait_for_search_s = 0.0;
+    EXPECT_EQ(start_of(script, impatient, rig).start.frames.size(), Pipeline::kAlignmentFrames);
 }
 
 /// State of the camera after each of 70 frames of a standing machine; from the 20th on the camera
