@@ -168,6 +168,7 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     maps.geometry = geometry;
     maps.live_m = live_m;
     maps.live_var_m2 = pipeline.map().layers().height_var_m2.copy();
+    maps.tilt_sigma_rad = pipeline.alignment().tilt_sigma_rad;
     maps.live_traversability = or_unknown(pipeline.rating().traversability, geometry);
     maps.truth_m = sim::dem(truth.scene, lattice);
     const double odom_z_m = odom_height_m(pipeline, truth, frames);

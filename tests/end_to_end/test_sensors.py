@@ -86,6 +86,17 @@ class Sensors(CliTest):
         body = cloud.stat().st_size - head.index(b"end_header\n") - len(b"end_header\n")
         self.assertEqual(body, 20 * scanned["points"])
 
+    def test_the_sigma_of_heights_counts_the_lean_of_the_vertical(self):
+        """A start on a cross-fall with a poor accelerometer: all heights lean together, and their sigma says so."""
+        self.run_ok("run", "sim:cross_fall", "--seed", 50023, "--set", "sim.sensor=analytic", "--max-frames", 12,
+                    "--set", "mount.gravity.accel_bias_m_s2=0.3", "--out",
+                    self.dir / "out")
+        report = json.loads((self.dir / "out" / "report.json").read_text())
+        self.assertEqual(report["gravity_source"], "imu")
+        sigma = report["truth"]["sigma"]
+        self.assertGreater(sigma["within_1_sigma"], 0.5)
+        self.assertGreater(sigma["within_2_sigma"], 0.9)
+
     def test_an_imu_brings_its_data_sheet_and_settings_stay_on_top(self):
         def noise(*settings):
             listed = self.json_of("config", *(w for s in settings for w in ("--set", s)))["settings"]
