@@ -493,7 +493,7 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
     verb->add_option("--origin",
                      o.origins,
                      "web pages of this origin may ask the gate, as http://192.0.2.7:8000, null or "
-                     "file://")
+                     "file://; the page may be reached there, too")
         ->type_name("URL");
     verb->add_option("--audit", o.audit_dir, "folder of the gate's audit log")->type_name("DIR");
     verb->add_flag("--assured", o.assured, "no OK while the audit log cannot be written");

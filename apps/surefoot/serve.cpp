@@ -178,6 +178,9 @@ class PageService {
         config.bind_address = options.bind_address;
         config.port = static_cast<std::uint16_t>(options.page_port);
         config.foxglove_origins = options.foxglove_origins;
+        config.origins = options.origins;
+        config.tls = {options.certificate_file, options.key_file};
+        config.insecure = options.insecure;
         // The page's socket knows one token; the gate's own knows the roles.
         if (access.guest == wire::Role::none) config.token = access.operator_;
         auto server = page::PageServer::open(config, service->feed_, service->controls_);
@@ -566,8 +569,11 @@ Status Service::run() {
     tell_where(*gate);
     if (page_->port() != 0) {
         std::FILE* const out = options_.common.json ? stderr : stdout;
-        fmt::print(out, "the page is at http://{}:{}/\n", options_.bind_address, page_->port());
-        fmt::print(out, "Foxglove connects to ws://{}:{}/\n", options_.bind_address, page_->port());
+        const char* const s = options_.certificate_file.empty() ? "" : "s";
+        fmt::print(
+            out, "the page is at http{}://{}:{}/\n", s, options_.bind_address, page_->port());
+        fmt::print(
+            out, "Foxglove connects to ws{}://{}:{}/\n", s, options_.bind_address, page_->port());
         std::fflush(out);
     }
     watch_for_interrupts();

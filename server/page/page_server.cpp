@@ -27,6 +27,7 @@
 #include "server/page/page_files.hpp"
 #include "server/page/show.hpp"
 #include "server/wire/admission.hpp"
+#include "server/wire/peer_of.hpp"
 #include "server/wire/server_config.hpp"
 #include "server/wire/steady_clock.hpp"
 #include "server/wire/token_bucket.hpp"
@@ -58,14 +59,6 @@ constexpr wire::RateLimit kMessages{40, 80};
 
 std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
-}
-
-/// The address of another computer; empty for this one.
-std::string peer_of(const tcp::socket& socket) {
-    error_code error;
-    const auto endpoint = socket.remote_endpoint(error);
-    if (error || endpoint.address().is_loopback()) return {};
-    return endpoint.address().to_string();
 }
 
 /// This computer, as its network may call it.
@@ -144,8 +137,9 @@ class PageSockets {
 
   private:
     error_code listen_at(const net::ip::address& address, std::uint16_t port);
+    Status listen_with_tls();
     void accept();
-    void admit(tcp::socket socket);
+    void admit(tcp::socket socket, const std::string& peer);
     void end(std::optional<wire::Slots::Id> name);
     void wait_for_tick();
     void on_tick();
@@ -153,6 +147,7 @@ class PageSockets {
     PageFeed& feed_;
     net::io_context io_{1};  // destroyed last, with all waiting handlers
     tcp::acceptor acceptor_{io_};
+    std::unique_ptr<wire::TlsDoor> tls_door_;
     net::steady_timer timer_{io_};
     GateListener gate_{io_, [this](GateNews news) { foxglove.hear(std::move(news)); }};
     std::vector<std::shared_ptr<Viewer>> connections_;  // shared with their waiting handlers
@@ -656,10 +651,33 @@ Status PageSockets::listen() {
                                        error.message()));
     }
     port_ = acceptor_.local_endpoint().port();
+    return config.tls.empty() ? Status{} : listen_with_tls();
+}
+
+/// At the port that was free, in place of the acceptor.
+Status PageSockets::listen_with_tls() {
+    error_code ignored;
+    acceptor_.close(ignored);
+    wire::TlsDoorConfig door;
+    door.bind_address = config.bind_address;
+    door.port = port_;
+    door.files = config.tls;
+    door.max_connections = config.slots.max_clients + config.slots.max_handshakes;
+    auto opened = wire::TlsDoor::open(door, [this](int handle, const std::string& peer) {
+        net::post(io_, [this, socket = wire::OwnedHandle(handle), peer]() mutable {
+            tcp::socket arrived(io_);
+            error_code error;
+            arrived.assign(tcp::v4(), socket.release(), error);
+            if (!error) admit(std::move(arrived), peer);
+        });
+    });
+    if (!opened) return opened.error();
+    tls_door_ = std::move(opened).value();
     return {};
 }
 
 void PageSockets::run() {
+    if (tls_door_) tls_door_->start();
     accept();
     timer_.expires_after(kTick);
     wait_for_tick();
@@ -670,6 +688,7 @@ void PageSockets::stop() {
     net::post(io_, [this] {
         error_code ignored;
         acceptor_.close(ignored);
+        if (tls_door_) tls_door_->stop();
         for (const auto& connection : std::vector(connections_)) connection->end();
         gate_.want({}, {}, steady_ns());
         io_.stop();
@@ -688,14 +707,15 @@ void PageSockets::accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
         accepting_ = false;
         if (error) return;  // no handles left, or gone already: the next tick tries again
-        admit(std::move(socket));
+        const std::string peer = wire::peer_of(socket);
+        admit(std::move(socket), peer);
         accept();
     });
 }
 
-void PageSockets::admit(tcp::socket socket) {
+void PageSockets::admit(tcp::socket socket, const std::string& peer) {
     const std::uint64_t name = ++connections_so_far_;
-    end(slots.arrive(name, peer_of(socket), steady_ns()));
+    end(slots.arrive(name, peer, steady_ns()));
     connections_.push_back(std::make_shared<Viewer>(*this, name, std::move(socket)));
     connections_.back()->start();
 }
@@ -756,6 +776,12 @@ std::size_t PageSockets::viewers() const {
 const char* PageServerConfig::problem() const {
     if (!wire::is_loopback_address(bind_address) && token.empty())
         return "the page is served beyond this machine with a token alone (--token-file)";
+    if (tls.certificate_file.empty() != tls.key_file.empty())
+        return "TLS needs both files: --certificate FILE and --key FILE";
+    if (!wire::is_loopback_address(bind_address) && tls.empty() &&
+        insecure != wire::kInsecureSentence)
+        return "the page is served beyond this machine with TLS alone (--certificate FILE --key "
+               "FILE), or without it in words (--insecure)";
     if (header_ms <= 0 || answer_ms <= 0 || write_ms <= 0)
         return "header_ms, answer_ms, write_ms: above 0";
     return slots.problem();

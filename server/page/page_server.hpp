@@ -15,6 +15,7 @@
 #include "server/page/recording_desk.hpp"
 #include "server/page/steering.hpp"
 #include "server/wire/slots.hpp"
+#include "server/wire/tls_door.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::page {
@@ -24,6 +25,8 @@ struct PageServerConfig {
     std::uint16_t port = 8080;               ///< 0 = any free one
     int more_ports = 16;                     ///< tried after it, where others are taken
     std::string token;                       ///< of the WebSocket's URL, as ?token=
+    wire::TlsFiles tls;                      ///< empty: plain HTTP, on this machine alone or
+    std::string insecure;                    ///< with wire::kInsecureSentence
     /// Where the page is reached through a proxy or a tunnel, as "https://robot.example".
     std::vector<std::string> origins;
     /// Of Foxglove, where it is a web page of another machine, or a file (file://).
@@ -52,10 +55,11 @@ class PageSockets;
 /// at every other path the WebSocket protocol of Foxglove to whoever offers its subprotocol; all on
 /// the thread that calls `run`. A viewer that is slow is sent less often, never what is old: the
 /// next message is made when the last one has left. Who sends what is not understood is told so and
-/// let go. A request must name the page by a name or address of this computer and its own port, and
-/// a web page that opens a socket must be the page itself (page_door.hpp). A connection that is
-/// slow with its request, or takes nothing, is ended; wire::Slots says which one when all are
-/// taken.
+/// let go. With a certificate all of it goes through TLS (wire::TlsDoor); clients of this same
+/// machine may still speak plainly. A request must name the page by a name or address of this
+/// computer and its own port, and a web page that opens a socket must be the page itself
+/// (page_door.hpp). A connection that is slow with its request, or takes nothing, is ended;
+/// wire::Slots says which one when all are taken.
 class PageServer {
   public:
     /// Listens. Errors name the address and what is in the way.

@@ -12,6 +12,8 @@
 #include <chrono>
 #include <thread>
 
+#include "server/wire/server_config.hpp"
+
 namespace surefoot::page {
 namespace {
 
@@ -236,6 +238,24 @@ TEST_F(PageServerTest, sockets_that_never_ask_give_way_to_pages) {
         page.hear("status", 2'000);
         EXPECT_FALSE(page.is_closed());
     }
+}
+
+TEST(PageServerConfig, OutsideNeedsATokenAndTlsOrTheSentence) {
+    PageServerConfig config;
+    EXPECT_EQ(config.problem(), nullptr);
+    config.bind_address = "0.0.0.0";
+    EXPECT_NE(std::string(config.problem()).find("--token-file"), std::string::npos);
+    config.token = "secret";
+    EXPECT_NE(std::string(config.problem()).find("--certificate"), std::string::npos);
+    config.insecure = "yes";
+    EXPECT_NE(config.problem(), nullptr);
+    config.insecure = wire::kInsecureSentence;
+    EXPECT_EQ(config.problem(), nullptr);
+    config.insecure.clear();
+    config.tls = {"certificate.pem", ""};
+    EXPECT_NE(std::string(config.problem()).find("both files"), std::string::npos);
+    config.tls.key_file = "key.pem";
+    EXPECT_EQ(config.problem(), nullptr);
 }
 
 }  // namespace

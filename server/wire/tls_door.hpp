@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <unistd.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "surefoot/core/result.hpp"
 
@@ -27,6 +30,21 @@ struct TlsDoorConfig {
     std::size_t max_connections = 320;  ///< with those whose handshake is not done
     std::size_t max_handshakes = 64;    ///< beyond it the fullest peer's oldest one is ended
     int handshake_ms = 5000;
+};
+
+/// Closes a socket that nobody took over.
+class OwnedHandle {
+  public:
+    explicit OwnedHandle(int handle) noexcept : handle_(handle) {}
+    OwnedHandle(OwnedHandle&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
+    OwnedHandle& operator=(OwnedHandle&&) = delete;
+    ~OwnedHandle() {
+        if (handle_ >= 0) ::close(handle_);
+    }
+    [[nodiscard]] int release() noexcept { return std::exchange(handle_, -1); }
+
+  private:
+    int handle_;
 };
 
 class TlsListener;

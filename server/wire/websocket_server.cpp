@@ -70,21 +70,6 @@ class WorkBudget {
     std::int64_t ticks_spent_ = 0;
 };
 
-/// Closes a socket that nobody took over.
-class OwnedHandle {
-  public:
-    explicit OwnedHandle(int handle) noexcept : handle_(handle) {}
-    OwnedHandle(OwnedHandle&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
-    OwnedHandle& operator=(OwnedHandle&&) = delete;
-    ~OwnedHandle() {
-        if (handle_ >= 0) ::close(handle_);
-    }
-    [[nodiscard]] int release() noexcept { return std::exchange(handle_, -1); }
-
-  private:
-    int handle_;
-};
-
 }  // namespace
 
 class Connection;

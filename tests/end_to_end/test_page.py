@@ -5,6 +5,7 @@ import json
 import math
 import re
 import socket
+import ssl
 import struct
 import subprocess
 import tempfile
@@ -25,8 +26,8 @@ LAYER_HEAD = struct.Struct("<QqqIHHHH")
 class Page(RosbridgeClient):
     """A page that looks. The ground as it has been told: cell of odom -> (height [mm], sigma [mm], state)."""
 
-    def __init__(self, port):
-        super().__init__(port, path="/page")
+    def __init__(self, port, connected=None):
+        super().__init__(port, path="/page", connected=connected)
         self.ground, self.wholes, self.map_bytes, self.versions = {}, 0, [], {}
         self.joints, self.values = [], {}
         self.poses, self.layers, self.images, self.texts, self.goodbye = [], [], [], [], None
@@ -132,6 +133,49 @@ class PageTest(CliTest):
         page = Page(self.port)
         self.addCleanup(page.close)
         return page
+
+
+class PageOverTls(CliTest):
+    """The page and its sockets through TLS; from this same machine plainly, too."""
+
+    def test_a_real_client_sees_the_page_and_checks_its_certificate(self):
+        certificate, key = self.dir / "certificate.pem", self.dir / "key.pem"
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days",
+                        "2", "-subj", "/CN=surefoot test", "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out",
+                        certificate], check=True, capture_output=True)
+        key.chmod(0o600)
+        service = subprocess.Popen([BINARY, "serve", *SCENE, "--port", "0", "--page-port", "0", "--nice", "0", "--certificate",
+                                    certificate, "--key", key], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(service.stdout.close)
+        self.addCleanup(service.wait)
+        self.addCleanup(service.kill)
+        self.assertTrue(service.stdout.readline().startswith("the gate listens on wss://127.0.0.1:"))
+        told = service.stdout.readline()
+        self.assertTrue(told.startswith("the page is at https://127.0.0.1:"), told)
+        port = int(told.rstrip("/\n").rsplit(":", 1)[1])
+        trusting = ssl.create_default_context(cafile=str(certificate))
+
+        def title(connection):
+            self.addCleanup(connection.close)
+            connection.request("GET", "/")
+            answer = connection.getresponse()
+            self.assertEqual(answer.status, 200)
+            self.assertIn("connect-src 'self' ws://127.0.0.1:* wss://127.0.0.1:*", answer.headers["Content-Security-Policy"])
+            return gzip.decompress(answer.read())
+
+        self.assertIn(b"<title>Surefoot", title(http.client.HTTPSConnection("127.0.0.1", port, timeout=10, context=trusting)))
+        self.assertIn(b"<title>Surefoot", title(http.client.HTTPConnection("127.0.0.1", port, timeout=10)))
+        with self.assertRaises(ssl.SSLCertVerificationError):
+            http.client.HTTPSConnection("127.0.0.1", port, timeout=10, context=ssl.create_default_context()).request("GET", "/")
+        secret = trusting.wrap_socket(socket.create_connection(("127.0.0.1", port), timeout=10), server_hostname="127.0.0.1")
+        page = Page(port, connected=secret)
+        self.addCleanup(page.close)
+        page.wait_for("hello")
+        for _ in range(200):  # maps are longer than a TLS record
+            if page.ground:
+                break
+            page.listen(0.05)
+        self.assertGreater(len(page.ground), 1000)
 
 
 class LivePage(PageTest):
@@ -510,6 +554,20 @@ class Ports(CliTest):
                                  capture_output=True, text=True, timeout=60)
         self.assertNotEqual(process.returncode, 0)
         self.assertIn("--certificate", process.stderr)
+
+    def test_the_page_may_be_reached_by_the_origins_that_are_named(self):
+        service = subprocess.Popen([BINARY, "serve", *SCENE, "--port", "0", "--page-port", "0", "--nice", "0", "--origin",
+                                    "https://robot.example"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.addCleanup(service.stdout.close)
+        self.addCleanup(service.wait)
+        self.addCleanup(service.kill)
+        service.stdout.readline()
+        port = int(service.stdout.readline().rstrip("/\n").rsplit(":", 1)[1])
+        for host, status in (("robot.example", 200), ("other.example", 421)):
+            connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
+            self.addCleanup(connection.close)
+            connection.request("GET", "/", headers={"Host": host})
+            self.assertEqual(connection.getresponse().status, status, host)
 
 
 if __name__ == "__main__":
