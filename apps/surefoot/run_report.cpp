@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "apps/surefoot/ground_box.hpp"
 #include "apps/surefoot/run_features.hpp"
@@ -140,6 +141,21 @@ eval::ReportTable configuration_table(const Settings& settings) {
     return table;
 }
 
+/// "mirror suspected at 0.45 m, bearing 3 deg to the left", from base_link at the last frame.
+std::string pane_text(const specular::SuspectedPane& pane,
+                      double mirror_correlation,
+                      const Pose& T_odom_body) {
+    const Eigen::Vector3d normal_body =
+        T_odom_body.rotation.conjugate() * Eigen::Vector3d(pane.normal.x(), pane.normal.y(), 0.0);
+    const double bearing_deg =
+        std::atan2(normal_body.y(), normal_body.x()) * 180.0 / std::numbers::pi;
+    return fmt::format("{} suspected at {:.2f} m, bearing {:.0f} deg to the {}",
+                       pane.correlation >= mirror_correlation ? "Mirror" : "Mirror or glass",
+                       pane.offset_m - pane.normal.dot(T_odom_body.translation_m.head<2>()),
+                       std::abs(bearing_deg),
+                       bearing_deg < 0.0 ? "right" : "left");
+}
+
 std::vector<std::string> summary_lines(const RunRecord& record,
                                        const pipeline::Pipeline& pipeline) {
     std::vector<std::string> lines = {
@@ -149,6 +165,10 @@ std::vector<std::string> summary_lines(const RunRecord& record,
                     record.source.kind,
                     pipeline.map().known_cells()),
         fmt::format("Gravity and ground: {}.", pipeline.alignment().reason)};
+    for (const specular::SuspectedPane& pane : pipeline.panes())
+        lines.push_back(
+            pane_text(pane, pipeline.config().specular.mirror_correlation, pipeline.T_odom_body()) +
+            ": the gate takes the ground at and behind it for unknown.");
     if (std::string note = modelled_note(record.source); !note.empty()) lines.push_back(note);
     for (const std::string& note : record.source.notes)
         lines.push_back(fmt::format("About the source: {}.", note));

@@ -55,7 +55,8 @@ Window window_around_body(const SnapshotInput& input) {
     return window;
 }
 
-bool has_size(ImageView<const float> layer, const GridGeometry& geometry) {
+template <typename T>
+bool has_size(ImageView<const T> layer, const GridGeometry& geometry) {
     return layer.width == geometry.nx && layer.height == geometry.ny;
 }
 
@@ -83,6 +84,8 @@ Status check(const SnapshotInput& input) {
         if (!layer.empty() && !has_size(layer, g))
             return refuse("an optional layer does not have the size of the map");
     }
+    if (!input.hidden.empty() && !has_size(input.hidden, g))
+        return refuse("the layer of hidden cells does not have the size of the map");
     return {};
 }
 
@@ -133,6 +136,7 @@ void clear_cells(MapSnapshot& out) {
 }
 
 void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std::size_t at) {
+    if (!input.hidden.empty() && input.hidden.at(u, v) != 0) return;  // stays unknown
     const auto value = [u, v](ImageView<const float> layer) {
         return static_cast<double>(layer.at(u, v));
     };

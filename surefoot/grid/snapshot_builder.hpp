@@ -28,6 +28,8 @@ struct SnapshotInput {
     ImageView<const float> free_above_m;
     ImageView<const float>
         drop_evidence;  ///< optional: 0..1 from rays that passed below the ground
+    /// Optional: not 0 = what was measured in the cell is not believed. The cell is unknown.
+    ImageView<const std::uint8_t> hidden;
     /// A line in odom at which the ground falls; see SnapshotEdge.
     struct Edge {
         Eigen::Vector2d from_m = Eigen::Vector2d::Zero();

@@ -457,5 +457,24 @@ TEST(SnapshotBuilder, edges_with_broken_numbers_are_left_out) {
     EXPECT_TRUE(is_intact(*map.out));
 }
 
+TEST(SnapshotBuilder, a_hidden_cell_is_unknown_and_joins_no_surface) {
+    const TestMap map(5, 3);
+    Image<std::uint8_t> hidden(5, 3, 0);
+    for (int v = 0; v < 3; ++v) hidden.at(2, v) = 1;
+    SnapshotInput in = map.input();
+    in.hidden = hidden.view();
+    ASSERT_TRUE(build_snapshot(in, *map.out));
+    for (int v = 0; v < 3; ++v) {
+        const auto row = static_cast<std::size_t>(5 * v);
+        EXPECT_TRUE(map.out->is_measured(row + 1));
+        EXPECT_FALSE(map.out->is_measured(row + 2));
+        EXPECT_EQ(map.out->height_tenth_mm[row + 2], MapSnapshot::kUnknownHeight);
+        EXPECT_NE(map.out->component[row + 1], map.out->component[row + 3]);
+    }
+    const Image<std::uint8_t> small(4, 3, 0);
+    in.hidden = small.view();
+    EXPECT_FALSE(build_snapshot(in, *map.out));
+}
+
 }  // namespace
 }  // namespace surefoot::grid

@@ -122,6 +122,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
       odometry_(config.odometry, *rectifier_, rig.imu),
       matcher_(stereo::make_matcher(config.stereo)),
       map_(config.elevation),
+      mirror_watch_(config.specular),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
       feature_finder_(config.stairs),
       feature_follower_(config.stairs),
@@ -137,6 +138,7 @@ const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
     odometry_.start_at(alignment_.T_odom_body);
     level_keeper_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
     feature_follower_.forget();  // odom is another one
+    mirror_watch_.forget();
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
     return alignment_;
@@ -257,6 +259,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
             observe_ground(report.motion.T_odom_body, Eigen::Vector3d::UnitZ()).observation;
         level_keeper_.see(report.ground);
         watch_mount(report);
+        watch_mirrors(report.motion, report.ground);
         timer.finished(Stage::ground);
         report.fusion = fuse(report.motion);
         timer.finished(Stage::fuse);
@@ -270,6 +273,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
         rate();  // the window moved: the ratings are those of other cells
         timer.finished(Stage::traversability);
     }
+    hide_mirrored_ground();
     report.known_cells = map_.known_cells();
     return report;
 }
@@ -328,6 +332,26 @@ CameraState Pipeline::camera_state() const noexcept {
     if (mount_monitor_.moved()) return CameraState::moved;
     const CameraState images = camera_monitor_.state();
     return images == CameraState::ok && mount_monitor_.leans() ? CameraState::leaning : images;
+}
+
+void Pipeline::watch_mirrors(const MotionEstimate& motion, const GroundObservation& ground_body) {
+    if (motion.health == Health::lost) return;
+    mirror_watch_.add(rectifier_->rig(),
+                      motion.T_odom_body,
+                      pair_.left.view(),
+                      depth_.disparity_px.view(),
+                      specular::level_floor_z_m(ground_body, motion.T_odom_body));
+}
+
+void Pipeline::hide_mirrored_ground() {
+    if (panes().empty()) {
+        hidden_.resize(0, 0);
+        return;
+    }
+    const grid::GridGeometry& geometry = map_.geometry();
+    hidden_.resize(geometry.nx, geometry.ny);
+    hidden_.fill(0);
+    specular::hide_behind(panes(), config_.specular, geometry, hidden_.view());
 }
 
 void Pipeline::follow(const MotionEstimate& motion) {
@@ -433,6 +457,7 @@ Status Pipeline::snapshot(std::uint64_t config_hash, grid::MapSnapshot& out) con
     input.drift_m = layers.horizontal_drift_m.view();
     input.clearance_m = layers.clearance_m.view();
     input.free_above_m = layers.free_above_m.view();
+    input.hidden = hidden_.view();
     std::vector<grid::SnapshotInput::Edge> edges;
     for (const stairs::Edge& edge : features_.edges)
         edges.push_back({edge.from_m,

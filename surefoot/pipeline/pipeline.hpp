@@ -23,6 +23,7 @@
 #include "surefoot/pipeline/level_keeper.hpp"
 #include "surefoot/pipeline/mount_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
+#include "surefoot/specular/mirror_watch.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
 #include "surefoot/stairs/feature_follower.hpp"
 #include "surefoot/stairs/ground_classes.hpp"
@@ -85,6 +86,11 @@ class Pipeline {
     [[nodiscard]] grid::Layer surface_m() const;
     /// Edges, drops, stairs, followed over time, as of the last full frame.
     [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept { return features_; }
+    /// Upright planes that are suspected to be mirrors or glass, in odom. The map knows what is
+    /// seen in them; the snapshot hides it from the gate.
+    [[nodiscard]] std::span<const specular::SuspectedPane> panes() const noexcept {
+        return mirror_watch_.panes();
+    }
     /// The camera at the last frame.
     [[nodiscard]] stairs::View view() const;
     /// Rectified pair (empty without images) and depth of the last full frame.
@@ -128,6 +134,9 @@ class Pipeline {
     /// Only where a machine carries the camera: the height of base_link is known.
     void watch_mount(FrameReport& report);
     [[nodiscard]] CameraState camera_state() const noexcept;
+    /// Compares the floor with its own mirror images, where a level floor is in view.
+    void watch_mirrors(const MotionEstimate& motion, const GroundObservation& ground_body);
+    void hide_mirrored_ground();
     void follow(const MotionEstimate& motion);
     [[nodiscard]] FusionCounts fuse(const MotionEstimate& motion);
     void rate();
@@ -144,6 +153,8 @@ class Pipeline {
     odometry::Odometry odometry_;
     std::unique_ptr<stereo::Matcher> matcher_;
     elevation::ElevationMap map_;
+    specular::MirrorWatch mirror_watch_;
+    Image<std::uint8_t> hidden_;  ///< cells of the map at and behind a suspected pane; may be empty
     traversability::Traversability rater_;
     grid::Layer surface_m_;  ///< of the map, as rated last
     traversability::TraversabilityLayers rating_;

@@ -16,6 +16,7 @@ void PipelineConfig::describe(ConfigVisitor& visitor) {
     visitor.group("odometry", odometry);
     visitor.group("ground", ground);
     visitor.group("elevation", elevation);
+    visitor.group("specular", specular);
     visitor.group("traversability", traversability);
     visitor.group("foothold", foothold);
     visitor.group("stairs", stairs);
@@ -31,6 +32,7 @@ std::optional<std::string> PipelineConfig::problem() const {
             "elevation.resolution_m = {}: must be a whole number of 0.1 mm, for example 0.025",
             elevation.resolution_m);
     }
+    if (auto found = specular.problem()) return found;
     if (auto found = foothold.problem()) return found;
     if (auto found = stairs.problem()) return found;
     return traversability.widened_to(elevation.resolution_m).problem(elevation.resolution_m);

@@ -11,6 +11,7 @@
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/pipeline/level_keeper.hpp"
+#include "surefoot/specular/specular_config.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/pair_trim.hpp"
@@ -29,6 +30,7 @@ struct PipelineConfig {
     odometry::OdometryConfig odometry;
     ground::GroundConfig ground;
     elevation::ElevationConfig elevation;
+    specular::SpecularConfig specular;
     traversability::TraversabilityConfig traversability;
     traversability::FootholdConfig foothold;
     stairs::StairsConfig stairs;

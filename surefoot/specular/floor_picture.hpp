@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/views.hpp"
+#include "surefoot/grid/moving_window.hpp"
+#include "surefoot/grid/sliding_layer.hpp"
+#include "surefoot/specular/specular_config.hpp"
+
+namespace surefoot::specular {
+
+/// The floor as seen from above: the mean brightness of each cell of a level plane in odom, over
+/// all frames that saw the plane there. What a mirror or a pane of glass shows of the floor before
+/// it lies in the same plane, so that it enters the picture too.
+///
+/// Order of calls: `follow` and `add` for every frame. No allocation after construction.
+class FloorPicture {
+  public:
+    explicit FloorPicture(const SpecularConfig& config);
+
+    /// Moves the window ahead of the body when the body left its place in it.
+    void follow(const Pose& T_odom_body);
+    /// Adds what a rectified left image shows of the plane z = `floor_z_m` (odom). A quarter of
+    /// the rows each frame, in turn. Pixels whose disparity contradicts the plane do not count.
+    void add(const camera::RectifiedRig& rig,
+             const Pose& T_odom_body,
+             ImageView<const std::uint8_t> left,
+             ImageView<const float> disparity_px,
+             double floor_z_m);
+    /// Forgets all.
+    void clear();
+
+    [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return window_.geometry(); }
+    /// Mean grey value; NaN = not seen.
+    [[nodiscard]] ImageView<const float> brightness() const noexcept { return grey_.view(); }
+
+  private:
+    struct View;
+    void add_row(const View& view, int iy, double y_m);
+
+    double range_m_;
+    grid::MovingWindow window_;
+    grid::SlidingLayer<float> grey_;
+    grid::SlidingLayer<float> weight_;
+    unsigned frame_ = 0;
+};
+
+}  // namespace surefoot::specular

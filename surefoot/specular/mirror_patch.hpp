@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "surefoot/core/views.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::specular {
+
+/// Detail of a piece of floor, ready to be compared with its own mirror image: what is left of the
+/// brightness when a cell is compared with its neighbours, as strong everywhere, without what is
+/// the same along a whole line or across all lines (joints of tiles and boards). Lines are parallel
+/// to the mirror lines that are looked for, and lie one behind the other in memory.
+struct PatchDetail {
+    static constexpr int kUnit = 40;    ///< about one standard deviation
+    static constexpr int kBlocks = 12;  ///< a line is summed in so many parts
+
+    int lines = 0;
+    int line_cells = 0;
+    std::vector<std::int16_t> values;  ///< 0 where nothing is known
+    std::vector<std::int16_t> known;   ///< cells known in each block of each line
+    double mean_square = 0.0;          ///< of the known values
+
+    void resize(int new_lines, int new_line_cells);
+    [[nodiscard]] const std::int16_t* line(int i) const {
+        return values.data() + static_cast<std::ptrdiff_t>(i) * line_cells;
+    }
+    [[nodiscard]] const std::int16_t* known_in(int i) const {
+        return known.data() + static_cast<std::ptrdiff_t>(i) * kBlocks;
+    }
+};
+
+/// A rectangle of the floor's picture, turned so that its lines count along the normal of the
+/// mirror lines that are looked for. No allocation after construction.
+class MirrorPatch {
+  public:
+    static constexpr int kLines = 256;
+    static constexpr int kLineCells = 192;
+
+    MirrorPatch();
+
+    /// Samples around `middle_m` (odom): lines grow along (cos, sin) of `angle_rad`, cells of a
+    /// line along its left hand.
+    void sample(const grid::GridGeometry& geometry,
+                ImageView<const float> brightness,
+                const Eigen::Vector2d& middle_m,
+                double angle_rad);
+
+    [[nodiscard]] const PatchDetail& fine() const noexcept { return fine_; }  ///< as the picture
+    [[nodiscard]] const PatchDetail& coarse() const noexcept { return coarse_; }  ///< half of it
+
+  private:
+    void halve();
+
+    Image<float> grey_;  ///< a row is a line
+    Image<float> half_;
+    Image<float> work_;
+    Image<float> half_work_;
+    PatchDetail fine_;
+    PatchDetail coarse_;
+};
+
+/// The detail of an image of brightness (NaN = unknown; a row is a line): its Laplacian over the
+/// mean of its absolute values in a tile, cut, less the means along and across the lines.
+/// `work`: scratch memory of the same size.
+void take_detail(const Image<float>& grey, Image<float>& work, PatchDetail& out);
+
+}  // namespace surefoot::specular
