@@ -57,9 +57,12 @@ Curvature curvature_at(const cv::Mat& light, int u, int v) {
     return c;
 }
 
-double bilinear(const cv::Mat& light, const Eigen::Vector2d& p) {
-    const int u = std::clamp(static_cast<int>(std::floor(p.x())), 0, light.cols - 2);
-    const int v = std::clamp(static_cast<int>(std::floor(p.y())), 0, light.rows - 2);
+/// Grey value between pixels; outside the image that of its border.
+double bilinear(const cv::Mat& light, const Eigen::Vector2d& place) {
+    const Eigen::Vector2d p(std::clamp(place.x(), 0.0, light.cols - 1.0),
+                            std::clamp(place.y(), 0.0, light.rows - 1.0));
+    const int u = std::min(static_cast<int>(p.x()), light.cols - 2);  // in range: clamped above
+    const int v = std::min(static_cast<int>(p.y()), light.rows - 2);  // in range: clamped above
     const double s = p.x() - u;
     const double t = p.y() - v;
     const float* upper = light.ptr<float>(v);
