@@ -33,7 +33,7 @@ using Corners = std::vector<Eigen::Vector2d>;
 
 constexpr calibration::ImageSize kSize{640, 480};
 constexpr double kMostTilt_deg = 60.0;
-constexpr double kLeastStep_px = 5.0;
+constexpr double kLeastStep_px = 4.5;
 constexpr double kSame_px = 1.5;
 
 struct Finder {
@@ -185,7 +185,7 @@ void rendered(std::uint64_t first_seed, std::uint64_t seeds, Table& table) {
                                                    static_cast<std::uint64_t>(lens.fov_deg));
                 Rng rng(own);
                 const Pose T = calibration::testing::wide_pose(
-                    board, camera, kMostTilt_deg, kLeastStep_px, rng);
+                    board, camera, kMostTilt_deg, kLeastStep_px, rng, look.shown);
                 const auto truth =
                     calibration::testing::true_corners(board, camera, T, kLeastStep_px);
                 table.add(fmt::format("{:.0f} deg {}", lens.fov_deg, profile),

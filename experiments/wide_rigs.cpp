@@ -13,6 +13,7 @@
 #include <fmt/os.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -84,6 +85,18 @@ struct Pairs {
     std::vector<BoardView> right;
 };
 
+/// Whether a camera sees all inner corners of the board, with half a square around them.
+bool is_whole(const camera::Camera& camera, const Pose& T_camera_board) {
+    constexpr double kBorder_px = 0.5 * kLeastStep_px;
+    const auto corners =
+        calibration::testing::true_corners(kBoard, camera, T_camera_board, kLeastStep_px);
+    return corners && std::all_of(corners->begin(), corners->end(), [&](const auto& p) {
+               return p.x() > kBorder_px && p.y() > kBorder_px &&
+                      p.x() < camera.width - 1 - kBorder_px &&
+                      p.y() < camera.height - 1 - kBorder_px;
+           });
+}
+
 Pairs seen_pairs(const camera::StereoRig& rig, std::uint64_t seed) {
     Pairs pairs;
     Rng rng(seed);
@@ -91,8 +104,7 @@ Pairs seen_pairs(const camera::StereoRig& rig, std::uint64_t seed) {
         const Pose T_left_board =
             calibration::testing::wide_pose(kBoard, rig.left, kMostTilt_deg, kLeastStep_px, rng);
         const Pose T_right_board = rig.T_left_right.inverse() * T_left_board;
-        if (!calibration::testing::true_corners(kBoard, *rig.right, T_right_board, kLeastStep_px))
-            continue;
+        if (!is_whole(*rig.right, T_right_board)) continue;
         const auto i = pairs.left.size();
         const auto& look = calibration::testing::kWideLooks[i % 6];
         const auto found = [&](const camera::Camera& camera, const Pose& T, std::uint64_t eye) {

@@ -189,7 +189,7 @@ class Graph {
         ceres::Solver::Options settings;
         // Without a lens that moves there is nothing to eliminate the boards from.
         const bool alone = options.freedom == Freedom::poses;
-        settings.linear_solver_type = alone ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_SCHUR;
+        settings.linear_solver_type = alone ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
         settings.num_threads = 1;
         settings.max_num_iterations = options.max_iterations;
         settings.function_tolerance = options.tolerance;

@@ -10,6 +10,7 @@
 #include "surefoot/calibration/bundle_start.hpp"
 #include "surefoot/calibration/lens_advice.hpp"
 #include "surefoot/calibration/mono_bundle.hpp"
+#include "surefoot/calibration/view_scatter.hpp"
 
 namespace surefoot::calibration {
 namespace {
@@ -162,7 +163,8 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
 
     result.parameters = bundle.lenses[0];
     result.camera = {model_of(kind, result.parameters), size.width, size.height};
-    result.covariance = covariance(bundle, fit->sigma_px).value_or(Eigen::MatrixXd());
+    result.covariance =
+        covariance(bundle, stated_sigma_px(bundle, fit->sigma_px)).value_or(Eigen::MatrixXd());
     const Variety variety = variety_of(bundle);
     if (const std::string found = doubt(result, options, variety); !found.empty()) {
         return failed(fmt::format(

@@ -67,14 +67,23 @@ struct WideLook {
     double noise_dn = 2.0;
     double corner_light = 1.0;  ///< share of the light that reaches the corners of the image
     double right_light = 1.0;   ///< share of the light at the right border
+    double margin = 1.4;        ///< white paper around the squares, in squares
+    double shown = 1.0;         ///< share of the outer squares that must be in the image
 };
-inline constexpr std::array<WideLook, 6> kWideLooks{
+inline constexpr std::array<WideLook, 9> kWideLooks{
     {{},
      {.name = "noise", .blur_px = 0.8, .blur_right_px = 0.8, .noise_dn = 8.0},
      {.name = "blur", .blur_px = 1.8, .blur_right_px = 1.8},
      {.name = "partial blur", .blur_px = 0.6, .blur_right_px = 2.6},
      {.name = "vignetting", .corner_light = 0.15, .right_light = 0.5},
-     {.name = "dim", .paper_dn = 66.0, .ink_dn = 38.0, .noise_dn = 2.5, .right_light = 0.6}}};
+     {.name = "dim", .paper_dn = 66.0, .ink_dn = 38.0, .noise_dn = 2.5, .right_light = 0.6},
+     {.name = "overexposed",
+      .paper_dn = 420.0,
+      .ink_dn = 45.0,
+      .blur_px = 1.0,
+      .blur_right_px = 1.4},
+     {.name = "no margin", .blur_px = 0.8, .blur_right_px = 0.8, .noise_dn = 4.0, .margin = 0.0},
+     {.name = "cut off", .noise_dn = 4.0, .shown = 0.3}}};
 
 /// True pixels of the board's points; nothing where one of them is not in the image, or where a
 /// square is narrower than `least_step_px` in the image.
@@ -100,16 +109,22 @@ inline std::optional<std::vector<Eigen::Vector2d>> true_corners(const Board& boa
 
 /// A board anywhere in the image, its printed squares wholly seen, tilted by up to `most_tilt_deg`
 /// against the ray to its middle and rolled by up to 45 deg; 0.35 to 1.6 of its longer side away.
+/// With `shown` below 1 the outer squares may be cut off by so much.
 inline Pose wide_pose(const Board& board,
                       const camera::Camera& camera,
                       double most_tilt_deg,
                       double least_step_px,
-                      Rng& rng) {
+                      Rng& rng,
+                      double shown = 1.0) {
     constexpr double kBorder_px = 2.0;
     Board squares = board;  // corners of the outer squares too
     squares.columns += 2;
     squares.rows += 2;
     const Eigen::Vector3d one(board.spacing_m, board.spacing_m, 0.0);
+    const auto is_inside = [&](const Eigen::Vector2d& p) {
+        return p.x() > kBorder_px && p.y() > kBorder_px && p.x() < camera.width - 1 - kBorder_px &&
+               p.y() < camera.height - 1 - kBorder_px;
+    };
     const Eigen::Vector3d middle_m = 0.5 * board.points_m().back();
     const double size_m = board.spacing_m * std::max(squares.columns, squares.rows);
     while (true) {
@@ -129,12 +144,13 @@ inline Pose wide_pose(const Board& board,
         T_outer.translation_m -= T.rotation * one;
         const auto outer = true_corners(squares, camera, T_outer, least_step_px);
         if (!outer) continue;
-        const bool inside =
-            std::all_of(outer->begin(), outer->end(), [&](const Eigen::Vector2d& p) {
-                return p.x() > kBorder_px && p.y() > kBorder_px &&
-                       p.x() < camera.width - 1 - kBorder_px &&
-                       p.y() < camera.height - 1 - kBorder_px;
-            });
+        // Between the inner corners and the outer ends of their squares.
+        Board frame = squares;
+        frame.spacing_m *= (board.columns - 1 + 2.0 * shown) / (board.columns + 1);
+        Pose T_frame = T;
+        T_frame.translation_m -= shown * (T.rotation * one);
+        const auto framed = true_corners(frame, camera, T_frame, 0.0);
+        const bool inside = framed && std::all_of(framed->begin(), framed->end(), is_inside);
         if (inside) return T;
     }
 }
@@ -170,7 +186,6 @@ inline GreyImage wide_picture(const Board& board,
                               const WideLook& look,
                               std::uint64_t seed) {
     constexpr int kSamples = 4;
-    constexpr double kMargin = 1.4;
     Rng rng(seed);
     const Pose T_board_camera = T_camera_board.inverse();
     const auto place = [&](double u, double v) -> Eigen::Vector2d {
@@ -201,8 +216,9 @@ inline GreyImage wide_picture(const Board& board,
                                           t * ((1.0 - s) * lower[i] + s * lower[i + 1]);
                 const bool squares =
                     p.x() > -1.0 && p.y() > -1.0 && p.x() < board.columns && p.y() < board.rows;
-                const bool paper = p.x() > -1.0 - kMargin && p.y() > -1.0 - kMargin &&
-                                   p.x() < board.columns + kMargin && p.y() < board.rows + kMargin;
+                const bool paper = p.x() > -1.0 - look.margin && p.y() > -1.0 - look.margin &&
+                                   p.x() < board.columns + look.margin &&
+                                   p.y() < board.rows + look.margin;
                 const bool ink =
                     squares && std::fmod(std::floor(p.x()) + std::floor(p.y()) + 2.0, 2.0) == 0.0;
                 sum += ink     ? look.ink_dn
