@@ -209,10 +209,17 @@ void images(const std::string& set, const std::string& folder, const Board& boar
     for (const auto& path : paths) {
         const cv::Mat read = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
         if (read.empty()) continue;
-        GreyImage image(read.cols, read.rows);
-        for (int v = 0; v < read.rows; ++v)
-            std::copy(read.ptr(v), read.ptr(v) + read.cols, image.row(v));
-        table.add(set, path.filename().string(), board, image, {});
+        // Pictures of both cameras side by side are two.
+        const int parts = read.cols > 2 * read.rows ? 2 : 1;
+        const int width = read.cols / parts;
+        for (int part = 0; part < parts; ++part) {
+            GreyImage image(width, read.rows);
+            for (int v = 0; v < read.rows; ++v) {
+                const std::uint8_t* row = read.ptr(v) + part * width;
+                std::copy(row, row + width, image.row(v));
+            }
+            table.add(set, fmt::format("{} {}", path.filename().string(), part), board, image, {});
+        }
     }
 }
 
