@@ -71,7 +71,8 @@ double shown_rms_px(BoardBundle view, const Eigen::VectorXd& lens) {
     if (!std::isfinite(rms_px(view))) return kInfinity;
     if (!solve(view, {Freedom::poses, kHuber_px, kIterations, kTolerance})) return kInfinity;
     const double rms = rms_px(view);
-    return std::isfinite(rms) ? rms : kInfinity;
+    if (!std::isfinite(rms)) return kInfinity;
+    return rms;
 }
 
 /// What lenses of the fisheye kind and others are called in a sentence.
