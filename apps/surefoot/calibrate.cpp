@@ -16,6 +16,7 @@
 #include "io/file.hpp"
 #include "io/rig_file.hpp"
 #include "surefoot/calibration/detect_board.hpp"
+#include "surefoot/calibration/lens_advice.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -140,6 +141,26 @@ Status check_found(const CalibrationRun& run) {
                     run.board.kind == calibration::BoardKind::charuco ? "in focus" : "whole"));
 }
 
+/// Another lens model that explains the boards of one of the cameras far better, in words; empty
+/// where none does.
+std::string lens_advice(calibration::LensKind kind, const CalibrationRun& run) {
+    for (int camera = 0; camera < run.cameras(); ++camera) {
+        std::vector<calibration::BoardView> views;
+        for (const FoundView& view : run.views)
+            views.push_back(camera == 0 ? view.left : view.right);
+        const auto advice = calibration::advise_lens(run.board, views, run.size, kind);
+        if (advice) return camera_name(run, camera) + ": " + calibration::in_words(*advice);
+    }
+    return {};
+}
+
+/// A calibration that failed, with the lens model to try where that is the reason.
+Status with_advice(const Error& error, calibration::LensKind kind, const CalibrationRun& run) {
+    if (error.message.find("--model") != std::string::npos) return error;
+    const std::string advice = lens_advice(kind, run);
+    return advice.empty() ? error : Error{error.code, "calibration: " + advice};
+}
+
 Status solve(calibration::LensKind kind, CalibrationRun& run) {
     std::vector<calibration::BoardView> left;
     std::vector<calibration::BoardView> right;
@@ -149,13 +170,14 @@ Status solve(calibration::LensKind kind, CalibrationRun& run) {
     }
     if (run.cameras() == 1) {
         auto mono = calibration::calibrate_mono(run.board, left, run.size, kind);
-        if (!mono) return mono.error();
+        if (!mono) return with_advice(mono.error(), kind, run);
         run.mono = std::move(*mono);
-        return {};
+    } else {
+        auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);
+        if (!stereo) return with_advice(stereo.error(), kind, run);
+        run.stereo = std::move(*stereo);
     }
-    auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);
-    if (!stereo) return stereo.error();
-    run.stereo = std::move(*stereo);
+    if (const std::string advice = lens_advice(kind, run); !advice.empty()) log_warning(advice);
     return {};
 }
 

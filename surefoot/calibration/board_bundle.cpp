@@ -187,17 +187,15 @@ class Graph {
 
     std::optional<double> run(const BundleOptions& options) {
         ceres::Solver::Options settings;
-        settings.linear_solver_type = ceres::DENSE_SCHUR;
+        // Without a lens that moves there is nothing to eliminate the boards from.
+        const bool alone = options.freedom == Freedom::poses;
+        settings.linear_solver_type = alone ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
         settings.num_threads = 1;
         settings.max_num_iterations = options.max_iterations;
         settings.function_tolerance = options.tolerance;
         settings.parameter_tolerance = options.tolerance;
         settings.logging_type = ceres::SILENT;
-        auto* order = new ceres::ParameterBlockOrdering;  // boards are eliminated first
-        for (PoseBlock& pose : poses_)
-            if (problem_.HasParameterBlock(pose.data())) order->AddElementToGroup(pose.data(), 0);
-        for (double* block : shared_blocks()) order->AddElementToGroup(block, 1);
-        settings.linear_solver_ordering.reset(order);
+        if (!alone) settings.linear_solver_ordering.reset(boards_first());
         ceres::Solver::Summary summary;
         ceres::Solve(settings, &problem_, &summary);
         if (!summary.IsSolutionUsable()) return std::nullopt;
@@ -245,6 +243,15 @@ class Graph {
         return true;
     }
 
+    /// Boards are eliminated first. The solver owns the answer.
+    ceres::ParameterBlockOrdering* boards_first() {
+        auto* order = new ceres::ParameterBlockOrdering;
+        for (PoseBlock& pose : poses_)
+            if (problem_.HasParameterBlock(pose.data())) order->AddElementToGroup(pose.data(), 0);
+        for (double* block : shared_blocks()) order->AddElementToGroup(block, 1);
+        return order;
+    }
+
     std::vector<double*> shared_blocks() {
         std::vector<double*> blocks;
         for (Lens& lens : lenses_) blocks.push_back(lens.data());
@@ -253,6 +260,10 @@ class Graph {
     }
 
     void set_freedom(double* lens, Freedom freedom) {
+        if (freedom == Freedom::poses) {
+            problem_.SetParameterBlockConstant(lens);
+            return;
+        }
         const std::vector<int> fixed = fixed_parameters(bundle_.kind, freedom);
         const int block = bundle_.kind == LensKind::fisheye ? kFisheye : kPinhole;
         if (!fixed.empty()) problem_.SetManifold(lens, new ceres::SubsetManifold(block, fixed));

@@ -33,6 +33,7 @@ struct BoardBundle {
 
 /// What of a lens may move; board poses and T_left_right always do.
 enum class Freedom : std::uint8_t {
+    poses,       ///< nothing of the lens
     focal,       ///< fx and fy
     low_order,   ///< fx fy cx cy k1 k2
     everything,  ///< the whole model

@@ -79,7 +79,10 @@ std::optional<Eigen::Vector2d> fitted(ImageView<const std::uint8_t> image,
     auto pixel = fit_corner(image, guess);
     const double room_px = std::min(guess.along_row_px.norm(), guess.along_column_px.norm());
     if (!pixel || (*pixel - guess.pixel).norm() > kMostMove * room_px) return std::nullopt;
-    return pixel;
+    // Half of a corner shows at the border of the image and its fit may end beyond.
+    const bool inside = pixel->x() >= 0.0 && pixel->y() >= 0.0 && pixel->x() <= image.width - 1 &&
+                        pixel->y() <= image.height - 1;
+    return inside ? pixel : std::nullopt;
 }
 
 }  // namespace

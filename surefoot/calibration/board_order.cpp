@@ -13,9 +13,9 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Between the black and the white squares; less is a blurred or dark picture, whose corners are
-/// not to be trusted. ASSUMPTION.
-constexpr double kLeastContrast_dn = 15.0;
+/// Of neighbouring squares, the white ones must be brighter than the black ones this often: light
+/// may be weak and uneven, but glints and shadows do not lie on every square.
+constexpr double kLeastAlternating = 0.8;
 
 std::vector<Eigen::Vector2d> places_of(const Board& board) {
     std::vector<Eigen::Vector2d> places_m;
@@ -76,36 +76,53 @@ std::optional<double> brightness(ImageView<const std::uint8_t> image, const Eige
     return sum / 9.0;
 }
 
-/// Whether the squares that should be black are clearly darker than the others.
+/// Whether the squares that should be black are darker than their neighbours.
 bool black_where_it_should_be(const Board& board,
                               const Points& points,
                               ImageView<const std::uint8_t> image) {
-    double sum[2] = {0.0, 0.0};
-    int count[2] = {0, 0};
-    for (int row = 0; row + 1 < board.rows; ++row) {
-        for (int column = 0; column + 1 < board.columns; ++column) {
-            const Eigen::Vector2d middle = 0.25 * (points[index_of(board, column, row)] +
-                                                   points[index_of(board, column + 1, row)] +
-                                                   points[index_of(board, column, row + 1)] +
-                                                   points[index_of(board, column + 1, row + 1)]);
-            const auto value = brightness(image, middle);
-            if (!value) continue;
-            const int white = (row + column) % 2;
-            sum[white] += *value;
-            ++count[white];
+    const int columns = board.columns - 1;
+    const int rows = board.rows - 1;
+    std::vector<std::optional<double>> squares;
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            squares.push_back(brightness(image,
+                                         0.25 * (points[index_of(board, column, row)] +
+                                                 points[index_of(board, column + 1, row)] +
+                                                 points[index_of(board, column, row + 1)] +
+                                                 points[index_of(board, column + 1, row + 1)])));
         }
     }
-    return count[0] > 0 && count[1] > 0 &&
-           sum[0] / count[0] + kLeastContrast_dn < sum[1] / count[1];
+    int right = 0;
+    int compared = 0;
+    const auto compare = [&](int here, int there, bool black_here) {
+        const auto a = squares[static_cast<std::size_t>(here)];
+        const auto b = squares[static_cast<std::size_t>(there)];
+        if (!a || !b) return;
+        ++compared;
+        right += black_here == (*a < *b) && *a != *b ? 1 : 0;
+    };
+    for (int i = 0; i < rows * columns; ++i) {
+        const bool black = (i / columns + i % columns) % 2 == 0;
+        if (i % columns + 1 < columns) compare(i, i + 1, black);
+        if (i / columns + 1 < rows) compare(i, i + columns, black);
+    }
+    return compared > 0 && right >= kLeastAlternating * compared;
 }
 
-/// No point of a row or column lies further from the middle of its neighbours than a quarter of
-/// their distance: perspective and lenses bend a grid more gently.
+/// Rows and columns change from one point to the next gently: no step is more than 2.5 times as
+/// long as the one before, nor turned by more than 45 deg. Perspective and wide lenses at the
+/// border of an image change them by up to a half, and 30 deg; a grid with a point of another row
+/// or of something else jumps back and forth.
 bool is_smooth(const Board& board, const Points& points) {
+    constexpr double kMostRatio = 2.5;
+    constexpr double kLeastCosine = 0.7;
     const bool staggered = board.kind == BoardKind::asymmetric_circles;
     const auto smooth = [&](std::size_t a, std::size_t b, std::size_t c) {
-        const double off = (points[b] - 0.5 * (points[a] + points[c])).norm();
-        return off < 0.125 * (points[c] - points[a]).norm();
+        const Eigen::Vector2d first = points[b] - points[a];
+        const Eigen::Vector2d second = points[c] - points[b];
+        return first.dot(second) > kLeastCosine * first.norm() * second.norm() &&
+               first.norm() < kMostRatio * second.norm() &&
+               second.norm() < kMostRatio * first.norm();
     };
     const int step = staggered ? 2 : 1;
     for (int row = 0; row < board.rows; ++row) {

@@ -26,6 +26,9 @@ constexpr double kLeastContrast_dn = 4.0;
 /// Rms of what the model does not explain, of the contrast: an edge alone, half a blot and a bright
 /// reflection leave more, sharpened or noisy pictures of corners a tenth.
 constexpr double kMostMisfit = 0.3;
+/// A board that moves by several squares' widths while the shutter is open still shows edges along
+/// its way, and corners anywhere on them. Corners in noise of half their contrast are known better.
+constexpr double kMostSpread_px = 0.2;
 
 using Vector7 = Eigen::Matrix<double, kParameters, 1>;
 using Matrix7 = Eigen::Matrix<double, kParameters, kParameters>;
@@ -143,8 +146,8 @@ void hold_blur_at_limit(const Vector7& p, System& system) {
     system.Jtr[kLogBlur] = 0.0;
 }
 
-/// Levenberg and Marquardt. Sum of the squares left, or nothing where it does not settle.
-std::optional<double> settle(const std::vector<Sample>& samples,
+/// Levenberg and Marquardt. The equations where it ends, or nothing where it does not settle.
+std::optional<System> settle(const std::vector<Sample>& samples,
                              const CornerGuess& guess,
                              Vector7& p) {
     System system = system_at(samples, guess, p);
@@ -166,9 +169,23 @@ std::optional<double> settle(const std::vector<Sample>& samples,
         } else {
             damping *= 10.0;  // the steps become shorter, and end where nothing is better
         }
-        if (settled) return system.cost;
+        if (settled) return system;
     }
     return std::nullopt;
+}
+
+/// Standard deviation of the place in the direction in which the pixels leave it most open.
+double spread_px(const System& system, double misfit_dn) {
+    Matrix7 damped = system.JtJ;
+    damped.diagonal() *= 1.0 + 1e-9;
+    const Eigen::LDLT<Matrix7> solver(damped);
+    const Eigen::Matrix<double, kParameters, 2> place =
+        Eigen::Matrix<double, kParameters, kParameters>::Identity().leftCols<2>();
+    const Eigen::Matrix2d inverse = solver.solve(place).topRows<2>();
+    const double middle = 0.5 * inverse.trace();
+    const double apart =
+        std::hypot(0.5 * (inverse(0, 0) - inverse(1, 1)), 0.5 * (inverse(0, 1) + inverse(1, 0)));
+    return misfit_dn * std::sqrt(std::max(0.0, middle + apart));
 }
 
 }  // namespace
@@ -181,11 +198,12 @@ std::optional<Eigen::Vector2d> fit_corner(ImageView<const std::uint8_t> image,
     p << guess.pixel, angle_of(guess.along_row_px), angle_of(guess.along_column_px),
         std::log(kFirstBlur_px), 0.0, 0.0;
     start_light(samples, guess, p);
-    const std::optional<double> left = settle(samples, guess, p);
+    const std::optional<System> left = settle(samples, guess, p);
     if (!left) return std::nullopt;
-    const double misfit_dn = std::sqrt(*left / static_cast<double>(samples.size()));
+    const double misfit_dn = std::sqrt(left->cost / static_cast<double>(samples.size()));
     const double contrast_dn = std::abs(p[kContrast]);
-    const bool clear = contrast_dn >= kLeastContrast_dn && misfit_dn <= kMostMisfit * contrast_dn;
+    const bool clear = contrast_dn >= kLeastContrast_dn && misfit_dn <= kMostMisfit * contrast_dn &&
+                       spread_px(*left, misfit_dn) <= kMostSpread_px;
     return clear ? std::optional(Eigen::Vector2d(p.head<2>())) : std::nullopt;
 }
 

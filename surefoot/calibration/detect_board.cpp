@@ -15,6 +15,8 @@
 #include "surefoot/calibration/board_corners.hpp"
 #include "surefoot/calibration/board_order.hpp"
 #include "surefoot/calibration/charuco.hpp"
+#include "surefoot/calibration/chess_corners.hpp"
+#include "surefoot/calibration/chess_grid.hpp"
 #include "surefoot/calibration/circle_centres.hpp"
 #include "surefoot/calibration/circle_grid.hpp"
 
@@ -32,6 +34,8 @@ constexpr int kMostHalfWindow_px = 5;
 constexpr int kLeastHalfWindow_px = 2;
 /// Single corners may hide under a reflection; a board that shows fewer is another thing.
 constexpr int kLeastPercent = 75;
+/// Boards less sharp than a blur of 2 px are looked for in images reduced to a half and a quarter.
+constexpr int kMostHalvings = 2;
 /// With more dark spots than this the search for the grid takes minutes.
 constexpr std::size_t kMostBlobs = 600;
 /// Larger images are not enlarged to find small circles: it would take seconds.
@@ -86,34 +90,70 @@ bool refine_corners(const Board& board, const cv::Mat& image, double reach, Boar
     return true;
 }
 
-/// Corners of a chessboard, roughly, by the sector method: it sees small squares and does not mind
-/// noise, on which the older cv::findChessboardCorners can spend a minute.
-std::vector<cv::Point2f> rough_corners(const Board& board, const cv::Mat& image) {
+/// OpenCV's sector method: it knows boards that ours does not, and does not mind noise, on which
+/// the older cv::findChessboardCorners can spend a minute.
+Points sector_corners(const Board& board, const cv::Mat& image, int more) {
+    std::vector<cv::Point2f> corners;
     const cv::Size size(board.columns, board.rows);
-    for (const int more : {0, int{cv::CALIB_CB_EXHAUSTIVE}}) {
-        std::vector<cv::Point2f> corners;
-        if (cv::findChessboardCornersSB(
-                image, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE | more)) {
-            return corners;
-        }
-    }
-    return {};
+    if (!cv::findChessboardCornersSB(image, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE | more))
+        return {};
+    return points_of(corners);
 }
 
-BoardSighting find_chessboard(const Board& board,
+/// Boards that grow out of single corners, in an image reduced by `halvings` of its sides.
+GrownChessboard grown_corners(const Board& board,
                               const cv::Mat& image,
-                              ImageView<const std::uint8_t> view) {
-    const std::vector<cv::Point2f> corners = rough_corners(board, image);
-    if (corners.empty())
-        return not_found(fmt::format(
-            "no chessboard of {} x {} inner corners, seen whole", board.columns, board.rows));
-    const auto points = ordered_points(board, points_of(corners), view);
+                              ImageView<const std::uint8_t> view,
+                              int halvings) {
+    const int times = 1 << halvings;
+    cv::Mat reduced = image;
+    if (times > 1) cv::resize(image, reduced, image.size() / times, 0.0, 0.0, cv::INTER_AREA);
+    std::vector<ChessCorner> corners =
+        chess_corners({reduced.data, reduced.cols, reduced.rows, static_cast<int>(reduced.step)});
+    for (ChessCorner& corner : corners)  // (0, 0) is the centre of a pixel in both
+        corner.pixel = times * (corner.pixel + Eigen::Vector2d::Constant(0.5)) -
+                       Eigen::Vector2d::Constant(0.5);
+    return grown_chessboard(board, corners, view);
+}
+
+/// The board from where its corners roughly lie.
+BoardSighting settled_chessboard(const Board& board,
+                                 const Points& corners,
+                                 ImageView<const std::uint8_t> view) {
+    const auto points = ordered_points(board, corners, view);
     if (!points) return not_found("corners that do not form this chessboard");
     BoardSighting sighting = whole_board(*points);
     fit_corners(board, view, sighting.view);
     if (100 * std::ssize(sighting.view.ids) < kLeastPercent * board.columns * board.rows)
         return not_found("a chessboard without clear corners (blurred?)");
     return sighting;
+}
+
+BoardSighting find_chessboard(const Board& board,
+                              const cv::Mat& image,
+                              ImageView<const std::uint8_t> view) {
+    std::string problem;
+    const auto tried = [&](const Points& corners) {
+        BoardSighting sighting = settled_chessboard(board, corners, view);
+        if (!sighting.found() && problem.empty()) problem = sighting.problem;
+        return sighting;
+    };
+    for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
+        const GrownChessboard grown = grown_corners(board, image, view, halvings);
+        if (!grown.points.empty()) {
+            if (BoardSighting sighting = tried(grown.points); sighting.found()) return sighting;
+        } else if (problem.empty()) {
+            problem = grown.problem;
+        }
+    }
+    for (const int more : {0, int{cv::CALIB_CB_EXHAUSTIVE}}) {
+        const Points corners = sector_corners(board, image, more);
+        if (corners.empty()) continue;
+        if (BoardSighting sighting = tried(corners); sighting.found()) return sighting;
+    }
+    if (!problem.empty()) return not_found(problem);
+    return not_found(fmt::format(
+        "no chessboard of {} x {} inner corners, seen whole", board.columns, board.rows));
 }
 
 cv::SimpleBlobDetector::Params blob_params(const Board& board, const cv::Mat& image) {

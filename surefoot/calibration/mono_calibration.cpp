@@ -8,6 +8,9 @@
 #include <numbers>
 
 #include "surefoot/calibration/bundle_start.hpp"
+#include "surefoot/calibration/lens_advice.hpp"
+#include "surefoot/calibration/mono_bundle.hpp"
+#include "surefoot/calibration/view_scatter.hpp"
 
 namespace surefoot::calibration {
 namespace {
@@ -31,29 +34,6 @@ std::vector<std::size_t> usable_views(const Board& board,
     }
     const auto motion = [&](std::size_t a, std::size_t b) { return motion_px(views[a], views[b]); };
     return select_views(usable, motion, options.selection, rejected);
-}
-
-BoardBundle bundle_of(const Board& board,
-                      std::span<const BoardView> views,
-                      std::span<const std::size_t> kept,
-                      ImageSize size,
-                      LensKind kind) {
-    const std::vector<Eigen::Vector3d> points = board.points_m();
-    BoardBundle bundle;
-    bundle.kind = kind;
-    bundle.size = size;
-    bundle.disc_radius_m = disc_radius_m(views);
-    bundle.T_left_board.resize(kept.size());
-    for (std::size_t v = 0; v < kept.size(); ++v) {
-        const BoardView& view = views[kept[v]];
-        for (std::size_t i = 0; i < view.ids.size(); ++i)
-            bundle.sights.push_back({0,
-                                     static_cast<int>(v),
-                                     view.ids[i],
-                                     points[static_cast<std::size_t>(view.ids[i])],
-                                     view.pixels[i]});
-    }
-    return bundle;
 }
 
 /// How much the boards of a bundle differ.
@@ -124,6 +104,18 @@ std::vector<ViewFit> view_fits(const BoardBundle& bundle,
     return views;
 }
 
+/// The reason, or the lens that explains the views where the chosen one does not: then tilts, focal
+/// length and views that disagree follow from the wrong lens.
+Error failure(const Board& board,
+              std::span<const BoardView> views,
+              ImageSize size,
+              LensKind kind,
+              const std::string& reason) {
+    if (const auto advice = advise_lens(board, views, size, kind))
+        return input_error("calibration: " + in_words(*advice));
+    return input_error(reason);
+}
+
 }  // namespace
 
 Result<MonoCalibration> calibrate_mono(const Board& board,
@@ -146,18 +138,21 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
                         summary_of(result.rejected, views.size())));
     }
 
-    BoardBundle bundle = bundle_of(board, views, kept, size, kind);
+    BoardBundle bundle = mono_bundle(board, views, kept, size, kind);
     const std::vector<Sight> all = bundle.sights;
-    if (!start_bundle(bundle)) return input_error(kUnexplained);
+    const auto failed = [&](const std::string& reason) {
+        return failure(board, views, size, kind, reason);
+    };
+    if (!start_bundle(bundle)) return failed(kUnexplained);
     const std::vector<double> start_rms = view_rms_px(bundle);
     for (std::size_t v = 0; v < kept.size(); ++v)
         if (std::isnan(start_rms[v])) reject(result.rejected, kept[v], "no board pose explains it");
     const std::optional<RobustFit> fit = solve_robustly(bundle, options.limits);
-    if (!fit) return input_error(kUnexplained);
+    if (!fit) return failed(kUnexplained);
     reject_dropped(*fit, kept, result.rejected);
     const auto left = static_cast<std::size_t>(views_left(bundle));
     if (fit->contradiction || left < least || 2 * left < kept.size()) {
-        return input_error(
+        return failed(
             fmt::format("calibration: only {} of {} views agree with each other; are the board's "
                         "size, the order "
                         "of its points and the lens model right? ({})",
@@ -168,10 +163,11 @@ Result<MonoCalibration> calibrate_mono(const Board& board,
 
     result.parameters = bundle.lenses[0];
     result.camera = {model_of(kind, result.parameters), size.width, size.height};
-    result.covariance = covariance(bundle, fit->sigma_px).value_or(Eigen::MatrixXd());
+    result.covariance =
+        covariance(bundle, stated_sigma_px(bundle, fit->sigma_px)).value_or(Eigen::MatrixXd());
     const Variety variety = variety_of(bundle);
     if (const std::string found = doubt(result, options, variety); !found.empty()) {
-        return input_error(fmt::format(
+        return failed(fmt::format(
             "calibration: {}; the boards differ by {:.1f} deg in tilt (at least {:.0f} are needed) "
             "and {:.2f} times in distance: show it tilted by 20 to 40 deg about both axes, near "
             "and "

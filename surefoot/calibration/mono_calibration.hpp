@@ -39,11 +39,13 @@ struct MonoCalibration {
     LensKind kind = LensKind::pinhole5;
     camera::Camera camera;
     Eigen::VectorXd parameters;  ///< order of parameter_names(kind), pixels
-    /// Of `parameters`, from the scatter of the residuals: true when corner noise is independent
-    /// and the model is right.
+    /// Of `parameters`, from the scatter of the residuals and of the views (`stated_sigma_px`).
     Eigen::MatrixXd covariance;
     double rms_px = 0.0;    ///< root of the mean squared distance of the points used, as in OpenCV
     double sigma_px = 0.0;  ///< noise of a coordinate, degrees of freedom counted
+    /// What the covariance is stated for: `sigma_px`, or the disagreement of the views about the
+    /// cameras where that is larger (`view_scatter.hpp`).
+    double stated_sigma_px = 0.0;
     double disc_radius_m = 0.0;          ///< of the board's circles, as the views show it, or 0
     std::vector<ViewFit> views;          ///< used, ascending
     std::vector<RejectedView> rejected;  ///< ascending

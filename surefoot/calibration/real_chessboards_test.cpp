@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surefoot/calibration/detect_board.hpp"
@@ -110,6 +112,56 @@ TEST(RealChessboards, FisheyePairsThatWereNotTakenTogetherAreFound) {
     EXPECT_LE(result->rms_px, 0.336);
     EXPECT_LE(result->row_rms_px, 0.65);
     EXPECT_LE(rectified_row_px(*result), 0.65);
+}
+
+/// The pairs `indices` of a set alone.
+Pairs chosen(const Pairs& pairs, const std::vector<std::size_t>& indices) {
+    Pairs some;
+    some.size = pairs.size;
+    for (const std::size_t i : indices) {
+        some.left.push_back(pairs.left[i]);
+        some.right.push_back(pairs.right[i]);
+    }
+    return some;
+}
+
+/// Length of the baseline with its sigma, as stated.
+std::pair<double, double> baseline_of(const StereoCalibration& result) {
+    const Pose& T = result.rig.T_left_right;
+    const Eigen::Vector3d along = T.R().transpose() * T.translation_m.normalized();
+    const Eigen::Matrix3d block = result.covariance.bottomRightCorner<6, 6>().topLeftCorner<3, 3>();
+    return {T.translation_m.norm(), std::sqrt(along.dot(block * along))};
+}
+
+/// Halves of the pairs that belong together are two calibrations of one rig: boards that are not
+/// flat, hands that move and lenses that no model follows are in both.
+void expect_halves_to_agree(const char* set, const Board& board, LensKind kind) {
+    const Pairs pairs = pairs_of(set, board);
+    if (pairs.left.empty()) GTEST_SKIP() << kNoData << set << " in " << data_folder();
+    const auto all = calibrate_stereo(board, pairs.left, pairs.right, pairs.size, kind);
+    ASSERT_TRUE(all) << all.error().message;
+    std::vector<std::size_t> halves[2];
+    for (std::size_t i = 0; i < all->pairs.size(); ++i)
+        halves[i % 2].push_back(all->pairs[i].index);
+    std::pair<double, double> baselines[2];
+    for (std::size_t half = 0; half < 2; ++half) {
+        const Pairs own = chosen(pairs, halves[half]);
+        const auto result = calibrate_stereo(board, own.left, own.right, own.size, kind);
+        ASSERT_TRUE(result) << result.error().message;
+        baselines[half] = baseline_of(*result);
+        std::cout << set << " half " << half << ": baseline " << baselines[half].first << " +- "
+                  << baselines[half].second << '\n';
+    }
+    EXPECT_LT(std::abs(baselines[0].first - baselines[1].first),
+              3.0 * std::hypot(baselines[0].second, baselines[1].second));
+}
+
+TEST(RealChessboards, HalvesOfThePinholePairsAgreeWithinTheirStatedSigma) {
+    expect_halves_to_agree("chess_pinhole", Board{.spacing_m = 1.0}, LensKind::pinhole5);
+}
+
+TEST(RealChessboards, HalvesOfTheFisheyePairsAgreeWithinTheirStatedSigma) {
+    expect_halves_to_agree("chess_fisheye", Board{.spacing_m = 0.02423}, LensKind::fisheye);
 }
 
 }  // namespace

@@ -18,10 +18,10 @@ struct RobustLimits {
     double view_factor = 2.0;
     double view_sigmas = 4.0;
     /// But no view goes for less [px]. Detectors err by amounts that differ from view to view, as
-    /// the sizes of squares, blur and the slants of edges do (rendered chessboards: 0.015 to 0.03
-    /// px rms where the median is 0.02, single corners 0.1 px): the better they are, the less a
-    /// ratio says.
-    double least_px = 0.05;
+    /// the sizes of squares, blur, noise and the slants of edges do (rendered chessboards: 0.015 to
+    /// 0.03 px rms where the median is 0.02, in dim light and noise 0.06 to 0.08 px, single corners
+    /// 0.1 px): the better they are, the less a ratio says.
+    double least_px = 0.1;
     /// Where each view has a limit of its own, it takes the place of the two above [px].
     std::vector<double> view_limits_px;
     /// A point goes beyond this many robust standard deviations of a coordinate: of 3000 points

@@ -9,6 +9,7 @@
 
 #include "surefoot/calibration/rectified_errors.hpp"
 #include "surefoot/calibration/relative_pose.hpp"
+#include "surefoot/calibration/view_scatter.hpp"
 #include "surefoot/camera/rectifier.hpp"
 
 namespace surefoot::calibration {
@@ -347,7 +348,8 @@ Result<StereoCalibration> calibrate_stereo(const Board& board,
     result.rig = rig_of(parameters);
     if (const auto found = result.rig.problem())
         return input_error("stereo calibration: " + *found);
-    const auto uncertainty = covariance(bundle, fit->sigma_px);
+    result.stated_sigma_px = stated_sigma_px(bundle, fit->sigma_px);
+    const auto uncertainty = covariance(bundle, result.stated_sigma_px);
     if (!uncertainty)
         return input_error("stereo calibration: the pairs do not determine the cameras");
     result.covariance = *uncertainty;

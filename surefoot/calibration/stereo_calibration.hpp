@@ -41,6 +41,9 @@ struct StereoCalibration {
     Eigen::MatrixXd covariance;
     double rms_px = 0.0;    ///< both images, as OpenCV defines it
     double sigma_px = 0.0;  ///< noise of a coordinate, degrees of freedom counted
+    /// What the covariance is stated for: `sigma_px`, or the disagreement of the views about the
+    /// cameras where that is larger (`view_scatter.hpp`).
+    double stated_sigma_px = 0.0;
     /// Row difference of the corners after rectification, in pixels of `row_focal_px`, the mean
     /// focal length of the two lenses: what is left of a corner's error stays as large as it was
     /// found. The rectified images of `run` may be larger or smaller, by what their lens model

@@ -1,0 +1,123 @@
+"""Tables of docs/experiments/boards.md: finders of chessboards, rigs of wide lenses, lens models suggested."""
+import collections
+import statistics
+
+FINDER_SEEDS = (9_001,)  # nothing was chosen by them
+RIG_SEEDS = (9_001, 9_002)
+IMAGE_SETS = (("chess_fisheye", "calibration/chess_fisheye", "chessboard:9x6:0.02423"),
+              ("chess_pinhole", "calibration/chess_pinhole", "chessboard:9x6:1"),
+              ("bumblebee_chess", "real/bumblebee_chess", "chessboard:4x6:0.03"),
+              ("mrpt_boards", "real/mrpt_boards", "chessboard:9x6:0.03"))
+EMPTY_SETS = (("garden_walk", "real/garden_walk", "chessboard:9x6:0.03"),
+              ("bumblebee_pairs", "real/bumblebee_pairs", "chessboard:9x6:0.03"))
+
+
+def measure(place, read):
+    """Runs what is not there yet; gives the rows of all finders, of images without a board, of rigs and of suggestions."""
+    folder = place.folder("boards")
+
+    def kept(name, *words):
+        path = folder / f"{name}.csv"
+        if not path.exists() and not place.redraw:
+            part = path.with_suffix(".part")
+            place.run("board_finders", part, *words)
+            part.rename(path)
+        return read(path) if path.exists() else []
+
+    found = [row for seed in FINDER_SEEDS for row in kept(f"rendered_{seed}", "rendered", seed, 1)]
+    for name, where, board in IMAGE_SETS:
+        found += kept(name, "images", name, place.data / where, board)
+    empty = [row for name, where, board in EMPTY_SETS
+             for row in kept(name, "images", name, place.data / where, board, "ours")]
+    rigs, advice = [], []
+    for seed in RIG_SEEDS:
+        own = folder / f"rigs_{seed}"
+        if not (own / "done").exists() and not place.redraw:
+            place.run("wide_rigs", own, seed, 1)
+            (own / "done").touch()
+        if (own / "done").exists():
+            rigs += read(own / "rigs.csv")
+            advice += read(own / "advice.csv")
+    return found, empty, rigs, advice
+
+
+def finder_rows(rows):
+    """Of rendered boards those count that are right: every corner within 1.5 px of the true one; in brackets those found."""
+    finders = list(dict.fromkeys(r["finder"] for r in rows))
+    is_rendered = lambda name: " deg " in name  # noqa: E731
+    groups = collections.OrderedDict()
+    for row in rows:
+        groups.setdefault(row["set"], []).append(row)
+        if is_rendered(row["set"]):
+            look = row["image"].rsplit(" ", 1)[0]
+            groups.setdefault(f"look: {look}", []).append(row)
+            groups.setdefault("all rendered", []).append(row)
+    order = sorted(groups, key=lambda name: (not is_rendered(name), not name.startswith("look"), name != "all rendered"))
+    body = []
+    for name in order:
+        mine = groups[name]
+        cells = []
+        for finder in finders:
+            own = [r for r in mine if r["finder"] == finder]
+            found, right = (sum(int(r[key]) for r in own) for key in ("found", "right"))
+            rendered = is_rendered(own[0]["set"])
+            cells.append(f"{right} ({found})" if rendered else str(found))
+        body.append([name, sum(r["finder"] == finders[0] for r in mine)] + cells)
+    times = []
+    for finder in finders:
+        ms = sorted(float(r["ms"]) for r in rows if r["finder"] == finder)
+        times.append(f"{statistics.median(ms):.0f} / {ms[-1]:.0f}")
+    body.append(["time of an image [ms]: median / longest", len(rows) // len(finders)] + times)
+    return ["set", "images"] + finders, body
+
+
+def empty_rows(rows):
+    body = []
+    for name in dict.fromkeys(r["set"] for r in rows):
+        mine = [r for r in rows if r["set"] == name]
+        ms = sorted(float(r["ms"]) for r in mine)
+        body.append([name, len(mine), sum(int(r["found"]) for r in mine), f"{statistics.median(ms):.0f} / {ms[-1]:.0f}"])
+    return ["set without a board", "images", "boards found", "time of an image [ms]: median / longest"], body
+
+
+def within(rows, error, sigma, times):
+    known = [(abs(float(r[error])), float(r[sigma])) for r in rows if r[error] != "nan"]
+    return f"{sum(e <= times * s for e, s in known)} of {len(known)}"
+
+
+def rig_rows(rows):
+    body = []
+    for name in [*dict.fromkeys(r["lens"] for r in rows), "all"]:
+        mine = [r for r in rows if name in (r["lens"], "all")]
+        shares = [float(r["baseline_mm"]) / float(r["baseline_sigma_mm"]) for r in mine]
+        depths = [float(r["depth_mm"]) / float(r["depth_sigma_mm"]) for r in mine if r["depth_mm"] != "nan"]
+        body.append([name, len(mine), f"{sum(int(r['pairs']) for r in mine)} of {sum(int(r['shown']) for r in mine)}",
+                     f"{statistics.median(float(r['baseline_sigma_mm']) for r in mine):.3f}",
+                     within(mine, "baseline_mm", "baseline_sigma_mm", 3), f"{max(map(abs, shares)):.1f}",
+                     f"{statistics.median(float(r['depth_sigma_mm']) for r in mine):.2f}",
+                     within(mine, "depth_mm", "depth_sigma_mm", 3), f"{max(map(abs, depths)):.1f}"])
+    return ["lens", "rigs", "pairs used", "baseline: stated sigma, median [mm]", "within 3 sigma", "largest [sigma]",
+            "depth at 1 m: stated sigma, median [mm]", "within 3 sigma", "largest [sigma]"], body
+
+
+def advice_rows(rows):
+    """A line a lens and chosen model: what was suggested, and how the two explain boards that they were not fitted to."""
+    body = []
+    for lens, chosen in dict.fromkeys((r["lens"], r["chosen"]) for r in rows):
+        mine = [r for r in rows if (r["lens"], r["chosen"]) == (lens, chosen)]
+        counts = collections.Counter(r["suggested"] or "none" for r in mine)
+        pixels = [f"{float(r['better_px']):.2f} / {float(r['chosen_px']):.2f}" for r in mine if r["suggested"]]
+        body.append([lens, mine[0]["kind"], chosen, ", ".join(f"{n} {name}" for name, n in counts.items()),
+                     ", ".join(pixels) or "-", f"{sum(int(r['calibrated']) for r in mine)} of {len(mine)}"])
+    return ["lens", "its model", "chosen model", "suggested", "rms of the suggested / chosen model [px]",
+            "calibrated with the chosen model"], body
+
+
+def lines(place, read, table):
+    found, empty, rigs, advice = measure(place, read)
+    text = []
+    for title, rows, make in (("Boards found", found, finder_rows), ("Images without a board", empty, empty_rows),
+                              ("Rigs of wide lenses", rigs, rig_rows), ("Suggested lens models", advice, advice_rows)):
+        text += ["", f"### {title}", ""]
+        text += table(*make(rows)) if rows else ["Not measured yet."]
+    return text[1:]
