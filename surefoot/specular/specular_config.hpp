@@ -24,8 +24,8 @@ struct SpecularConfig {
     double unique_ratio = 1.4;
     /// Of the 41 ahead, and as many of the 180 all around; each look costs about half a
     /// millisecond.
-    int directions_per_frame = 2;
-    double margin_m = 0.05;       ///< cells this far before the line become unknown too
+    int directions_per_frame = 1;
+    double margin_m = 0.02;       ///< cells this far before the line become unknown too
     double side_margin_m = 0.15;  ///< and this far beside the seen part of the line
 
     void describe(ConfigVisitor& visitor);
