@@ -39,7 +39,7 @@ constexpr double kMostTilt_deg = 45.0;
 constexpr double kLeastStep_px = 7.0;
 constexpr double kDistance_m = 1.0;
 constexpr double kMillimetres = 1e3;
-const calibration::Board kBoard{.columns = 9, .rows = 6, .spacing_m = 0.03};
+const calibration::Board board_9x6{.columns = 9, .rows = 6, .spacing_m = 0.03};
 
 struct Lens {
     std::string name;
@@ -89,7 +89,7 @@ struct Pairs {
 bool is_whole(const camera::Camera& camera, const Pose& T_camera_board) {
     constexpr double kBorder_px = 0.5 * kLeastStep_px;
     const auto corners =
-        calibration::testing::true_corners(kBoard, camera, T_camera_board, kLeastStep_px);
+        calibration::testing::true_corners(board_9x6, camera, T_camera_board, kLeastStep_px);
     return corners && std::all_of(corners->begin(), corners->end(), [&](const auto& p) {
                return p.x() > kBorder_px && p.y() > kBorder_px &&
                       p.x() < camera.width - 1 - kBorder_px &&
@@ -102,21 +102,21 @@ Pairs seen_pairs(const camera::StereoRig& rig, std::uint64_t seed) {
     Rng rng(seed);
     while (std::ssize(pairs.left) < kPairs) {
         const Pose T_left_board =
-            calibration::testing::wide_pose(kBoard, rig.left, kMostTilt_deg, kLeastStep_px, rng);
+            calibration::testing::wide_pose(board_9x6, rig.left, kMostTilt_deg, kLeastStep_px, rng);
         const Pose T_right_board = rig.T_left_right.inverse() * T_left_board;
         if (!is_whole(*rig.right, T_right_board)) continue;
         const auto i = pairs.left.size();
         const auto& look = calibration::testing::kWideLooks[i % 6];
         const auto found = [&](const camera::Camera& camera, const Pose& T, std::uint64_t eye) {
             const auto image = calibration::testing::wide_picture(
-                kBoard, camera, T, look, mix_seed(seed, 2 * i + eye));
-            return calibration::detect_board(kBoard, image.view()).view;
+                board_9x6, camera, T, look, mix_seed(seed, 2 * i + eye));
+            return calibration::detect_board(board_9x6, image.view()).view;
         };
         pairs.left.push_back(found(rig.left, T_left_board, 0));
         pairs.right.push_back(found(*rig.right, T_right_board, 1));
         if (!pairs.left.back().ids.empty() && !pairs.right.back().ids.empty())
             pairs.right.back() =
-                calibration::turned_like(kBoard, pairs.left.back(), pairs.right.back());
+                calibration::turned_like(board_9x6, pairs.left.back(), pairs.right.back());
     }
     return pairs;
 }
@@ -140,7 +140,7 @@ double depth_error_m(const camera::StereoRig& truth, const camera::StereoRig& fo
 void compare_rig(const Lens& lens, std::uint64_t seed, const Pairs& pairs, fmt::ostream& out) {
     const camera::StereoRig truth = rig_of(lens);
     const auto estimate =
-        calibration::calibrate_stereo(kBoard, pairs.left, pairs.right, kSize, lens.kind);
+        calibration::calibrate_stereo(board_9x6, pairs.left, pairs.right, kSize, lens.kind);
     if (!estimate) {
         fmt::print("{} seed {}: {}\n", lens.name, seed, estimate.error().message);
         return;
@@ -173,8 +173,8 @@ void compare_advice(const Lens& lens, std::uint64_t seed, const Pairs& pairs, fm
     };
     for (const LensKind chosen :
          {LensKind::pinhole4, LensKind::pinhole5, LensKind::rational, LensKind::fisheye}) {
-        const auto estimate = calibration::calibrate_mono(kBoard, pairs.left, kSize, chosen);
-        const auto advice = calibration::advise_lens(kBoard, pairs.left, kSize, chosen);
+        const auto estimate = calibration::calibrate_mono(board_9x6, pairs.left, kSize, chosen);
+        const auto advice = calibration::advise_lens(board_9x6, pairs.left, kSize, chosen);
         const std::string message = estimate ? "" : estimate.error().message;
         out.print("{},{},{},{},{},{},{:.4f},{:.4f},\"{}\"\n",
                   seed,
