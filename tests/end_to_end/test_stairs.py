@@ -241,7 +241,7 @@ class Stairs(CliTest):
     def test_the_folder_of_a_run_says_about_the_same_as_the_run(self):
         # Not quite: the run has followed what it found, and reads the last look beside the map.
         out = self.dir / "out"
-        run = self.json_of("run", "sim:stairs_up_ada", "--set", "sim.sensor=analytic", "--max-frames", 40, "--layers",
+        run = self.json_of("run", "sim:stairs_up_ada", "--set", "sim.sensor=analytic", "--max-frames", 60, "--layers",
                            "--out", out)
         self.assertTrue(run["complete"])
         of_run = json.loads((out / "stairs.json").read_text())
@@ -267,13 +267,11 @@ class Stairs(CliTest):
         near_m = of_run["flights"][0]["pose"][0] + 2.3 * of_run["flights"][0]["going_m"]
         followed, looked = (tread_cells(folder / "treads.asc", near_m) for folder in (out, self.dir / "again"))
         self.assertGreater(len(followed & looked), 500)
-        # The run's flight is narrower by the 74 mm of its borders that few looks saw: 6.7 % (docs/foreign_data.md).
-        self.assertLess(len(followed ^ looked), 0.07 * len(followed & looked))
+        self.assertLess(len(followed ^ looked), 0.02 * len(followed & looked))
         for file in ("treads.asc", "classes.png"):
             self.assertTrue((out / file).exists(), file)
         one, other = again["flights"][0], of_run["flights"][0]
-        # The run has followed the farthest step for a few frames only, and does not count it yet.
-        self.assertEqual((one["kind"], one["steps"] - other["steps"] in (0, 1)), (other["kind"], True))
+        self.assertEqual((one["kind"], one["steps"]), (other["kind"], other["steps"]))
         self.assertAlmostEqual(one["riser_m"], other["riser_m"], delta=3e-3)
         self.assertAlmostEqual(one["going_m"], other["going_m"], delta=8e-3)
         self.assertAlmostEqual(one["pose"][0], other["pose"][0], delta=0.01)
