@@ -43,8 +43,8 @@ struct StairsConfig {
     /// an edge be for a flight or a kerb. A map has some thirty lines that might be one, and at
     /// most one map in thirty may invent one.
     double step_ratio = 1000.0;
-    /// The same for a drop: what is as likely one as not is said. A drop whose ground is not seen
-    /// is not asked.
+    /// The same for a drop: one that is not told costs more than one too many. A drop whose ground
+    /// is not seen is not asked.
     double drop_ratio = 0.01;
     /// One sigma of errors that cells within 0.1 m share: 3 mm, what a matcher errs by 1 m away.
     double evidence_shared_m = 0.003;
