@@ -170,7 +170,7 @@ Status solve(calibration::LensKind kind, CalibrationRun& run) {
     }
     if (run.cameras() == 1) {
         auto mono = calibration::calibrate_mono(run.board, left, run.size, kind);
-        if (!mono) return with_advice(mono.error(), kind, run);
+        if (!mono) return mono.error();  // it has looked for another lens model itself
         run.mono = std::move(*mono);
     } else {
         auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);

@@ -16,7 +16,7 @@ constexpr double kAhead_m = 0.8;      ///< from the body to the middle of the pa
 constexpr int kAheadDirections = 41;  ///< within 20 deg of the heading
 /// Every direction comes up once in 180 turns, and neighbours far apart in time.
 constexpr unsigned kStride = 67;
-constexpr double kFloorStep_m = 0.015;  ///< another floor: the picture begins anew
+constexpr double kFloorStep_m = 0.015;  ///< another floor: the picture starts again
 constexpr double kFloorShare = 0.1;     ///< of one frame in the mean height of the floor
 constexpr double kSameAngle_rad = 2.0 * kRadPerDeg;
 constexpr double kSameOffset_m = 0.06;
