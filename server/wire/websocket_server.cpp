@@ -688,10 +688,15 @@ void SocketServer::do_tick(std::int64_t now_ns) {
     if (tick_) tick_(now_ns);
     publish(topics_.due(gate, now_ns), now_ns);
     for (const auto& connection : std::vector(connections_)) connection->on_tick(now_ns);
-    look_ahead(now_ns);
     take_turns(now_ns);
     accepts_left_ = config.accepts_per_tick;
     accept();
+    // After a pause of the thread a question may have left its socket and not come to its handler.
+    net::post(io_, [this] {
+        const std::int64_t start_ns = thread_ns();
+        look_ahead(steady_ns());
+        accounted_ns += thread_ns() - start_ns;
+    });
 }
 
 void SocketServer::look_ahead(std::int64_t now_ns) {

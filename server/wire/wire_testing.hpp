@@ -35,6 +35,7 @@ class ScriptedGate : public StepGate {
   public:
     [[nodiscard]] Answer ask_step(const StepQuestion& question, std::int64_t now_ns) override {
         questions.push_back(question);
+        looks_before.push_back(looked_at.size());
         Answer answer;
         gate::Verdict& verdict = answer.verdict;
         verdict.command = question.command;
@@ -120,6 +121,7 @@ class ScriptedGate : public StepGate {
 
     std::vector<std::uint8_t> movement_codes{kForward, kBackward, 21};
     mutable std::vector<std::uint8_t> looked_at;  ///< commands of prospects
+    std::vector<std::size_t> looks_before;        ///< prospects before each question
 
   private:
     void answer_by_script(Answer& answer, std::uint8_t command) const {
