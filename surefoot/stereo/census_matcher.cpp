@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "surefoot/stereo/clipped.hpp"
 #include "surefoot/stereo/finisher.hpp"
 #include "surefoot/stereo/matcher.hpp"
 #include "surefoot/stereo/settle.hpp"
@@ -30,6 +31,7 @@ class CensusMatcher final : public Matcher {
         depth.resize(left.width, left.height);
         search_.search(left, right, executor, winners_);
         settle(settle_, winners_, executor, settled_px_);
+        clipped_.remove(left, executor, settled_px_);
         speckles_.remove(executor, kSpeckleSize_px, kSpeckleRange_px, settled_px_);
         finisher_.finish(left, right, settled_px_, Filter::median, executor, depth);
     }
@@ -39,6 +41,7 @@ class CensusMatcher final : public Matcher {
     SemiGlobalSearch search_;
     Winners winners_;
     Image<float> settled_px_;
+    ClippedFilter clipped_;
     SpeckleFilter speckles_;
     Finisher finisher_;
 };

@@ -3,6 +3,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 
+#include "surefoot/stereo/clipped.hpp"
 #include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/finisher.hpp"
 #include "surefoot/stereo/matcher.hpp"
@@ -37,6 +38,7 @@ class OpenCvMatcher final : public Matcher {
         pad(right, padded_right_);
         search_->compute(padded_left_, padded_right_, steps_);
         read_steps(executor, depth.disparity_px);
+        clipped_.remove(left, executor, depth.disparity_px);
         drop_hidden(executor, left_right_tolerance_px_, depth.disparity_px);
         finisher_.finish(left, right, depth.disparity_px, Filter::none, executor, depth);
     }
@@ -76,6 +78,7 @@ class OpenCvMatcher final : public Matcher {
     int margin_px_;
     int left_margin_px_;
     cv::Ptr<cv::StereoMatcher> search_;
+    ClippedFilter clipped_;
     Finisher finisher_;
     // Kept between frames, so that nothing is allocated anew.
     cv::Mat padded_left_;
