@@ -30,6 +30,7 @@
 #include "server/wire/peer_of.hpp"
 #include "server/wire/server_config.hpp"
 #include "server/wire/steady_clock.hpp"
+#include "server/wire/tls_arrivals.hpp"
 #include "server/wire/token_bucket.hpp"
 
 namespace surefoot::page {
@@ -658,19 +659,13 @@ Status PageSockets::listen() {
 Status PageSockets::listen_with_tls() {
     error_code ignored;
     acceptor_.close(ignored);
-    wire::TlsDoorConfig door;
-    door.bind_address = config.bind_address;
-    door.port = port_;
-    door.files = config.tls;
-    door.max_connections = config.slots.max_clients + config.slots.max_handshakes;
-    auto opened = wire::TlsDoor::open(door, [this](int handle, const std::string& peer) {
-        net::post(io_, [this, socket = wire::OwnedHandle(handle), peer]() mutable {
-            tcp::socket arrived(io_);
-            error_code error;
-            arrived.assign(tcp::v4(), socket.release(), error);
-            if (!error) admit(std::move(arrived), peer);
-        });
-    });
+    auto opened = wire::open_tls_door(
+        config.bind_address,
+        port_,
+        config.tls,
+        config.slots,
+        io_,
+        [this](tcp::socket socket, const std::string& peer) { admit(std::move(socket), peer); });
     if (!opened) return opened.error();
     tls_door_ = std::move(opened).value();
     return {};

@@ -22,7 +22,7 @@
 #include "server/wire/peer_of.hpp"
 #include "server/wire/periodic_topics.hpp"
 #include "server/wire/steady_clock.hpp"
-#include "server/wire/tls_door.hpp"
+#include "server/wire/tls_arrivals.hpp"
 #include "server/wire/topic_json.hpp"
 
 namespace surefoot::wire {
@@ -536,19 +536,14 @@ Status SocketServer::listen() {
 }
 
 Status SocketServer::listen_with_tls() {
-    TlsDoorConfig door;
-    door.bind_address = config.bind_address;
-    door.port = config.port;
-    door.files = config.tls;
-    door.max_connections = config.slots.max_clients + config.slots.max_handshakes;
-    auto opened = TlsDoor::open(door, [this](int socket, const std::string& peer) {
-        net::post(io_, [this, handle = OwnedHandle(socket), peer]() mutable {
-            tcp::socket arrived(io_);
-            error_code error;
-            arrived.assign(tcp::v4(), handle.release(), error);
-            if (!error) admit_to_door(std::move(arrived), peer);
-        });
-    });
+    auto opened = open_tls_door(config.bind_address,
+                                config.port,
+                                config.tls,
+                                config.slots,
+                                io_,
+                                [this](tcp::socket socket, const std::string& peer) {
+                                    admit_to_door(std::move(socket), peer);
+                                });
     if (!opened) return opened.error();
     tls_door_ = std::move(opened).value();
     port_ = tls_door_->port();
