@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/calibration/bundle_start.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,6 +23,8 @@ constexpr double kSaturation_px = 20.0;
 constexpr double kStartHuber_px = 5.0;
 constexpr int kStageIterations = 30;
 constexpr double kStageTolerance = 1e-6;
+constexpr BundleOptions kLastStage{
+    Freedom::everything, kStartHuber_px, kStageIterations, kStageTolerance};
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Sights of one view as plane points and rays.
@@ -125,35 +128,104 @@ void add_missing(const BoardBundle& all, BoardBundle& refined) {
     }
 }
 
-}  // namespace
+struct Start {
+    BoardBundle bundle;
+    double cost = 0.0;
+};
 
-bool start_bundle(BoardBundle& bundle) {
-    const LensKind wanted = bundle.kind;
-    if (wanted == LensKind::rational) bundle.kind = LensKind::pinhole5;
-    std::optional<BoardBundle> best;
-    double best_cost = std::numeric_limits<double>::infinity();
+/// What a start cannot explain must not make it look better.
+double cost_of_missing(const BoardBundle& all, const BoardBundle& start) {
+    const auto missing = static_cast<double>(all.sights.size() - start.sights.size());
+    return missing * kStartHuber_px * kSaturation_px;
+}
+
+std::optional<Start> best_start(const BoardBundle& bundle) {
+    std::optional<Start> best;
     for (const Candidate& candidate : candidates(bundle)) {
         BoardBundle trial = bundle;
         set_focal(trial, candidate.focal_px);
         (void)score(trial);
         const std::optional<double> cost = refine(trial);
         if (!cost) continue;
-        // What a start cannot explain must not make it look better.
-        const auto missing = static_cast<double>(bundle.sights.size() - trial.sights.size());
-        const double total = *cost + missing * kStartHuber_px * kSaturation_px;
-        if (!(total < best_cost)) continue;
-        best_cost = total;
-        best = std::move(trial);
+        const double total = *cost + cost_of_missing(bundle, trial);
+        if (best && !(total < best->cost)) continue;
+        best = Start{std::move(trial), total};
     }
-    if (best) {
-        add_missing(bundle, *best);
-        bundle = std::move(*best);
+    if (best) add_missing(bundle, best->bundle);
+    return best;
+}
+
+/// The rational lens whose radius r of the angle t is nearest to that of Kannala and Brandt:
+/// tan t (1 + k1 tan^2 t + k2 tan^4 t) = r (1 + k4 tan^2 t + k5 tan^4 t) is linear in its
+/// coefficients. The highest ones are left at 0: with them the quotient may have a pole.
+Eigen::VectorXd rational_like(const Eigen::VectorXd& fisheye, double widest_rad) {
+    constexpr int kAngles = 60;
+    Eigen::MatrixXd A(kAngles, 4);
+    Eigen::VectorXd b(kAngles);
+    for (int i = 0; i < kAngles; ++i) {
+        const double t = widest_rad * (i + 1) / kAngles;
+        const double t2 = t * t;
+        const double r =
+            t * (1.0 + t2 * (fisheye[4] + t2 * (fisheye[5] + t2 * (fisheye[6] + t2 * fisheye[7]))));
+        const double x = std::tan(t);
+        const double x2 = x * x;
+        A.row(i) << x * x2, x * x2 * x2, -r * x2, -r * x2 * x2;
+        b[i] = r - x;
     }
-    bundle.kind = wanted;
-    if (!best) return false;
-    const Eigen::Index known = bundle.lenses[0].size();
-    bundle.lenses[0].conservativeResize(static_cast<Eigen::Index>(parameter_names(wanted).size()));
-    bundle.lenses[0].tail(bundle.lenses[0].size() - known).setZero();
+    const Eigen::VectorXd k = A.colPivHouseholderQr().solve(b);
+    Eigen::VectorXd lens = Eigen::VectorXd::Zero(12);
+    lens.head<4>() = fisheye.head<4>();
+    lens.segment<2>(4) = k.head<2>();
+    lens.segment<2>(9) = k.tail<2>();
+    return lens;
+}
+
+void become_rational(BoardBundle& bundle) {
+    const camera::CameraModel model = model_of(bundle.kind, bundle.lenses[0]);
+    if (bundle.kind == LensKind::fisheye) {
+        constexpr double kWidest_rad = 1.4;  // the tangent grows without limit
+        double least_z = 1.0;
+        for (const Sight& sight : bundle.sights)
+            if (const auto ray = camera::unproject(model, sight.pixel))
+                least_z = std::min(least_z, ray->normalized().z());
+        const double widest_rad = std::acos(std::clamp(least_z, std::cos(kWidest_rad), 1.0));
+        bundle.lenses[0] = rational_like(bundle.lenses[0], widest_rad);
+    } else {
+        bundle.lenses[0].conservativeResizeLike(Eigen::VectorXd::Zero(12));
+    }
+    bundle.kind = LensKind::rational;
+    drop_invisible(bundle);
+}
+
+/// Neither a pinhole camera nor a fisheye is near every rational lens: from 100 deg on the
+/// polynomial of the first one ends in a false minimum now and then.
+std::optional<Start> best_rational_start(const BoardBundle& bundle) {
+    std::optional<Start> best;
+    for (const LensKind near : {LensKind::pinhole5, LensKind::fisheye}) {
+        BoardBundle simple = bundle;
+        simple.kind = near;
+        std::optional<Start> start = best_start(simple);
+        if (!start) continue;
+        become_rational(start->bundle);
+        if (start->bundle.sights.empty()) continue;
+        std::optional<double> cost = solve(start->bundle, kLastStage);
+        if (!cost) continue;
+        add_missing(bundle, start->bundle);
+        cost = solve(start->bundle, kLastStage);
+        if (!cost) continue;
+        start->cost = *cost + cost_of_missing(bundle, start->bundle);
+        if (!best || start->cost < best->cost) best = std::move(start);
+    }
+    return best;
+}
+
+}  // namespace
+
+bool start_bundle(BoardBundle& bundle) {
+    std::optional<Start> start =
+        bundle.kind == LensKind::rational ? best_rational_start(bundle) : best_start(bundle);
+    if (!start) return false;
+    bundle = std::move(start->bundle);
     return true;
 }
 
