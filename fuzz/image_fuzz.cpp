@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #include <string_view>
 
 #include "io/bytes.hpp"
+#include "io/dem_file.hpp"
 #include "io/fake_video_device.hpp"
 #include "io/image_file.hpp"
 #include "io/live_camera.hpp"
@@ -49,6 +51,24 @@ void read_image(std::string_view bytes) {
 
 [[maybe_unused]] void fuzz_image(std::string_view bytes) {
     read_image(bytes);
+}
+
+/// Heights from a picture: one for each pixel, none that is impossible.
+[[maybe_unused]] void fuzz_dem_image(std::string_view bytes) {
+    const Result<io::ImageHeader> header = io::check_image(bytes, "f");
+    if (header && std::int64_t{header->width} * header->height > kMostPixels) return;
+    constexpr double kScale_m = 0.05;
+    constexpr double kFullHeight_m = 2.0;
+    const auto dem = io::parse_dem_image(bytes, "f", kScale_m, kFullHeight_m);
+    must_explain(dem);
+    if (!dem) return;
+    if (!header || dem->values.width() != header->width || dem->values.height() != header->height)
+        std::abort();
+    for (std::size_t i = 0; i < dem->values.size(); ++i) {
+        const auto height_m = static_cast<double>(dem->values.data()[i]);
+        if (!std::isnan(height_m) && !(height_m >= 0.0 && height_m <= kFullHeight_m * 1.000001))
+            std::abort();
+    }
 }
 
 std::uint32_t crc32(std::string_view bytes) {

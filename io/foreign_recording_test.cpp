@@ -230,6 +230,10 @@ TEST(PairFolders, StampsAndPartnersFromTheNames) {
     EXPECT_EQ(stamps_of_names({"1311868164363181.png"})->times_ns[0], 1311868164363181000);
     EXPECT_FALSE(stamps_of_names({"0000000012.png"}).has_value()) << "a number, not a time";
     EXPECT_FALSE(stamps_of_names({"1311868164363181.png", "1311868164363.png"}).has_value());
+    for (const char* beyond_2261 : {"9762223982223.png", "9762223982223000.png"})
+        EXPECT_FALSE(stamps_of_names({beyond_2261}).has_value()) << "no 64 bits hold it in ns";
+    EXPECT_FALSE(stamps_of_names({"9223372036854775807.png"}).has_value());
+    EXPECT_EQ(stamps_of_names({"9199999999999.png"})->times_ns[0], 9'199'999'999'999'000'000);
 }
 
 /// One drive of KITTI raw: the calibration of the day lies beside the drives.
@@ -261,6 +265,9 @@ TEST(PairFolders, KittiRaw) {
         << "the colour pair has a baseline of its own";
     EXPECT_FALSE(parse_timestamps("2011-09-26 25:02:25.9\n", "t").ok());
     EXPECT_FALSE(parse_timestamps("1317042145.96\n", "t").ok());
+    EXPECT_TRUE(parse_timestamps("2012-02-29 13:02:25.9\n", "t").ok());
+    for (const char* no_day : {"2011-02-29 13:02:25.9\n", "2011-09-31 13:02:25.9\n"})
+        EXPECT_FALSE(parse_timestamps(no_day, "t").ok()) << no_day;
 }
 
 /// A TUM RGB-D recording of two frames; depths are codes.

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "io/stamps.hpp"
 #include "io/text.hpp"
 
 namespace surefoot::io {
@@ -87,10 +88,12 @@ std::optional<NameStamps> stamps_of_names(const std::vector<std::string>& names)
         const bool seconds = stem.find('.') != stem.npos;
         const std::int64_t own_tick = seconds ? -1 : tick_ns(stem.size());
         const auto value = seconds ? parse_seconds_as_ns(stem) : parse_int64(stem);
-        if (own_tick == 0 || !value || *value < 0 || (tick != 0 && own_tick != tick))
+        const std::int64_t value_ns = seconds ? 1 : own_tick;
+        if (own_tick == 0 || !value || *value < 0 || *value > kMaxStamp_ns / value_ns ||
+            (tick != 0 && own_tick != tick))
             return std::nullopt;
         tick = own_tick;
-        stamps.times_ns.push_back(seconds ? *value : *value * tick);
+        stamps.times_ns.push_back(*value * value_ns);
     }
     if (tick == 0) return std::nullopt;
     stamps.unit = tick == -1 ? "s" : tick == 1 ? "ns" : tick == 1'000 ? "us" : "ms";

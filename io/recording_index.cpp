@@ -11,6 +11,7 @@
 #include "io/image_file.hpp"
 #include "io/recording.hpp"
 #include "io/rig_file.hpp"
+#include "io/stamps.hpp"
 #include "io/text.hpp"
 #include "surefoot/camera/rig_scaling.hpp"
 #include "surefoot/core/checked_index.hpp"
@@ -21,9 +22,6 @@ namespace {
 Error at_line(const std::string& file, int line, const std::string& what) {
     return input_error(fmt::format("{}:{}: {}", file, line, what));
 }
-
-/// Stamps of a recording lie between 1970 and 2261, so that sums and differences stay in range.
-constexpr std::int64_t kMaxStamp_ns = 9'200'000'000'000'000'000;
 
 std::optional<std::int64_t> in_range(std::optional<std::int64_t> time_ns) {
     return time_ns && *time_ns >= 0 && *time_ns <= kMaxStamp_ns ? time_ns : std::nullopt;
@@ -198,13 +196,15 @@ Result<std::vector<std::int64_t>> parse_timestamps(std::string_view text, const 
             const auto second_ns = parse_seconds_as_ns(clock[2]);
             if (year && month && date && hour && minute && second_ns && *second_ns >= 0 &&
                 *second_ns < 61'000'000'000) {
-                const std::chrono::sys_days days =
+                const std::chrono::year_month_day named =
                     std::chrono::year(static_cast<int>(*year)) /
                     std::chrono::month(static_cast<unsigned>(*month)) /
                     std::chrono::day(static_cast<unsigned>(*date));
+                const std::chrono::sys_days days = named;
                 const std::int64_t minutes =
                     (days.time_since_epoch().count() * 24LL + *hour) * 60 + *minute;
-                time_ns = in_range(minutes * 60'000'000'000 + *second_ns);
+                // 30 February would silently become a day of March.
+                if (named.ok()) time_ns = in_range(minutes * 60'000'000'000 + *second_ns);
             }
         }
         if (!time_ns) {

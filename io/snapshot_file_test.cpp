@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include "io/file.hpp"
 #include "io/io_testing.hpp"
@@ -73,6 +75,23 @@ TEST(SnapshotFile, RoundTripsEveryFieldAndIsSmall) {
     EXPECT_EQ((*copy)->camera, CameraState::frozen);
     EXPECT_EQ((*copy)->edge_count, 3);
     EXPECT_EQ((*copy)->edges, original->edges);
+}
+
+/// A search that begins with a refused file stays in front of the checks of the header. After a
+/// change of the layout SUREFOOT_WRITE_SEEDS=1 io_test --gtest_filter='SnapshotFile.*' writes the
+/// seed again.
+TEST(SnapshotFile, TheFuzzerBeginsWithAFileOfThisLayout) {
+    const std::string folder = SUREFOOT_SOURCE_DIR "/fuzz/seeds/fuzz_snapshot";
+    if (std::getenv("SUREFOOT_WRITE_SEEDS") != nullptr) {
+        ASSERT_TRUE(write_snapshot(folder + "/small.snapshot", *random_snapshot(3, 2, 1)).ok());
+    }
+    int seeds = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const auto snapshot = read_snapshot(entry.path().string());
+        EXPECT_TRUE(snapshot.ok()) << message(snapshot);
+        ++seeds;
+    }
+    EXPECT_GT(seeds, 0);
 }
 
 TEST(SnapshotFile, WhatLiesBeyondTheUsedCellsIsNotStored) {

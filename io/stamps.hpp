@@ -8,6 +8,9 @@
 
 namespace surefoot::io {
 
+/// Stamps of a recording lie between 1970 and 2261, so that sums and differences stay in range.
+inline constexpr std::int64_t kMaxStamp_ns = 9'200'000'000'000'000'000;
+
 /// A unit that files give stamps in.
 struct StampUnit {
     std::string_view name;  ///< "s", "ms", "us" or "ns"

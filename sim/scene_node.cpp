@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kMaxBytes = 1'000'000;
 constexpr int kMaxDepth = 32;
 constexpr int kMaxValues = 100'000;
+constexpr std::size_t kMaxKeys = 10'000;
 
 /// Turns yaml-cpp's nodes into ours; keeps the first problem.
 class Copier {
@@ -53,6 +54,9 @@ class Copier {
         if (error_) return;
         const int line = line_of(key);
         if (!key.IsScalar()) return fail(line, "a key must be plain text");
+        if (out.items.size() >= kMaxKeys) {  // the search for doubles below is linear
+            return fail(line, fmt::format("more than {} keys in a group", kMaxKeys));
+        }
         if (out.find(key.Scalar()) != nullptr) {
             return fail(line, fmt::format("key '{}' appears twice", key.Scalar()));
         }

@@ -28,8 +28,8 @@ struct SceneNode {
 /// "a list", "a group of keys" ... for messages.
 [[nodiscard]] const char* to_string(SceneNode::Kind kind) noexcept;
 
-/// `file` is only a name for messages. Refuses more than 1 MB, 32 levels or 100 000 values, aliases
-/// counted each time.
+/// `file` is only a name for messages. Refuses more than 1 MB, 32 levels, 10 000 keys in a group or
+/// 100 000 values, aliases counted each time.
 [[nodiscard]] Result<SceneNode> parse_scene_node(std::string_view text, const std::string& file);
 
 }  // namespace surefoot::sim

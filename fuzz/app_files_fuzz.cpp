@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that a user gives to one verb alone, joystick scripts and lists of stairs, from any
+// bytes. SUREFOOT_FUZZ_READER names the function under test.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "apps/surefoot/joystick_script.hpp"
+#include "apps/surefoot/stairs_json.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+void must(bool holds) {
+    if (!holds) std::abort();
+}
+
+/// Times do not go back, and the joystick says at each what its line says.
+[[maybe_unused]] void fuzz_joystick_script(std::string_view bytes) {
+    const auto script = app::parse_joystick_script(bytes, "f");
+    if (!script) return must(!script.error().message.empty());
+    must(app::code_at(*script, -1) == 0);
+    for (std::size_t i = 0; i < script->size(); ++i) {
+        const app::JoystickLine& line = (*script)[i];
+        must(line.time_ns >= 0 && (i == 0 || line.time_ns >= (*script)[i - 1].time_ns));
+        const bool last = i + 1 == script->size() || (*script)[i + 1].time_ns > line.time_ns;
+        must(!last || app::code_at(*script, line.time_ns) == line.code);
+    }
+}
+
+/// What is accepted has a list, and no count below 0.
+[[maybe_unused]] void fuzz_stairs_file(std::string_view bytes) {
+    const auto listed = app::parse_stairs(bytes, "f");
+    if (!listed) return must(!listed.error().message.empty());
+    must(!listed->lists.empty());
+    for (const stairs::Flight& flight : listed->features.flights) must(flight.steps >= 0);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    SUREFOOT_FUZZ_READER({reinterpret_cast<const char*>(data), size});
+    return 0;
+}

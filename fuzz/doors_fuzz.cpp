@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What decides who may enter, from any bytes: the file of tokens, the key file, the head of a
+// request to the gate's socket, and the names by which a browser reaches the page. Nobody becomes
+// more than the tokens say. SUREFOOT_FUZZ_READER names the function under test.
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/wire/admission.hpp"
+#include "server/wire/keyed_checksum.hpp"
+
+namespace {
+
+using namespace surefoot;
+using namespace surefoot::wire;
+
+void must(bool holds) {
+    if (!holds) std::abort();
+}
+
+constexpr const char* kOperatorToken = "operator-0123456789";
+constexpr const char* kRiderToken = "rider-0123456789ab";
+
+std::string_view take_line(std::string_view& rest) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    return line;
+}
+
+/// Accepted tokens are usable, give each its role, and read back from what is written of them.
+[[maybe_unused]] void fuzz_tokens(std::string_view bytes) {
+    const auto access = parse_tokens(bytes, "f");
+    if (!access) return must(!access.error().message.empty());
+    must(!access->problem() && access->has_tokens());
+    for (const Role role : {Role::observer, Role::rider, Role::operator_}) {
+        const std::string& token = access->token_of(role);
+        must(token.empty() || access->role_of(token) == role);
+    }
+    must(!access->role_of(""));
+    const auto again = parse_tokens(format_tokens(*access), "again");
+    must(again.ok() && *again == *access);
+}
+
+/// Three lines: target, Origin, Authorization (an empty one: the request has none). Only the
+/// operator's whole token makes an operator, and a page of a strange origin never enters.
+[[maybe_unused]] void fuzz_admission(std::string_view bytes) {
+    static const Access access{"", kRiderToken, kOperatorToken, Role::observer};
+    static const std::vector<std::string> origins{"https://robot.example"};
+    Knock knock;
+    knock.target = take_line(bytes);
+    if (const auto origin = take_line(bytes); !origin.empty()) knock.origin = origin;
+    if (const auto word = take_line(bytes); !word.empty()) knock.authorization = word;
+    const Entrance entrance = admit(access, origins, knock);
+    if (entrance.admission != Admission::welcome) {
+        must(entrance.role == Role::none);
+        return must(!refusal_text(entrance, knock).empty());
+    }
+    const auto shown = [&](std::string_view token) {
+        return knock.target.find(token) != knock.target.npos ||
+               (knock.authorization && knock.authorization->find(token) != std::string_view::npos);
+    };
+    must(entrance.role != Role::operator_ || shown(kOperatorToken));
+    must(entrance.role != Role::rider || shown(kRiderToken));
+    must(!knock.origin || *knock.origin == origins[0] || is_loopback_origin(*knock.origin));
+}
+
+/// A key that is accepted is 32 digits, and says all of them.
+[[maybe_unused]] void fuzz_key_file(std::string_view bytes) {
+    static const int file = ::memfd_create("key", 0);
+    static const std::string path = "/proc/self/fd/" + std::to_string(file);
+    must(::fchmod(file, 0600) == 0 && ::ftruncate(file, 0) == 0);
+    must(::pwrite(file, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()));
+    const auto key = read_checksum_key(path);
+    if (!key) return must(!key.error().message.empty());
+    constexpr std::size_t kDigits = 32;
+    must(bytes.size() >= kDigits);
+    std::string digits;
+    for (const std::uint64_t half : {key->high, key->low})
+        for (int shift = 60; shift >= 0; shift -= 4)
+            digits += "0123456789abcdef"[(half >> static_cast<unsigned>(shift)) & 15U];
+    must(std::equal(digits.begin(), digits.end(), bytes.begin(), [](char lower, char c) {
+        return lower == (c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c);
+    }));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    SUREFOOT_FUZZ_READER({reinterpret_cast<const char*>(data), size});
+    return 0;
+}

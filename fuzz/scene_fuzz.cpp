@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any bytes as a scene file: a scene whose way has an end and whose first pose is finite, or an
+// error with a sentence. SUREFOOT_FUZZ_READER names the function under test.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "sim/expression.hpp"
+#include "sim/scene_file.hpp"
+
+namespace {
+
+using namespace surefoot;
+
+void must(bool holds) {
+    if (!holds) std::abort();
+}
+
+[[maybe_unused]] void fuzz_scene(std::string_view bytes) {
+    const sim::SceneFile file{"f", bytes};
+    const auto infos = sim::read_scene_infos(file);
+    if (!infos) return must(!infos.error().message.empty());
+    constexpr std::uint64_t kSeed = 7;
+    const std::string name = infos->empty() ? std::string() : infos->front().name;
+    const auto scene = sim::read_scene(file, name, kSeed);
+    if (!scene) return must(!scene.error().message.empty());
+    must(scene->motion != nullptr && std::isfinite(scene->motion->duration_s()));
+    must(scene->motion->at(0.0).T_world_body.all_finite());
+    must(scene->motion->at(scene->motion->duration_s()).T_world_body.all_finite());
+}
+
+[[maybe_unused]] void fuzz_expression(std::string_view bytes) {
+    static const sim::NamedNumbers numbers{{"a", 2.0}, {"b_m", -0.5}};
+    const auto value = sim::evaluate(bytes, numbers);
+    must(value.ok() ? std::isfinite(*value) : !value.error().message.empty());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    SUREFOOT_FUZZ_READER({reinterpret_cast<const char*>(data), size});
+    return 0;
+}
