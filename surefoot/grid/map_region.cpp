@@ -8,12 +8,13 @@
 #include <type_traits>
 #include <utility>
 
+#include "surefoot/core/checked_index.hpp"
+#include "surefoot/grid/whole_cells.hpp"
+
 namespace surefoot::grid {
 namespace {
 
 /// 0.1 mm to 100 m: beyond these a resolution is a damaged number.
-constexpr double kFinest_m = 1e-4;
-constexpr double kCoarsest_m = 100.0;
 /// Beyond a float tells no more than decimetres; keeps sums and squares of heights in its range.
 constexpr float kHighest_m = 1e6F;
 /// How far a quaternion may be from length one, squared: what rounding to a file leaves.
@@ -113,8 +114,9 @@ std::optional<std::string> LatticeBox::problem() const {
 
 LatticeBox box_of(const GridGeometry& geometry) {
     // An origin is a whole number of cells, so the rounding takes back that of the product alone.
-    return {std::llround(geometry.origin_m.x() / geometry.resolution_m),
-            std::llround(geometry.origin_m.y() / geometry.resolution_m),
+    const Eigen::Vector2d first = geometry.origin_m / geometry.resolution_m;
+    return {saturated_integer<std::int64_t>(std::round(first.x())),
+            saturated_integer<std::int64_t>(std::round(first.y())),
             geometry.nx,
             geometry.ny};
 }

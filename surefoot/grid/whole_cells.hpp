@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "surefoot/core/checked_index.hpp"
+
+namespace surefoot::grid {
+
+/// Maps of finer or coarser cells are refused where they come in.
+inline constexpr double kFinest_m = 1e-4;
+inline constexpr double kCoarsest_m = 100.0;
+
+/// Larger counts of cells than the side of any map; sums of a few of them still fit an int.
+inline constexpr int kMostCells = 1 << 24;
+
+/// The integer part of a number of cells, at most kMostCells to either side. NaN gives 0.
+[[nodiscard]] inline int whole_cells(double cells) noexcept {
+    return std::clamp(saturated_integer<int>(cells), -kMostCells, kMostCells);
+}
+
+}  // namespace surefoot::grid
