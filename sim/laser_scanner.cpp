@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "surefoot/core/rng.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -29,7 +30,7 @@ constexpr double kWhite = 0.9;
 
 /// Steps that fit into a span, for angles that decimal fractions do not hit exactly.
 int steps_in(double span_deg, double step_deg) {
-    return static_cast<int>(std::floor(span_deg / step_deg + 1e-6));
+    return grid::whole_cells(std::floor(span_deg / step_deg + 1e-6));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "sim/scene_motion.hpp"
 #include "sim/scenes.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -54,7 +55,8 @@ StampedPose pose_of_frame(const Motion& motion, int frame, double rate_hz) {
 
 std::vector<StampedPose> sampled(const Motion& motion, int frames, double rate_hz) {
     // Half a nanosecond of slack: the last frame belongs to the path when it falls on its end.
-    const int whole_path = static_cast<int>(std::floor(motion.duration_s() * rate_hz + 1e-6)) + 1;
+    const double last_frame = std::floor(motion.duration_s() * rate_hz + 1e-6);
+    const int whole_path = std::min(saturated_integer<int>(last_frame), kMaxFrames - 1) + 1;
     const int count = frames > 0 ? frames : whole_path;
     std::vector<StampedPose> poses;
     poses.reserve(static_cast<std::size_t>(count));
