@@ -12,7 +12,6 @@
 #include "sim/safety_figures.hpp"
 #include "sim/swept_box.hpp"
 #include "surefoot/core/checked_index.hpp"
-#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -209,10 +208,11 @@ class BlockJudge {
 
   private:
     const GroundField& field_at(double level_m) {
-        const int bin = grid::whole_cells(std::floor(level_m / kLevelBin_m));
+        const double level_bin = std::floor(level_m / kLevelBin_m);
+        const int bin = saturated_integer<int>(level_bin);
         const auto found = fields_.find(bin);
         if (found != fields_.end()) return found->second;
-        const LevelPlane level{kLevelBin_m * (bin + 1), Vector2d::Zero()};
+        const LevelPlane level{kLevelBin_m * (level_bin + 1.0), Vector2d::Zero()};
         return fields_
             .try_emplace(bin, scene_, T_world_field_, region_, level, figures_.lower_edge_m)
             .first->second;

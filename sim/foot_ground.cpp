@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "surefoot/core/checked_index.hpp"
-#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -39,7 +38,7 @@ LevelPlane fit(const std::vector<SolePoint>& points, double mean_z_m) {
 }
 
 int patches_along(double length_m, double side_m) {
-    return std::max(1, grid::whole_cells(std::ceil(length_m / side_m - 1e-9)));
+    return std::max(1, saturated_integer<int>(std::ceil(length_m / side_m - 1e-9)));
 }
 
 }  // namespace

@@ -9,12 +9,13 @@
 #include <utility>
 
 #include "surefoot/core/checked_index.hpp"
-#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::grid {
 namespace {
 
 /// 0.1 mm to 100 m: beyond these a resolution is a damaged number.
+constexpr double kFinest_m = 1e-4;
+constexpr double kCoarsest_m = 100.0;
 /// Beyond a float tells no more than decimetres; keeps sums and squares of heights in its range.
 constexpr float kHighest_m = 1e6F;
 /// How far a quaternion may be from length one, squared: what rounding to a file leaves.

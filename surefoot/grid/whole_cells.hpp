@@ -7,10 +7,6 @@
 
 namespace surefoot::grid {
 
-/// Maps of finer or coarser cells are refused where they come in.
-inline constexpr double kFinest_m = 1e-4;
-inline constexpr double kCoarsest_m = 100.0;
-
 /// Larger counts of cells than the side of any map; sums of a few of them still fit an int.
 inline constexpr int kMostCells = 1 << 24;
 
