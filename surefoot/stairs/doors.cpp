@@ -351,7 +351,7 @@ std::optional<DoorFinder::Jamb> DoorFinder::jamb(const Terrain& terrain,
 
 bool DoorFinder::has_wall(const Opening& opening, double side, const Jamb& jamb) {
     const double bin_m = std::max(cell_m_, kBin_m);
-    // in range: describe() keeps wall_length_m below 10 m, and bin_m is at least kBin_m
+    // in range: wall_length_m is at most 10 m (describe()), and bin_m is at least kBin_m
     const auto bins = static_cast<std::size_t>(std::max(1.0, config_.wall_length_m / bin_m));
     hits_.assign(bins, 0);
     float highest_m = -std::numeric_limits<float>::infinity();
