@@ -33,6 +33,11 @@ double normal_quantile(double p) {
     return x;
 }
 
+/// What truncates to the nearest grey value; max() gives 0 for NaN.
+float as_grey(float value_dn) {
+    return std::min(std::max(0.0F, value_dn + 0.5F), 255.0F);
+}
+
 }  // namespace
 
 void ImagingConfig::describe(ConfigVisitor& visitor) {
@@ -78,11 +83,6 @@ void PixelNoise::fill(std::uint64_t key,
         normal = quantiles_[quantile(hash, pixel % kPixelsPerHash)];
         ++pixel;
     }
-}
-
-/// 0 to 255, half a grey value above the nearest one at most; max() gives 0 for NaN.
-float as_grey(float value_dn) {
-    return std::min(std::max(0.0F, value_dn + 0.5F), 255.0F);
 }
 
 std::uint8_t exposed_pixel(const ImagingConfig& config,
