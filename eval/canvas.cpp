@@ -7,6 +7,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::eval {
 namespace {
 
@@ -28,8 +30,7 @@ cv::Scalar scalar(Rgb8 color) {
 /// Pixel centres are whole numbers for OpenCV, halves here.
 cv::Point fixed_point(PointPx p) {
     const double scale = 1 << kShift;
-    return {static_cast<int>(std::lround((p.u - 0.5) * scale)),
-            static_cast<int>(std::lround((p.v - 0.5) * scale))};
+    return {nearest_px((p.u - 0.5) * scale), nearest_px((p.v - 0.5) * scale)};
 }
 
 struct HersheyText {
@@ -42,8 +43,7 @@ HersheyText measure(const std::string& text, const TextStyle& style) {
     HersheyText hershey{};
     const double cap = style.cap_height_px * kTextOversampling;
     hershey.scale = cap / kHersheyCapHeight;
-    hershey.thickness =
-        std::max(1, static_cast<int>(std::lround(cap * (style.bold ? 0.19 : 0.125))));
+    hershey.thickness = std::max(1, nearest_px(cap * (style.bold ? 0.19 : 0.125)));
     int baseline = 0;
     hershey.size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, hershey.scale, 1, &baseline);
     return hershey;
@@ -55,13 +55,12 @@ cv::Mat text_mask(const std::string& text,
                   const TextStyle& style,
                   int pad_px,
                   int extra_thickness) {
-    const auto up = [](double px) { return static_cast<int>(std::ceil(px)); };
+    const auto up = [](double px) { return saturated_integer<int>(std::ceil(px)); };
     const int width = up(static_cast<double>(hershey.size.width) / kTextOversampling) + 2 * pad_px;
     const int height = up(style.cap_height_px) + 2 * pad_px;
     cv::Mat large = cv::Mat::zeros(height * kTextOversampling, width * kTextOversampling, CV_8U);
-    const cv::Point origin(
-        pad_px * kTextOversampling,
-        static_cast<int>(std::lround((pad_px + style.cap_height_px) * kTextOversampling)));
+    const cv::Point origin(pad_px * kTextOversampling,
+                           nearest_px((pad_px + style.cap_height_px) * kTextOversampling));
     cv::putText(large,
                 text,
                 origin,
@@ -88,6 +87,11 @@ void blend(Picture& picture, const cv::Mat& mask, int left, int top, Rgb8 color)
 
 }  // namespace
 
+int nearest_px(double place_px) noexcept {
+    constexpr int kFarthest_px = 1 << 30;
+    return std::clamp(saturated_integer<int>(std::round(place_px)), -kFarthest_px, kFarthest_px);
+}
+
 double text_width_px(const std::string& text, const TextStyle& style) {
     return static_cast<double>(measure(text, style).size.width) / kTextOversampling;
 }
@@ -95,7 +99,8 @@ double text_width_px(const std::string& text, const TextStyle& style) {
 void draw_text(Picture& picture, PointPx at, const std::string& text, const TextStyle& style) {
     if (text.empty()) return;
     const HersheyText hershey = measure(text, style);
-    const int pad_px = static_cast<int>(std::ceil(0.8 * style.cap_height_px));  // descenders, halo
+    const int pad_px =
+        saturated_integer<int>(std::ceil(0.8 * style.cap_height_px));  // descenders, halo
     const double width = static_cast<double>(hershey.size.width) / kTextOversampling;
     const double share = style.anchor == TextAnchor::left     ? 0.0
                          : style.anchor == TextAnchor::centre ? 0.5
@@ -109,15 +114,11 @@ void draw_text(Picture& picture, PointPx at, const std::string& text, const Text
             left = at.u - half_cap - pad_px;
             top = at.v + share * width + pad_px - mask.rows;
         }
-        blend(picture,
-              mask,
-              static_cast<int>(std::lround(left)),
-              static_cast<int>(std::lround(top)),
-              color);
+        blend(picture, mask, nearest_px(left), nearest_px(top), color);
     };
     if (style.halo) {
         const double halo_px = std::max(2.0, 0.3 * style.cap_height_px);
-        draw(static_cast<int>(2.0 * halo_px * kTextOversampling), palette::kPaper);
+        draw(saturated_integer<int>(2.0 * halo_px * kTextOversampling), palette::kPaper);
     }
     draw(0, style.color);
 }
@@ -149,7 +150,7 @@ void draw_circle(Picture& picture, PointPx center, double radius_px, int width_p
     cv::Mat mat = as_mat(picture);
     cv::circle(mat,
                fixed_point(center),
-               static_cast<int>(std::lround(radius_px * (1 << kShift))),
+               nearest_px(radius_px * (1 << kShift)),
                scalar(color),
                width_px,
                cv::LINE_AA,

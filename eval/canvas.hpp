@@ -37,6 +37,10 @@ struct TextStyle {
     bool halo = false;    ///< white edge, for text on a map
 };
 
+/// The whole number nearest to a place; those beyond all pictures become one that is 10^9 px away,
+/// and NaN becomes 0.
+[[nodiscard]] int nearest_px(double place_px) noexcept;
+
 /// Drawing. Everything is clipped at the picture's border and anti-aliased. Text is printable
 /// ASCII; any other character shows as '?'.
 [[nodiscard]] double text_width_px(const std::string& text, const TextStyle& style);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::eval {
 namespace {
@@ -65,7 +66,7 @@ std::span<const Rgb8> anchors(ColorMap map, double& s) {
 }
 
 std::uint8_t to_byte(double value) {
-    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+    return saturated_integer<std::uint8_t>(std::round(value));
 }
 
 double linear_light(std::uint8_t channel) {
@@ -87,6 +88,7 @@ Rgb8 color_at(ColorMap map, double s) {
     s = std::clamp(s, 0.0, 1.0);
     const std::span<const Rgb8> colors = anchors(map, s);
     const double position = s * static_cast<double>(colors.size() - 1);
+    // in range: s is clamped to [0, 1] and not NaN, as asserted
     const auto below = std::min(static_cast<std::size_t>(position), colors.size() - 2);
     const Rgb8 color =
         mixed(colors[below], colors[below + 1], position - static_cast<double>(below));

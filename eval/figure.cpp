@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "eval/ticks.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::eval {
 namespace {
@@ -239,7 +240,7 @@ ColumnSize column_size(const std::vector<KeyEntry>& entries, BarKind bar) {
             std::max(width_px, 56.0 + text_width_px(entry.label, text_style(TextAnchor::left)));
     }
     const int bar_px = bar == BarKind::none ? 0 : kBarTop_px + kSmallestBar_px + kBarBottom_px;
-    return {static_cast<int>(std::ceil(width_px)),
+    return {saturated_integer<int>(std::ceil(width_px)),
             bar_px + static_cast<int>(entries.size()) * kKeyRow_px};
 }
 

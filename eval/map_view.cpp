@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "eval/ticks.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::eval {
 namespace {
@@ -191,12 +192,13 @@ void draw_scale_bar(Picture& picture, const MapView& view) {
     const double plot_width_m = view.plot.width / view.px_per_m;
     const bool metre_fits = view.px_per_m >= 60.0 && plot_width_m >= 2.5;
     const double length_m = metre_fits ? 1.0 : nice_below(0.2 * plot_width_m);
-    const int length_px = static_cast<int>(std::lround(length_m * view.px_per_m));
+    const int length_px = nearest_px(length_m * view.px_per_m);
     Ticks format;
     format.step = nice_below(length_m);
+    // in range: nice_below() gives a finite length above 0, whose logarithm is within 324 of 0
     format.decimals = std::max(0, static_cast<int>(-std::floor(std::log10(length_m) + 1e-9)));
     const std::string label = format.label(length_m) + " m";
-    const int text_px = static_cast<int>(text_width_px(label, label_style(TextAnchor::left)));
+    const int text_px = saturated_integer<int>(text_width_px(label, label_style(TextAnchor::left)));
     const int box_px = std::max(length_px, text_px) + 28;
     if (box_px + 28 > view.plot.width || view.plot.height < 82) return;
     const RectPx box{view.plot.left + 14, view.plot.bottom() - 14 - 54, box_px, 54};
@@ -204,7 +206,7 @@ void draw_scale_bar(Picture& picture, const MapView& view) {
     const double middle_u = box.left + 0.5 * box.width;
     draw_text(picture, {middle_u, box.top + 18.0}, label, label_style(TextAnchor::centre));
     fill_rect(picture,
-              {static_cast<int>(middle_u - 0.5 * length_px), box.top + 36, length_px, 6},
+              {box.left + (box.width - length_px) / 2, box.top + 36, length_px, 6},
               palette::kInk);
 }
 
@@ -222,10 +224,8 @@ void draw_dots(Picture& picture, const MapView& view, const Dots& dots) {
     constexpr int kSide_px = 3;
     for (const Eigen::Vector2d& point_m : dots.points_m) {
         const PointPx p = view.to_px(point_m);
-        const RectPx dot{static_cast<int>(std::lround(p.u)) - kSide_px / 2,
-                         static_cast<int>(std::lround(p.v)) - kSide_px / 2,
-                         kSide_px,
-                         kSide_px};
+        const RectPx dot{
+            nearest_px(p.u) - kSide_px / 2, nearest_px(p.v) - kSide_px / 2, kSide_px, kSide_px};
         fill_rect(picture, dot, dots.color);
     }
 }

@@ -42,7 +42,7 @@ std::vector<int> nearest_indices(double from_origin_m,
         const double index =
             std::floor((center_m - from_origin_m) / from_resolution_m + kBorderCells);
         if (index >= 0.0 && index < from_count) {
-            indices[static_cast<std::size_t>(i)] = static_cast<int>(index);
+            indices[static_cast<std::size_t>(i)] = static_cast<int>(index);  // in range: as checked
         }
     }
     return indices;

@@ -13,6 +13,7 @@ namespace surefoot::eval {
                                                  double fraction) {
     SUREFOOT_ASSERT(!sorted.empty() && fraction >= 0.0 && fraction <= 1.0);
     const double rank = fraction * static_cast<double>(sorted.size() - 1);
+    // in range: from 0 to the last, as asserted
     const auto below = static_cast<std::size_t>(rank);
     const auto above = std::min(below + 1, sorted.size() - 1);
     const double weight = rank - static_cast<double>(below);

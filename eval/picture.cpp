@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/canvas.hpp"
 #include "eval/cell_colors.hpp"
 #include "eval/picture_range.hpp"
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::eval {
 namespace {
@@ -36,9 +38,7 @@ MapFigure make_map_figure(const grid::GridGeometry& geometry,
                           const ColumnSize& column) {
     MapFigure map;
     map.cell_px = px_per_cell(geometry, smallest_cell_px);
-    const auto side = [&](int cells) {
-        return std::max(1, static_cast<int>(std::lround(cells * map.cell_px)));
-    };
+    const auto side = [&](int cells) { return std::max(1, nearest_px(cells * map.cell_px)); };
     map.figure = make_figure(side(geometry.ny), side(geometry.nx), true, column, text);
     map.view.plot = map.figure.plot;
     map.view.x_max_m = geometry.origin_m.x() + geometry.nx * geometry.resolution_m;
@@ -52,7 +52,7 @@ template <typename Paint>
 void paint_cells(MapFigure& map, const grid::GridGeometry& geometry, const Paint& paint) {
     const RectPx& plot = map.figure.plot;
     const auto index = [&](int px, int count) {
-        const int from_far_end = static_cast<int>((px + 0.5) / map.cell_px);
+        const int from_far_end = saturated_integer<int>((px + 0.5) / map.cell_px);
         return std::max(0, count - 1 - from_far_end);
     };
     for (int v = 0; v < plot.height; ++v) {
@@ -99,8 +99,8 @@ Rgb8 call_color(Call call, double side_px, int u, int v) {
     if (call == Call::no_truth) return hatched_grey(u, v);
     const CallColors colors = colors_of(call);
     if (side_px < kConfusionCell_px) return mixed(colors.ground, colors.dot, colors.dot_share);
-    const auto cell_px = static_cast<int>(side_px);
-    const auto dot_px = static_cast<int>(std::lround(colors.dot_share * cell_px));
+    const int cell_px = saturated_integer<int>(side_px);
+    const int dot_px = nearest_px(colors.dot_share * cell_px);
     const int first = (cell_px - dot_px) / 2;
     const auto in_middle = [&](int px) {
         return px % cell_px >= first && px % cell_px < first + dot_px;

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "eval/canvas.hpp"
 #include "eval/picture.hpp"
 #include "eval/picture_range.hpp"
 
@@ -25,8 +26,7 @@ struct Size {
 };
 Size shown_size(int width, int height) {
     const double scale = image_scale(width, height);
-    return {std::max(1, static_cast<int>(std::lround(width * scale))),
-            std::max(1, static_cast<int>(std::lround(height * scale)))};
+    return {std::max(1, nearest_px(width * scale)), std::max(1, nearest_px(height * scale))};
 }
 
 /// A number per pixel as a figure with its legend; pixels without a number are hatched.

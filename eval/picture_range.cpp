@@ -24,6 +24,7 @@ std::vector<float> known_values(const Image<float>& values) {
 
 double value_at_share(std::vector<float>& values, double share) {
     const double rank = std::round(share * static_cast<double>(values.size() - 1));
+    // in range: from 0 to the last, as share is kLowShare or kHighShare
     const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank);
     std::nth_element(values.begin(), nth, values.end());
     return static_cast<double>(*nth);

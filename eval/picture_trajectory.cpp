@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/canvas.hpp"
 #include "eval/picture.hpp"
 
 namespace surefoot::eval {
@@ -48,8 +49,8 @@ MapView view_of(const Box& box) {
     const Eigen::Vector2d extent_m = box.high_m - box.low_m;
     MapView view;
     view.px_per_m = kLongSide_px / extent_m.maxCoeff();
-    view.plot.width = static_cast<int>(std::lround(extent_m.y() * view.px_per_m));
-    view.plot.height = static_cast<int>(std::lround(extent_m.x() * view.px_per_m));
+    view.plot.width = nearest_px(extent_m.y() * view.px_per_m);
+    view.plot.height = nearest_px(extent_m.x() * view.px_per_m);
     view.x_max_m = box.high_m.x();
     view.y_max_m = box.high_m.y();
     return view;

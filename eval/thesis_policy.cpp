@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "surefoot/grid/whole_cells.hpp"
+
 namespace surefoot::eval {
 
 ThesisAnswer thesis_policy(const ThesisPolicy& policy,
@@ -12,7 +14,7 @@ ThesisAnswer thesis_policy(const ThesisPolicy& policy,
     const double side_m = geometry.resolution_m;
     const double reach_m = 0.5 * std::hypot(policy.length_m, policy.width_m);
     const auto index = [&](double at_m, double origin_m) {
-        return static_cast<int>(std::floor((at_m - origin_m) / side_m));
+        return grid::whole_cells(std::floor((at_m - origin_m) / side_m));
     };
     const double c = std::cos(target.yaw_rad);
     const double s = std::sin(target.yaw_rad);

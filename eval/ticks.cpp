@@ -31,6 +31,7 @@ Ticks nice_ticks(double low, double high, int target) {
     // The nice number not below `smallest`.
     ticks.step = nice_below(smallest);
     if (ticks.step * (1.0 + kRounding) < smallest) ticks.step = nice_below(2.5 * ticks.step);
+    // in range: nice_below() gives a finite number above 0, whose logarithm is within 324 of 0
     ticks.decimals = std::max(0, static_cast<int>(-std::floor(std::log10(ticks.step) + kRounding)));
     const double first = std::ceil(low / ticks.step - kRounding);
     const double last = std::floor(high / ticks.step + kRounding);

@@ -57,7 +57,7 @@ class ListVisitor final : public PathVisitor {
                 int& value,
                 std::span<const char* const> names,
                 const char* comment) override {
-        const auto position = static_cast<std::size_t>(value);
+        const auto position = static_cast<std::size_t>(value);  // in range: an int
         add(key, position < names.size() ? names[position] : "?", joined(names), comment);
     }
 

@@ -19,9 +19,16 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNoData = -9999.0;
+constexpr double kFinest_m = 1e-4;  ///< cells as `surefoot dem` makes them
+constexpr double kCoarsest_m = 1000.0;
+constexpr double kFarthest_m = 1e9;  ///< of a corner; a micrometre still differs there
 constexpr std::int64_t kMaxSide = 1 << 20;
 /// No layer has such values; -3.4028235e38, the smallest float, is the usual mark for "no data".
 constexpr double kMaxValue = 1e30;
+
+bool is_cell_size(double side_m) {
+    return side_m >= kFinest_m && side_m <= kCoarsest_m;  // false for NaN
+}
 /// The precision of a float: marks are printed from floats, with 7 to 17 digits.
 constexpr double kFloatStep = 1.1920928955078125e-07;
 
@@ -133,8 +140,18 @@ Result<grid::GridGeometry> geometry_of(const Header& header, const std::string& 
             return input_error(fmt::format("{}: {} = {} must be finite", file, name, *value));
         }
     }
-    if (!(*header.cell > 0.0)) {
-        return input_error(fmt::format("{}: cellsize {} must be above 0", file, *header.cell));
+    if (!is_cell_size(*header.cell)) {
+        return input_error(fmt::format("{}: cellsize {}: {:g} to {:g} m are possible",
+                                       file,
+                                       *header.cell,
+                                       kFinest_m,
+                                       kCoarsest_m));
+    }
+    for (const auto& [name, value] : {needed[2], needed[3]}) {
+        if (std::abs(*value) > kFarthest_m) {
+            return input_error(fmt::format(
+                "{}: {} = {:g} m: at most {:g} m are possible", file, name, *value, kFarthest_m));
+        }
     }
     for (const auto& [name, value] : {needed[0], needed[1]}) {
         if (!(*value >= 1.0 && *value <= static_cast<double>(kMaxSide)) ||
@@ -289,11 +306,13 @@ Result<Dem> parse_dem_image(std::string_view bytes,
                             const std::string& file,
                             double scale_m,
                             double full_height_m) {
-    if (!(scale_m > 0.0) || !std::isfinite(scale_m) || !std::isfinite(full_height_m)) {
+    if (!is_cell_size(scale_m) || !std::isfinite(full_height_m)) {
         return usage_error(
-            fmt::format("{}: a height image needs a scale above 0 m per pixel (is {}) "
+            fmt::format("{}: a height image needs a scale of {:g} to {:g} m per pixel (is {}) "
                         "and a finite full height (is {} m)",
                         file,
+                        kFinest_m,
+                        kCoarsest_m,
                         scale_m,
                         full_height_m));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/image_file.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
@@ -349,6 +350,32 @@ TEST(DemFile, RefusesDamageInWords) {
     });
 }
 
+TEST(DemFile, CellsSmallerOrLargerThanAnyMapAreRefused) {
+    // Lengths in cells of 1e-12 m are no integers: `rate` crashed.
+    for (const char* size : {"1e-12", "5e-324", "0.00009", "1001", "1e300", "-0.02", "nan"}) {
+        const auto dem = parse_esri_grid(fmt::format("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\n"
+                                                     "cellsize {}\n0 1\n",
+                                                     size),
+                                         "cells.asc");
+        EXPECT_TRUE(contains(message(dem), "cells.asc: cellsize")) << size << ": " << message(dem);
+    }
+    for (const char* corner : {"1e300", "-1e300", "1e10"}) {
+        // The picture that `rate` draws broke an invariant.
+        const auto dem = parse_esri_grid(fmt::format("ncols 2\nnrows 1\nxllcorner {}\nyllcorner 0\n"
+                                                     "cellsize 0.1\n0 1\n",
+                                                     corner),
+                                         "corner.asc");
+        EXPECT_TRUE(contains(message(dem), "corner.asc: xllcorner")) << message(dem);
+    }
+    for (const char* size : {"0.0001", "0.025", "1000"}) {
+        const auto dem = parse_esri_grid(fmt::format("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\n"
+                                                     "cellsize {}\n0 1\n",
+                                                     size),
+                                         "cells.asc");
+        EXPECT_TRUE(dem.ok()) << size << ": " << message(dem);
+    }
+}
+
 TEST(DemFile, HeightImagesHaveTheirHeights) {
     const std::string path = data_path("terrain/straight_stairs_1m_1m_60cm.png");
     if (path.empty()) return;
@@ -361,7 +388,8 @@ TEST(DemFile, HeightImagesHaveTheirHeights) {
     EXPECT_FLOAT_EQ(height_at_row(12), 0.6F);
     EXPECT_NEAR(height_at_row(20), 0.6 * 179 / 255, 1e-6);
     EXPECT_NEAR(height_at_row(30), 0.6 * 94 / 255, 1e-6);
-    EXPECT_TRUE(contains(message(read_dem_image(path, 0.0, 1.0)), "scale above 0"));
+    EXPECT_TRUE(contains(message(read_dem_image(path, 0.0, 1.0)), "a scale of 0.0001 to 1000 m"));
+    EXPECT_FALSE(read_dem_image(path, 1e-12, 0.6).ok());
     EXPECT_TRUE(contains(message(read_dem_image(path, 0.02, 2e5)), "beyond 100000 m"));
 }
 

@@ -122,10 +122,13 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.foot_margin_tenth_mm = group.length("foot_margin_m", 0.0, 0.2);
     limits.drop_tenth_mm = group.length("drop_m", 0.0001, 0.1);
     limits.drop_band_tenth_mm = group.length("drop_band_m", 0.05, 0.5);
+    // in range: number() gives at most 1.0
     limits.drop_evidence = static_cast<std::uint8_t>(
+        // in range: the same
         std::max(1L, std::lround(255.0 * group.number("drop_evidence", 0.004, 1.0))));
     limits.drift_tenth_mm = group.length("drift_m", 0.0001, 0.1);
     limits.tread_share_permille =
+        // in range: number() gives 0.5 to 1.0
         static_cast<std::int32_t>(std::lround(1e3 * group.number("tread_share", 0.5, 1.0)));
     limits.tread_overhang_tenth_mm = group.length("tread_overhang_m", 0.0, 0.1);
     limits.frame_age_ns = group.duration_ns("frame_age_ms", 1, 1000);

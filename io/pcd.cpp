@@ -281,7 +281,7 @@ std::optional<Rgb> parse_colour(std::string_view word, const Field& field) {
             std::bit_cast<std::uint32_t>(is_float ? static_cast<float>(*value) : 0.0F));
     }
     const bool fits = *value >= 0.0 && *value <= 4294967295.0;
-    return unpacked_colour(static_cast<std::uint32_t>(fits ? *value : 0.0));
+    return unpacked_colour(static_cast<std::uint32_t>(fits ? *value : 0.0));  // in range
 }
 
 /// Puts a word of point `i` where it belongs; false where it is no number of the field's type.

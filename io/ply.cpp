@@ -270,6 +270,7 @@ bool read_vertex(ValueReader& values,
         const auto value = values.next(property.type);
         if (!value) return false;
         const auto channel = [&] {
+            // in range: 0 to 255, or 0 where it is not (NaN)
             return static_cast<std::uint8_t>(*value >= 0.0 && *value <= 255.0 ? *value : 0.0);
         };
         switch (targets[i].kind) {

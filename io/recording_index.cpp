@@ -316,7 +316,7 @@ Status refuse_rate(const OpenOptions& options, const std::string& file) {
 }
 
 std::int64_t stamp_at(int index, double rate_hz) noexcept {
-    return static_cast<std::int64_t>(std::llround(static_cast<double>(index) * 1e9 / rate_hz));
+    return saturated_integer<std::int64_t>(std::round(static_cast<double>(index) * 1e9 / rate_hz));
 }
 
 Result<Recording> index_recording(const std::string& folder, const OpenOptions& options) {

@@ -18,6 +18,7 @@ namespace {
 constexpr double kNormTolerance = 0.01;
 /// KITTI prints seven digits.
 constexpr double kRotationTolerance = 1e-3;
+constexpr double kFarthest_m = 1e9;  ///< a micrometre still differs there
 constexpr std::int64_t kKittiPeriod_ns = 100'000'000;
 
 Error at_line(const std::string& file, int line, const std::string& what) {
@@ -116,6 +117,14 @@ Result<TrajectoryFile> parse_trajectory(std::string_view text, const std::string
         }
         const auto pose = stamped ? pose_of_seven(row.numbers) : pose_of_twelve(row.numbers);
         if (!pose) return at_line(file, row.line, pose.error().message);
+        if (const double far_m = pose->translation_m.cwiseAbs().maxCoeff(); far_m > kFarthest_m) {
+            return at_line(file,
+                           row.line,
+                           fmt::format("a position {:g} m from the origin; at most {:g} m are "
+                                       "possible: check the unit",
+                                       far_m,
+                                       kFarthest_m));
+        }
         out.poses.push_back({*time_ns, *pose});
         if (!stamped) out.row_of_pose.push_back(index);
     }

@@ -51,6 +51,9 @@ TEST(TrajectoryFile, BadLinesAreNamed) {
     EXPECT_TRUE(contains(why(good + "2 0 0 0 0 0 0\n"), "a.tum:2: 7 numbers; 8 belong in a line"));
     EXPECT_TRUE(contains(why(good + "2 1 2 3 0 0 0 0\n"), "a.tum:2: quaternion has length 0.0000"));
     EXPECT_TRUE(contains(why("1 0 0 0 0 0 0 2\n"), "quaternion has length 2.0000"));
+    // `eval trajectory --plot` broke an invariant.
+    EXPECT_TRUE(contains(why(good + "2 0 -1e200 0 0 0 0 1\n"),
+                         "a.tum:2: a position 1e+200 m from the origin; at most 1e+09 m"));
     EXPECT_TRUE(contains(why(good + "2 0 x 0 0 0 0 1\n"), "a.tum:2: 'x' is not a number"));
     EXPECT_TRUE(contains(why("1,5 0,1 0,2 0,3 0 0 0 1\n"), "a.tum:1: commas and blanks"));
     EXPECT_TRUE(contains(why("1,5;0,1;0;0;0;0;0;1\n"), "'1,5' has a decimal comma"));

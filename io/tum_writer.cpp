@@ -23,6 +23,7 @@ DepthCodes codes_of(const Image<float>& depth_m) {
     for (std::size_t i = 0; i < codes.size(); ++i) {
         const float code = std::round(depth_m.data()[i] * kDepthCodesPerMetre);
         codes.data()[i] =
+            // in range: 1 to 65535, as asked
             code > 0.0F && code <= kLast ? static_cast<std::uint16_t>(code) : std::uint16_t{0};
     }
     return codes;

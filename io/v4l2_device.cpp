@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/text.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::io {
 namespace {
@@ -241,7 +242,7 @@ Status V4l2Device::set_rate(double rate_hz) {
     v4l2_streamparm parameters = {};
     parameters.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     parameters.parm.capture.timeperframe = {
-        static_cast<std::uint32_t>(std::lround(kTicksPerSecond / rate_hz)), kTicksPerSecond};
+        saturated_integer<std::uint32_t>(std::round(kTicksPerSecond / rate_hz)), kTicksPerSecond};
     if (const int error = system_->request(VIDIOC_S_PARM, &parameters); error != 0)
         return failed(fmt::format("its rate cannot be set to {:g} Hz", rate_hz), error);
     const double got_hz = rate_of(parameters.parm.capture.timeperframe);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::io {
 
 YamlGroup::YamlGroup(YamlReader& reader,
@@ -32,7 +34,8 @@ double YamlGroup::number(const char* key, double min, double max) {
 
 std::int32_t YamlGroup::length(const char* key, double min_m, double max_m) {
     constexpr double kTenthMmPerMetre = 1e4;
-    return static_cast<std::int32_t>(std::lround(number(key, min_m, max_m) * kTenthMmPerMetre));
+    const double length_m = number(key, min_m, max_m);
+    return saturated_integer<std::int32_t>(std::round(length_m * kTenthMmPerMetre));
 }
 
 std::int64_t YamlGroup::duration_ns(const char* key, int min_ms, int max_ms) {

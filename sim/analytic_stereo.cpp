@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "sim/ray_caster.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
@@ -38,8 +39,7 @@ std::vector<float> normal_cdf() {
 
 float uniform_from(const std::vector<float>& cdf, float normal) {
     const float place = (normal + static_cast<float>(kCdfEnd)) * static_cast<float>(kCdfPerUnit);
-    const auto last = static_cast<float>(cdf.size() - 1);
-    return cdf[static_cast<std::size_t>(std::clamp(place + 0.5F, 0.0F, last))];
+    return cdf[std::min(saturated_integer<std::size_t>(place + 0.5F), cdf.size() - 1)];
 }
 
 /// The camera that sees every `stride`-th pixel, beginning in the middle of the first `stride`.

@@ -8,6 +8,7 @@
 
 #include "sim/imaging.hpp"
 #include "sim/optics.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -41,8 +42,8 @@ class Sheet {
 
     [[nodiscard]] double colour_at(const Eigen::Vector2d& p_m) const {
         if (!inside(sheet_.paper, p_m)) return look_.background_dn;  // NaN: not on the sheet
-        const Bin& bin =
-            bins_[static_cast<std::size_t>(row_of(p_m.y()) * kBins + column_of(p_m.x()))];
+        const int place = row_of(p_m.y()) * kBins + column_of(p_m.x());
+        const Bin& bin = bins_[static_cast<std::size_t>(place)];
         for (const auto* box : bin.rectangles) {
             if (inside(*box, p_m)) return look_.ink_dn;
         }
@@ -63,7 +64,7 @@ class Sheet {
 
     static int bin_of(double value_m, double low_m, double high_m) {
         const double bin = std::floor(kBins * (value_m - low_m) / (high_m - low_m));
-        return static_cast<int>(std::clamp(bin, 0.0, kBins - 1.0));
+        return std::clamp(saturated_integer<int>(bin), 0, kBins - 1);
     }
     [[nodiscard]] int column_of(double x_m) const {
         return bin_of(x_m, sheet_.paper.left_m, sheet_.paper.right_m);
@@ -168,7 +169,7 @@ GreyImage render_board(const PrintedSheet& sheet,
             const auto pixel = static_cast<std::uint32_t>(v * camera.width + u);
             const double value = static_cast<double>(light_dn.row(v)[u]) +
                                  look.noise_dn * static_cast<double>(noise.normal(key, pixel));
-            image.row(v)[u] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+            image.row(v)[u] = saturated_integer<std::uint8_t>(std::round(value));
         }
     });
     return image;

@@ -11,6 +11,7 @@
 #include "sim/ground_field.hpp"
 #include "sim/safety_figures.hpp"
 #include "sim/swept_box.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -44,8 +45,8 @@ class Walk {
 
     const Image<float>& from(const Eigen::Vector3d& start_m) {
         const Vector2d cell = (start_m.head<2>() - lattice_.origin_m) / lattice_.resolution_m;
-        enter(static_cast<int>(std::floor(cell.x())),
-              static_cast<int>(std::floor(cell.y())),
+        enter(saturated_integer<int>(std::floor(cell.x()), -1),
+              saturated_integer<int>(std::floor(cell.y()), -1),
               start_m.z());
         while (!open_.empty()) {
             const Place here = open_.back();
@@ -207,10 +208,11 @@ class BlockJudge {
 
   private:
     const GroundField& field_at(double level_m) {
-        const int bin = static_cast<int>(std::floor(level_m / kLevelBin_m));
+        const double level_bin = std::floor(level_m / kLevelBin_m);
+        const int bin = saturated_integer<int>(level_bin);
         const auto found = fields_.find(bin);
         if (found != fields_.end()) return found->second;
-        const LevelPlane level{kLevelBin_m * (bin + 1), Vector2d::Zero()};
+        const LevelPlane level{kLevelBin_m * (level_bin + 1.0), Vector2d::Zero()};
         return fields_
             .try_emplace(bin, scene_, T_world_field_, region_, level, figures_.lower_edge_m)
             .first->second;

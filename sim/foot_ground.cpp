@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::sim {
 namespace {
 
@@ -36,7 +38,7 @@ LevelPlane fit(const std::vector<SolePoint>& points, double mean_z_m) {
 }
 
 int patches_along(double length_m, double side_m) {
-    return std::max(1, static_cast<int>(std::ceil(length_m / side_m - 1e-9)));
+    return std::max(1, saturated_integer<int>(std::ceil(length_m / side_m - 1e-9)));
 }
 
 }  // namespace
@@ -78,7 +80,7 @@ FootGround ground_under(const GroundField& field,
     FootGround under;
     const Vector2d middle = 0.5 * (foot.min_m + foot.max_m);
     const Vector2d samples = (foot.max_m - foot.min_m) / GroundField::kSpacing_m;
-    under.points.reserve(static_cast<std::size_t>((samples.x() + 2.0) * (samples.y() + 2.0)));
+    under.points.reserve(saturated_integer<std::size_t>((samples.x() + 2.0) * (samples.y() + 2.0)));
     double sum_m = 0.0;
     for_samples_under(
         field, foot, T_field_body, [&](int i, int j, const Vector2d& p_field, const Vector2d& p) {

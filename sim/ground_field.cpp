@@ -6,6 +6,8 @@
 #include <numeric>
 #include <span>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::sim {
 namespace {
 
@@ -97,6 +99,12 @@ std::vector<int> all_primitives(const Scene& scene) {
     return all;
 }
 
+/// Of a sample; those beyond a million kilometres become one there.
+int index_of(double samples) {
+    constexpr int kFarthest = 1 << 28;
+    return std::clamp(saturated_integer<int>(samples), -kFarthest, kFarthest);
+}
+
 }  // namespace
 
 GroundSample sample_ground(
@@ -111,10 +119,10 @@ GroundField::GroundField(const Scene& scene,
                          const LevelPlane& level,
                          double reach_m)
     : T_world_field_(T_world_field) {
-    range_ = {static_cast<int>(std::floor(region.min_m.x() / kSpacing_m)),
-              static_cast<int>(std::ceil(region.max_m.x() / kSpacing_m)),
-              static_cast<int>(std::floor(region.min_m.y() / kSpacing_m)),
-              static_cast<int>(std::ceil(region.max_m.y() / kSpacing_m))};
+    range_ = {index_of(std::floor(region.min_m.x() / kSpacing_m)),
+              index_of(std::ceil(region.max_m.x() / kSpacing_m)),
+              index_of(std::floor(region.min_m.y() / kSpacing_m)),
+              index_of(std::ceil(region.max_m.y() / kSpacing_m))};
     samples_.resize(static_cast<std::size_t>(width()) *
                     static_cast<std::size_t>(range_.max_j - range_.min_j + 1));
     const auto near = primitives_over(scene, all_primitives(scene), around(T_world_field, range_));
@@ -158,10 +166,10 @@ GroundField::Tile GroundField::summary(const Range& range) const {
 
 GroundField::Range GroundField::range_of(const Rect& area) const {
     const auto first = [](double at_m) {
-        return static_cast<int>(std::ceil(at_m / kSpacing_m - kIndexRounding));
+        return index_of(std::ceil(at_m / kSpacing_m - kIndexRounding));
     };
     const auto last = [](double at_m) {
-        return static_cast<int>(std::floor(at_m / kSpacing_m + kIndexRounding));
+        return index_of(std::floor(at_m / kSpacing_m + kIndexRounding));
     };
     return {std::max(first(area.min_m.x()), range_.min_i),
             std::min(last(area.max_m.x()), range_.max_i),

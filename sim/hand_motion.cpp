@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
@@ -25,7 +26,7 @@ TrolleyMotion way(const std::vector<Waypoint>& waypoints, const HandConfig& conf
 /// Samples of an envelope over the whole way, zero in the first and last one.
 template <typename Value>
 SmoothCurve envelope(const TrolleyMotion& way, Value value) {
-    const int count = std::max(1, static_cast<int>(way.duration_s() / kFade_s) - 1);
+    const int count = std::max(1, saturated_integer<int>(way.duration_s() / kFade_s) - 1);
     std::vector<double> samples(static_cast<std::size_t>(count), 0.0);
     for (int i = 1; i + 1 < count; ++i)
         samples[static_cast<std::size_t>(i)] = value((i + 1) * kFade_s);

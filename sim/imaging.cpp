@@ -33,6 +33,11 @@ double normal_quantile(double p) {
     return x;
 }
 
+/// What truncates to the nearest grey value; max() gives 0 for NaN.
+float as_grey(float value_dn) {
+    return std::min(std::max(0.0F, value_dn + 0.5F), 255.0F);
+}
+
 }  // namespace
 
 void ImagingConfig::describe(ConfigVisitor& visitor) {
@@ -87,7 +92,7 @@ std::uint8_t exposed_pixel(const ImagingConfig& config,
     const auto read = static_cast<float>(gain * config.read_noise_dn);
     const auto shot = static_cast<float>(gain * config.shot_noise_dn);
     const float value = signal_dn + std::sqrt(read * read + shot * signal_dn) * normal;
-    return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
+    return static_cast<std::uint8_t>(as_grey(value));  // in range, NaN too
 }
 
 void expose_row(const ImagingConfig& config,
@@ -102,8 +107,7 @@ void expose_row(const ImagingConfig& config,
     for (std::size_t i = 0; i < out.size(); ++i) {
         const float signal = factor * signal_dn[i];
         const float value = signal + std::sqrt(read * read + shot * signal) * normals[i];
-        out[i] =
-            static_cast<std::uint8_t>(static_cast<int>(std::clamp(value + 0.5F, 0.0F, 255.0F)));
+        out[i] = static_cast<std::uint8_t>(static_cast<int>(as_grey(value)));  // in range, NaN too
     }
 }
 

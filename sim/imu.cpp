@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -174,7 +175,8 @@ ImuModel::ImuModel(std::shared_ptr<const Motion> motion,
     Rng rng(mix_seed(seed, kBiasStream));
     gyro_bias_rad_s_ = normal3(rng, noise.gyro_bias_sigma_rad_s);
     accel_bias_m_s2_ = normal3(rng, noise.accel_bias_sigma_m_s2);
-    start_k_ = static_cast<std::int64_t>(std::floor(seconds_from_ns(start_ns) * mount.rate_hz));
+    start_k_ =
+        saturated_integer<std::int64_t>(std::floor(seconds_from_ns(start_ns) * mount.rate_hz));
 }
 
 Vector3d ImuModel::walked(std::uint64_t stream, double sigma, std::int64_t k) const {
@@ -207,7 +209,8 @@ ImuSample ImuModel::ideal(std::int64_t time_ns) const {
 
 std::vector<ImuSample> ImuModel::samples(std::int64_t after_ns, std::int64_t until_ns) const {
     std::vector<ImuSample> result;
-    auto k = static_cast<std::int64_t>(std::floor(seconds_from_ns(after_ns) * mount_.rate_hz)) - 1;
+    auto k = saturated_integer<std::int64_t>(
+        std::floor(seconds_from_ns(after_ns) * mount_.rate_hz) - 1.0);
     const double root_rate = std::sqrt(mount_.rate_hz);
     for (; stamp_ns(k) <= until_ns; ++k) {
         if (stamp_ns(k) <= after_ns) continue;

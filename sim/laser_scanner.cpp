@@ -29,6 +29,7 @@ constexpr double kWhite = 0.9;
 
 /// Steps that fit into a span, for angles that decimal fractions do not hit exactly.
 int steps_in(double span_deg, double step_deg) {
+    // in range: LaserScannerConfig::describe() keeps spans below 720 and steps above 0.001 deg
     return static_cast<int>(std::floor(span_deg / step_deg + 1e-6));
 }
 

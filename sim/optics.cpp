@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::sim {
 namespace {
 
@@ -75,7 +77,7 @@ void OpticsConfig::describe(ConfigVisitor& visitor) {
 
 std::vector<float> smear_kernel(double sigma_px) {
     if (!(sigma_px > 0.0)) return {1.0F};
-    const int radius = static_cast<int>(std::ceil(4.0 * sigma_px)) + 1;
+    const int radius = saturated_integer<int>(std::ceil(4.0 * sigma_px) + 1.0);
     // Sampling narrows a small spot: bisect for the width whose samples have the moment wanted.
     double low_px = 0.05;
     double high_px = 2.0 * sigma_px + 1.0;

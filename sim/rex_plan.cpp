@@ -10,6 +10,8 @@
 #include <numbers>
 #include <utility>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::sim {
 namespace {
 
@@ -39,7 +41,7 @@ double distance_m(const RexStand& from, const Waypoint& to) {
 }
 
 int turns(double from_rad, double to_rad, double turn_rad) {
-    return static_cast<int>(std::lround(wrapped(to_rad - from_rad) / turn_rad));
+    return saturated_integer<int>(std::round(wrapped(to_rad - from_rad) / turn_rad));
 }
 
 class Planner {

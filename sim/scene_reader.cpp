@@ -48,6 +48,7 @@ class GroupReader final : public ConfigVisitor {
         if (read != std::round(read)) {
             return reader_.fail(*node, fmt::format("needs a whole number, not {}", read));
         }
+        // in range: in_range() has checked it against min and max, and NaN is not whole
         value = static_cast<int>(read);
     }
     void boolean(const char* key, bool& value, const char* /*comment*/) override {

@@ -11,6 +11,7 @@
 #include "sim/scene_motion.hpp"
 #include "sim/scenes.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 
@@ -52,10 +53,19 @@ StampedPose pose_of_frame(const Motion& motion, int frame, double rate_hz) {
     return {kStart_ns + since_start_ns, motion.at(seconds_from_ns(since_start_ns)).T_world_body};
 }
 
-std::vector<StampedPose> sampled(const Motion& motion, int frames, double rate_hz) {
+Result<std::vector<StampedPose>> sampled(const Motion& motion, int frames, double rate_hz) {
     // Half a nanosecond of slack: the last frame belongs to the path when it falls on its end.
-    const int whole_path = static_cast<int>(std::floor(motion.duration_s() * rate_hz + 1e-6)) + 1;
-    const int count = frames > 0 ? frames : whole_path;
+    const double last_frame = std::floor(motion.duration_s() * rate_hz + 1e-6);
+    const int count = frames > 0 ? frames : saturated_integer<int>(last_frame + 1.0);
+    if (count > kMaxFrames) {
+        return usage_error(
+            fmt::format("simulator: the path takes {:g} s, {:g} frames at {:g} Hz; at most {} are "
+                        "possible: raise its speed_m_s, or set frames",
+                        motion.duration_s(),
+                        last_frame + 1.0,
+                        rate_hz,
+                        kMaxFrames));
+    }
     std::vector<StampedPose> poses;
     poses.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) poses.push_back(pose_of_frame(motion, i, rate_hz));
@@ -181,7 +191,9 @@ Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Exe
         script->steps.clear();
         script->stops.clear();
     } else {
-        source->truth_.trajectory = sampled(*script->motion, options.frames, options.rate_hz);
+        auto trajectory = sampled(*script->motion, options.frames, options.rate_hz);
+        if (!trajectory) return trajectory.error();
+        source->truth_.trajectory = *std::move(trajectory);
     }
     source->walker_ = source->motion_;
     if (!options.knock.none()) {

@@ -7,7 +7,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <limits>
+#include <string>
 
 #include "sim/scenes.hpp"
 #include "sim/sensor_scenes_for_test.hpp"
@@ -346,6 +349,31 @@ TEST(SceneSourceTest, NoiseIsAFactorOnModelledDepthsToo) {
     const float nominal_px = sigma_px();
     options.noise = 2.0;
     EXPECT_FLOAT_EQ(sigma_px(), 2.0F * nominal_px);
+}
+
+TEST(SceneSourceTest, APathOfMoreFramesThanASourceCountsIsRefused) {
+    const std::string path = ::testing::TempDir() + "surefoot_slow_scene.yaml";
+    std::ofstream(path)
+        << "name: slow\n"
+           "description: a trolley that takes half an hour for 20 m\n"
+           "materials:\n"
+           "  carpet: {pattern: carpet, albedo: 0.4, contrast: 0.7, texel_m: 0.002}\n"
+           "solids:\n"
+           "  - floor: {min_x_m: -3, min_y_m: -3, max_x_m: 29, max_y_m: 3, "
+           "material: carpet}\n"
+           "motion:\n"
+           "  speed_m_s: 0.01\n"
+           "  waypoints: [{x_m: 0, y_m: 0}, {x_m: 20, y_m: 0}]\n";
+    SceneOptions options = small(path);
+    options.frames = 0;
+    options.rate_hz = 1000.0;
+    const auto source = open_scene(options);
+    ASSERT_FALSE(source);
+    EXPECT_NE(source.error().message.find("at most 1000000 are possible"), std::string::npos)
+        << source.error().message;
+    options.frames = 3;
+    EXPECT_TRUE(open_scene(options));
+    std::remove(path.c_str());
 }
 
 TEST(SceneSourceTest, WrongOptionsGetASentence) {

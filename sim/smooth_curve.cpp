@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::sim {
 
@@ -47,8 +48,8 @@ Jet SmoothCurve::at(double time_s) const {
     const double knot = std::floor(x);
     const double u = x - knot;
     const auto sample = [&](int offset) {
-        const double index = std::clamp(knot + offset, 0.0, count - 1.0);
-        return samples_[static_cast<std::size_t>(index)];
+        const auto index = saturated_integer<std::size_t>(knot + offset);
+        return samples_[std::min(index, samples_.size() - 1)];
     };
     const double a = sample(-1);
     const double b = sample(0);

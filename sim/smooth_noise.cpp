@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/counter_random.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::sim {
 namespace {
@@ -94,9 +95,11 @@ void SurfaceNoise::look_up(
     const PixelNoise& noise, int surface, double u0, double v0, Square& square) const {
     const std::uint64_t key = PixelNoise::key(seed_, static_cast<std::uint64_t>(surface));
     // Lattices of more than 2^16 steps repeat; with 0.1 m between nodes that is 6.5 km.
-    const auto node = [&](int du, int dv) {
-        const auto x = static_cast<std::uint32_t>(static_cast<std::int64_t>(u0) + du) & 0xFFFFU;
-        const auto y = static_cast<std::uint32_t>(static_cast<std::int64_t>(v0) + dv) & 0xFFFFU;
+    const auto first_x = static_cast<std::uint32_t>(saturated_integer<std::int64_t>(u0));
+    const auto first_y = static_cast<std::uint32_t>(saturated_integer<std::int64_t>(v0));
+    const auto node = [&](std::uint32_t du, std::uint32_t dv) {
+        const std::uint32_t x = (first_x + du) & 0xFFFFU;
+        const std::uint32_t y = (first_y + dv) & 0xFFFFU;
         return noise.normal(key, (y << 16U) | x);
     };
     square = {surface, u0, v0, {node(0, 0), node(1, 0), node(0, 1), node(1, 1)}};

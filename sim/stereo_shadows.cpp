@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::sim {
 namespace {
 
@@ -184,8 +186,8 @@ void find_shadows(const Image<float>& disparity_px,
     // Disparities and pixels of this image are `stride` real ones.
     const auto jump_px = static_cast<float>(config.jump_px / stride + kSlope);
     const double widest_px = std::max(config.ramp_px, config.fattening_px);
-    const int reach = std::min(static_cast<int>(widest_px / stride), 255);
-    const int seam = static_cast<int>(config.fattening_px / stride);
+    const int reach = std::min(saturated_integer<int>(widest_px / stride), 255);
+    const int seam = saturated_integer<int>(config.fattening_px / stride);
     out.shadow.resize(width, height);
     out.bridge_px.resize(width, height);
     Image<Behind> behind(width, height);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::sim {
 namespace {
 
@@ -37,7 +39,8 @@ Rect grown(const Rect& box, double by_m) {
 SweptBox::SweptBox(const Rect& box, const PlanarPose& T_a_start, const PlanarPose& T_start_target)
     : box_(grown(box, kRim_m)) {
     const double turn_rad = std::atan2(T_start_target.sin_yaw, T_start_target.cos_yaw);
-    const int count = std::max(1, static_cast<int>(std::ceil(std::abs(turn_rad) / kPiece_rad)));
+    const int count =
+        std::max(1, saturated_integer<int>(std::ceil(std::abs(turn_rad) / kPiece_rad)));
     const Vector2d step_m = T_start_target.position_m / count;
     bounds_ = {Vector2d::Constant(std::numeric_limits<double>::infinity()),
                Vector2d::Constant(-std::numeric_limits<double>::infinity())};

@@ -7,6 +7,7 @@
 
 #include "sim/texture_lookup.hpp"
 #include "sim/texture_patterns.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::sim {
@@ -17,7 +18,8 @@ void append_cells(const Image<float>& field, std::vector<std::uint32_t>& cells) 
     const int mask = field.width() - 1;
     const auto stored = [&](int x, int y) {
         const float value = field.at(x & mask, y & mask);
-        return static_cast<std::uint32_t>(std::lround(value * lookup::kMiddle + lookup::kMiddle));
+        return std::uint32_t{
+            saturated_integer<std::uint8_t>(std::round(value * lookup::kMiddle + lookup::kMiddle))};
     };
     for (int y = 0; y <= mask; ++y) {
         std::uint32_t left = stored(0, y) | (stored(0, y + 1) << 8U);

@@ -68,8 +68,9 @@ struct Levels {
 };
 
 inline Levels levels_of(float level) noexcept {
-    const float clamped = std::clamp(level, 0.0F, static_cast<float>(kTopLevel));
-    const int fine = static_cast<int>(clamped);
+    // max() gives 0 for NaN.
+    const float clamped = std::min(std::max(0.0F, level), static_cast<float>(kTopLevel));
+    const int fine = static_cast<int>(clamped);  // in range: 0 to kTopLevel
     return {static_cast<std::uint32_t>(fine),
             static_cast<std::uint32_t>(std::min(fine + 1, kTopLevel)),
             clamped - static_cast<float>(fine)};
@@ -109,8 +110,10 @@ inline Cover cover_of(float along_u, float along_v, float minor_texel, float cos
     constexpr float kTile = TextureTable::kSize;
     const float length = std::max(std::sqrt(along_u * along_u + along_v * along_v), 1e-30F);
     const float step = std::min(step_texel, kTile) / length * 65536.0F;
+    // in range: both are at most `length`, so at most a tile, 2^26
     cover.du = static_cast<TextureTable::Place>(static_cast<std::int32_t>(along_u * step));
-    cover.dv = static_cast<TextureTable::Place>(static_cast<std::int32_t>(along_v * step));
+    cover.dv = static_cast<TextureTable::Place>(
+        static_cast<std::int32_t>(along_v * step));  // in range: as du
     return cover;
 }
 
@@ -118,6 +121,7 @@ inline Cover cover_of(float along_u, float along_v, float minor_texel, float cos
 inline TextureTable::Place first_tap(TextureTable::Place middle,
                                      TextureTable::Place step,
                                      int taps) noexcept {
+    // in range: an integer becomes one
     const std::int32_t way = (taps - 1) * static_cast<std::int32_t>(step);
     return middle - static_cast<TextureTable::Place>(way >> 1);
 }

@@ -68,6 +68,7 @@ struct Patch {
 void paint(Image<float>& field, const Patch& patch) {
     const float c = std::cos(patch.yaw_rad);
     const float s = std::sin(patch.yaw_rad);
+    // in range: no patch of the patterns below has more than 60 texels to a side
     const int reach = static_cast<int>(std::ceil(length(patch.half_u, patch.half_v))) + 1;
     const int cx = static_cast<int>(patch.x);
     const int cy = static_cast<int>(patch.y);

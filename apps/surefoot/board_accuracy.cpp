@@ -13,6 +13,7 @@
 #include "io/file.hpp"
 #include "sim/board_view.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -38,9 +39,8 @@ pipeline::PipelineConfig with_range_for(double distance_m,
                                         pipeline::PipelineConfig config) {
     constexpr int kStep = 16;
     constexpr int kMost = 512;
-    const int needed =
-        static_cast<int>(std::ceil(1.1 * rig.depth_to_disparity_px_m() / distance_m / kStep)) *
-        kStep;
+    const double steps = std::ceil(1.1 * rig.depth_to_disparity_px_m() / distance_m / kStep);
+    const int needed = std::min(saturated_integer<int>(steps), kMost / kStep) * kStep;
     config.stereo.disparities = std::min(std::max(config.stereo.disparities, needed), kMost);
     return config;
 }
@@ -56,7 +56,7 @@ std::vector<Eigen::Vector3d> board_points(const camera::RectifiedRig& rig,
     const double first_u = rig.depth_to_disparity_px_m() / distance_m;
     std::vector<Eigen::Vector3d> points_m;
     for (int v = 0; v < rig.height; ++v) {
-        for (int u = static_cast<int>(std::ceil(first_u)); u < rig.width; ++u) {
+        for (int u = saturated_integer<int>(std::ceil(first_u)); u < rig.width; ++u) {
             if (std::abs((u - rig.cx_px) / rig.fx_px) > limit ||
                 std::abs((v - rig.cy_px) / rig.fy_px) > limit) {
                 continue;

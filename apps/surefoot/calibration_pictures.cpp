@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "eval/canvas.hpp"
 #include "eval/figure.hpp"
 #include "eval/percentile.hpp"
 #include "surefoot/camera/rectifier.hpp"
@@ -35,8 +36,8 @@ struct Plane {
 Plane plane_of(const calibration::ImageSize& size, const eval::FigureText& text) {
     Plane plane;
     plane.scale = kWidth_px / std::max(1, size.width);
-    const int width = std::max(1, static_cast<int>(std::lround(plane.scale * size.width)));
-    const int height = std::max(1, static_cast<int>(std::lround(plane.scale * size.height)));
+    const int width = std::max(1, eval::nearest_px(plane.scale * size.width));
+    const int height = std::max(1, eval::nearest_px(plane.scale * size.height));
     plane.figure = eval::make_figure(width, height, false, {}, text);
     return plane;
 }
@@ -122,7 +123,7 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
             const double down = v - 0.5 * kSide_px;
             const double tilt_deg = std::hypot(to_right, down) / kRadiusPerDegree_px;
             if (tilt_deg < calibration::kEnoughTilt_deg || tilt_deg > kSteepest_deg ||
-                seen[static_cast<std::size_t>(side_of(to_right, down))])
+                seen[static_cast<std::size_t>(side_of(to_right, down))])  // in range: an enumerator
                 continue;
             figure.picture.at(figure.plot.left + u, figure.plot.top + v) = eval::hatched_grey(u, v);
         }

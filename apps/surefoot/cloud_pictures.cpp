@@ -30,6 +30,7 @@ eval::ValueRange shown(const PlacedDistances& placed) {
     double high_m = kLeast_m;
     if (!sizes_m.empty()) {
         const auto at =
+            // in range: kShare is below 1
             static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sizes_m.size() - 1));
         std::nth_element(sizes_m.begin(), sizes_m.begin() + at, sizes_m.end());
         high_m = std::max(kLeast_m, static_cast<double>(sizes_m[static_cast<std::size_t>(at)]));
@@ -95,6 +96,7 @@ Status write_histogram(const std::string& path,
         if (std::isnan(d_m)) continue;
         ++known;
         const double s = (static_cast<double>(d_m) - range.low) / (range.high - range.low);
+        // in range: as asked
         if (s >= 0.0 && s < 1.0) ++counts[static_cast<std::size_t>(s * kBins)];
     }
     eval::LinePlot plot;

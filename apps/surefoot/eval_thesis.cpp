@@ -19,6 +19,7 @@
 #include "apps/surefoot/writes.hpp"
 #include "io/file.hpp"
 #include "sim/scenes.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/fnv1a.hpp"
 #include "surefoot/core/nearest_names.hpp"
 
@@ -211,7 +212,8 @@ int frames_of(const ThesisRun& run, const ThesisConditions& conditions) {
     const auto script =
         sim::make_scene(run.scene, conditions.seed, sim::carrier_of(carried_by(run.carrier)));
     if (!script) return 1;
-    const int all = static_cast<int>(script->motion->duration_s() * run.rate_hz) + 1;
+    const double last = std::floor(script->motion->duration_s() * run.rate_hz);
+    const int all = saturated_integer<int>(last + 1.0);
     return conditions.max_frames > 0 ? std::min(all, conditions.max_frames) : all;
 }
 

@@ -9,6 +9,7 @@
 #include "apps/surefoot/ground_box.hpp"
 #include "eval/picture.hpp"
 #include "io/file.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -24,10 +25,10 @@ struct View {
 View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
     const double resolution_m = kTenthMm_m * map.resolution_tenth_mm;
     const auto first = [&](std::int64_t center, std::int64_t origin) {
-        return static_cast<int>(std::floor(
+        return grid::whole_cells(std::floor(
             (kTenthMm_m * static_cast<double>(center - origin) - kViewHalf_m) / resolution_m));
     };
-    const int side = static_cast<int>(2.0 * kViewHalf_m / resolution_m);
+    const int side = grid::whole_cells(2.0 * kViewHalf_m / resolution_m);
     const int ix0 = first(query.x_tenth_mm, map.origin_x_tenth_mm);
     const int iy0 = first(query.y_tenth_mm, map.origin_y_tenth_mm);
     View view{{resolution_m,

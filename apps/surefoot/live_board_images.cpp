@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::app {
 namespace {
 
@@ -49,7 +51,7 @@ Status for_live_images(std::unique_ptr<io::VideoDevice> device,
                                      session.stop);
     if (!live) return live.error();
     if (session.opened) session.opened();
-    const auto pause_ns = static_cast<std::int64_t>(1e9 * session.pause_s);
+    const auto pause_ns = saturated_integer<std::int64_t>(1e9 * session.pause_s);
     std::optional<std::int64_t> last_ns;
     for (int used = 0; used < session.most;) {
         auto next = (*live)->next();

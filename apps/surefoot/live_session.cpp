@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/surefoot/interrupt.hpp"
+#include "apps/surefoot/paced_time.hpp"
 #include "surefoot/pipeline/start.hpp"
 
 namespace surefoot::app {
@@ -41,9 +42,7 @@ void LiveSession::wait_for(std::int64_t stamp_ns) {
         first_stamp_ns_ = stamp_ns;
         first_steady_ns_ = clock_();
     }
-    const auto due_ns =
-        first_steady_ns_ +
-        static_cast<std::int64_t>(static_cast<double>(stamp_ns - first_stamp_ns_) / speed_);
+    const std::int64_t due_ns = first_steady_ns_ + paced_ns(stamp_ns - first_stamp_ns_, speed_);
     const std::int64_t wait_ns = due_ns - clock_();
     if (wait_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(wait_ns));
 }

@@ -461,7 +461,7 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
                      o.speed,
                      "times real time; 0 = as it comes; unless given 1 for recordings and with "
                      "--joystick, and 0 for simulated scenes")
-        ->check(CLI::NonNegativeNumber)
+        ->check(CLI::NonNegativeNumber & finite_number())
         ->type_name("X");
     verb->add_option("--port", o.port, "of the gate; 0 = any free one")
         ->check(CLI::Range(0, 65535))
@@ -507,7 +507,7 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
                      o.vouch_radius_m,
                      "the operator's word for level ground so far around the machine where it "
                      "stands; void once it has left")
-        ->check(CLI::NonNegativeNumber)
+        ->check(CLI::NonNegativeNumber & finite_number())
         ->type_name("M");
     verb->add_option("--walk",
                      o.walk,

@@ -112,7 +112,7 @@ Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
                                           double radius_m,
                                           std::vector<std::string>& assumed) {
     const double limit_m = kTenthMm_m * machine.limits.vouch_radius_tenth_mm;
-    if (radius_m > limit_m) {
+    if (!(radius_m <= limit_m)) {
         return usage_error(
             fmt::format("--vouch {:g}: the machine file allows at most {:g} m", radius_m, limit_m));
     }
@@ -122,6 +122,7 @@ Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
     area.center_y_tenth_mm = query.y_tenth_mm;
     // Cells count only when they lie wholly inside: one diagonal more than the feet reach.
     const double feet_m = kTenthMm_m * (reach_of(machine) + 1.5 * map.resolution_tenth_mm);
+    // in range: at most limit_m, or what the feet of a machine reach
     area.radius_tenth_mm = static_cast<std::int32_t>(
         (radius_m < 0.0 ? std::min(feet_m, limit_m) : radius_m) / kTenthMm_m);
     // The machine stands on the lower ground around it, not on the furniture beside it: lower

@@ -10,6 +10,7 @@
 
 #include "eval/shown_part.hpp"
 #include "io/urdf_file.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
@@ -34,7 +35,7 @@ std::array<grid::Layer, kLayerNames.size()> layers_of(const pipeline::Pipeline& 
 }
 
 std::int64_t tenth_mm(double metres) {
-    return std::llround(1e4 * metres);
+    return saturated_integer<std::int64_t>(std::round(1e4 * metres));
 }
 
 const char* kind_of(const camera::SourceInfo& info) {
@@ -45,6 +46,7 @@ const char* kind_of(const camera::SourceInfo& info) {
 /// True when it is time again, and then not before a period has passed.
 bool is_due(std::int64_t now_ns, double rate_hz, std::int64_t& due_ns) {
     if (now_ns < due_ns) return false;
+    // in range: a page cannot wish for less than PageWish::kSlowest_hz
     due_ns = now_ns + static_cast<std::int64_t>(1e9 / rate_hz);
     return true;
 }
@@ -99,6 +101,7 @@ void copy_layers(const pipeline::Pipeline& pipeline,
             out.push_back({version,
                            tenth_mm(part.geometry.origin_m.x()),
                            tenth_mm(part.geometry.origin_m.y()),
+                           // in range: ElevationConfig::describe() keeps cells below 10 m
                            static_cast<std::int32_t>(tenth_mm(geometry.resolution_m)),
                            index,
                            whole ? std::move(values) : part.of(values, std::nanf(""))});

@@ -10,6 +10,7 @@
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/paced_time.hpp"
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
@@ -29,9 +30,7 @@ class Schedule {
 
     /// Sleeps until the frame is due; false when it was due before.
     [[nodiscard]] bool wait_for(std::int64_t frame_ns) const {
-        const auto due_ns =
-            start_ns_ +
-            static_cast<std::int64_t>(static_cast<double>(frame_ns - first_frame_ns_) / speed_);
+        const std::int64_t due_ns = start_ns_ + paced_ns(frame_ns - first_frame_ns_, speed_);
         const std::int64_t wait_ns = due_ns - steady_now_ns();
         if (wait_ns > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(wait_ns));
         return wait_ns >= 0;

@@ -112,6 +112,7 @@ std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pi
     if (distances_m.empty()) return std::nullopt;
     const auto nearest =
         distances_m.begin() +
+        // in range: kChance is below 1
         static_cast<std::ptrdiff_t>(kChance * static_cast<double>(distances_m.size()));
     std::nth_element(distances_m.begin(), nearest, distances_m.end());
     return *nearest;
@@ -267,8 +268,8 @@ Percentiles percentiles(std::vector<double> values) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
     const auto at = [&](double share) {
-        return values[static_cast<std::size_t>(
-            std::lround(share * static_cast<double>(values.size() - 1)))];
+        const double rank = std::round(share * static_cast<double>(values.size() - 1));
+        return values[static_cast<std::size_t>(rank)];  // in range: share is 0.5 or 0.99
     };
     return {at(0.5), at(0.99), values.size()};
 }

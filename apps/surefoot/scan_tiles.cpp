@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/file.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -71,8 +72,8 @@ Status ScanTiles::add(std::span<const float> values) {
         const Eigen::Vector3d p_m(static_cast<double>(values[i]),
                                   static_cast<double>(values[i + 1]),
                                   static_cast<double>(values[i + 2]));
-        const auto tile = tile_at({static_cast<int>(std::floor(p_m.x() / side_m_)),
-                                   static_cast<int>(std::floor(p_m.y() / side_m_))});
+        const auto tile = tile_at({saturated_integer<int>(std::floor(p_m.x() / side_m_)),
+                                   saturated_integer<int>(std::floor(p_m.y() / side_m_))});
         if (!tile) return tile.error();
         io::PointCloud& block = (*tile)->block;
         block.points_m.push_back(p_m);

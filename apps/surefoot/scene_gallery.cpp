@@ -13,6 +13,7 @@
 #include "sim/scene_source.hpp"
 #include "sim/scenes.hpp"
 #include "sim/truth.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -47,7 +48,7 @@ Status write_view(const std::string& path,
     options.seed = seed;
     constexpr double kLongest_s = 10.0;  // between two frames of a source
     const double time_s = telling_time_s(script);
-    const int frames = static_cast<int>(std::ceil(time_s / kLongest_s));
+    const int frames = saturated_integer<int>(std::ceil(time_s / kLongest_s));
     options.rate_hz = frames / time_s;
     options.frames = frames + 1;
     auto source = sim::open_scene(options, &executor);

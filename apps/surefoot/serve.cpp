@@ -36,6 +36,7 @@
 #include "server/page/page_server.hpp"
 #include "server/wire/token_file.hpp"
 #include "sim/scene_source.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/gate/vouching.hpp"
 
 namespace surefoot::app {
@@ -323,7 +324,7 @@ void Service::remember_word(const LiveSession& session) {
         word_given_ = true;
         std::ignore = word_.vouch(machine_->machine,
                                   session.last(),
-                                  static_cast<std::int64_t>(1e4 * options_.vouch_radius_m),
+                                  saturated_integer<std::int64_t>(1e4 * options_.vouch_radius_m),
                                   steady_now_ns());
     }
     word_.observe(session.last(), steady_now_ns());

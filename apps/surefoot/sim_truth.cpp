@@ -6,6 +6,8 @@
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/run_session.hpp"
 #include "sim/truth.hpp"
+#include "surefoot/core/checked_index.hpp"
+#include "surefoot/core/nearest_pixel.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {
@@ -59,10 +61,12 @@ Image<float> seen_by(const camera::RectifiedRig& rig,
             const Eigen::Vector3d ray =
                 R_raw_rectified *
                 Eigen::Vector3d((u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
-            const long raw_u = std::lround(lens->fx_px * ray.x() / ray.z() + lens->cx_px);
-            const long raw_v = std::lround(lens->fy_px * ray.y() / ray.z() + lens->cy_px);
-            if (!raw_m.contains(static_cast<int>(raw_u), static_cast<int>(raw_v))) continue;
-            const float z_m = raw_m.at(static_cast<int>(raw_u), static_cast<int>(raw_v));
+            const auto raw = nearest_pixel(lens->fx_px * ray.x() / ray.z() + lens->cx_px,
+                                           lens->fy_px * ray.y() / ray.z() + lens->cy_px,
+                                           raw_m.width(),
+                                           raw_m.height());
+            if (!raw) continue;
+            const float z_m = raw_m.at(raw->u, raw->v);
             seen_m.at(u, v) = z_m / static_cast<float>(ray.z());
         }
     }
@@ -138,7 +142,7 @@ void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline&
         ++compared_;
         within_3_sigma_ += error_px <= 3.0 * sigma_px ? 1 : 0;
         within_1_sigma_ += error_px <= sigma_px ? 1 : 0;
-        const auto bin = static_cast<std::size_t>(error_px / kErrorBin_px);
+        const auto bin = saturated_integer<std::size_t>(error_px / kErrorBin_px);
         ++error_histogram_[std::min(bin, error_histogram_.size() - 1)];
         const double z_m = fb_px_m / disparity_px;
         const double sigma_z_m = z_m * sigma_px / disparity_px;

@@ -22,6 +22,7 @@
 #include "sim/scenes.hpp"
 #include "sim/truth.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -55,8 +56,8 @@ sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
     sim::Lattice lattice;
     lattice.resolution_m = resolution_m;
     lattice.origin_m = {snapped(low.x() - kReach_m), snapped(low.y() - kReach_m)};
-    lattice.nx = static_cast<int>((high.x() - low.x() + 2.0 * kReach_m) / resolution_m);
-    lattice.ny = static_cast<int>((high.y() - low.y() + 2.0 * kReach_m) / resolution_m);
+    lattice.nx = grid::whole_cells((high.x() - low.x() + 2.0 * kReach_m) / resolution_m);
+    lattice.ny = grid::whole_cells((high.y() - low.y() + 2.0 * kReach_m) / resolution_m);
     return lattice;
 }
 

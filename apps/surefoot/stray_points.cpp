@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::app {
 namespace {
 
@@ -44,7 +46,7 @@ double StrayFilter::range_m(std::ptrdiff_t at, std::ptrdiff_t row) const {
 std::ptrdiff_t StrayFilter::beams_apart(double range_m, double step_rad) const {
     const double width_m = beam_exit_m_ + beam_divergence_rad_ * range_m;
     const double apart = std::ceil(width_m / (step_rad * range_m));
-    return static_cast<std::ptrdiff_t>(std::clamp(apart, 1.0, static_cast<double>(kMostApart)));
+    return std::clamp(saturated_integer<std::ptrdiff_t>(apart), std::ptrdiff_t{1}, kMostApart);
 }
 
 bool StrayFilter::stays(std::size_t at, std::size_t row) const {

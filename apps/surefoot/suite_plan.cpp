@@ -10,6 +10,7 @@
 #include "apps/surefoot/log.hpp"
 #include "sim/scene_source.hpp"
 #include "sim/scenes.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/nearest_names.hpp"
 
 namespace surefoot::app {
@@ -139,7 +140,7 @@ PlannedCase planned(const SuiteScene& scene,
     plan.which.rate_hz =
         walks ? std::min(kWalkRate_hz, settings.sim.rate_hz) : settings.sim.rate_hz;
     const auto frames_in = [&](double time_s) {
-        return static_cast<int>(std::floor(time_s * plan.which.rate_hz)) + 1;
+        return saturated_integer<int>(std::floor(time_s * plan.which.rate_hz) + 1.0);
     };
     plan.frames = frames_in(scene.duration_s);
     const int limit = options.frames > 0 ? options.frames

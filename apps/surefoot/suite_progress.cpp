@@ -9,6 +9,7 @@
 
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {
@@ -50,7 +51,7 @@ std::string time_left(std::int64_t done_frames, std::int64_t frames, double elap
     if (done_frames <= 0 || done_frames >= frames) return {};
     const double left_s =
         elapsed_s * static_cast<double>(frames - done_frames) / static_cast<double>(done_frames);
-    const auto whole_s = static_cast<std::int64_t>(std::ceil(left_s));
+    const auto whole_s = saturated_integer<std::int64_t>(std::ceil(left_s));
     constexpr std::int64_t kMinute_s = 60;
     constexpr std::int64_t kHour_s = 3600;
     if (whole_s < kMinute_s) return fmt::format("about {} s left", whole_s);

@@ -10,6 +10,7 @@
 #include "apps/surefoot/offline_map.hpp"
 #include "sim/safety_oracle.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -22,7 +23,7 @@ double level_radius_m(const sim::Scene& scene, const Eigen::Vector3d& body_m, do
     const auto here = scene.height_at(body_m.x(), body_m.y());
     if (!here) return 0.0;
     double radius_m = limit_m;
-    const int reach = static_cast<int>(std::ceil(limit_m / kSpacing_m));
+    const int reach = grid::whole_cells(std::ceil(limit_m / kSpacing_m));
     for (int i = -reach; i <= reach; ++i) {
         for (int j = -reach; j <= reach; ++j) {
             const double distance_m = kSpacing_m * std::hypot(i, j);

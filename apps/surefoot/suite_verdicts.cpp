@@ -13,6 +13,7 @@
 #include "apps/surefoot/offline_map.hpp"
 #include "sim/safety_oracle.hpp"
 #include "surefoot/gate/gate.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -37,7 +38,7 @@ std::vector<Stance> stances_around(const Pose& T_world_body,
     const gate::Query here = gate::query_at_body(0, map);
     const double yaw_odom_rad = std::atan2(here.sin_yaw, here.cos_yaw);
     const double turn_rad = yaw_of(T_world_body) - yaw_odom_rad;
-    const int steps = static_cast<int>(reach_m / kGrid_m);
+    const int steps = grid::whole_cells(reach_m / kGrid_m);
     std::vector<Stance> stances;
     for (int i = -steps; i <= steps; ++i) {
         for (int j = -steps; j <= steps; ++j) {

@@ -106,6 +106,7 @@ Image<std::uint32_t> looks_of(const grid::Layer& count) {
     Image<std::uint32_t> looks(count.width(), count.height(), 0);
     for (std::size_t i = 0; i < looks.size(); ++i) {
         const float value = count.data()[i];
+        // in range: above 0 and at most kMost
         if (value > 0.0F) looks.data()[i] = static_cast<std::uint32_t>(std::min(value, kMost));
     }
     return looks;

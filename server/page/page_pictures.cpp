@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::page {
 namespace {
 
@@ -38,7 +40,7 @@ std::string jpeg_of_disparity(const Image<float>& disparity_px) {
     cv::Mat unknown(scaled.size(), CV_8UC1);
     for (std::size_t i = 0; i < disparity_px.size(); ++i) {
         const float d = disparity_px.data()[i];
-        scaled.data[i] = known(d) ? static_cast<std::uint8_t>(255.0F * d / most_px) : 0;
+        scaled.data[i] = known(d) ? saturated_integer<std::uint8_t>(255.0F * d / most_px) : 0;
         unknown.data[i] = known(d) ? 0 : 255;
     }
     cv::Mat coloured;

@@ -80,6 +80,7 @@ bool is_malformed(error_code error) {
 }
 
 std::int64_t period_ns(double rate_hz) {
+    // in range: read_rate() and the feed keep rates from PageWish::kSlowest_hz on
     return static_cast<std::int64_t>(static_cast<double>(kSecond_ns) / rate_hz);
 }
 

@@ -27,6 +27,7 @@ std::unique_ptr<grid::MapSnapshot> nothing_seen() {
 }
 
 std::int64_t tenth_mm(double length_m) {
+    // in range: check_radius() wants a number up to what the machine file allows
     return std::llround(length_m * 1e4);
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "surefoot/calibration/detect_board.hpp"
+#include "surefoot/core/nearest_pixel.hpp"
 
 namespace surefoot::calibration {
 namespace {
@@ -65,13 +66,11 @@ std::vector<Points> readings_of(const Board& board, const Points& found) {
 
 /// Mean of the 3 x 3 pixels around a place; nothing at the border.
 std::optional<double> brightness(ImageView<const std::uint8_t> image, const Eigen::Vector2d& at) {
-    if (!at.allFinite()) return std::nullopt;
-    const auto u = static_cast<int>(std::lround(at.x()));
-    const auto v = static_cast<int>(std::lround(at.y()));
-    if (u < 1 || v < 1 || u + 1 >= image.width || v + 1 >= image.height) return std::nullopt;
+    const auto middle = nearest_pixel(at.x(), at.y(), image.width, image.height, 1);
+    if (!middle) return std::nullopt;
     double sum = 0.0;
     for (int dv = -1; dv <= 1; ++dv) {
-        for (int du = -1; du <= 1; ++du) sum += image.row(v + dv)[u + du];
+        for (int du = -1; du <= 1; ++du) sum += image.row(middle->v + dv)[middle->u + du];
     }
     return sum / 9.0;
 }

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "surefoot/core/nearest_pixel.hpp"
+
 namespace surefoot::calibration {
 namespace {
 
@@ -51,12 +53,16 @@ std::vector<Sample> samples_of(ImageView<const std::uint8_t> image, const Corner
     std::vector<Sample> samples;
     if (!(std::abs(steps.determinant()) > 1.0)) return samples;
     const Eigen::Matrix2d to_board = steps.inverse();
-    const int reach = static_cast<int>(kMostRadius_px) + 1;
-    const int u0 = static_cast<int>(std::lround(guess.pixel.x()));
-    const int v0 = static_cast<int>(std::lround(guess.pixel.y()));
-    samples.reserve(static_cast<std::size_t>((2 * reach + 1) * (2 * reach + 1)));
-    for (int v = std::max(0, v0 - reach); v <= std::min(image.height - 1, v0 + reach); ++v) {
-        for (int u = std::max(0, u0 - reach); u <= std::min(image.width - 1, u0 + reach); ++u) {
+    constexpr int kReach = 9;
+    static_assert(kReach > kMostRadius_px);
+    const auto near =
+        nearest_pixel(guess.pixel.x(), guess.pixel.y(), image.width, image.height, -kReach);
+    if (!near) return samples;  // no pixel of the image is within reach
+    const int v_end = std::min(image.height, near->v + kReach + 1);
+    const int u_end = std::min(image.width, near->u + kReach + 1);
+    samples.reserve(static_cast<std::size_t>((2 * kReach + 1) * (2 * kReach + 1)));
+    for (int v = std::max(0, near->v - kReach); v < v_end; ++v) {
+        for (int u = std::max(0, near->u - kReach); u < u_end; ++u) {
             const Eigen::Vector2d pixel(u, v);
             const Eigen::Vector2d from_px = pixel - guess.pixel;
             const Eigen::Vector2d share = (to_board * from_px).cwiseAbs();

@@ -223,6 +223,12 @@ TEST(CornerFit, RefusesAnEdgeAFlatImageAndThePlaceOutside) {
     EXPECT_FALSE(fit_corner(image.view(), guess)) << "an edge is no corner";
     guess.pixel = {-20.0, 40.0};
     EXPECT_FALSE(fit_corner(image.view(), guess)) << "outside";
+    for (const double far : {1e300, -1e300, 2147483647.0, -2147483648.0, std::nan("")}) {
+        guess.pixel = {far, 40.0};
+        EXPECT_FALSE(fit_corner(image.view(), guess)) << far;
+        guess.pixel = {40.0, far};
+        EXPECT_FALSE(fit_corner(image.view(), guess)) << far;
+    }
     guess.pixel = {40.0, 40.0};
     guess.along_column_px = {8.0, 0.0};
     EXPECT_FALSE(fit_corner(image.view(), guess)) << "no directions";

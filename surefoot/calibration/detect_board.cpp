@@ -80,6 +80,7 @@ bool refine_corners(const Board& board, const cv::Mat& image, double reach, Boar
     const cv::TermCriteria until(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-3);
     for (std::size_t i = 0; i < view.ids.size(); ++i) {
         const double room_px = nearest_px(board, rough, i);
+        // in range: 2 to 5; distances between the corners of a view are not NaN
         const int half = static_cast<int>(
             std::clamp(reach * room_px, 1.0 * kLeastHalfWindow_px, 1.0 * kMostHalfWindow_px));
         std::vector<cv::Point2f> one = {cv::Point2d(rough.pixels[i].x(), rough.pixels[i].y())};

@@ -6,6 +6,7 @@
 
 #include "surefoot/camera/rectification.hpp"
 #include "surefoot/camera/remap.hpp"
+#include "surefoot/core/nearest_pixel.hpp"
 
 namespace surefoot::camera {
 namespace {
@@ -108,11 +109,10 @@ void Rectifier::rectify_depth(const Image<float>& raw_depth_m, Image<float>& out
         for (int u = 0; u < rig.width; ++u) {
             const auto raw = raw_from_ray(impl_->plan.left, ray_of(rig, u, v));
             // Averaging across an edge would invent a surface: the nearest pixel, or none.
-            const bool seen = raw && raw->x() > -0.5 && raw->y() > -0.5 &&
-                              raw->x() < camera.width - 0.5 && raw->y() < camera.height - 0.5;
-            out.at(u, v) = seen ? raw_depth_m.at(static_cast<int>(std::lround(raw->x())),
-                                                 static_cast<int>(std::lround(raw->y())))
-                                : std::numeric_limits<float>::quiet_NaN();
+            const auto nearest =
+                raw ? nearest_pixel(raw->x(), raw->y(), camera.width, camera.height) : std::nullopt;
+            out.at(u, v) = nearest ? raw_depth_m.at(nearest->u, nearest->v)
+                                   : std::numeric_limits<float>::quiet_NaN();
         }
     }
 }

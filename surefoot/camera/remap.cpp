@@ -17,6 +17,7 @@ struct Place {
 };
 
 Place place_of(float position_px, int size) {
+    // in range: set() asserts that the position lies in the image
     const int units = static_cast<int>(std::lrint(position_px * RemapTable::kUnits));
     const int pixel = std::min(units / RemapTable::kUnits, size - 2);
     return {pixel, units - pixel * RemapTable::kUnits};

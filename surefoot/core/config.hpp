@@ -33,7 +33,7 @@ class ConfigVisitor {
                      std::span<const char* const> names,
                      const char* comment) {
         static_assert(std::is_enum_v<Enum>);
-        int position = static_cast<int>(value);
+        int position = static_cast<int>(value);  // in range: an enumerator
         choice(key, position, names, comment);
         value = static_cast<Enum>(position);
     }

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot {
 
 /// Time is int64 nanoseconds everywhere; seconds appear only in files and printed text.
@@ -11,10 +13,14 @@ inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 [[nodiscard]] constexpr double seconds_from_ns(std::int64_t time_ns) noexcept {
     return static_cast<double>(time_ns) * 1e-9;
 }
-/// Rounds to the nearest nanosecond.
+/// Rounds to the nearest nanosecond. At most 146 years to either side, so that the sum of two fits;
+/// NaN gives 0.
 [[nodiscard]] constexpr std::int64_t ns_from_seconds(double time_s) noexcept {
     const double scaled = time_s * 1e9;
-    return static_cast<std::int64_t>(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
+    constexpr std::int64_t kMost_ns = (std::int64_t{1} << 62) - 1;
+    const auto time_ns =
+        saturated_integer<std::int64_t>(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
+    return time_ns > kMost_ns ? kMost_ns : time_ns < -kMost_ns ? -kMost_ns : time_ns;
 }
 
 }  // namespace surefoot

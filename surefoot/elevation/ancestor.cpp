@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/elevation/height_fusion.hpp"
 
 namespace surefoot::elevation {
@@ -13,9 +14,9 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-int whole_cells(double way_m, double resolution_m) {
-    constexpr double kLimit = 1 << 30;
-    return static_cast<int>(std::clamp(std::round(way_m / resolution_m), -kLimit, kLimit));
+int nearest_cells(double way_m, double resolution_m) {
+    constexpr int kLimit = 1 << 30;
+    return std::clamp(saturated_integer<int>(std::round(way_m / resolution_m)), -kLimit, kLimit);
 }
 
 }  // namespace
@@ -52,8 +53,7 @@ void AncestorConfig::describe(ConfigVisitor& visitor) {
 }
 
 AncestorMap::AncestorMap(const AncestorConfig& config) : config_(config) {
-    const int cells =
-        std::max(1, static_cast<int>(std::lround(config.length_m / config.resolution_m)));
+    const int cells = std::max(1, nearest_cells(config.length_m, config.resolution_m));
     geometry_.resolution_m = config.resolution_m;
     geometry_.nx = cells;
     geometry_.ny = cells;
@@ -71,8 +71,8 @@ void AncestorMap::place(const Eigen::Vector2d& position_m) {
 
 void AncestorMap::move_to(double x_m, double y_m) {
     if (!std::isfinite(x_m) || !std::isfinite(y_m)) return;
-    const grid::Shift shift{whole_cells(x_m - position_m_.x(), geometry_.resolution_m),
-                            whole_cells(y_m - position_m_.y(), geometry_.resolution_m)};
+    const grid::Shift shift{nearest_cells(x_m - position_m_.x(), geometry_.resolution_m),
+                            nearest_cells(y_m - position_m_.y(), geometry_.resolution_m)};
     place(position_m_ + geometry_.resolution_m * Eigen::Vector2d(shift.dx, shift.dy));
     for (grid::SlidingLayer<float>* layer : {&elevation_m_, &variance_m2_, &time_s_}) {
         layer->shift(shift, kNan);
@@ -93,7 +93,9 @@ void AncestorMap::add_point(const AncestorPoint& point, float time_s) {
         position_m_ + Eigen::Vector2d::Constant(0.5 * length_m) -
         Eigen::Vector2d(static_cast<double>(point.x_m), static_cast<double>(point.y_m));
     if (!(down_m.minCoeff() >= 0.0 && down_m.maxCoeff() < length_m)) return;
+    // in range: both lie in [0, length_m), which is nx cells
     const int ix = geometry_.nx - 1 - static_cast<int>(down_m.x() / geometry_.resolution_m);
+    // in range: as ix
     const int iy = geometry_.ny - 1 - static_cast<int>(down_m.y() / geometry_.resolution_m);
     if (!geometry_.contains({ix, iy})) return;
 

@@ -51,8 +51,9 @@ std::int64_t samples_from_points(std::span<const GridPoint> points,
         const float fy = point.y_m * per_m;
         if (!(fx >= 0.0F && fy >= 0.0F && fx < nx && fy < ny)) continue;  // NaN is outside
         if (!std::isfinite(point.z_m) || !std::isfinite(point.var_m2)) continue;
+        // in range: 0 <= fx < nx and 0 <= fy < ny, as checked above
         to.cell[count] = static_cast<std::uint32_t>(fy) * static_cast<std::uint32_t>(geometry.nx) +
-                         static_cast<std::uint32_t>(fx);
+                         static_cast<std::uint32_t>(fx);  // in range: as fy
         to.z_m[count] = point.z_m;
         to.var_m2[count] = point.var_m2;
         ++count;

@@ -60,6 +60,7 @@ inline constexpr int kMaxTries = 4;  ///< lower starts before a cell counts as p
 
 /// Points that a surface in a cell of `n` points needs.
 [[nodiscard]] inline int support_of(const ReductionConfig& config, int n) noexcept {
+    // in range: describe() keeps upper_share in [0, 1], so this is at most n
     return std::max({1, static_cast<int>(std::ceil(config.upper_share * n)), config.min_points});
 }
 

@@ -334,6 +334,7 @@ void ElevationCells::set_confidence(std::size_t cell, float confidence) {
     layers_.confidence.data()[cell] = confidence;
     // The nearest sixteenth, halves away from zero.
     const float share = kGone * confidence;
+    // in range: confidence is in [0, 1]: recall() checks it, observations mix it with 1
     const int whole = static_cast<int>(share);
     const int more = share - static_cast<float>(whole) >= 0.5F ? 1 : 0;
     steady_.data()[cell] = static_cast<std::uint8_t>(whole + more);

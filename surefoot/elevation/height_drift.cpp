@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::elevation {
 namespace {
 
@@ -25,7 +27,7 @@ constexpr double kFrameShare = 0.5;  ///< the same for what lately aligned groun
 
 int bin_of(double offset_m) {
     const double bin = std::floor((offset_m + kMost_m) / kBin_m + 0.5);
-    return static_cast<int>(std::clamp(bin, 0.0, static_cast<double>(kBins - 1)));
+    return std::clamp(saturated_integer<int>(bin), 0, kBins - 1);
 }
 
 int tiles_along(int cells) {
@@ -147,8 +149,8 @@ double HeightDrift::median_m(std::span<const HeightResidual> residuals, std::uin
     for (const HeightResidual& residual : residuals) {
         if (residual.step > last_step) continue;
         const double weight = 1.0 / static_cast<double>(residual.var_m2);
-        weights_[static_cast<std::size_t>(bin_of(static_cast<double>(residual.offset_m)))] +=
-            weight;
+        const int bin_of_cell = bin_of(static_cast<double>(residual.offset_m));
+        weights_[static_cast<std::size_t>(bin_of_cell)] += weight;
         sum += weight;
     }
     double below = 0.0;

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::elevation {
 namespace {
 
@@ -16,9 +18,9 @@ float distance_sq_m2(const GridPoint& a, const GridPoint& b) {
 }
 
 std::int32_t lattice(float p_m, double edge_m) {
-    constexpr double kLimit = 1 << 30;
-    return static_cast<std::int32_t>(
-        std::clamp(std::floor(static_cast<double>(p_m) / edge_m), -kLimit, kLimit));
+    constexpr std::int32_t kLimit = 1 << 30;
+    const double index = std::floor(static_cast<double>(p_m) / edge_m);
+    return std::clamp(saturated_integer<std::int32_t>(index), -kLimit, kLimit);
 }
 
 double offset_m(float p_m, std::int32_t index, double edge_m) {

@@ -452,10 +452,11 @@ class SmallCells {
             CellMeasurement& measured = *measured_[k];
             if (figures[0][k] < support_[k]) {
                 // The highest samples stand alone: lower starts, one cell after the other.
-                measured = reduce(config_,
-                                  {z_m_ + begin_[k], var_m2_ + begin_[k], static_cast<int>(n_[k])});
+                const int n = static_cast<int>(n_[k]);  // in range: a number of points
+                measured = reduce(config_, {z_m_ + begin_[k], var_m2_ + begin_[k], n});
                 continue;
             }
+            // in range: how many of n points lie in the window
             const Surface surface = surface_of(static_cast<int>(figures[0][k]),
                                                figures[1][k],
                                                figures[2][k],

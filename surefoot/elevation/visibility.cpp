@@ -59,6 +59,7 @@ void LinesOfSight::reset(const grid::GridGeometry& geometry, const Eigen::Vector
     const auto ny = static_cast<float>(geometry.ny);
     const float farthest =
         std::max(camera_x_, nx - camera_x_) + std::max(camera_y_, ny - camera_y_);
+    // in range: from half of nx + ny, none of them negative, to 4 (nx + ny); NaN gives 0
     rings_ = farthest <= 4.0F * (nx + ny) ? static_cast<int>(farthest) + 1 : 0;
     const auto wanted = static_cast<std::size_t>(rings_) * kDirections;
     if (lowest_.size() < wanted) lowest_.resize(wanted, kInfinity);
@@ -87,15 +88,17 @@ void LinesOfSight::add(grid::Cell cell, float z_m) {
     const float dy = static_cast<float>(cell.iy) + 0.5F - camera_y_;
     const Place place = place_of(dx, dy);
     if (!(place.distance >= kNearest && place.distance < static_cast<float>(rings_))) return;
+    // in range: below rings_, as checked above
     const int ring = static_cast<int>(place.distance) - kEndRings;
     if (ring < 0) return;
     const float slope = (z_m - camera_z_m_) / place.distance;
     // Ends side by side leave no gap: what they see through, they see through everywhere.
     const float half_width = 0.5F * kQuarter / place.distance;
     // Rounded down: a turn of one quarter more keeps what is converted positive.
+    // in range: from 0.75 to 5.25 quarters, as the distance is at least kNearest
     const float around = place.direction + kQuarter;
-    const int first = static_cast<int>(around - half_width) - kQuarter;
-    const int last = static_cast<int>(around + half_width) - kQuarter;
+    const int first = static_cast<int>(around - half_width) - kQuarter;  // in range: as above
+    const int last = static_cast<int>(around + half_width) - kQuarter;   // in range: as above
     float* row = lowest_.data() + static_cast<std::ptrdiff_t>(ring) * kDirections;
     for (int direction = first; direction <= last; ++direction) {
         float& lowest = row[direction & (kDirections - 1)];
@@ -130,6 +133,7 @@ float LinesOfSight::lowest_over(grid::Cell cell) const {
     if (!(place.distance >= kNearest && place.distance < static_cast<float>(rings_ - 1))) {
         return kInfinity;
     }
+    // in range: below rings_ - 1, as checked above
     const int ring = static_cast<int>(place.distance) + 1;
     const int direction = static_cast<int>(place.direction) & (kDirections - 1);
     const float slope =

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/gate/tilt.hpp"
 
 namespace surefoot::gate {
@@ -93,7 +94,7 @@ FootPlane fit_plane(const Sums& sums) noexcept {
 }
 
 std::int64_t rounded(double value) noexcept {
-    return static_cast<std::int64_t>(value < 0.0 ? value - 0.5 : value + 0.5);
+    return saturated_integer<std::int64_t>(value < 0.0 ? value - 0.5 : value + 0.5);
 }
 
 /// The patches of a foot, in its own axes.

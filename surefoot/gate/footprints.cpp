@@ -17,9 +17,10 @@ constexpr std::int64_t round_fraction(std::int64_t x) noexcept {
     return grid::floor_div(x + FixedPose::kOne / 2, FixedPose::kOne);
 }
 
-/// |value| <= 1.001, so the product is far inside the range of the conversion.
+/// |value| <= 1.001: check_numbers(), the header of a snapshot and Machine::problem() see to it.
 std::int64_t fraction(double value) noexcept {
     const double scaled = value * static_cast<double>(FixedPose::kOne);
+    // in range: at most 1.001 * 2^20
     return static_cast<std::int64_t>(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
 }
 
@@ -108,6 +109,7 @@ Extent extent_of(const Sweep& sweep) noexcept {
 std::int64_t drift_margin(const GateLimits& limits, std::int64_t drift_tenth_mm) noexcept {
     const std::int64_t beyond = drift_tenth_mm - kDriftWithinTenthMm;
     if (beyond <= 0) return 0;
+    // in range: sigma_factor is at most 10 (Machine::problem()), a drift has 16 bits
     return static_cast<std::int64_t>(limits.sigma_factor * static_cast<double>(beyond)) + 1;
 }
 

@@ -295,8 +295,9 @@ Query make_query(
     const double y = y_m * kTenthMmPerM;
     const auto bound = static_cast<double>(kFarthestTenthMm);
     if (!(x >= -bound && x <= bound && y >= -bound && y <= bound)) return query;
+    // in range: within kFarthestTenthMm, as checked above
     query.x_tenth_mm = static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
-    query.y_tenth_mm = static_cast<std::int64_t>(y < 0.0 ? y - 0.5 : y + 0.5);
+    query.y_tenth_mm = static_cast<std::int64_t>(y < 0.0 ? y - 0.5 : y + 0.5);  // in range: as x
     query.cos_yaw = cos_yaw;
     query.sin_yaw = sin_yaw;
     return query;

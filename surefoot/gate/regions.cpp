@@ -127,6 +127,7 @@ void check_unsure(const Scene& scene,
          Reason::not_resolvable,
          place,
          place.cell.sigma_tenth_mm,
+         // in range: Machine::problem() keeps sigma_factor in 3-10
          static_cast<std::int64_t>(static_cast<double>(limit - value) / factor));
 }
 

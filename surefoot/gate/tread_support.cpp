@@ -17,6 +17,7 @@ constexpr std::int64_t magnitude(std::int64_t x) noexcept {
 
 /// Rounded up, and never less than x itself.
 std::int64_t times_up(double factor, std::int64_t x) noexcept {
+    // in range: x has 32 bits; sigma_factor is at most 10 (Machine::problem())
     return std::max(x, static_cast<std::int64_t>(factor * static_cast<double>(x)) + 1);
 }
 

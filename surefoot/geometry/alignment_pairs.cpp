@@ -116,6 +116,7 @@ void SurfacePairs::keep_nearest() {
         if (pair.counts) sq_apart_m2.push_back(pair.sq_apart_m2);
     }
     if (sq_apart_m2.empty()) return;
+    // in range: align_clouds() asserts that kept_share is in (0, 1]
     const auto last = static_cast<std::ptrdiff_t>(config_.kept_share *
                                                   static_cast<double>(sq_apart_m2.size() - 1));
     std::nth_element(sq_apart_m2.begin(), sq_apart_m2.begin() + last, sq_apart_m2.end());

@@ -21,6 +21,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Ve
 
 /// Largest integer <= value; std::floor is a call without SSE4.
 std::int64_t floor_of(double value) noexcept {
+    // The constructor keeps every point within kMaxReach_cells, and a row of the area meets its
+    // rim. in range: so a value is at most 2^21
     const auto truncated = static_cast<std::int64_t>(value);
     return truncated - (value < static_cast<double>(truncated) ? 1 : 0);
 }

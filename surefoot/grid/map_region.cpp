@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::grid {
 namespace {
 
@@ -113,8 +115,9 @@ std::optional<std::string> LatticeBox::problem() const {
 
 LatticeBox box_of(const GridGeometry& geometry) {
     // An origin is a whole number of cells, so the rounding takes back that of the product alone.
-    return {std::llround(geometry.origin_m.x() / geometry.resolution_m),
-            std::llround(geometry.origin_m.y() / geometry.resolution_m),
+    const Eigen::Vector2d first = geometry.origin_m / geometry.resolution_m;
+    return {saturated_integer<std::int64_t>(std::round(first.x())),
+            saturated_integer<std::int64_t>(std::round(first.y())),
             geometry.nx,
             geometry.ny};
 }

@@ -8,21 +8,33 @@
 #include <utility>
 #include <vector>
 
+#include "surefoot/core/checked_index.hpp"
+#include "surefoot/grid/whole_cells.hpp"
+
 namespace surefoot::grid {
 namespace {
 
 constexpr double kTenthMmPerM = 1e4;
+constexpr double kFarthestM = 1e5;    ///< of the pose, the map and edges from the origin of odom
 constexpr double kHighestM = 1000.0;  ///< a height beyond it is a broken number, not ground
 
+/// Of a length within kFarthestM: check() and is_sound() see to it.
 std::int64_t tenth_mm(double length_m) {
-    return std::llround(length_m * kTenthMmPerM);
+    return std::llround(length_m * kTenthMmPerM);  // in range: at most 10^9
+}
+/// Of a height within kHighestM.
+std::int32_t height_tenth_mm(double height_m) {
+    return static_cast<std::int32_t>(tenth_mm(height_m));  // in range: at most 10^7
+}
+std::int32_t tenth_mm_up(double length_m) {
+    return static_cast<std::int32_t>(std::ceil(length_m * kTenthMmPerM));  // in range: at most 10^7
 }
 
 /// Zero or more, rounded up; NaN and what does not fit become the largest value: known to be bad.
 std::uint16_t saturated_up(double length_m) {
     const double scaled = std::ceil(length_m * kTenthMmPerM);
     if (!(scaled >= 0.0 && scaled < 65535.0)) return 0xffff;
-    return static_cast<std::uint16_t>(scaled);
+    return static_cast<std::uint16_t>(scaled);  // in range, as checked
 }
 
 /// The same for an angle; what is not known or too large stays unknown.
@@ -44,7 +56,7 @@ struct Window {
 Window window_around_body(const SnapshotInput& input) {
     const auto start = [](double body_m, double origin_m, double res_m, int n, int size) {
         const double first = std::floor((body_m - origin_m) / res_m) - size / 2.0;
-        return static_cast<int>(std::clamp(first, 0.0, static_cast<double>(n - size)));
+        return std::clamp(saturated_integer<int>(first), 0, n - size);
     };
     const GridGeometry& g = input.geometry;
     const Eigen::Vector3d& body_m = input.T_odom_body.translation_m;
@@ -73,10 +85,17 @@ Status check(const SnapshotInput& input) {
     if (std::abs(cells - std::round(cells)) > 1e-6)
         return refuse("cells of " + std::to_string(g.resolution_m) +
                       " m are no whole number of 0.1 mm; choose elevation.resolution_m so");
-    if (!g.origin_m.allFinite() || g.origin_m.cwiseAbs().maxCoeff() > 1e5 ||
+    if (!g.origin_m.allFinite() || g.origin_m.cwiseAbs().maxCoeff() > kFarthestM ||
         !input.T_odom_body.all_finite() ||
-        input.T_odom_body.translation_m.cwiseAbs().maxCoeff() > 1e5)
+        input.T_odom_body.translation_m.cwiseAbs().maxCoeff() > kFarthestM)
         return refuse("the pose is not finite or farther than 100 km from the origin of odom");
+    for (const auto& [name, length_m] : {std::pair{"connect_step_m", input.connect_step_m},
+                                         std::pair{"drop_step_m", input.drop_step_m},
+                                         std::pair{"drop_reach_m", input.drop_reach_m}}) {
+        if (!(length_m >= 0.0 && length_m <= kHighestM))
+            return refuse(std::string(name) + " of " + std::to_string(length_m) +
+                          " m; 0 to 1000 m are possible");
+    }
     if (!has_size(input.height_m, g) || !has_size(input.variance_m2, g))
         return refuse("height and variance must have the size of the map");
     for (const auto& layer :
@@ -97,7 +116,7 @@ void write_header(const SnapshotInput& input, const Window& window, MapSnapshot&
     out.config_hash = input.config_hash;
     out.frame_time_ns = input.frame_time_ns;
     out.pose_time_ns = input.pose_time_ns;
-    out.resolution_tenth_mm = static_cast<std::int32_t>(tenth_mm(g.resolution_m));
+    out.resolution_tenth_mm = height_tenth_mm(g.resolution_m);
     out.nx = window.nx;
     out.ny = window.ny;
     out.origin_x_tenth_mm =
@@ -143,19 +162,17 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
     if (!input.drop_evidence.empty()) {
         const double evidence = value(input.drop_evidence);
         // Absence of a drop is never taken from a broken number.
-        out.drop_evidence[at] =
-            std::isnan(evidence)
-                ? std::uint8_t{255}
-                : static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(evidence, 0.0, 1.0)));
+        out.drop_evidence[at] = std::isnan(evidence)
+                                    ? std::uint8_t{255}
+                                    : saturated_integer<std::uint8_t>(std::round(255.0 * evidence));
     }
     const double height_m = value(input.height_m);
     if (!(std::abs(height_m) <= kHighestM)) {
         const double free_m = input.free_above_m.empty() ? std::nan("") : value(input.free_above_m);
-        if (std::abs(free_m) <= kHighestM)
-            out.height_tenth_mm[at] = static_cast<std::int32_t>(std::ceil(free_m * kTenthMmPerM));
+        if (std::abs(free_m) <= kHighestM) out.height_tenth_mm[at] = tenth_mm_up(free_m);
         return;
     }
-    out.height_tenth_mm[at] = static_cast<std::int32_t>(tenth_mm(height_m));
+    out.height_tenth_mm[at] = height_tenth_mm(height_m);
     out.sigma_tenth_mm[at] = saturated_up(std::sqrt(value(input.variance_m2)));
     if (!input.drift_m.empty()) out.drift_tenth_mm[at] = saturated_up(value(input.drift_m));
     if (!input.clearance_m.empty()) {
@@ -163,7 +180,8 @@ void write_cell(const SnapshotInput& input, int u, int v, MapSnapshot& out, std:
         // NaN = nothing was seen above. Negative cannot be: treat it as no room at all.
         const double scaled = std::floor(std::max(clearance_m, 0.0) * kTenthMmPerM);
         if (!std::isnan(clearance_m) && scaled < 65535.0)
-            out.clearance_tenth_mm[at] = static_cast<std::uint16_t>(scaled);
+            out.clearance_tenth_mm[at] =
+                static_cast<std::uint16_t>(scaled);  // in range, as checked
     }
     out.source[at] = EvidenceSource::measured;
 }
@@ -178,7 +196,6 @@ double distance_m(const SnapshotInput::Edge& edge, const Eigen::Vector2d& point_
 }
 
 bool is_sound(const SnapshotInput::Edge& edge) {
-    constexpr double kFarthestM = 1e5;
     return edge.from_m.allFinite() && edge.to_m.allFinite() &&
            edge.from_m.cwiseAbs().maxCoeff() <= kFarthestM &&
            edge.to_m.cwiseAbs().maxCoeff() <= kFarthestM && std::abs(edge.upper_m) <= kHighestM &&
@@ -198,6 +215,8 @@ void write_edges(const SnapshotInput& input, MapSnapshot& out) {
         std::min(sorted.size(), static_cast<std::size_t>(MapSnapshot::kMaxEdges));
     out.edge_count = static_cast<std::int32_t>(count);
     const auto from_origin = [](double p_m, std::int64_t origin_tenth_mm) {
+        // The window begins before the body or with the map, within kFarthestM (10^9) of the
+        // origin. in range: as edges do, and 2^31 is more than twice that
         return static_cast<std::int32_t>(tenth_mm(p_m) - origin_tenth_mm);
     };
     for (std::size_t i = 0; i < count; ++i) {
@@ -207,12 +226,10 @@ void write_edges(const SnapshotInput& input, MapSnapshot& out) {
         to.from_y_tenth_mm = from_origin(edge.from_m.y(), out.origin_y_tenth_mm);
         to.to_x_tenth_mm = from_origin(edge.to_m.x(), out.origin_x_tenth_mm);
         to.to_y_tenth_mm = from_origin(edge.to_m.y(), out.origin_y_tenth_mm);
-        to.upper_tenth_mm = static_cast<std::int32_t>(tenth_mm(edge.upper_m));
-        to.lower_tenth_mm = static_cast<std::int32_t>(tenth_mm(edge.lower_m));
-        to.height_sigma_tenth_mm =
-            static_cast<std::int32_t>(std::ceil(edge.height_sigma_m * kTenthMmPerM));
-        to.across_sigma_tenth_mm =
-            static_cast<std::int32_t>(std::ceil(edge.across_sigma_m * kTenthMmPerM));
+        to.upper_tenth_mm = height_tenth_mm(edge.upper_m);
+        to.lower_tenth_mm = height_tenth_mm(edge.lower_m);
+        to.height_sigma_tenth_mm = tenth_mm_up(edge.height_sigma_m);
+        to.across_sigma_tenth_mm = tenth_mm_up(edge.across_sigma_m);
     }
 }
 
@@ -295,9 +312,9 @@ void mark_drops_on_line(const Line& line,
 }
 
 void mark_drops(const SnapshotInput& input, MapSnapshot& out) {
-    const auto step = static_cast<std::int32_t>(tenth_mm(input.drop_step_m));
-    const int reach = std::max(
-        1, static_cast<int>(std::lround(input.drop_reach_m / input.geometry.resolution_m)));
+    const std::int32_t step = height_tenth_mm(input.drop_step_m);
+    const int reach =
+        std::max(1, whole_cells(std::round(input.drop_reach_m / input.geometry.resolution_m)));
     const std::ptrdiff_t nx = out.nx;
     const std::ptrdiff_t ny = out.ny;
     for (std::ptrdiff_t iy = 0; iy < ny; ++iy) {
@@ -325,7 +342,7 @@ Status build_snapshot(const SnapshotInput& input, MapSnapshot& out) {
     for (int v = window.y; v < window.y + window.ny; ++v) {
         for (int u = window.x; u < window.x + window.nx; ++u) write_cell(input, u, v, out, at++);
     }
-    Labeller(out, static_cast<std::int32_t>(tenth_mm(input.connect_step_m))).label_all();
+    Labeller(out, height_tenth_mm(input.connect_step_m)).label_all();
     mark_drops(input, out);
     write_edges(input, out);
     seal(out);

@@ -202,6 +202,16 @@ TEST(SnapshotBuilder, bad_input_is_a_sentence_and_leaves_nothing_usable) {
     input = map.input();
     input.geometry.nx = 0;
     refuses(input, "no cells");
+    for (const double broken :
+         {std::nan(""), -0.01, 1e30, std::numeric_limits<double>::infinity()}) {
+        for (double SnapshotInput::*length_m : {&SnapshotInput::connect_step_m,
+                                                &SnapshotInput::drop_step_m,
+                                                &SnapshotInput::drop_reach_m}) {
+            input = map.input();
+            input.*length_m = broken;
+            refuses(input, "a step or a reach that is no length");
+        }
+    }
 }
 
 TEST(SnapshotBuilder, crops_a_large_map_around_the_body) {

@@ -216,6 +216,7 @@ std::optional<Candidate> best_plane(const GroundConfig& config,
     Cloud rest = cloud;
     // Fewer than this are no plane that would be accepted.
     const auto least = std::max(kMinPoints,
+                                // in range: GroundConfig::describe() keeps the ratio in [0, 1]
                                 static_cast<std::size_t>(config.min_inlier_ratio *
                                                          static_cast<double>(rest.points.size())));
     for (int plane = 0; plane < kMaxPlanes && rest.points.size() >= least; ++plane) {

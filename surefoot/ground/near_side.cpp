@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/ground/settle_plane.hpp"
 
 namespace surefoot::ground {
@@ -97,6 +98,7 @@ Split best_split(const std::vector<Sample>& samples, int axis) {
     at_m.reserve(samples.size());
     for (const Sample& sample : samples) at_m.push_back(sample.at_m[axis]);
     std::sort(at_m.begin(), at_m.end());
+    // in range: a part of the size
     const auto rim = static_cast<std::size_t>(kRim * static_cast<double>(at_m.size()));
     const double first_m = at_m[rim];
     const double strip_m = (at_m[at_m.size() - 1 - rim] - first_m) / kStrips;
@@ -105,7 +107,8 @@ Split best_split(const std::vector<Sample>& samples, int axis) {
     Sums after;
     for (const Sample& sample : samples) {
         const double strip = std::floor((sample.at_m[axis] - first_m) / strip_m);
-        strips[static_cast<std::size_t>(std::clamp(strip, 0.0, kStrips - 1.0))] += sample.sums;
+        const int k = std::clamp(saturated_integer<int>(strip), 0, kStrips - 1);
+        strips[static_cast<std::size_t>(k)] += sample.sums;
         after += sample.sums;
     }
     Split best;

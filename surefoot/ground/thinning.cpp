@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::ground {
 namespace {
 
@@ -16,7 +18,7 @@ struct Voxel {
 };
 
 std::int64_t key_of(double coordinate_m, double side_m) {
-    return static_cast<std::int64_t>(std::floor(coordinate_m / side_m));
+    return saturated_integer<std::int64_t>(std::floor(coordinate_m / side_m));
 }
 
 /// Indices of the first point of every voxel, ascending.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "surefoot/core/checked_index.hpp"
+
 namespace surefoot::odometry {
 namespace {
 
@@ -42,7 +44,7 @@ void detect_in_cell(const cv::Mat& image,
                           3,
                           cv::BORDER_REFLECT_101);
     const double least = config.min_gradient * config.min_gradient * kEigenvaluePerGradientSq;
-    const int radius = static_cast<int>(std::ceil(config.min_distance_px));
+    const int radius = saturated_integer<int>(std::ceil(config.min_distance_px));
     for (const Eigen::Vector2d& p : taken) {
         const cv::Point at(static_cast<int>(p.x()) - cell.u0, static_cast<int>(p.y()) - cell.v0);
         cv::circle(strength, at, radius, cv::Scalar(0), cv::FILLED);

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "surefoot/core/nearest_pixel.hpp"
+
 namespace surefoot::odometry {
 namespace {
 
@@ -83,8 +85,8 @@ bool read_window(ImageView<const std::uint8_t> image,
         return false;
     const float a = static_cast<float>(centre_px.x() - u_floor);
     const float b = static_cast<float>(centre_px.y() - v_floor);
-    const int u0 = static_cast<int>(u_floor) - kRadius;
-    const int v0 = static_cast<int>(v_floor) - kRadius;
+    const int u0 = static_cast<int>(u_floor) - kRadius;  // in range: in the image, as checked
+    const int v0 = static_cast<int>(v_floor) - kRadius;  // in range: the same
     std::size_t i = 0;
     for (int v = 0; v < PatchTemplate::kSize; ++v) {
         const std::uint8_t* row = image.row(v0 + v) + u0;
@@ -99,11 +101,10 @@ bool read_window(ImageView<const std::uint8_t> image,
 
 std::optional<HostPatch> cut_patch(ImageView<const std::uint8_t> image,
                                    const Eigen::Vector2d& raw_px) {
-    const int u = static_cast<int>(std::lround(raw_px.x()));
-    const int v = static_cast<int>(std::lround(raw_px.y()));
     constexpr int kRadius = HostPatch::kRadius;
-    if (u < kRadius || v < kRadius || u + kRadius >= image.width || v + kRadius >= image.height)
-        return std::nullopt;
+    const auto nearest = nearest_pixel(raw_px.x(), raw_px.y(), image.width, image.height, kRadius);
+    if (!nearest) return std::nullopt;
+    const auto [u, v] = *nearest;
     HostPatch patch;
     for (int row = 0; row < HostPatch::kSize; ++row) {
         const std::uint8_t* from = image.row(v - kRadius + row) + (u - kRadius);

@@ -47,6 +47,16 @@ TEST(Patch, FindsAShiftBelowAPixel) {
     }
 }
 
+TEST(Patch, ThereIsNoneOutsideOfTheImageHoweverFar) {
+    const GreyImage image = draw(Eigen::Matrix2d::Identity(), {0.0, 0.0});
+    EXPECT_TRUE(cut_patch(image.view(), {48.0, 48.0}));
+    // 2^32 + 48 was taken for pixel 48.
+    for (const double far : {4294967344.0, -4294967248.0, 1e300, -1.0, std::nan("")}) {
+        EXPECT_FALSE(cut_patch(image.view(), {far, 48.0})) << far;
+        EXPECT_FALSE(cut_patch(image.view(), {48.0, far})) << far;
+    }
+}
+
 TEST(Patch, DoesNotCareForGainAndOffset) {
     const GreyImage host = draw(Eigen::Matrix2d::Identity(), {0.0, 0.0});
     const GreyImage view = draw(Eigen::Matrix2d::Identity(), {0.6, 0.4}, 0.6, 40.0);

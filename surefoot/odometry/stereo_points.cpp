@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "surefoot/core/nearest_pixel.hpp"
 #include "surefoot/odometry/patch.hpp"
 
 namespace surefoot::odometry {
@@ -14,8 +15,8 @@ namespace {
 constexpr int kRadius = 4;  ///< of the coarse search window
 constexpr int kSize = 2 * kRadius + 1;
 constexpr int kCount = kSize * kSize;
-constexpr double kKnot_px = 8.0;  ///< the epipolar curve is straight enough between knots
-constexpr int kSamePeak_px = 3;   ///< places this close belong to one maximum
+constexpr int kKnot_px = 8;      ///< the epipolar curve is straight enough between knots
+constexpr int kSamePeak_px = 3;  ///< places this close belong to one maximum
 constexpr double kCorrelationNoise =
     0.05;  ///< of whole-pixel windows: smaller differences mean nothing
 constexpr double kCoarseCorrelation = 0.6;  ///< before the sub-pixel refinement
@@ -30,14 +31,12 @@ struct Window {
 bool read_nearest(ImageView<const std::uint8_t> image,
                   const Eigen::Vector2d& at_px,
                   Window& window) {
-    const long u = std::lround(at_px.x());
-    const long v = std::lround(at_px.y());
-    if (u < kRadius || v < kRadius || u + kRadius >= image.width || v + kRadius >= image.height)
-        return false;
+    const auto middle = nearest_pixel(at_px.x(), at_px.y(), image.width, image.height, kRadius);
+    if (!middle) return false;
     float sum = 0.0F;
     std::size_t i = 0;
     for (int dv = -kRadius; dv <= kRadius; ++dv) {
-        const std::uint8_t* row = image.row(static_cast<int>(v) + dv) + u - kRadius;
+        const std::uint8_t* row = image.row(middle->v + dv) + middle->u - kRadius;
         for (int du = 0; du < kSize; ++du) sum += window.value[i++] = static_cast<float>(row[du]);
     }
     float square = 0.0F;
@@ -75,9 +74,9 @@ Curve epipolar_curve(const camera::Rectifier& rectifier,
     auto from = knot(0.0);
     for (double d = 0.0; d < max_disparity_px; d += kKnot_px) {
         const auto to = knot(d + kKnot_px);
-        for (int i = 0; i < static_cast<int>(kKnot_px); ++i) {
+        for (int i = 0; i < kKnot_px; ++i) {
             if (from && to)
-                curve.emplace_back(*from + (*to - *from) * (i / kKnot_px));
+                curve.emplace_back(*from + (*to - *from) * (1.0 * i / kKnot_px));
             else
                 curve.emplace_back(std::nullopt);
         }
@@ -181,10 +180,10 @@ std::optional<StereoPixel> depth_pixel(const camera::Rectifier& rectifier,
                                        const Eigen::Vector2d& raw_left_px,
                                        const StereoPointConfig& config) {
     const auto left = rectifier.rectified_from_raw(camera::Side::left, raw_left_px);
-    const int u = static_cast<int>(std::lround(raw_left_px.x()));
-    const int v = static_cast<int>(std::lround(raw_left_px.y()));
-    if (!left || !depth_m.contains(u - 1, v - 1) || !depth_m.contains(u + 1, v + 1))
-        return std::nullopt;
+    const auto nearest =
+        nearest_pixel(raw_left_px.x(), raw_left_px.y(), depth_m.width(), depth_m.height(), 1);
+    if (!left || !nearest) return std::nullopt;
+    const auto [u, v] = *nearest;
     const auto z_m = static_cast<double>(depth_m.at(u, v));
     if (!(z_m > 0.0)) return std::nullopt;
     for (int dv = -1; dv <= 1; ++dv)

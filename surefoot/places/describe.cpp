@@ -7,6 +7,7 @@
 #include <opencv2/features2d.hpp>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/nearest_pixel.hpp"
 
 namespace surefoot::places {
 namespace {
@@ -17,11 +18,14 @@ constexpr int kPatch_px = 31;
 
 /// Disparity of a corner; NaN where it is unknown or not to be trusted.
 float disparity_at(const DescribeConfig& config, const DepthImage& depth, float u, float v) {
-    const int iu = static_cast<int>(std::lround(u));
-    const int iv = static_cast<int>(std::lround(v));
-    if (!depth.disparity_px.contains(iu, iv)) return std::nanf("");
-    const float d = depth.disparity_px.at(iu, iv);
-    const bool sure = static_cast<double>(depth.outlier_probability.at(iu, iv)) <=
+    const Image<float>& disparity_px = depth.disparity_px;
+    const auto nearest = nearest_pixel(static_cast<double>(u),
+                                       static_cast<double>(v),
+                                       disparity_px.width(),
+                                       disparity_px.height());
+    if (!nearest) return std::nanf("");
+    const float d = disparity_px.at(nearest->u, nearest->v);
+    const bool sure = static_cast<double>(depth.outlier_probability.at(nearest->u, nearest->v)) <=
                           config.max_outlier_probability &&
                       static_cast<double>(d) >= config.min_disparity_px;
     return sure ? d : std::nanf("");

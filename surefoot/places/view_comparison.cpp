@@ -197,6 +197,7 @@ int parts_with_inliers(const ComparisonConfig& config,
     std::vector<bool> holds(static_cast<std::size_t>(config.part_columns * config.part_rows));
     for (std::size_t i = 0; i < points.size(); ++i)
         if (solution.inlier[i] != 0)
+            // in range: part_of() gives a whole number
             holds[static_cast<std::size_t>(part_of(config, query.rig, points[i].pixel_px))] = true;
     return static_cast<int>(std::count(holds.begin(), holds.end(), true));
 }

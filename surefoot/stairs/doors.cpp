@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/checked_index.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::stairs {
 namespace {
@@ -182,19 +184,17 @@ void DoorFinder::gather(const Terrain& terrain, const Opening& opening) {
     const double across_m = 0.5 * opening.width_m + config_.wall_length_m + 0.3;
     const double rows_m = across_m * std::abs(across.y()) + kHalfProfile_m * std::abs(along.y());
     const Vector2d neck = (opening.neck_m - g.origin_m) / cell_m_;
-    const int last_y = std::min(g.ny - 1, static_cast<int>(neck.y() + rows_m / cell_m_));
+    const int last_y = std::min(g.ny - 1, grid::whole_cells(neck.y() + rows_m / cell_m_));
     near_.clear();
-    for (int iy = std::max(0, static_cast<int>(neck.y() - rows_m / cell_m_)); iy <= last_y; ++iy) {
+    for (int iy = std::max(0, grid::whole_cells(neck.y() - rows_m / cell_m_)); iy <= last_y; ++iy) {
         const double y_m = (iy + 0.5 - neck.y()) * cell_m_;
         Range x_m{-g.nx * cell_m_, g.nx * cell_m_};
         x_m.cut(across.x(), across.y() * y_m, across_m);
         x_m.cut(along.x(), along.y() * y_m, kHalfProfile_m);
         // Where the opening lies almost along the rows the range may end beyond all integers.
-        const auto cell_at = [&](double offset_m) {
-            return std::clamp(neck.x() + offset_m / cell_m_ - 0.5, -1.0, 1.0 * g.nx);
-        };
-        const int last_x = std::min(g.nx - 1, static_cast<int>(std::floor(cell_at(x_m.to))));
-        for (int ix = std::max(0, static_cast<int>(std::ceil(cell_at(x_m.from)))); ix <= last_x;
+        const auto cell_at = [&](double offset_m) { return neck.x() + offset_m / cell_m_ - 0.5; };
+        const int last_x = std::min(g.nx - 1, grid::whole_cells(std::floor(cell_at(x_m.to))));
+        for (int ix = std::max(0, grid::whole_cells(std::ceil(cell_at(x_m.from)))); ix <= last_x;
              ++ix) {
             if (!terrain.known(ix, iy)) continue;
             Near cell;
@@ -284,14 +284,14 @@ void DoorFinder::find_row_ends(const Terrain& terrain, const Opening& opening, d
     const double begin = (opening.neck_m[other] - g.origin_m[other] - lines_m) / cell_m_;
     const double end = begin + 2.0 * lines_m / cell_m_;
     ends_.clear();
-    for (int line = std::max(0, static_cast<int>(begin));
-         line <= std::min((rows_along_x ? g.ny : g.nx) - 1, static_cast<int>(end));
+    for (int line = std::max(0, grid::whole_cells(begin));
+         line <= std::min((rows_along_x ? g.ny : g.nx) - 1, grid::whole_cells(end));
          ++line) {
         const double line_m = g.origin_m[other] + (line + 0.5) * cell_m_;
         const double at_m = (line_m - opening.neck_m[other]) / along[other];
         const double start_m = opening.neck_m[axis] + at_m * along[axis] - g.origin_m[axis];
         int unknown = 0;
-        for (int i = static_cast<int>(std::floor(start_m / cell_m_));; i += step) {
+        for (int i = grid::whole_cells(std::floor(start_m / cell_m_));; i += step) {
             const grid::Cell cell = rows_along_x ? grid::Cell{i, line} : grid::Cell{line, i};
             if (!g.contains(cell)) break;
             const Vector2d offset_m = g.center_m(cell) - opening.neck_m;
@@ -351,6 +351,7 @@ std::optional<DoorFinder::Jamb> DoorFinder::jamb(const Terrain& terrain,
 
 bool DoorFinder::has_wall(const Opening& opening, double side, const Jamb& jamb) {
     const double bin_m = std::max(cell_m_, kBin_m);
+    // in range: wall_length_m is at most 10 m (describe()), and bin_m is at least kBin_m
     const auto bins = static_cast<std::size_t>(std::max(1.0, config_.wall_length_m / bin_m));
     hits_.assign(bins, 0);
     float highest_m = -std::numeric_limits<float>::infinity();
@@ -360,7 +361,7 @@ bool DoorFinder::has_wall(const Opening& opening, double side, const Jamb& jamb)
         if (std::abs(cell.offset_m.dot(opening.along()) - middle_m) > kWallNoise_m) continue;
         const double bin = (side * cell.offset_m.dot(opening.across) - jamb.at_m) / bin_m + 0.5;
         if (!(bin >= 0.0 && bin < static_cast<double>(bins))) continue;
-        hits_[static_cast<std::size_t>(bin)] = 1;
+        hits_[static_cast<std::size_t>(bin)] = 1;  // in range: as checked
         highest_m = std::max(highest_m, cell.height_m);
     }
     const auto hits = std::count(hits_.begin(), hits_.end(), 1);
@@ -397,13 +398,16 @@ bool DoorFinder::goes_on(const Opening& opening, double side, const Jamb& jamb) 
 void DoorFinder::take_profile(const Opening& opening) {
     const double bin_m = std::max(cell_m_, kBin_m);
     const double half_m = 0.5 * opening.width_m - kCorner_m;
+    // in range: bin_m is at least kBin_m
     profile_.assign(static_cast<std::size_t>(2.0 * kHalfProfile_m / bin_m) + 1, {});
     for (const Near& cell : near_) {
         if (cell.height_m >= opening.wall_from_m) continue;
         if (std::abs(cell.offset_m.dot(opening.across) - opening.middle_m) > half_m) continue;
         const double along_m = cell.offset_m.dot(opening.along());
-        Bin& bin = profile_[static_cast<std::size_t>(std::clamp(
-            (along_m + kHalfProfile_m) / bin_m, 0.0, static_cast<double>(profile_.size() - 1)))];
+        const int k = std::clamp(grid::whole_cells((along_m + kHalfProfile_m) / bin_m),
+                                 0,
+                                 static_cast<int>(profile_.size()) - 1);
+        Bin& bin = profile_[static_cast<std::size_t>(k)];
         bin.sum_m += static_cast<double>(cell.height_m);
         bin.var_sum_m2 += static_cast<double>(cell.var_m2);
         bin.count += 1;
@@ -417,7 +421,7 @@ DoorFinder::GroundLine DoorFinder::ground_line(const Opening& opening,
     const double bin_m = std::max(cell_m_, kBin_m);
     const double least = 0.3 * (opening.width_m - 2.0 * kCorner_m) * bin_m / square(cell_m_);
     const auto bin_at = [&](double along_m) {
-        return static_cast<int>(std::floor((along_m + kHalfProfile_m) / bin_m));
+        return grid::whole_cells(std::floor((along_m + kHalfProfile_m) / bin_m));
     };
     const int first = std::max(0, bin_at(std::min(at_m, far_m)));
     const int last = std::min(static_cast<int>(profile_.size()) - 1, bin_at(std::max(at_m, far_m)));
@@ -516,7 +520,8 @@ double DoorFinder::clearance_m(const Opening& opening) {
             values_.push_back(cell.clearance_m);
     }
     const auto rank =
-        static_cast<std::size_t>(std::max(1.0, square(config_.overhead_side_m / cell_m_))) - 1;
+        saturated_integer<std::size_t>(std::max(1.0, square(config_.overhead_side_m / cell_m_))) -
+        1;
     if (values_.size() <= rank) return kNan;
     const auto place = values_.begin() + static_cast<std::ptrdiff_t>(rank);
     std::nth_element(values_.begin(), place, values_.end());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/stairs/median.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
 
@@ -36,7 +37,8 @@ class Rows {
         to_m_ = line.to_m + search.beside_m * along + search.at_m * down_;
         const int other = 1 - axis_;
         const auto row_of = [&](double p_m) {
-            return static_cast<int>(std::floor((p_m - grid_.origin_m[other]) / grid_.resolution_m));
+            return grid::whole_cells(
+                std::floor((p_m - grid_.origin_m[other]) / grid_.resolution_m));
         };
         first_ = std::max(0, row_of(std::min(from_m_[other], to_m_[other])));
         last_ = std::min(rows() - 1, row_of(std::max(from_m_[other], to_m_[other])));
@@ -82,7 +84,7 @@ class Rows {
     /// Of the point that far behind the edge, across it.
     [[nodiscard]] int cell_of(double s_m) const {
         const double p_m = cross_m_ + s_m / down_[axis_];
-        return static_cast<int>(std::floor((p_m - grid_.origin_m[axis_]) / grid_.resolution_m));
+        return grid::whole_cells(std::floor((p_m - grid_.origin_m[axis_]) / grid_.resolution_m));
     }
 
     const grid::GridGeometry& grid_;

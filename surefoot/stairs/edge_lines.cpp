@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/stairs/median.hpp"
 
@@ -151,7 +152,7 @@ void EdgeLineFinder::take_lines(std::span<const EdgePoint> points,
                                 std::span<const std::int32_t> chain) {
     const double least_m = 0.5 * config_.min_length_m;  // pieces may still be joined
     const auto least_points =
-        static_cast<std::size_t>(std::max(3.0, 0.6 * least_m / resolution_m_));
+        saturated_integer<std::size_t>(std::max(3.0, 0.6 * least_m / resolution_m_));
     left_.clear();
     for (const std::int32_t i : chain) {
         const EdgePoint& point = points[static_cast<std::size_t>(i)];

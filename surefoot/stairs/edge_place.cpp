@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "surefoot/grid/whole_cells.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
@@ -42,7 +44,7 @@ PlaceOfEdge place_of(const Edge& edge, const Terrain& terrain) {
     const Vector2d down = edge.down();
     const Vector2d nearest_m = (kNearest_m + 2.0 * edge.across_sigma_m) * down;
     const Vector2d step_m = cell_m * down;
-    const int steps = std::max(1, static_cast<int>(std::lround(kStrip_m / cell_m)));
+    const int steps = std::max(1, grid::whole_cells(std::round(kStrip_m / cell_m)));
     const double limit_m = 0.5 * std::min(edge.height_m(), kHighest_m);
     int known = 0, level = 0;
     for (int k = 0; k < kSlices; ++k) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/grid/whole_cells.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
@@ -25,7 +27,7 @@ void EdgePointFinder::find(const Terrain& terrain, std::vector<EdgePoint>& out) 
     const grid::GridGeometry& grid = terrain.geometry;
     resolution_m_ = grid.resolution_m;
     const auto cells_in = [&](double length_m) {
-        return std::max(2, static_cast<int>(std::ceil(length_m / resolution_m_ - 1e-6)));
+        return std::max(2, grid::whole_cells(std::ceil(length_m / resolution_m_ - 1e-6)));
     };
     window_cells_ = cells_in(config_.smear_m);
     reach_cells_ = cells_in(kLongestShadow_m);

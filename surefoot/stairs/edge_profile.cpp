@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/stairs/edge_cells.hpp"
 #include "surefoot/stairs/median.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
@@ -48,7 +49,7 @@ bool EdgeProfiler::Slices::known(int slice) const {
 
 int EdgeProfiler::Slices::strip(int slice, int way) const {
     if (!known(slice) || known(slice - way)) return 0;
-    const int most = static_cast<int>(kStrip_m / cell_m);
+    const int most = grid::whole_cells(kStrip_m / cell_m);
     double lowest_m = at(slice).height_m;
     double highest_m = lowest_m;
     int length = 1;
@@ -65,9 +66,9 @@ void EdgeProfiler::slice(const Terrain& terrain,
                          double lower_m) {
     resolution_m_ = terrain.geometry.resolution_m;
     length_m_ = line.length_m();
-    upper_slices_ = static_cast<int>(std::ceil(upper_m / resolution_m_));
-    const auto slices = static_cast<std::size_t>(
-        upper_slices_ + static_cast<int>(std::ceil(lower_m / resolution_m_)));
+    upper_slices_ = grid::whole_cells(std::ceil(upper_m / resolution_m_));
+    const int lower_slices = grid::whole_cells(std::ceil(lower_m / resolution_m_));
+    const auto slices = static_cast<std::size_t>(upper_slices_ + lower_slices);
     slices_.assign(slices, Slice{});
     for (Slice& slice : slices_) slice.free_above_m = kNothing;
     cells_.assign(slices, 0);
@@ -93,7 +94,7 @@ void EdgeProfiler::slice(const Terrain& terrain,
 /// slices.
 void EdgeProfiler::gather(const Terrain& terrain, const EdgeLine& line) {
     const auto visit = [&](int ix, int iy, double at_slice, double) {
-        const int k = static_cast<int>(at_slice);
+        const int k = static_cast<int>(at_slice);  // in range: for_each_cell_about() checks it
         const auto slice = static_cast<std::size_t>(k);
         ++cells_[slice];
         const float height_m = terrain.height_m.row(iy)[ix];
@@ -145,8 +146,8 @@ Level EdgeProfiler::level_from(int first, int step) const {
     };
     // Of what is level the longest piece counts, as far as it is needed: beside a riser a few
     // slices may agree on what depth noise makes of it.
-    const int enough = std::max(1, static_cast<int>(std::round(kMeasured_m / resolution_m_)));
-    const int furthest = static_cast<int>(std::ceil(2.0 * config_.smear_m / resolution_m_));
+    const int enough = std::max(1, grid::whole_cells(std::round(kMeasured_m / resolution_m_)));
+    const int furthest = grid::whole_cells(std::ceil(2.0 * config_.smear_m / resolution_m_));
     int begin = first;
     int length = 0;
     for (int k = first, tried = 0; k >= 0 && k < slices && length < enough;) {
@@ -177,7 +178,7 @@ Level EdgeProfiler::level_from(int first, int step) const {
     level.sigma_m = mean.sigma_m;
     level.scatter_m = mean.scatter_m;
     level.middle_m = level.begin_m + 0.5 * used * resolution_m_;
-    const int most_sloping = std::max(1, static_cast<int>(std::round(kSloping_m / resolution_m_)));
+    const int most_sloping = std::max(1, grid::whole_cells(std::round(kSloping_m / resolution_m_)));
     level.slope = slope_of(begin, step, std::min(most_sloping, length));
     return level;
 }
@@ -208,8 +209,8 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
     const Vector2d middle_m = 0.5 * (line.from_m + line.to_m);
     const Vector2d look_m = middle_m - terrain.view->T_map_camera.translation_m.head<2>();
     if (look_m.dot(line.down()) < 0.7 * look_m.norm()) return false;
-    const int cells = static_cast<int>(kEnd_m / resolution_m_);
-    const int ragged = static_cast<int>(kRagged_m / resolution_m_);
+    const int cells = grid::whole_cells(kEnd_m / resolution_m_);
+    const int ragged = grid::whole_cells(kRagged_m / resolution_m_);
     for (int k = ragged; k < cells; ++k) {
         if (at(upper_slices_ - 1 - k).known_share < kKnownShare ||
             at(upper_slices_ + k).known_share > kUnknownShare)
@@ -277,8 +278,8 @@ std::optional<Edge> EdgeProfiler::measure(const Terrain& terrain, const EdgeLine
     double bound_m = kNothing;
     double bound_at_m = kNothing;
     const int shadow_end = std::isfinite(lower.sigma_m)
-                               ? static_cast<int>(std::lround(lower.begin_m / resolution_m_))
-                               : static_cast<int>(config_.shadow_per_height / resolution_m_);
+                               ? grid::whole_cells(std::round(lower.begin_m / resolution_m_))
+                               : grid::whole_cells(config_.shadow_per_height / resolution_m_);
     for (int k = 0; k < shadow_end && upper_slices_ + k < static_cast<int>(slices_.size()); ++k) {
         const Slice& slice = at(upper_slices_ + k);
         if (slice.free_above_m < bound_m) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/stairs/edge_place.hpp"
 #include "surefoot/stairs/edge_relations.hpp"
 
@@ -102,7 +103,7 @@ int steps_before(const Flight& end, const Flight& flight) {
         overlap_m(first, begin) >= 0.5 * std::min(first.length_m(), begin.length_m()) &&
         std::abs(rise_m - foretold_m) <= kFarEnd_risers * flight.riser_m;
     if (!leads_there) return 0;
-    const auto steps = static_cast<int>(std::lround(rise_m / flight.riser_m));
+    const int steps = saturated_integer<int>(std::round(rise_m / flight.riser_m));
     return steps <= static_cast<int>(flight.edges.size()) ? std::max(steps, 0) : 0;
 }
 

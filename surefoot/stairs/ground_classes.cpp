@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/stairs/median.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
 
@@ -61,7 +62,7 @@ CellBox box_around(const grid::GridGeometry& grid, const Points& points_m, doubl
     if (!low_m.allFinite() || !high_m.allFinite()) return {};
     const auto cell = [&](double at_m, double origin_m, int n) {
         const double k = std::floor((at_m - origin_m) / grid.resolution_m);
-        return static_cast<int>(std::clamp(k, 0.0, static_cast<double>(n)));
+        return std::clamp(grid::whole_cells(k), 0, n);
     };
     CellBox box;
     box.ix0 = cell(low_m.x() - rim_m, grid.origin_m.x(), grid.nx);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/grid/whole_cells.hpp"
+
 namespace surefoot::stairs {
 namespace {
 
@@ -29,9 +31,9 @@ void take_row(const float* z_m, std::size_t count, float* low_m, float* high_m, 
 const std::vector<Neck>& NeckFinder::find(const Terrain& terrain, const NeckLimits& limits) {
     necks_.clear();
     const grid::GridGeometry& geometry = terrain.geometry;
-    cells_ = std::max(1, static_cast<int>(std::lround(kBlock_m / geometry.resolution_m)));
+    cells_ = std::max(1, grid::whole_cells(std::round(kBlock_m / geometry.resolution_m)));
     block_m_ = cells_ * geometry.resolution_m;
-    range_ = static_cast<int>(std::ceil(0.5 * limits.max_width_m / block_m_)) + 1;
+    range_ = grid::whole_cells(std::ceil(0.5 * limits.max_width_m / block_m_)) + 1;
     if (geometry.nx < cells_ || geometry.ny < cells_) return necks_;
     measure_blocks(terrain);
     spread_ground();
@@ -53,7 +55,7 @@ const std::vector<Neck>& NeckFinder::find(const Terrain& terrain, const NeckLimi
 void NeckFinder::measure_blocks(const Terrain& terrain) {
     const int nx = terrain.geometry.nx / cells_;
     const int ny = terrain.geometry.ny / cells_;
-    reach_ = std::max(1, static_cast<int>(std::lround(kReach_m / block_m_)));
+    reach_ = std::max(1, grid::whole_cells(std::round(kReach_m / block_m_)));
     low_m_.resize(nx + 2 * reach_, ny + 2 * reach_);
     low_m_.fill(kInfinity);
     high_m_.resize(nx, ny);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
 
 namespace surefoot::stairs {
@@ -87,7 +88,7 @@ bool PatchFinder::lies_on(const Sums& sums, const Plane& plane) const {
 
 void PatchFinder::find(const Terrain& terrain, PatchMap& out) {
     const grid::GridGeometry& grid = terrain.geometry;
-    block_cells_ = std::max(2, static_cast<int>(std::lround(config_.block_m / grid.resolution_m)));
+    block_cells_ = std::max(2, grid::whole_cells(std::round(config_.block_m / grid.resolution_m)));
     nbx_ = (grid.nx + block_cells_ - 1) / block_cells_;
     nby_ = (grid.ny + block_cells_ - 1) / block_cells_;
     middle_m_ = grid.origin_m + 0.5 * grid.resolution_m * Eigen::Vector2d(grid.nx, grid.ny);

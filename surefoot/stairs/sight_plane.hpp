@@ -59,8 +59,11 @@ struct SightPlane {
         const double b = row_of(steepness_b, u_px);
         if (!(std::isfinite(a) && std::isfinite(b))) return {};
         const double most = height_px;
+        // in range: finite, as checked, and clamped to the rows of the image
         return {static_cast<int>(std::clamp(std::min(a, b), -1.0, most) + 1.0),
-                std::min(static_cast<int>(std::clamp(std::max(a, b), -1.0, most)), height_px - 1)};
+                std::min(
+                    static_cast<int>(std::clamp(std::max(a, b), -1.0, most)),  // in range: the same
+                    height_px - 1)};
     }
     /// Row of a column in which lines of sight have this fall over run; infinite or NaN = none.
     [[nodiscard]] double row_of(double steepness, double u_px) const {

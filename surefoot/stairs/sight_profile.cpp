@@ -39,6 +39,7 @@ void SightProfile::gather(const Terrain& terrain,
     const auto steepness_at = [&](double tangent) {
         return (steep - tangent) / (1.0 + steep * tangent);
     };
+    // in range: Camera::problem() bounds the focal length
     const int bins = static_cast<int>((kBefore_rad + kBehind_rad) / bin_rad_);
     bins_.resize(static_cast<std::size_t>(bins));
     for (int k = 0; k < bins; ++k)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/stairs/sight_plane.hpp"
 
 namespace surefoot::stairs {
@@ -12,6 +13,7 @@ namespace {
 constexpr double kGrid_m = 0.005;  ///< of the depths that are tried
 constexpr double kHighest_m = -0.03;
 constexpr double kDeepest_m = 1.2;
+// in range: constants
 constexpr int kDepths = static_cast<int>((kDeepest_m - kHighest_m) / kGrid_m) + 1;
 constexpr int kLeastRise = 10;      ///< of a step, in kGrid_m: what is less is one tread
 constexpr float kStepCost = 8.0F;   ///< in sigma of a bin: a step pays by explaining that much
@@ -112,8 +114,7 @@ double SightSteps::nose_sigma_m(double run_m, double below_m) const {
 /// `height_m`: of the camera above the ground above the edge.
 void SightSteps::find_noses(std::span<const SightBin> bins, double height_m) {
     const auto steepness_at = [&](double bin) {
-        const auto k = static_cast<std::size_t>(
-            std::clamp(std::floor(bin), 0.0, static_cast<double>(bins.size()) - 2.0));
+        const auto k = std::min(saturated_integer<std::size_t>(std::floor(bin)), bins.size() - 2);
         const double share = bin - static_cast<double>(k);
         return bins[k].steepness + share * (bins[k + 1].steepness - bins[k].steepness);
     };
@@ -159,8 +160,8 @@ std::size_t SightSteps::as_even_flight(std::span<const SightBin> bins,
     levels_.resize(1);
     levels_[0] = {.begin = 0, .end = 0, .depth_m = levels_[0].depth_m};
     for (std::size_t bin = 0; bin < bins.size(); ++bin) {
-        const auto tread = static_cast<std::size_t>(
-            flight->steps_to(1.0 / bins[bin].steepness, height_m, first.run_m));
+        const int behind = flight->steps_to(1.0 / bins[bin].steepness, height_m, first.run_m);
+        const auto tread = static_cast<std::size_t>(behind);
         while (levels_.size() <= tread) {
             levels_.push_back({.begin = static_cast<int>(bin),
                                .end = static_cast<int>(bin),

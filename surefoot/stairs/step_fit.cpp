@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/stairs/slice_mean.hpp"
 
 namespace surefoot::stairs {
@@ -32,7 +33,7 @@ constexpr double kUneven_m = 0.02;
 void StepFitter::find_treads(const Terrain& terrain, const EdgeLine& line) {
     treads_.clear();
     const EdgeProfiler::Slices all = profiler_.slices(terrain, line, kReach_m, kReach_m);
-    const int least = std::max(2, static_cast<int>(std::lround(kLeastTread_m / all.cell_m)));
+    const int least = std::max(2, grid::whole_cells(std::round(kLeastTread_m / all.cell_m)));
     for (int first = 0; first < all.count();) {
         if (!all.known(first)) {
             ++first;

@@ -20,6 +20,7 @@ class CensusMatcher final : public Matcher {
   public:
     explicit CensusMatcher(const MatcherConfig& config)
         : settle_{config.uniqueness_percent,
+                  // in range: MatcherConfig::problem() keeps it in 0-16
                   static_cast<int>(std::lround(config.left_right_tolerance_px))},
           search_(search_config(config)),
           finisher_({.lag_rows = kSearchLag_rows}) {}

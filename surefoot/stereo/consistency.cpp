@@ -19,24 +19,25 @@ static_assert(kFarthest_px == rows::kFarthest_px);
 constexpr float kSteepestGround = 0.4F;
 constexpr int kBlockColumns = 256;
 
-int right_pixel(int u, float disparity_px) noexcept {
-    return static_cast<int>(std::floor(static_cast<float>(u) - disparity_px + 0.5F));
+float right_pixel(int u, float disparity_px) noexcept {
+    return std::floor(static_cast<float>(u) - disparity_px + 0.5F);
 }
 
 void drop_hidden_in_row(float* d, int width, float tolerance_px, std::vector<float>& claim) {
     claim.assign(static_cast<std::size_t>(width), 0.0F);
     for (int u = 0; u < width; ++u) {
         if (std::isnan(d[u])) continue;
-        const int x = right_pixel(u, d[u]);
-        if (x < 0 || x >= width) {
+        const float x = right_pixel(u, d[u]);
+        if (!(x >= 0.0F && x < static_cast<float>(width))) {
             d[u] = kNan;
             continue;
         }
-        float& nearest = claim[static_cast<std::size_t>(x)];
+        float& nearest = claim[static_cast<std::size_t>(x)];  // in range: as checked above
         nearest = std::max(nearest, d[u]);
     }
     for (int u = 0; u < width; ++u) {
         if (std::isnan(d[u])) continue;
+        // in range: the loop above has made NaN of all others
         if (claim[static_cast<std::size_t>(right_pixel(u, d[u]))] > d[u] + tolerance_px)
             d[u] = kNan;
     }

@@ -178,9 +178,11 @@ void mark_along_row(const float* d, int width, JumpRule rule, std::uint8_t* HWY_
     };
     for (int u = 0; u < std::min(r, width); ++u) beside_end(u);
     for (int u = r; u < width - r; ++u) {
-        const bool jump = static_cast<int>(std::abs(d[u] - d[u - 1]) > step) |
-                          static_cast<int>(std::abs(d[u] - d[u + 1]) > step) |
-                          static_cast<int>(std::abs(d[u - r] - d[u + r]) > ramp);
+        // in range: truths
+        const bool jump =
+            static_cast<int>(std::abs(d[u] - d[u - 1]) > step) |
+            static_cast<int>(std::abs(d[u] - d[u + 1]) > step) |
+            static_cast<int>(std::abs(d[u - r] - d[u + r]) > ramp);  // in range: a truth
         mark[u] = jump ? 255 : 0;
     }
     for (int u = std::max(r, width - r); u < width; ++u) beside_end(u);
@@ -227,6 +229,7 @@ HWY_INLINE void mark_down_here(D d,
     hn::Store(hn::IfThenElseZero(torn, distance), d, sides);
     hn::StoreU(hn::Or(hn::LoadU(d8, mark), bytes_of(d, torn)), d8, mark);
     for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+        // in range: a number of rows of the image
         if (sides[i] > 0.0F) *(mark + i - static_cast<std::ptrdiff_t>(sides[i]) * stride) = 255;
     }
 }

@@ -354,8 +354,8 @@ HWY_INLINE hn::Vec<D> exp_of(D d, hn::Vec<D> x) {
 /// stands where the probability will.
 template <class D>
 HWY_INLINE void score_here(D d, const RateRow& row, const Divisor& area, int u) {
-    constexpr Divisor kReach_px(static_cast<int>(kJumpReach_px));
-    constexpr Divisor kMaxNoise(static_cast<int>(kMaxNoisePerPixel_px));
+    constexpr Divisor kReach_px(static_cast<int>(kJumpReach_px));         // in range: constants
+    constexpr Divisor kMaxNoise(static_cast<int>(kMaxNoisePerPixel_px));  // in range: constants
     const hn::RebindToSigned<D> d32;
     const hn::Rebind<std::uint8_t, D> d8;
     const auto set = [d](float value) { return hn::Set(d, value); };

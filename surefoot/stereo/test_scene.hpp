@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/views.hpp"
 
@@ -156,8 +157,7 @@ class Scene {
                     grey += range ? texture(from + *range * direction) : 90.0;
                 }
                 const double noisy = 0.25 * grey * gain + config_.noise_grey * rng.normal();
-                image.at(u, v) =
-                    static_cast<std::uint8_t>(std::clamp(std::lround(noisy), 0L, 255L));
+                image.at(u, v) = saturated_integer<std::uint8_t>(std::round(noisy));
             }
         }
         return image;

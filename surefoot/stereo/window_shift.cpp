@@ -71,10 +71,12 @@ Rows rows_of(ImageView<const std::uint8_t> left, int u_px, int v_px) {
 /// leave the image.
 std::optional<Row> project(
     const Rows& rows, ImageView<const std::uint8_t> right, int u_px, int v_px, const Warp& warp) {
-    constexpr int kReach = kHalf + static_cast<int>(2 * kMostSlant * kHalf) + 1;
+    constexpr int kReach =
+        kHalf + static_cast<int>(2 * kMostSlant * kHalf) + 1;  // in range: constants
     constexpr int kWide = 2 * kReach + kTaps;
+    // in range: settle_shift() keeps the warp within kFarthest_px of a start that it has checked
     const auto u0 = u_px + static_cast<int>(std::floor(warp.columns_px));
-    const auto v0 = v_px + static_cast<int>(std::floor(warp.rows_px));
+    const auto v0 = v_px + static_cast<int>(std::floor(warp.rows_px));  // in range: the same
     if (v0 - kHalf - kBefore < 0 || v0 + kHalf + kTaps - kBefore > right.height) return {};
     const auto down = taps_at(warp.rows_px - std::floor(warp.rows_px));
     const int first = u0 - kReach - kBefore;  // column of strip[0]
@@ -94,8 +96,8 @@ std::optional<Row> project(
         for (int x = -kHalf; x <= kHalf; ++x, ++i) {
             const double at = u_px + x + warp.columns_px + warp.slant_x * x + warp.slant_y * y;
             const double whole = std::floor(at);
-            const int k = static_cast<int>(whole) - kBefore - first;
             if (whole < kBefore || whole + kTaps - kBefore > right.width) return {};
+            const int k = static_cast<int>(whole) - kBefore - first;  // in range: as checked
             const auto along = taps_at(at - whole);
             double grey = 0.0;
             for (int tap = 0; tap < kTaps; ++tap)
@@ -115,6 +117,8 @@ std::optional<WindowShift> settle_shift(ImageView<const std::uint8_t> left,
                                         int v_px,
                                         const WindowShift& start) {
     if (!holds(left, u_px, v_px, kHalf + 1, kHalf + 1)) return {};
+    if (!(std::abs(start.columns_px) <= right.width && std::abs(start.rows_px) <= right.height))
+        return {};
     const Rows rows = rows_of(left, u_px, v_px);
     Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
     for (const Row& row : rows) information += row * row.transpose();

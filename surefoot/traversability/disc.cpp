@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/grid/whole_cells.hpp"
+
 namespace surefoot::traversability {
 namespace {
 
@@ -50,7 +52,7 @@ void PaddedLayer::load(ImageView<const float> source, const CellRect& rect) {
 }
 
 int Disc::reach_of(double radius_m, double resolution_m) noexcept {
-    return static_cast<int>(std::sqrt(limit_cells2(radius_m, resolution_m)));
+    return grid::whole_cells(std::sqrt(limit_cells2(radius_m, resolution_m)));
 }
 
 int Disc::half_width_of(double radius_m, double resolution_m, int dy) noexcept {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 #include "surefoot/traversability/disc.hpp"
 
 namespace surefoot::traversability {
@@ -74,7 +75,7 @@ void FootholdFinder::shape(double resolution_m) {
     set_half_widths(foot_m + config_.band_m, resolution_m, band_);
     set_half_widths(foot_m + config_.band_m + config_.corner_m, resolution_m, near_);
     for (int yaw = 0; yaw < kYaws; ++yaw) turned_[static_cast<std::size_t>(yaw)] = turned_foot(yaw);
-    patch_cells_ = std::max(1, static_cast<int>(std::lround(config_.patch_side_m / resolution_m)));
+    patch_cells_ = std::max(1, grid::whole_cells(std::round(config_.patch_side_m / resolution_m)));
     const double overhead_side = config_.overhead_side_m / resolution_m;
     overhead_cells_ = std::max(1.0, std::round(overhead_side * overhead_side));
     foot_cells_ = 0.0;

@@ -129,7 +129,7 @@ class Gathering {
         const float* const ratings = layers_.rating.row(iy);
         const float* const at =
             std::find(ratings + worst_run_.first, ratings + worst_run_.end, rating_.joined_min());
-        return {static_cast<int>(at - ratings), iy};
+        return {static_cast<int>(at - ratings), iy};  // in range: a difference of pointers
     }
 
     const FootprintLayers& layers_;
@@ -172,6 +172,7 @@ bool append_way(const Footprint& footprint,
     const bool turns = footprint.reach_m() > 0.0;  // a circle looks the same at any yaw
     const double turn_rad =
         turns ? std::remainder(to.yaw_rad - from.yaw_rad, 2.0 * std::numbers::pi) : 0.0;
+    // in range: a turn of at most pi
     const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(turn_rad) / kMaxTurn_rad)));
     const auto at = [&](int k) {
         const double s = static_cast<double>(k) / pieces;

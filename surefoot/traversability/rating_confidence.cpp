@@ -31,6 +31,7 @@ std::uint64_t packed(float height_m, float var_m2) noexcept {
     const double used_m2 = v_m2 < kLargestVariance_m2 ? std::max(v_m2, 0.0) : kLargestVariance_m2;
     // Rounded up: no cell looks better than it is.
     return (std::uint64_t{1} << kCountShift) +
+           // in range: used_m2 is in [0, 0.1]; NaN has become 0.1
            static_cast<std::uint64_t>(used_m2 * kVariancesPerM2) + 1;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "surefoot/core/assert.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::traversability {
 namespace {
@@ -17,8 +18,10 @@ constexpr std::int32_t kUnknown = -1'000'000'000;
 constexpr std::int32_t kNobody = -1;
 constexpr int kNeighbours = 4;
 
+/// Of a height within kHighest_m or a step of at most 1 m, see TraversabilityConfig::Reach.
 std::int32_t tenth_mm(double length_m) noexcept {
     const double scaled = length_m * kTenthMmPerM;
+    // in range: at most 10^7
     return static_cast<std::int32_t>(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
 }
 
@@ -108,7 +111,7 @@ void Reachability::gather(const grid::GridGeometry& geometry,
     const Eigen::Vector2d middle = (body_m - geometry.origin_m) / geometry.resolution_m;
     const double reach = radius_m / geometry.resolution_m + 1.0;
     const auto clamped = [](double at, int n) {
-        return static_cast<int>(std::clamp(at, 0.0, static_cast<double>(n)));
+        return std::clamp(saturated_integer<int>(at), 0, n);
     };
     const int last_ix = clamped(middle.x() + reach, nx_);
     const int last_iy = clamped(middle.y() + reach, ny_);

@@ -145,6 +145,7 @@ class BadInput(CliTest):
     def test_height_maps_that_are_none(self):
         flat = "0 0 0\n0 0 0\n0 0 0"
         for n, cell, body, word in ((3, 0, flat, "cellsize 0"), (3, "nan", flat, "cellsize"), (3, -1, flat, "cellsize -1"),
+                                    (3, "1e-12", flat, "cellsize 1e-12"), (3, "1e300", flat, "cellsize 1e+300"),
                                     (3, "1e400", flat, "heights.asc:5"), (0, 0.025, "", "ncols = 0"), (3, 0.025, "0 0", "3 x 3"),
                                     (3, 0.025, flat.replace("0 0 0", "0 inf 0", 1), "row 1"),
                                     (3, 0.025, flat.replace("0 0 0", "0 1e400 0", 1), "row 1")):

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+
+#include "surefoot/core/checked_index.hpp"
+
+namespace surefoot::grid {
+
+/// Larger counts of cells than the side of any map; sums of a few of them still fit an int.
+inline constexpr int kMostCells = 1 << 24;
+
+/// The integer part of a number of cells, at most kMostCells to either side. NaN gives 0.
+[[nodiscard]] inline int whole_cells(double cells) noexcept {
+    return std::clamp(saturated_integer<int>(cells), -kMostCells, kMostCells);
+}
+
+}  // namespace surefoot::grid
