@@ -21,7 +21,8 @@ using Partners = std::vector<std::optional<std::size_t>>;
 [[nodiscard]] std::int64_t fifth_of_frame_time_ns(std::vector<std::int64_t> times_ns);
 
 /// The stamps that file names without extension hold, if all of them do: seconds with a point
-/// ("1311868164.363181"), or whole nanoseconds, microseconds or milliseconds since 1970 and up to kMaxStamp_ns.
+/// ("1311868164.363181"), or whole nanoseconds, microseconds or milliseconds since 1970 and up to
+/// kMaxStamp_ns.
 struct NameStamps {
     std::vector<std::int64_t> times_ns;
     const char* unit = "";
