@@ -3,7 +3,7 @@ import collections
 import statistics
 
 FINDER_SEEDS = (9_001,)  # nothing was chosen by them
-RIG_SEEDS = (9_001, 9_002, 9_003)
+RIG_SEEDS = (9_004, 9_005, 9_006)
 IMAGE_SETS = (("chess_fisheye", "calibration/chess_fisheye", "chessboard:9x6:0.02423"),
               ("chess_pinhole", "calibration/chess_pinhole", "chessboard:9x6:1"),
               ("bumblebee_chess", "real/bumblebee_chess", "chessboard:4x6:0.03"),
