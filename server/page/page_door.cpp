@@ -35,7 +35,9 @@ std::string bare(const std::string& host) {
     return host.starts_with('[') ? host.substr(1, host.size() - 2) : host;
 }
 
+/// Without a zone: Boost takes any text behind its '%'.
 bool is_ip_address(const std::string& host) {
+    if (host.find('%') != std::string::npos) return false;
     boost::system::error_code error;
     boost::asio::ip::make_address(bare(host), error);
     return !error;

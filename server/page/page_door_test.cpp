@@ -38,6 +38,8 @@ TEST(PageDoor, a_host_has_a_name_and_perhaps_a_port) {
                               "[::1",
                               "[::1]80",
                               "[robot]",
+                              "[fe80::1%a b]",
+                              "[fe80::1%25eth0]",
                               "a b",
                               "a;b",
                               "a'",
