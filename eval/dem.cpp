@@ -120,8 +120,9 @@ Result<DemGrid> CloudBounds::grid(double resolution_m, Lattice lattice) const {
             resolution_m,
             kMostCells));
     }
+    // in range: each is at least 1, and their product at most kMostCells
     geometry.nx = static_cast<int>(cells.x());
-    geometry.ny = static_cast<int>(cells.y());
+    geometry.ny = static_cast<int>(cells.y());  // in range: likewise
     return grid;
 }
 

@@ -34,6 +34,7 @@ class VoxelKeys {
     [[nodiscard]] int bits() const noexcept { return static_cast<int>(bits_.sum()); }
     [[nodiscard]] std::uint64_t key(const Vector3f& p_m) const noexcept {
         const Numbers n = numbers(p_m) - low_;
+        // in range: whole numbers already
         return static_cast<std::uint64_t>(((n.x() << bits_.y() | n.y()) << bits_.z()) | n.z());
     }
 

@@ -15,6 +15,7 @@
 #include "apps/surefoot/stray_points.hpp"
 #include "eval/cloud_outliers.hpp"
 #include "eval/voxels.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -54,8 +55,8 @@ grid::GridGeometry cells_of(const ScanArea& area, double resolution_m) {
     const Eigen::Vector2d end = (area.high_m / resolution_m).array().ceil();
     grid::GridGeometry geometry;
     geometry.resolution_m = resolution_m;
-    geometry.nx = static_cast<int>(end.x() - first.x());
-    geometry.ny = static_cast<int>(end.y() - first.y());
+    geometry.nx = grid::whole_cells(end.x() - first.x());
+    geometry.ny = grid::whole_cells(end.y() - first.y());
     geometry.origin_m = resolution_m * first;
     return geometry;
 }

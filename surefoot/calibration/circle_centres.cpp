@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "surefoot/calibration/board_order.hpp"
+#include "surefoot/core/checked_index.hpp"
 
 namespace surefoot::calibration {
 namespace {
@@ -98,10 +99,12 @@ void for_pixels_around(const Eigen::Vector2d& centre,
                        const Use& use) {
     const Eigen::Matrix2d J_m_px = J_px_m.inverse();
     const Eigen::Vector2d half = reach_m * J_px_m.rowwise().norm();
-    const int last_v = std::min(image.height - 1, static_cast<int>(centre.y() + half.y()) + 1);
-    const int last_u = std::min(image.width - 1, static_cast<int>(centre.x() + half.x()) + 1);
-    for (int v = std::max(0, static_cast<int>(centre.y() - half.y())); v <= last_v; ++v) {
-        for (int u = std::max(0, static_cast<int>(centre.x() - half.x())); u <= last_u; ++u) {
+    const int last_v =
+        std::min(image.height - 1, saturated_integer<int>(centre.y() + half.y() + 1.0));
+    const int last_u =
+        std::min(image.width - 1, saturated_integer<int>(centre.x() + half.x() + 1.0));
+    for (int v = std::max(0, saturated_integer<int>(centre.y() - half.y())); v <= last_v; ++v) {
+        for (int u = std::max(0, saturated_integer<int>(centre.x() - half.x())); u <= last_u; ++u) {
             const Eigen::Vector2d pixel(u, v);
             const double distance = (J_m_px * (pixel - centre)).norm() / reach_m;
             if (distance <= 1.0) use(pixel, distance, static_cast<double>(image.row(v)[u]));

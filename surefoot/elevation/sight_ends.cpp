@@ -47,8 +47,9 @@ bool SightEnds::passed(grid::Cell cell, float z_m) const {
               at.y() < static_cast<float>(geometry_.ny))) {
             return false;
         }
+        // in range: inside the grid, see above
         const auto i = static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(geometry_.nx) +
-                       static_cast<std::size_t>(at.x());
+                       static_cast<std::size_t>(at.x());  // in range: likewise
         if (std::isnan(z_m_[i])) continue;
         const float line_z_m = z_m - steps * fall_m;
         if (line_z_m > z_m_[i] + rounding_m) continue;

@@ -46,7 +46,8 @@ void detect_in_cell(const cv::Mat& image,
     const double least = config.min_gradient * config.min_gradient * kEigenvaluePerGradientSq;
     const int radius = saturated_integer<int>(std::ceil(config.min_distance_px));
     for (const Eigen::Vector2d& p : taken) {
-        const cv::Point at(static_cast<int>(p.x()) - cell.u0, static_cast<int>(p.y()) - cell.v0);
+        const cv::Point at(saturated_integer<int>(std::floor(p.x() - cell.u0)),
+                           saturated_integer<int>(std::floor(p.y() - cell.v0)));
         cv::circle(strength, at, radius, cv::Scalar(0), cv::FILLED);
     }
     while (wanted > 0) {

@@ -131,8 +131,8 @@ std::optional<PatchTemplate> warp_patch(const HostPatch& host,
             if (!(at.x() >= 0.0F && at.y() >= 0.0F && at.x() < HostPatch::kSize - 1 &&
                   at.y() < HostPatch::kSize - 1))
                 return std::nullopt;
-            const int u0 = static_cast<int>(at.x());
-            const int v0 = static_cast<int>(at.y());
+            const int u0 = static_cast<int>(at.x());  // in range: inside the patch, see above
+            const int v0 = static_cast<int>(at.y());  // in range: likewise
             warped[i++] = sample(&host.pixels[static_cast<std::size_t>(v0 * HostPatch::kSize + u0)],
                                  HostPatch::kSize,
                                  at.x() - static_cast<float>(u0),

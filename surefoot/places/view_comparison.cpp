@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "surefoot/core/checked_index.hpp"
 #include "surefoot/odometry/pose_solver.hpp"
 
 namespace surefoot::places {
@@ -78,8 +79,10 @@ int find_at(const ComparisonConfig& config,
 int part_of(const ComparisonConfig& config,
             const camera::RectifiedRig& rig,
             const StereoPixel& pixel) {
-    const int column = static_cast<int>(pixel.x()) * config.part_columns / rig.width;
-    const int row = static_cast<int>(pixel.y()) * config.part_rows / rig.height;
+    const int u = std::clamp(saturated_integer<int>(pixel.x()), 0, rig.width - 1);
+    const int v = std::clamp(saturated_integer<int>(pixel.y()), 0, rig.height - 1);
+    const int column = u * config.part_columns / rig.width;
+    const int row = v * config.part_rows / rig.height;
     return row * config.part_columns + column;
 }
 
