@@ -15,23 +15,31 @@ void ClippedFilter::remove(ImageView<const std::uint8_t> left,
     const int height = left.height;
     ends_.resize(width, height);
     columns_.resize(width, height);
+    row_has_.resize(static_cast<std::size_t>(height));
     for_row_blocks(executor, height, [&](int first, int last) {
         for (int v = first; v < last; ++v) {
             const std::uint8_t* const grey = left.row(v);
             std::uint8_t* const ends = ends_.row(v);
+            std::uint8_t any = 0;
             for (int u = 0; u < width; ++u) {
-                const int white = grey[u] >= kClippedWhite ? 1 : 0;
-                const int black = grey[u] <= kClippedBlack ? 2 : 0;
-                ends[u] = static_cast<std::uint8_t>(white | black);
+                const std::uint8_t white = grey[u] >= kClippedWhite ? 1 : 0;
+                const std::uint8_t black = grey[u] <= kClippedBlack ? 2 : 0;
+                ends[u] = white | black;
+                any |= ends[u];
             }
+            row_has_[static_cast<std::size_t>(v)] = any;
         }
     });
     for_row_blocks(executor, height, [&](int first, int last) {
         for (int v = first; v < last; ++v) {
-            std::uint8_t* const columns = columns_.row(v);
-            std::copy_n(ends_.row(v), width, columns);
             const int top = std::max(0, v - kReachY_px);
             const int bottom = std::min(height - 1, v + kReachY_px);
+            const bool has_none = std::any_of(row_has_.begin() + top,
+                                              row_has_.begin() + bottom + 1,
+                                              [](std::uint8_t any) { return any == 0; });
+            if (has_none) continue;
+            std::uint8_t* const columns = columns_.row(v);
+            std::copy_n(ends_.row(v), width, columns);
             for (int w = top; w <= bottom; ++w) {
                 const std::uint8_t* const ends = ends_.row(w);
                 for (int u = 0; u < width; ++u) columns[u] &= ends[u];

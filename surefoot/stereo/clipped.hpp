@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/views.hpp"
@@ -27,8 +28,9 @@ class ClippedFilter {
     void remove(ImageView<const std::uint8_t> left, Executor& executor, Image<float>& disparity_px);
 
   private:
-    Image<std::uint8_t> ends_;     ///< bit 0: white, bit 1: black
-    Image<std::uint8_t> columns_;  ///< what all of a column of the window have in common
+    Image<std::uint8_t> ends_;           ///< bit 0: white, bit 1: black
+    std::vector<std::uint8_t> row_has_;  ///< of each row: the bits that any of its pixels has
+    Image<std::uint8_t> columns_;        ///< what all of a column of the window have in common
 };
 
 }  // namespace surefoot::stereo
