@@ -133,6 +133,11 @@ struct Start {
     double cost = 0.0;
 };
 
+/// Infinite where there is none yet: a cost that is no number never wins.
+double cost_of(const std::optional<Start>& start) {
+    return start ? start->cost : std::numeric_limits<double>::infinity();
+}
+
 /// What a start cannot explain must not make it look better.
 double cost_of_missing(const BoardBundle& all, const BoardBundle& start) {
     const auto missing = static_cast<double>(all.sights.size() - start.sights.size());
@@ -148,7 +153,7 @@ std::optional<Start> best_start(const BoardBundle& bundle) {
         const std::optional<double> cost = refine(trial);
         if (!cost) continue;
         const double total = *cost + cost_of_missing(bundle, trial);
-        if (best && !(total < best->cost)) continue;
+        if (!(total < cost_of(best))) continue;
         best = Start{std::move(trial), total};
     }
     if (best) add_missing(bundle, best->bundle);
@@ -214,7 +219,7 @@ std::optional<Start> best_rational_start(const BoardBundle& bundle) {
         cost = solve(start->bundle, kLastStage);
         if (!cost) continue;
         start->cost = *cost + cost_of_missing(bundle, start->bundle);
-        if (!best || start->cost < best->cost) best = std::move(start);
+        if (start->cost < cost_of(best)) best = std::move(start);
     }
     return best;
 }

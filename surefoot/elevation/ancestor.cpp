@@ -5,19 +5,14 @@
 #include <cmath>
 #include <limits>
 
-#include "surefoot/core/checked_index.hpp"
 #include "surefoot/elevation/height_fusion.hpp"
+#include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::elevation {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-int nearest_cells(double way_m, double resolution_m) {
-    constexpr int kLimit = 1 << 30;
-    return std::clamp(saturated_integer<int>(std::round(way_m / resolution_m)), -kLimit, kLimit);
-}
 
 }  // namespace
 
@@ -53,7 +48,7 @@ void AncestorConfig::describe(ConfigVisitor& visitor) {
 }
 
 AncestorMap::AncestorMap(const AncestorConfig& config) : config_(config) {
-    const int cells = std::max(1, nearest_cells(config.length_m, config.resolution_m));
+    const int cells = std::max(1, grid::nearest_cells(config.length_m, config.resolution_m));
     geometry_.resolution_m = config.resolution_m;
     geometry_.nx = cells;
     geometry_.ny = cells;
@@ -71,8 +66,8 @@ void AncestorMap::place(const Eigen::Vector2d& position_m) {
 
 void AncestorMap::move_to(double x_m, double y_m) {
     if (!std::isfinite(x_m) || !std::isfinite(y_m)) return;
-    const grid::Shift shift{nearest_cells(x_m - position_m_.x(), geometry_.resolution_m),
-                            nearest_cells(y_m - position_m_.y(), geometry_.resolution_m)};
+    const grid::Shift shift{grid::nearest_cells(x_m - position_m_.x(), geometry_.resolution_m),
+                            grid::nearest_cells(y_m - position_m_.y(), geometry_.resolution_m)};
     place(position_m_ + geometry_.resolution_m * Eigen::Vector2d(shift.dx, shift.dy));
     for (grid::SlidingLayer<float>* layer : {&elevation_m_, &variance_m2_, &time_s_}) {
         layer->shift(shift, kNan);

@@ -4,23 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/core/checked_index.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::grid {
-namespace {
-
-/// Larger moves make no difference: they empty every window. Keeps the count within an int.
-constexpr int kMaxShiftCells = 1 << 30;
-
-int nearest_cells(double way_m, double resolution_m) {
-    // std::round sends halves away from zero.
-    return std::clamp(
-        saturated_integer<int>(std::round(way_m / resolution_m)), -kMaxShiftCells, kMaxShiftCells);
-}
-
-}  // namespace
-
 MovingWindow::MovingWindow(double length_m, double resolution_m) {
     SUREFOOT_ASSERT(resolution_m > 0.0 && length_m > 0.0);
     const int cells = std::max(1, whole_cells(std::round(length_m / resolution_m)));

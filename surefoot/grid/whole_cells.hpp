@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "surefoot/core/checked_index.hpp"
 
@@ -13,6 +14,14 @@ inline constexpr int kMostCells = 1 << 24;
 /// The integer part of a number of cells, at most kMostCells to either side. NaN gives 0.
 [[nodiscard]] inline int whole_cells(double cells) noexcept {
     return std::clamp(saturated_integer<int>(cells), -kMostCells, kMostCells);
+}
+
+/// A way in cells, halves away from zero. Larger moves than 2^30 cells make no difference: they
+/// empty every window.
+[[nodiscard]] inline int nearest_cells(double way_m, double resolution_m) noexcept {
+    constexpr int kMaxShiftCells = 1 << 30;
+    return std::clamp(
+        saturated_integer<int>(std::round(way_m / resolution_m)), -kMaxShiftCells, kMaxShiftCells);
 }
 
 }  // namespace surefoot::grid

@@ -39,13 +39,13 @@ TEST(ClippedFilter, IsItsDefinitionForEveryExecutor) {
     Executor* const executors[] = {&serial(), &backwards, &two};
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
         Rng rng(seed);
-        const int width = 1 + static_cast<int>(rng.uniform(0.0, 90.0));    // in range: below 91
-        const int height = 1 + static_cast<int>(rng.uniform(0.0, 140.0));  // in range: below 141
+        const int width = 1 + static_cast<int>(rng.uniform(0.0, 90.0));
+        const int height = 1 + static_cast<int>(rng.uniform(0.0, 140.0));
         Image<std::uint8_t> grey(width, height, 128);
         for (int box = 0; box < 6; ++box) {
             const int levels[] = {255, 254, 253, 0, 1, 2};
-            const int left = static_cast<int>(rng.uniform(0.0, width));  // in range: inside
-            const int top = static_cast<int>(rng.uniform(0.0, height));  // in range: inside
+            const int left = static_cast<int>(rng.uniform(0.0, width));
+            const int top = static_cast<int>(rng.uniform(0.0, height));
             for (int v = top; v < std::min(height, top + 30); ++v)
                 for (int u = left; u < std::min(width, left + 30); ++u)
                     grey.at(u, v) = static_cast<std::uint8_t>(levels[box]);
