@@ -3,20 +3,16 @@
 // bytes. SUREFOOT_FUZZ_READER names the function under test.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
 #include "apps/surefoot/joystick_script.hpp"
 #include "apps/surefoot/stairs_json.hpp"
+#include "fuzz/must.hpp"
 
 namespace {
 
 using namespace surefoot;
-
-void must(bool holds) {
-    if (!holds) std::abort();
-}
 
 /// Times do not go back, and the joystick says at each what its line says.
 [[maybe_unused]] void fuzz_joystick_script(std::string_view bytes) {

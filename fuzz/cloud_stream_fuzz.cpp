@@ -7,22 +7,18 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "fuzz/must.hpp"
 #include "io/cloud_stream.hpp"
 #include "io/point_cloud.hpp"
 
 namespace {
 
 using namespace surefoot;
-
-void must(bool holds) {
-    if (!holds) std::abort();
-}
 
 /// A file of this extension, gone with the program.
 class File {

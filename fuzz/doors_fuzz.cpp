@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "fuzz/must.hpp"
 #include "server/wire/admission.hpp"
 #include "server/wire/keyed_checksum.hpp"
 
@@ -21,10 +21,6 @@ namespace {
 
 using namespace surefoot;
 using namespace surefoot::wire;
-
-void must(bool holds) {
-    if (!holds) std::abort();
-}
 
 constexpr const char* kOperatorToken = "operator-0123456789";
 constexpr const char* kRiderToken = "rider-0123456789ab";

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "fuzz/must.hpp"
 #include "io/bytes.hpp"
 #include "io/map_file.hpp"
 #include "surefoot/elevation/region_merge.hpp"
@@ -15,10 +15,6 @@
 namespace {
 
 using namespace surefoot;
-
-void must(bool holds) {
-    if (!holds) std::abort();
-}
 
 void check(std::string_view bytes) {
     const auto read = io::parse_map(bytes, "f");

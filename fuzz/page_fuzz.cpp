@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "fuzz/must.hpp"
 #include "server/page/page_door.hpp"
 #include "server/page/page_messages.hpp"
 
@@ -18,10 +18,6 @@ namespace {
 
 using namespace surefoot;
 using namespace surefoot::page;
-
-void must(bool holds) {
-    if (!holds) std::abort();
-}
 
 bool is_within(double value, double least, double most) {
     return value >= least && value <= most;

@@ -3,10 +3,10 @@
 // written to bytes that read back the same.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "fuzz/must.hpp"
 #include "io/bytes.hpp"
 #include "io/map_file.hpp"
 #include "io/place_file.hpp"
@@ -14,10 +14,6 @@
 namespace {
 
 using namespace surefoot;
-
-void must(bool holds) {
-    if (!holds) std::abort();
-}
 
 void check(std::string_view bytes) {
     const auto read = io::parse_place(bytes, "f");

@@ -9,11 +9,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "fuzz/must.hpp"
 #include "io/imu_stream.hpp"
 #include "io/pairing.hpp"
 #include "io/raw_floats.hpp"
@@ -26,10 +26,6 @@ using namespace surefoot;
 /// The year 2261: sums and differences of two stamps up to here fit into 64 bits.
 constexpr std::int64_t kLastStamp_ns = 9'200'000'000'000'000'000;
 constexpr std::int64_t kTolerance_ns = 20'000'000;
-
-void must(bool holds) {
-    if (!holds) std::abort();
-}
 
 template <typename T>
 void must_explain(const Result<T>& result) {

@@ -4,20 +4,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "fuzz/must.hpp"
 #include "sim/expression.hpp"
 #include "sim/scene_file.hpp"
 
 namespace {
 
 using namespace surefoot;
-
-void must(bool holds) {
-    if (!holds) std::abort();
-}
 
 [[maybe_unused]] void fuzz_scene(std::string_view bytes) {
     const sim::SceneFile file{"f", bytes};
