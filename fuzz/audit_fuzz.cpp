@@ -4,11 +4,11 @@
 // is sound. What can be read is decided again, whatever it asks.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
 
+#include "fuzz/must.hpp"
 #include "server/wire/audit_reader.hpp"
 
 namespace {
@@ -38,7 +38,7 @@ Machine small_machine() {
     l.drift_tenth_mm = 250;
     l.frame_age_ns = l.pose_age_ns = l.verdict_ttl_ns = 200'000'000;
     l.vouch_radius_tenth_mm = 10'000;
-    if (m.problem() != nullptr) std::abort();
+    must(m.problem() == nullptr);
     return m;
 }
 
@@ -78,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     AuditReader reader([](const AuditedAt& at) {
         const gate::Verdict verdict = replay(at.machine, at.record);
         static_cast<void>(differences(at.record.verdict, verdict));
-        if (verdict.decision == gate::Decision::ok && !at.record.snapshot_intact) std::abort();
+        must(verdict.decision != gate::Decision::ok || at.record.snapshot_intact);
     });
     FileHead head;
     switch (data[0] % 4) {
@@ -88,12 +88,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             break;
         case 2: reader.read(framed(FrameKind::verdict, FrameEncoding::zstd, bytes), "f"); break;
         default:
-            if (const Status status = parse_file_head(bytes, head);
-                !status && status.error().message.empty())
-                std::abort();
+            must_explain(parse_file_head(bytes, head));
             reader.read(framed(FrameKind::gap, FrameEncoding::plain, bytes), "f");
     }
     const auto& damage = reader.summary().damage;
-    if (damage && damage->text().empty()) std::abort();
+    must(!damage || !damage->text().empty());
     return 0;
 }

@@ -60,7 +60,7 @@ bool read_blocks(io::CloudStream& stream, std::vector<Eigen::Vector3d>& points_m
         points_m.insert(points_m.end(), block.points_m.begin(), block.points_m.end());
         return {};
     });
-    must(status.ok() || !status.error().message.empty());
+    must_explain(status);
     return status.ok();
 }
 
@@ -78,9 +78,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
     const std::string& path = file_of(data[0]).write(bytes);
     const auto whole = io::read_cloud(path);
-    must(whole.ok() || !whole.error().message.empty());
+    must_explain(whole);
     auto stream = io::CloudStream::open(path);
-    must(stream.ok() || !stream.error().message.empty());
+    must_explain(stream);
     if (!stream) {
         must(!whole.ok());
         return 0;
@@ -96,7 +96,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     must(read_blocks(*stream, again_m) == read);
     if (read) must(again_m.size() == points_m.size());
     const auto shifted = io::read_shifted(path);
-    must(shifted.ok() || !shifted.error().message.empty());
+    must_explain(shifted);
     if (!shifted) return 0;
     must(shifted->shift_m.allFinite());
     for (const Eigen::Vector3f& p_m : shifted->points_m) must(p_m.allFinite());

@@ -8,13 +8,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <numbers>
 #include <vector>
 
 #include "fuzz/choices.hpp"
+#include "fuzz/must.hpp"
 #include "fuzz/plain_map.hpp"
 #include "fuzz/twin.hpp"
 
@@ -28,12 +27,6 @@ using fuzz::PlainMap;
 
 constexpr int kMostOperations = 16;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-void must(bool holds, const char* what) {
-    if (holds) return;
-    std::fprintf(stderr, "elevation_fuzz: %s\n", what);
-    std::abort();
-}
 
 template <typename T>
 bool same_cells(const grid::SlidingLayer<T>& a, const Image<T>& b) {
@@ -276,10 +269,8 @@ class Play {
         const auto again = twin_.insert(region, T_odom_body_, placement);
         must(filled.ok() == again.ok(), "a region is refused by one of two equal maps");
         must(!(filled.ok() && region.problem()), "an impossible region is taken");
-        if (!filled.ok()) {
-            must(!filled.error().message.empty(), "a region is refused without a sentence");
-            return;
-        }
+        must_explain(filled);
+        if (!filled.ok()) return;
         must(*filled == *again, "another number of cells was filled by one of two equal maps");
         must(config_.height_drift.enabled ||
                  *filled == plain_.insert(region, T_odom_body_, placement),

@@ -6,42 +6,39 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
+#include "fuzz/must.hpp"
 #include "server/page/foxglove_client.hpp"
 
 namespace {
 
+using namespace surefoot;
 using namespace surefoot::page;
 using Json = nlohmann::ordered_json;
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
 
 void check(const FoxgloveClient& client, const SocketMessage& message) {
     if (!message.is_text) {
         constexpr std::size_t kTimeBytes = 9;
         constexpr std::size_t kHeadBytes = 13;
-        require(!message.bytes.empty());
-        if (message.bytes[0] == 2) return require(message.bytes.size() == kTimeBytes);
-        require(message.bytes[0] == 1 && message.bytes.size() > kHeadBytes);
-        require(Json::parse(message.bytes.substr(kHeadBytes)).is_object());
-        return require(std::any_of(kFoxgloveChannels.begin(),
-                                   kFoxgloveChannels.end(),
-                                   [&](FoxgloveChannel c) { return client.listens_to(c); }));
+        must(!message.bytes.empty());
+        if (message.bytes[0] == 2) return must(message.bytes.size() == kTimeBytes);
+        must(message.bytes[0] == 1 && message.bytes.size() > kHeadBytes);
+        must(Json::parse(message.bytes.substr(kHeadBytes)).is_object());
+        return must(std::any_of(kFoxgloveChannels.begin(),
+                                kFoxgloveChannels.end(),
+                                [&](FoxgloveChannel c) { return client.listens_to(c); }));
     }
     const Json text = Json::parse(message.bytes);  // throws where it is no JSON: a finding
-    require(text["op"] == "serverInfo" || text["op"] == "advertise" || text["op"] == "status");
+    must(text["op"] == "serverInfo" || text["op"] == "advertise" || text["op"] == "status");
 }
 
 void hear(FoxgloveShow& show, std::string_view line) {
     auto news = read_gate_news(line);
     if (!news) return;
-    require(Json::parse(news->body).is_object());
+    must(Json::parse(news->body).is_object());
     show.hear(std::move(*news));
 }
 
@@ -64,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const auto messages = client.next(show, now_ns);
         const auto texts = std::count_if(
             messages.begin(), messages.end(), [](const auto& m) { return m.is_text; });
-        require(static_cast<std::size_t>(texts) <= greeting + 1);
+        must(static_cast<std::size_t>(texts) <= greeting + 1);
         for (const SocketMessage& message : messages) check(client, message);
         if (!goes_on) return 0;
     }

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "fuzz/must.hpp"
 #include "io/bytes.hpp"
 #include "io/dem_file.hpp"
 #include "io/fake_video_device.hpp"
@@ -29,15 +29,10 @@ constexpr int kMostFrames = 64;
 constexpr int kWidth = 16;  ///< of one eye
 constexpr int kHeight = 8;
 
-template <typename T>
-void must_explain(const Result<T>& result) {
-    if (!result && result.error().message.empty()) std::abort();
-}
-
 template <typename Image>
 void must_agree(const Result<Image>& image, const io::ImageHeader& header) {
     must_explain(image);
-    if (image && (image->width() != header.width || image->height() != header.height)) std::abort();
+    if (image) must(image->width() == header.width && image->height() == header.height);
 }
 
 void read_image(std::string_view bytes) {
@@ -62,12 +57,11 @@ void read_image(std::string_view bytes) {
     const auto dem = io::parse_dem_image(bytes, "f", kScale_m, kFullHeight_m);
     must_explain(dem);
     if (!dem) return;
-    if (!header || dem->values.width() != header->width || dem->values.height() != header->height)
-        std::abort();
+    must(header.ok() && dem->values.width() == header->width &&
+         dem->values.height() == header->height);
     for (std::size_t i = 0; i < dem->values.size(); ++i) {
         const auto height_m = static_cast<double>(dem->values.data()[i]);
-        if (!std::isnan(height_m) && !(height_m >= 0.0 && height_m <= kFullHeight_m * 1.000001))
-            std::abort();
+        must(std::isnan(height_m) || (height_m >= 0.0 && height_m <= kFullHeight_m * 1.000001));
     }
 }
 
@@ -110,20 +104,16 @@ void drain(camera::FrameSource& source, bool ends_at_an_error) {
         const auto frame = source.next();
         must_explain(frame);
         if (frame ? !frame->has_value() : ends_at_an_error) return;
-        if (frame &&
-            (frame->value().left.width() != kWidth || frame->value().right.height() != kHeight)) {
-            std::abort();
-        }
+        if (!frame) continue;
+        must(frame->value().left.width() == kWidth && frame->value().right.height() == kHeight);
     }
 }
 
 [[maybe_unused]] void fuzz_mjpeg(std::string_view bytes) {
     static const int file = ::memfd_create("mjpeg", 0);
     static const std::string path = "/proc/self/fd/" + std::to_string(file);
-    if (::ftruncate(file, 0) != 0 ||
-        ::pwrite(file, bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-        std::abort();
-    }
+    must(::ftruncate(file, 0) == 0);
+    must(::pwrite(file, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()));
     auto source = io::open_mjpeg(path, small_rig(), 15.0);
     must_explain(source);
     if (source) drain(**source, false);

@@ -18,10 +18,8 @@ using namespace surefoot;
 
 void check(std::string_view bytes) {
     const auto read = io::parse_map(bytes, "f");
-    if (!read) {
-        must(!read.error().message.empty());
-        return;
-    }
+    must_explain(read);
+    if (!read) return;
     must(!read->region.problem());
     const auto again = io::format_map(read->region);
     must(again.ok());

@@ -42,7 +42,8 @@ void must_be_wish(const PlaybackWish& wish) {
 [[maybe_unused]] void fuzz_page_request(std::string_view bytes) {
     static const std::vector<std::string> layers{"elevation", "slope", "step"};
     const auto request = parse_request(bytes, layers);
-    if (!request) return must(!request.error().message.empty());
+    must_explain(request);
+    if (!request) return;
     if (const auto* wish = std::get_if<PageWish>(&*request)) must_be_wish(*wish, layers.size());
     if (const auto* wish = std::get_if<PlaybackWish>(&*request)) must_be_wish(*wish);
 }

@@ -17,10 +17,8 @@ using namespace surefoot;
 
 void check(std::string_view bytes) {
     const auto read = io::parse_place(bytes, "f");
-    if (!read) {
-        must(!read.error().message.empty());
-        return;
-    }
+    must_explain(read);
+    if (!read) return;
     must(!read->place.problem());
     const auto again = io::format_place(read->place);
     must(again.ok());

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fuzz/must.hpp"
 #include "io/cloud_rows.hpp"
 #include "io/config_yaml.hpp"
 #include "io/dem_file.hpp"
@@ -32,11 +32,6 @@
 namespace {
 
 using namespace surefoot;
-
-template <typename T>
-void must_explain(const Result<T>& result) {
-    if (!result && result.error().message.empty()) std::abort();
-}
 
 [[maybe_unused]] void fuzz_ply(std::string_view bytes) {
     must_explain(io::parse_ply(bytes, "f"));
@@ -60,19 +55,18 @@ void must_explain(const Result<T>& result) {
                    {io::las_rows(bytes, bytes.size()), io::parse_las}};
     for (const auto& [rows, parse] : formats) {
         if (!rows || rows->rows == 0) continue;
-        if (rows->first_byte + rows->rows * rows->row_bytes > bytes.size()) std::abort();
+        must(rows->first_byte + rows->rows * rows->row_bytes <= bytes.size());
         const std::string_view last =
             bytes.substr(rows->first_byte + (rows->rows - 1) * rows->row_bytes, rows->row_bytes);
         const auto whole = parse(bytes, "whole");
         const auto one = parse(rows->head(1) + std::string(last), "piece");
-        if (whole.ok() != one.ok()) std::abort();
+        must(whole.ok() == one.ok());
         if (!whole.ok()) continue;
         const Eigen::Vector3d& a_m = whole->points_m.back();
         const Eigen::Vector3d& b_m = one->points_m.back();
-        if (whole->points_m.size() != rows->rows || one->points_m.size() != 1) std::abort();
+        must(whole->points_m.size() == rows->rows && one->points_m.size() == 1);
         for (int axis = 0; axis < 3; ++axis) {
-            if (a_m[axis] != b_m[axis] && !(std::isnan(a_m[axis]) && std::isnan(b_m[axis])))
-                std::abort();
+            must(a_m[axis] == b_m[axis] || (std::isnan(a_m[axis]) && std::isnan(b_m[axis])));
         }
     }
 }
@@ -88,13 +82,13 @@ void must_explain(const Result<T>& result) {
         const std::size_t end = std::min(bytes.find('\n', at), bytes.size() - 1) + 1;
         const auto piece = parser.parse(bytes.substr(at, end - at));
         fine = piece.ok();
-        if (fine && piece->problem()) std::abort();
+        must(!fine || !piece->problem());
         if (fine) points += piece->points_m.size();
         at = end;
     }
     fine = fine && parser.finish().ok();
-    if (fine != whole.ok() || (fine && points != whole->points_m.size())) std::abort();
-    if (fine && whole->problem()) std::abort();
+    must(fine == whole.ok() && (!fine || points == whole->points_m.size()));
+    must(!fine || !whole->problem());
 }
 [[maybe_unused]] void fuzz_pfm(std::string_view bytes) {
     must_explain(io::parse_pfm(bytes, "f"));
@@ -105,8 +99,7 @@ void must_explain(const Result<T>& result) {
     if (!heights) return;
     for (std::size_t i = 0; i < heights->values.size(); ++i) {
         const float height_m = heights->values.data()[i];
-        if (!std::isnan(height_m) && std::abs(static_cast<double>(height_m)) > kMaxHeight_m)
-            std::abort();
+        must(std::isnan(height_m) || std::abs(static_cast<double>(height_m)) <= kMaxHeight_m);
     }
 }
 [[maybe_unused]] void fuzz_trajectory(std::string_view bytes) {
@@ -114,11 +107,11 @@ void must_explain(const Result<T>& result) {
     const auto file = io::parse_trajectory(bytes, "f");
     must_explain(file);
     if (!file) return;
-    if (file->poses.empty()) std::abort();
+    must(!file->poses.empty());
     for (std::size_t i = 0; i < file->poses.size(); ++i) {
         const StampedPose& pose = file->poses[i];
-        if (!pose.T_world_body.all_finite()) std::abort();
-        if (i > 0 && pose.time_ns <= file->poses[i - 1].time_ns) std::abort();
+        must(pose.T_world_body.all_finite());
+        must(i == 0 || pose.time_ns > file->poses[i - 1].time_ns);
     }
 }
 /// Work that costs much more than reading is done for one input in so many.
@@ -127,8 +120,8 @@ constexpr std::size_t kVerySeldom = 256;
 
 /// A rig that is accepted is sound, and what can be written of it reads back.
 void must_be_sound(const camera::StereoRig& rig, std::size_t input_bytes) {
-    if (rig.problem()) std::abort();
-    if (!io::parse_rig_yaml(io::format_rig_yaml(rig), "again")) std::abort();
+    must(!rig.problem());
+    must(io::parse_rig_yaml(io::format_rig_yaml(rig), "again").ok());
     if (const auto text = io::format_zed_rig(rig); text) {
         const io::ImageSize size{rig.left.width, rig.left.height};
         must_explain(io::parse_zed_rig(*text, "again", size));
@@ -201,16 +194,16 @@ void must_be_sound(const Result<io::RigFile>& file, std::string_view bytes) {
 [[maybe_unused]] void fuzz_euroc_camera(std::string_view bytes) {
     const auto camera = io::parse_euroc_camera(bytes, "f");
     must_explain(camera);
-    if (camera && camera->camera.problem()) std::abort();
+    must(!camera || !camera->camera.problem());
     must_explain(io::parse_euroc_imu(bytes, "f"));
 }
 [[maybe_unused]] void fuzz_machine(std::string_view bytes) {
     const auto machine = io::parse_machine(bytes, "f");
     must_explain(machine);
     if (!machine) return;
-    if (machine->machine.problem() != nullptr) std::abort();  // accepted but not usable
+    must(machine->machine.problem() == nullptr);  // what is accepted is usable
     for (const io::Deviation& deviation : machine->deviations) {
-        if (deviation.signed_by.empty() || deviation.value == deviation.rated) std::abort();
+        must(!deviation.signed_by.empty() && deviation.value != deviation.rated);
     }
 }
 [[maybe_unused]] void fuzz_model(std::string_view bytes) {
@@ -219,7 +212,7 @@ void must_be_sound(const Result<io::RigFile>& file, std::string_view bytes) {
     if (!model) return;
     const std::vector<double> zero(model->moving_joints().size(), 0.0);
     for (const io::ModelLink& link : model->links) {  // one tree: every link has its place
-        if (!model->T_base_link(link.name, zero).all_finite()) std::abort();
+        must(model->T_base_link(link.name, zero).all_finite());
     }
 }
 /// A small snapshot with any fields, sealed: it is not written, or what is written reads back as
@@ -246,12 +239,12 @@ void must_come_back(std::string_view bytes) {
     const auto read = io::parse_snapshot(*written, "again");
     must_explain(read);
     const auto again = read ? io::format_snapshot(**read) : written;
-    if (!again || *again != *written) std::abort();
+    must(again.ok() && *again == *written);
 }
 [[maybe_unused]] void fuzz_snapshot(std::string_view bytes) {
     const auto snapshot = io::parse_snapshot(bytes, "f");
     must_explain(snapshot);
-    if (snapshot && !grid::is_intact(**snapshot)) std::abort();
+    must(!snapshot || grid::is_intact(**snapshot));
     // A checksum hides all that lies behind it from a search; it costs 0.9 MB of hashing, too.
     if (!bytes.empty() && static_cast<std::uint8_t>(bytes.front()) % kSeldom == 0)
         must_come_back(bytes.substr(1));

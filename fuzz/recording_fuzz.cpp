@@ -27,11 +27,6 @@ using namespace surefoot;
 constexpr std::int64_t kLastStamp_ns = 9'200'000'000'000'000'000;
 constexpr std::int64_t kTolerance_ns = 20'000'000;
 
-template <typename T>
-void must_explain(const Result<T>& result) {
-    must(result.ok() || !result.error().message.empty());
-}
-
 void must_be_stamp(std::int64_t time_ns) {
     must(time_ns >= 0 && time_ns <= kLastStamp_ns);
 }

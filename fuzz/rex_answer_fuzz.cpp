@@ -5,22 +5,19 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "fuzz/must.hpp"
 #include "server/rex_link/answer_parser.hpp"
 #include "server/rex_link/rex_link.hpp"
 
 namespace {
 
+using namespace surefoot;
 using namespace surefoot::rex_link;
 
 constexpr std::uint64_t kNonce = 0x5eed5eed5eed5eedULL;
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
 
 std::string answer_text(const char* nonce, const char* verdict, const char* reasons, int code) {
     return std::string(R"({"id":"rex:)") + nonce +
@@ -38,22 +35,20 @@ bool is_taken_for_ok(std::string_view bytes) {
     const auto parsed = parse_answer(bytes);
     const Actions actions = parsed ? link.answer(parsed.value().answer, 1'001'000'000)
                                    : link.damaged_answer(1'001'000'000);
-    require(!actions.motion);
+    must(!actions.motion);
     return link.state() == LinkState::acknowledged;
 }
 
 void any_bytes(std::string_view bytes) {
     const auto parsed = parse_answer(bytes);
-    if (!parsed) {
-        require(!parsed.error().message.empty());
-        return;
-    }
+    must_explain(parsed);
+    if (!parsed) return;
     const Answer& answer = parsed.value().answer;
-    require(answer.connection != 0);
-    require(answer.valid_for_ns >= 0 && answer.valid_for_ns <= 60'000'000'000);
+    must(answer.connection != 0);
+    must(answer.valid_for_ns >= 0 && answer.valid_for_ns <= 60'000'000'000);
     const std::string_view whole = bytes.substr(0, bytes.find_last_of('}') + 1);
     for (std::size_t cut = 1; cut <= std::min<std::size_t>(whole.size(), 40); ++cut)
-        require(!parse_answer(whole.substr(0, whole.size() - cut)));
+        must(!parse_answer(whole.substr(0, whole.size() - cut)));
 }
 
 /// Up to three bytes are replaced, left out or put in, three choices each; then the end may be cut.
@@ -79,11 +74,11 @@ void damaged_answers(std::string_view choices) {
     static const std::string error = answer_text("5eed5eed5eed5eed", "ERROR", "\"BLIND\"", -1);
     static const std::string others = answer_text("0123456789abcdef", "OK", "", 0);
     static const std::string ok = answer_text("5eed5eed5eed5eed", "OK", "", 0);
-    require(is_taken_for_ok(ok));  // or nothing below says anything
+    must(is_taken_for_ok(ok));  // or nothing below says anything
     for (const std::string* text : {&no, &error, &others})
-        require(!is_taken_for_ok(damaged(*text, choices)));
+        must(!is_taken_for_ok(damaged(*text, choices)));
     const std::string text = damaged(ok, choices);
-    if (text.size() + 3 < ok.size()) require(!is_taken_for_ok(text));
+    if (text.size() + 3 < ok.size()) must(!is_taken_for_ok(text));
 }
 
 }  // namespace

@@ -18,11 +18,13 @@ using namespace surefoot;
 [[maybe_unused]] void fuzz_scene(std::string_view bytes) {
     const sim::SceneFile file{"f", bytes};
     const auto infos = sim::read_scene_infos(file);
-    if (!infos) return must(!infos.error().message.empty());
+    must_explain(infos);
+    if (!infos) return;
     constexpr std::uint64_t kSeed = 7;
     const std::string name = infos->empty() ? std::string() : infos->front().name;
     const auto scene = sim::read_scene(file, name, kSeed);
-    if (!scene) return must(!scene.error().message.empty());
+    must_explain(scene);
+    if (!scene) return;
     must(scene->motion != nullptr && std::isfinite(scene->motion->duration_s()));
     must(scene->motion->at(0.0).T_world_body.all_finite());
     must(scene->motion->at(scene->motion->duration_s()).T_world_body.all_finite());
@@ -31,7 +33,8 @@ using namespace surefoot;
 [[maybe_unused]] void fuzz_expression(std::string_view bytes) {
     static const sim::NamedNumbers numbers{{"a", 2.0}, {"b_m", -0.5}};
     const auto value = sim::evaluate(bytes, numbers);
-    must(value.ok() ? std::isfinite(*value) : !value.error().message.empty());
+    must_explain(value);
+    must(!value || std::isfinite(*value));
 }
 
 }  // namespace

@@ -8,10 +8,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 
 #include "fuzz/choices.hpp"
+#include "fuzz/must.hpp"
 #include "fuzz/twin.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
@@ -27,12 +26,6 @@ constexpr int kMostChanges = 3;
 // 3.5e-4 rad: no critical slope here is below 1 rad.
 constexpr float kTolerance = 3e-7F;
 constexpr float kSlopeTolerance = 4e-4F;
-
-void must(bool holds, const char* what) {
-    if (holds) return;
-    std::fprintf(stderr, "traversability_fuzz: %s\n", what);
-    std::abort();
-}
 
 bool same(float a, float b) {
     return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) ||

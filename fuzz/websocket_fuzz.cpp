@@ -9,17 +9,18 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "fuzz/must.hpp"
 #include "server/wire/websocket_server.hpp"
 #include "server/wire/wire_testing.hpp"
 
 namespace {
 
+using namespace surefoot;
 using namespace surefoot::wire;
 
 const char* const kHandshake =
@@ -110,7 +111,7 @@ std::string converse(WebsocketServer& server, std::string_view bytes) {
     std::string received;
     constexpr int kPatience = 1'000'000;  // far beyond every deadline: it hangs
     for (int i = 0;; ++i) {
-        if (i == kPatience) std::abort();
+        must(i != kPatience);
         server.poll();
         char part[4096];
         const ssize_t count = recv(handle, part, sizeof(part), MSG_DONTWAIT);
@@ -166,11 +167,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         converse(*service.server,
                  bytes_to_send(data[0], {reinterpret_cast<const char*>(data) + 1, size - 1})));
     const std::uint64_t allowed = service.gate.report_.allowed - allowed_before;
-    if (count_of(received, R"("resultCode":0)") + count_of(received, R"("result_code":0)") >
-        2 * allowed)  // a reply, and the topic where it was subscribed to
-        std::abort();
+    must(count_of(received, R"("resultCode":0)") + count_of(received, R"("result_code":0)") <=
+         2 * allowed);  // a reply, and the topic where it was subscribed to
     const ServerCounts counts = service.server->counts();
-    if (counts.clients != 0 || counts.handshakes != 0) std::abort();
+    must(counts.clients == 0 && counts.handshakes == 0);
     service.gate.questions.clear();
     service.gate.goals.clear();
     service.gate.rearmed.clear();

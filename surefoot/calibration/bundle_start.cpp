@@ -165,13 +165,14 @@ std::optional<Start> best_start(const BoardBundle& bundle) {
 /// coefficients. The highest ones are left at 0: with them the quotient may have a pole.
 Eigen::VectorXd rational_like(const Eigen::VectorXd& fisheye, double widest_rad) {
     constexpr int kAngles = 60;
-    Eigen::MatrixXd A(kAngles, 4);
-    Eigen::VectorXd b(kAngles);
+    const camera::CameraModel model = model_of(LensKind::fisheye, fisheye);
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(kAngles, 4);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(kAngles);
     for (int i = 0; i < kAngles; ++i) {
         const double t = widest_rad * (i + 1) / kAngles;
-        const double t2 = t * t;
-        const double r =
-            t * (1.0 + t2 * (fisheye[4] + t2 * (fisheye[5] + t2 * (fisheye[6] + t2 * fisheye[7]))));
+        const auto pixel = camera::project(model, {std::sin(t), 0.0, std::cos(t)});
+        if (!pixel) break;  // outside the lens
+        const double r = (pixel->x() - fisheye[2]) / fisheye[0];
         const double x = std::tan(t);
         const double x2 = x * x;
         A.row(i) << x * x2, x * x2 * x2, -r * x2, -r * x2 * x2;
