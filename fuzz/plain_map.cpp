@@ -177,6 +177,7 @@ void PlainMap::fuse(const Samples& samples,
     view_ = views_.look_from(T_odom_body);
     SightEnds ends;
     ends.reset(geometry_, camera_m);
+    std::vector<std::pair<grid::Cell, float>> agreed;  // what a look before said as well
     for (const auto& [index, heights] : samples) {
         const auto measured = reduce_cell(config_.reduction, heights.z_m, heights.var_m2);
         if (!measured || !std::isfinite(measured->z_m) || !std::isfinite(measured->var_m2)) {
@@ -185,8 +186,9 @@ void PlainMap::fuse(const Samples& samples,
         if (measured->z_m < lowest_z_m(config_.prefilter, T_odom_body)) {
             counts.gated_height += static_cast<std::int64_t>(heights.z_m.size());
             Cell& cell = cells_[index];
+            const float below_m = lowest_z_m(config_.prefilter, T_odom_body);
             if (std::isnan(cell.height_m))
-                see_over(cell, lowest_z_m(config_.prefilter, T_odom_body));
+                see_over(cell, std::max(below_m, not_above_m(*measured)));
             continue;
         }
         const auto ix = static_cast<int>(index.second - first_ix_);
@@ -205,17 +207,15 @@ void PlainMap::fuse(const Samples& samples,
                 seen.bottom_m = std::min(measured->lowest_m, measured->z_m);
         }
         ends.set(static_cast<std::size_t>(iy * geometry_.nx + ix), measured->z_m, seen.bottom_m);
-        update(cells_[index], seen, time_ns, counts);
+        Cell& cell = cells_[index];
+        update(cell, seen, time_ns, counts);
+        const bool is_agreed = cell.seen_ns == time_ns && cell.count > 1;
+        if (is_agreed) agreed.emplace_back(grid::Cell{ix, iy}, not_above_m(*measured));
     }
     look_overhead(ends);
     LinesOfSight lines;
     lines.reset(geometry_, camera_m);
-    for (int iy = 0; iy < geometry_.ny; ++iy) {
-        for (int ix = 0; ix < geometry_.nx; ++ix) {
-            const float z_m = ends.z_m(static_cast<std::size_t>(iy * geometry_.nx + ix));
-            if (!std::isnan(z_m)) lines.add({ix, iy}, z_m);
-        }
-    }
+    for (const auto& [at, z_m] : agreed) lines.add(at, z_m);
     lines.finish();
     if (config_.visibility.drops) look_over_unknown(lines);
     if (!config_.visibility.cleanup) return;

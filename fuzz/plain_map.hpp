@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -102,6 +103,11 @@ class PlainMap {
     void update(Cell& cell, const Seen& seen, std::int64_t time_ns, FusionCounts& counts);
     void start(Cell& cell, const Seen& seen, std::int64_t time_ns);
     void agree(Cell& cell, const elevation::Height& fused, const Seen& seen, std::int64_t time_ns);
+    /// So low what was measured is at least, at the sigmas of the clean-up.
+    [[nodiscard]] float not_above_m(const elevation::CellMeasurement& measured) const {
+        return measured.z_m +
+               static_cast<float>(config_.visibility.sigmas) * std::sqrt(measured.var_m2);
+    }
     void look_overhead(const elevation::SightEnds& ends);
     void look_over_unknown(const elevation::LinesOfSight& lines);
     /// Of the surfaces that lines of sight passed through: which are gone.

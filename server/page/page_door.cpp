@@ -35,9 +35,9 @@ std::string bare(const std::string& host) {
     return host.starts_with('[') ? host.substr(1, host.size() - 2) : host;
 }
 
-/// Without a zone: Boost takes any text behind its '%'.
+/// Without a zone. Boost alone would take any text behind the '%' of one, or behind a NUL.
 bool is_ip_address(const std::string& host) {
-    if (host.find('%') != std::string::npos) return false;
+    if (host.find_first_not_of("0123456789abcdef:.[]") != std::string::npos) return false;
     boost::system::error_code error;
     boost::asio::ip::make_address(bare(host), error);
     return !error;

@@ -46,6 +46,9 @@ TEST(PageDoor, a_host_has_a_name_and_perhaps_a_port) {
                               "user@a",
                               "a/b"})
         EXPECT_FALSE(parse_host(wrong)) << wrong;
+    // A reader of C strings sees an address here and no more.
+    EXPECT_FALSE(parse_host(std::string_view("[fe80::\0 evil]:80", 17)));
+    EXPECT_FALSE(parse_host(std::string_view("127.0.0.1\0.evil", 15)));
 }
 
 // A page of evil.example whose name now leads to 127.0.0.1 asks with its own name.

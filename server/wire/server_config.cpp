@@ -11,11 +11,17 @@
 namespace surefoot::wire {
 namespace {
 
+using AddressBytes = std::array<std::uint8_t, sizeof(in6_addr)>;
+
+/// Whether the whole text is an address of the family, and its bytes. inet_pton reads up to a NUL.
+bool parse_address(int family, const std::string& text, AddressBytes& bytes) {
+    return text.find('\0') == std::string::npos &&
+           inet_pton(family, text.c_str(), bytes.data()) == 1;
+}
+
 bool is_address(const std::string& address) {
-    in_addr v4{};
-    in6_addr v6{};
-    return inet_pton(AF_INET, address.c_str(), &v4) == 1 ||
-           inet_pton(AF_INET6, address.c_str(), &v6) == 1;
+    AddressBytes bytes{};
+    return parse_address(AF_INET, address, bytes) || parse_address(AF_INET6, address, bytes);
 }
 
 bool positive(RateLimit limit) {
@@ -27,11 +33,10 @@ bool positive(RateLimit limit) {
 
 bool is_loopback_address(const std::string& address) {
     constexpr std::uint8_t kNet = 127;
-    std::array<std::uint8_t, sizeof(in6_addr)> bytes{};
-    if (inet_pton(AF_INET, address.c_str(), bytes.data()) == 1) return bytes[0] == kNet;
-    constexpr std::array<std::uint8_t, sizeof(in6_addr)> kOne{
-        0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
-    return inet_pton(AF_INET6, address.c_str(), bytes.data()) == 1 && bytes == kOne;
+    constexpr AddressBytes kOne{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+    AddressBytes bytes{};
+    if (parse_address(AF_INET, address, bytes)) return bytes[0] == kNet;
+    return parse_address(AF_INET6, address, bytes) && bytes == kOne;
 }
 
 std::optional<std::string> problem_of_exposure(const std::string& bind_address,
