@@ -29,8 +29,8 @@ test: build
 # Readers, gate, its service and log, REX link and stairs under AddressSanitizer and UndefinedBehaviorSanitizer.
 asan: setup
 	@test -f build/asan-ubsan/build.ninja || cmake --preset asan-ubsan > /dev/null
-	@cmake --build build/asan-ubsan -j $(JOBS) --target core_test io_test gate_test grid_test stairs_test wire_test rex_link_test
-	ctest --test-dir build/asan-ubsan -j $(JOBS) --output-on-failure -R '^(core|io|gate|grid|stairs|wire|rex_link)\.'
+	@cmake --build build/asan-ubsan -j $(JOBS) --target core_test io_test gate_test grid_test stairs_test gate_process_test rex_link_test
+	ctest --test-dir build/asan-ubsan -j $(JOBS) --output-on-failure -R '^(core|io|gate|grid|stairs|gate_process|rex_link)\.'
 
 check:
 	@tools/check

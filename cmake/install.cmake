@@ -4,10 +4,8 @@ include(CMakePackageConfigHelpers)
 get_property(_modules GLOBAL PROPERTY SUREFOOT_MODULES)
 install(TARGETS ${_modules} EXPORT surefoot_targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-foreach(folder surefoot files sim io eval)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-    FILES_MATCHING PATTERN "*.hpp")
-endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/surefoot DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT surefoot_targets NAMESPACE surefoot:: FILE surefoot-targets.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/surefoot)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/surefoot-config.cmake.in

@@ -1,9 +1,9 @@
 # surefoot_module(NAME [DEPS module...] [LINK target...] [OPENCV component...] [NOT_INSTALLED])
-# One static library per folder: every *.cpp beside the CMakeLists.txt, and one test program of its
-# *_test.cpp. A thing is thing.hpp, thing.cpp, thing_test.cpp: adding one needs no edit here.
+# One static library per module: every *.cpp beside the CMakeLists.txt and in the rooms below it, and
+# one test program of its *_test.cpp. A thing is thing.hpp, thing.cpp, thing_test.cpp: adding one needs no edit here.
 function(surefoot_module name)
   cmake_parse_arguments(ARG "NOT_INSTALLED" "" "DEPS;LINK;OPENCV;TEST_DEPS" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "fuzz/must.hpp"
-#include "server/wire/audit_reader.hpp"
+#include "service/gate_process/audit/audit_reader.hpp"
 
 namespace {
 

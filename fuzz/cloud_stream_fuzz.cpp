@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "fuzz/must.hpp"
-#include "io/cloud_stream.hpp"
-#include "io/point_cloud.hpp"
+#include "surefoot/io/clouds/cloud_stream.hpp"
+#include "surefoot/io/clouds/point_cloud.hpp"
 
 namespace {
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "fuzz/must.hpp"
-#include "server/wire/admission.hpp"
-#include "server/wire/keyed_checksum.hpp"
+#include "service/gate_process/channel/keyed_checksum.hpp"
+#include "service/gate_process/sockets/admission.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "fuzz/must.hpp"
-#include "server/page/foxglove_client.hpp"
+#include "service/page/foxglove_client.hpp"
 
 namespace {
 

@@ -12,12 +12,12 @@
 #include <string_view>
 
 #include "fuzz/must.hpp"
-#include "io/bytes.hpp"
-#include "io/dem_file.hpp"
-#include "io/fake_video_device.hpp"
-#include "io/image_file.hpp"
-#include "io/live_camera.hpp"
-#include "io/mjpeg_source.hpp"
+#include "surefoot/io/bytes.hpp"
+#include "surefoot/io/images/image_file.hpp"
+#include "surefoot/io/live_camera/fake_video_device.hpp"
+#include "surefoot/io/live_camera/live_camera.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/recordings/mjpeg_source.hpp"
 
 namespace {
 

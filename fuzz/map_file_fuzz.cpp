@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "fuzz/must.hpp"
-#include "io/bytes.hpp"
-#include "io/map_file.hpp"
-#include "surefoot/elevation/region_merge.hpp"
+#include "surefoot/elevation/region/region_merge.hpp"
+#include "surefoot/io/bytes.hpp"
+#include "surefoot/io/maps/map_file.hpp"
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "fuzz/must.hpp"
-#include "server/page/page_door.hpp"
-#include "server/page/page_messages.hpp"
+#include "service/page/page_door.hpp"
+#include "service/page/page_messages.hpp"
 
 namespace {
 

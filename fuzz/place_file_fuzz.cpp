@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "fuzz/must.hpp"
-#include "io/bytes.hpp"
-#include "io/map_file.hpp"
-#include "io/place_file.hpp"
+#include "surefoot/io/bytes.hpp"
+#include "surefoot/io/maps/map_file.hpp"
+#include "surefoot/io/maps/place_file.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "surefoot/core/time.hpp"
-#include "surefoot/elevation/depth_points.hpp"
-#include "surefoot/elevation/map_region.hpp"
+#include "surefoot/elevation/region/map_region.hpp"
+#include "surefoot/elevation/sampling/depth_points.hpp"
 
 namespace surefoot::fuzz {
 namespace {

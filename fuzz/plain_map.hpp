@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "surefoot/elevation/elevation_map.hpp"
-#include "surefoot/elevation/sight_ends.hpp"
-#include "surefoot/elevation/visibility.hpp"
+#include "surefoot/elevation/visibility/sight_ends.hpp"
+#include "surefoot/elevation/visibility/visibility.hpp"
 
 namespace surefoot::fuzz {
 

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "fuzz/must.hpp"
-#include "io/imu_stream.hpp"
-#include "io/pairing.hpp"
-#include "io/raw_floats.hpp"
-#include "io/recording.hpp"
+#include "surefoot/io/raw_floats.hpp"
+#include "surefoot/io/recordings/imu_stream.hpp"
+#include "surefoot/io/recordings/pairing.hpp"
+#include "surefoot/io/recordings/recording.hpp"
 
 namespace {
 

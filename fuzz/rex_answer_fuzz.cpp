@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "fuzz/must.hpp"
-#include "server/rex_link/answer_parser.hpp"
-#include "server/rex_link/rex_link.hpp"
+#include "service/rex_link/answer_parser.hpp"
+#include "service/rex_link/rex_link.hpp"
 
 namespace {
 

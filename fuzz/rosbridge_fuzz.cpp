@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "fuzz/must.hpp"
-#include "server/wire/rosbridge_session.hpp"
-#include "server/wire/wire_testing.hpp"
+#include "service/gate_process/protocol/rosbridge_session.hpp"
+#include "service/gate_process/wire_testing.hpp"
 
 namespace {
 

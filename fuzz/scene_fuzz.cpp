@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "fuzz/must.hpp"
-#include "sim/expression.hpp"
-#include "sim/scene_file.hpp"
+#include "surefoot/sim/scenes/expression.hpp"
+#include "surefoot/sim/scenes/scene_file.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "surefoot/core/executors_for_test.hpp"
+#include "surefoot/core/executors_testing.hpp"
 
 /// How a second computation differs from the first that must have the same bytes.
 namespace surefoot::fuzz {

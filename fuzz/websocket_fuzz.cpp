@@ -15,8 +15,8 @@
 #include <utility>
 
 #include "fuzz/must.hpp"
-#include "server/wire/websocket_server.hpp"
-#include "server/wire/wire_testing.hpp"
+#include "service/gate_process/sockets/websocket_server.hpp"
+#include "service/gate_process/wire_testing.hpp"
 
 namespace {
 

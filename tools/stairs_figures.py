@@ -1,22 +1,22 @@
 """What `tools/experiments stairs` measured: shares and scatters with their intervals, and the figures that are required.
 
-Rows are those of experiments/stairs_truth, a dictionary a line. Used by tools/experiments (tables) and tools/accuracy (page).
+Rows are those of lab/stairs_truth/main, a dictionary a line. Used by tools/experiments (tables) and tools/accuracy (page).
 """
 import csv
 import math
 import pathlib
 import statistics
 
-STAIRS_UP = [f"experiments/stairs_up.yaml#{name}" for name in ("up_service", "up_secondary", "up_common", "up_accessible", "up_ada")]
-STAIRS_FEW = [f"experiments/stairs_up.yaml#up_{steps}" for steps in (1, 2, 3)]
-STAIRS_THESIS = ["demo_stairs", "flight_20_up", *(f"experiments/stairs_up.yaml#{name}" for name in ("up_glass", "up_open"))]
+STAIRS_UP = [f"lab/scenes/stairs_up.yaml#{name}" for name in ("up_service", "up_secondary", "up_common", "up_accessible", "up_ada")]
+STAIRS_FEW = [f"lab/scenes/stairs_up.yaml#up_{steps}" for steps in (1, 2, 3)]
+STAIRS_THESIS = ["demo_stairs", "flight_20_up", *(f"lab/scenes/stairs_up.yaml#{name}" for name in ("up_glass", "up_open"))]
 STAIRS_DOORS = ["door_760", "door_810", "door_900", "door_1000", "sill_20",
-                *(f"experiments/door_ahead.yaml#{name}" for name in ("door_plain", "door_sill"))]
+                *(f"lab/scenes/door_ahead.yaml#{name}" for name in ("door_plain", "door_sill"))]
 NO_STAIRS = ["floor", "cross_fall", "ramp_1_12_up", "ramp_1_12_down", "table", "room", "corridor", "overhang", "stripes_across",
-             "shadow_railing", "experiments/clutter.yaml", *(f"experiments/rough_ground.yaml#{name}" for name in ("rough_grass", "rough_stones"))]
+             "shadow_railing", "lab/scenes/clutter.yaml", *(f"lab/scenes/rough_ground.yaml#{name}" for name in ("rough_grass", "rough_stones"))]
 # Scenes, seeds of each, and after how many frames each map is judged (0: at the end).
-PARTS = {"up": (STAIRS_UP, 40, 0), "few": (STAIRS_FEW, 200, 0), "down_far": (["experiments/stairs_down.yaml#down_far"], 200, 0),
-         "down_near": (["experiments/stairs_down.yaml#down_near"], 200, 0), "kerbs": (["experiments/kerb_ahead.yaml"], 1000, 0),
+PARTS = {"up": (STAIRS_UP, 40, 0), "few": (STAIRS_FEW, 200, 0), "down_far": (["lab/scenes/stairs_down.yaml#down_far"], 200, 0),
+         "down_near": (["lab/scenes/stairs_down.yaml#down_near"], 200, 0), "kerbs": (["lab/scenes/kerb_ahead.yaml"], 1000, 0),
          "none": (NO_STAIRS, 10, 1), "thesis": (STAIRS_THESIS, 50, 0), "doors": (STAIRS_DOORS, 40, 0)}
 MODES = ("analytic_0.25", "analytic_0.5", "images_0.25", "images_0.5")
 MOST_PX = {"images_0.25": 0.3, "images_0.5": 0.6}  # textures make of one noise of the images more or less of it in disparities

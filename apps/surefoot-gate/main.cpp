@@ -21,12 +21,12 @@
 #include <numbers>
 
 #include "apps/surefoot/resources.hpp"
-#include "io/machine_file.hpp"
-#include "server/wire/audit_log.hpp"
-#include "server/wire/gatekeeper.hpp"
-#include "server/wire/port_holder.hpp"
-#include "server/wire/token_file.hpp"
-#include "server/wire/websocket_server.hpp"
+#include "service/gate_process/audit/audit_log.hpp"
+#include "service/gate_process/gatekeeper.hpp"
+#include "service/gate_process/sockets/port_holder.hpp"
+#include "service/gate_process/sockets/token_file.hpp"
+#include "service/gate_process/sockets/websocket_server.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "server/wire/audit_reader.hpp"
+#include "service/gate_process/audit/audit_reader.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {

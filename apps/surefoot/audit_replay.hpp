@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/wire/audit_record.hpp"
+#include "service/gate_process/audit/audit_record.hpp"
 
 namespace surefoot::app {
 

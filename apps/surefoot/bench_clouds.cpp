@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "apps/surefoot/bench_result.hpp"
-#include "eval/cloud_distance.hpp"
-#include "eval/cloud_outliers.hpp"
-#include "eval/dem.hpp"
-#include "eval/m3c2.hpp"
-#include "eval/voxels.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/eval/clouds/cloud_distance.hpp"
+#include "surefoot/eval/clouds/cloud_outliers.hpp"
+#include "surefoot/eval/clouds/m3c2.hpp"
+#include "surefoot/eval/clouds/voxels.hpp"
+#include "surefoot/eval/maps/dem.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
 
 namespace surefoot::app {

@@ -10,7 +10,7 @@
 
 #include "apps/surefoot/bench_result.hpp"
 #include "apps/surefoot/source.hpp"
-#include "server/wire/audit_log.hpp"
+#include "service/gate_process/audit/audit_log.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
 
 namespace surefoot::app {

@@ -6,10 +6,10 @@
 #include "apps/surefoot/bench_result.hpp"
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/settings.hpp"
-#include "sim/rigs.hpp"
-#include "sim/scene_source.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/odometry/odometry.hpp"
+#include "surefoot/sim/scene_source.hpp"
+#include "surefoot/sim/sensors/rigs.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -8,10 +8,10 @@
 #include "apps/surefoot/bench_result.hpp"
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/settings.hpp"
-#include "sim/scene_source.hpp"
 #include "surefoot/camera/rectifier.hpp"
-#include "surefoot/places/describe.hpp"
-#include "surefoot/places/place_memory.hpp"
+#include "surefoot/place_recognition/describe.hpp"
+#include "surefoot/place_recognition/place_memory.hpp"
+#include "surefoot/sim/scene_source.hpp"
 #include "surefoot/stereo/matcher.hpp"
 
 namespace surefoot::app {

@@ -10,7 +10,7 @@
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
-#include "sim/scenes.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
 
 namespace surefoot::app {
 namespace {

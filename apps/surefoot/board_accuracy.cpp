@@ -10,10 +10,10 @@
 #include <sstream>
 
 #include "apps/surefoot/measured_pair.hpp"
-#include "io/file.hpp"
-#include "sim/board_view.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/sim/sensors/board_view.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "eval/board_errors.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/eval/depth/board_errors.hpp"
 
 namespace surefoot::app {
 

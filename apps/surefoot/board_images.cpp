@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "io/file.hpp"
-#include "io/image_file.hpp"
-#include "io/recording.hpp"
-#include "io/video_frames.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/images/image_file.hpp"
+#include "surefoot/io/recordings/recording.hpp"
+#include "surefoot/io/recordings/video_frames.hpp"
 
 namespace surefoot::app {
 namespace {

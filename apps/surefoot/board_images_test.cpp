@@ -8,9 +8,9 @@
 #include <opencv2/core.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "io/file.hpp"
-#include "io/image_file.hpp"
-#include "io/io_testing.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/images/image_file.hpp"
+#include "surefoot/io/io_testing.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -2,8 +2,8 @@
 // Do the parts of the body in machines/rex.yaml hold what the simulated REX does?
 #include <gtest/gtest.h>
 
-#include "io/machine_file.hpp"
-#include "sim/body_trace.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/sim/motion/body_trace.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -13,10 +13,10 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "io/file.hpp"
-#include "io/rig_file.hpp"
-#include "surefoot/calibration/detect_board.hpp"
-#include "surefoot/calibration/lens_advice.hpp"
+#include "surefoot/calibration/boards/detect_board.hpp"
+#include "surefoot/calibration/lenses/lens_advice.hpp"
+#include "surefoot/io/calibration/rig_file.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "apps/surefoot/rendered_calibration_for_test.hpp"
+#include "apps/surefoot/rendered_calibration_testing.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "eval/canvas.hpp"
-#include "eval/figure.hpp"
-#include "eval/percentile.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/eval/report/canvas.hpp"
+#include "surefoot/eval/report/figure.hpp"
+#include "surefoot/eval/report/percentile.hpp"
 
 namespace surefoot::app {
 namespace {

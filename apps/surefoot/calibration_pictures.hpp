@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/surefoot/calibration_run.hpp"
-#include "eval/canvas.hpp"
+#include "surefoot/eval/report/canvas.hpp"
 
 namespace surefoot::app {
 

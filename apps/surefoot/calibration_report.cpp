@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "apps/surefoot/calibration_pictures.hpp"
-#include "eval/html_report.hpp"
+#include "surefoot/eval/report/html_report.hpp"
 
 namespace surefoot::app {
 namespace {

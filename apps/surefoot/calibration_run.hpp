@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/surefoot/board_images.hpp"
-#include "surefoot/calibration/coverage.hpp"
-#include "surefoot/calibration/lens_mapping.hpp"
+#include "surefoot/calibration/bundle/coverage.hpp"
+#include "surefoot/calibration/lenses/lens_mapping.hpp"
 #include "surefoot/calibration/stereo_calibration.hpp"
 
 namespace surefoot::app {

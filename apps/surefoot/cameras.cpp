@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "io/text.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 

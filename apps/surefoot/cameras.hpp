@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/v4l2_device.hpp"
+#include "surefoot/io/live_camera/v4l2_device.hpp"
 
 namespace surefoot::app {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/surefoot/log.hpp"
-#include "server/wire/json_text.hpp"
+#include "service/gate_process/protocol/json_text.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "apps/surefoot/voxel_stream.hpp"
-#include "eval/cloud_distance.hpp"
-#include "eval/cloud_measures.hpp"
-#include "eval/cloud_outliers.hpp"
+#include "surefoot/eval/clouds/cloud_distance.hpp"
+#include "surefoot/eval/clouds/cloud_measures.hpp"
+#include "surefoot/eval/clouds/cloud_outliers.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
 
 // The JSON objects of the cloud tools; the names are a contract (docs/json.md).

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "apps/surefoot/writes.hpp"
-#include "eval/dem.hpp"
-#include "eval/line_plot.hpp"
-#include "eval/picture.hpp"
-#include "io/cloud_writer.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/maps/dem.hpp"
+#include "surefoot/eval/report/line_plot.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/io/clouds/cloud_writer.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "eval/cloud_measures.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/eval/clouds/cloud_measures.hpp"
 
 namespace surefoot::app {
 

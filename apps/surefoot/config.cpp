@@ -7,7 +7,7 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/config_yaml.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
 
 namespace surefoot::app {
 

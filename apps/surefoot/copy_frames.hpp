@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "io/recorder.hpp"
 #include "surefoot/camera/frame_source.hpp"
+#include "surefoot/io/recordings/recorder.hpp"
 
 namespace surefoot::app {
 

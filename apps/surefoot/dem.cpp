@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "eval/dem.hpp"
+#include "surefoot/eval/maps/dem.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/surface_dem.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/cloud_stream.hpp"
-#include "io/dem_file.hpp"
-#include "io/height_rules.hpp"
+#include "surefoot/io/clouds/cloud_stream.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/maps/height_rules.hpp"
 
 namespace surefoot::app {
 namespace {

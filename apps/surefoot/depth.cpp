@@ -10,11 +10,11 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "eval/picture.hpp"
-#include "io/file.hpp"
-#include "io/pfm.hpp"
-#include "io/point_cloud.hpp"
 #include "surefoot/camera/reproject.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/io/clouds/point_cloud.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/images/pfm.hpp"
 
 namespace surefoot::app {
 namespace {

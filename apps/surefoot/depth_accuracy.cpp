@@ -13,11 +13,11 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "eval/depth_design.hpp"
-#include "eval/html_report.hpp"
-#include "eval/line_plot.hpp"
-#include "io/file.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/eval/depth/depth_design.hpp"
+#include "surefoot/eval/report/html_report.hpp"
+#include "surefoot/eval/report/line_plot.hpp"
+#include "surefoot/io/file.hpp"
 #include "surefoot/stereo/confidence.hpp"
 
 namespace surefoot::app {

@@ -12,9 +12,9 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/file.hpp"
-#include "sim/rigs.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/sim/sensors/rigs.hpp"
 #include "surefoot/stereo/confidence.hpp"
 
 namespace surefoot::app {

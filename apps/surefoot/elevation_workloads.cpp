@@ -12,7 +12,7 @@
 #include "apps/surefoot/terrain_workloads.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
-#include "surefoot/elevation/height_bounds.hpp"
+#include "surefoot/elevation/fusion/height_bounds.hpp"
 
 namespace surefoot::app {
 namespace {

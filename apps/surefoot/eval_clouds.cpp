@@ -9,9 +9,9 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "eval/m3c2.hpp"
-#include "io/cloud_stream.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/clouds/m3c2.hpp"
+#include "surefoot/io/clouds/cloud_stream.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,10 +7,10 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "eval/depth_errors.hpp"
-#include "io/file.hpp"
-#include "io/image_file.hpp"
-#include "io/pfm.hpp"
+#include "surefoot/eval/depth/depth_errors.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/images/image_file.hpp"
+#include "surefoot/io/images/pfm.hpp"
 
 namespace surefoot::app {
 namespace {

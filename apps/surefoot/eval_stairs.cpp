@@ -5,8 +5,8 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/stairs_json.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "eval/feature_errors.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/stairs/feature_errors.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

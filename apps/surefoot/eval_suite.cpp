@@ -17,8 +17,8 @@
 #include "apps/surefoot/suite_table.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "io/file.hpp"
 #include "surefoot/core/fnv1a.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -17,11 +17,11 @@
 #include "apps/surefoot/thesis_report.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "io/file.hpp"
-#include "sim/scenes.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/fnv1a.hpp"
 #include "surefoot/core/nearest_names.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
 
 namespace surefoot::app {
 namespace {

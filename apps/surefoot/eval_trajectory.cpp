@@ -4,12 +4,12 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "eval/path_errors.hpp"
-#include "eval/picture.hpp"
-#include "eval/trajectory.hpp"
-#include "io/file.hpp"
-#include "io/trajectory_file.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/eval/trajectory/path_errors.hpp"
+#include "surefoot/eval/trajectory/trajectory.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/recordings/trajectory_file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "apps/surefoot/ground_box.hpp"
-#include "eval/picture.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/report/picture.hpp"
 #include "surefoot/grid/whole_cells.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -9,16 +9,16 @@
 #include <vector>
 
 #include "apps/surefoot/surface_dem.hpp"
-#include "eval/cloud_distance.hpp"
-#include "eval/cloud_measures.hpp"
-#include "eval/cloud_outliers.hpp"
-#include "eval/dem.hpp"
-#include "eval/voxels.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/eval/clouds/cloud_distance.hpp"
+#include "surefoot/eval/clouds/cloud_measures.hpp"
+#include "surefoot/eval/clouds/cloud_outliers.hpp"
+#include "surefoot/eval/clouds/voxels.hpp"
+#include "surefoot/eval/maps/dem.hpp"
 #include "surefoot/geometry/kd_tree.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
+#include "surefoot/stairs/classes/ground_classes.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
-#include "surefoot/stairs/ground_classes.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/surefoot/resources.hpp"
-#include "io/model_file.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/io/settings/model_file.hpp"
 
 namespace surefoot::app {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "apps/surefoot/settings.hpp"
-#include "io/machine_file.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
 
 namespace surefoot::app {
 

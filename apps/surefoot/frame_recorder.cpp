@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "apps/surefoot/log.hpp"
-#include "io/file.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

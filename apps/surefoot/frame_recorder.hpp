@@ -12,9 +12,9 @@
 #include <thread>
 #include <vector>
 
-#include "io/recorder.hpp"
-#include "server/page/recording_desk.hpp"
+#include "service/page/recording_desk.hpp"
 #include "surefoot/camera/frame_source.hpp"
+#include "surefoot/io/recordings/recorder.hpp"
 
 namespace surefoot::app {
 

@@ -13,9 +13,9 @@
 #include <fstream>
 #include <thread>
 
-#include "io/recording.hpp"
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/io/recordings/recording.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -9,11 +9,11 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/dem_file.hpp"
-#include "io/file.hpp"
-#include "io/raw_floats.hpp"
-#include "io/text.hpp"
-#include "surefoot/elevation/ancestor.hpp"
+#include "surefoot/elevation/fusion/ancestor.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/raw_floats.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 namespace {

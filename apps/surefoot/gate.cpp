@@ -12,9 +12,9 @@
 #include "apps/surefoot/offline_map.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/text.hpp"
-#include "server/wire/audit_log.hpp"
+#include "service/gate_process/audit/audit_log.hpp"
 #include "surefoot/gate/verdict_text.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/wire/keyed_checksum.hpp"
+#include "service/gate_process/channel/keyed_checksum.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::app {

@@ -10,9 +10,9 @@
 #include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/point_cloud.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/ground/ground_search.hpp"
+#include "surefoot/io/clouds/point_cloud.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "io/dem_file.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
 
 namespace surefoot::app {
 

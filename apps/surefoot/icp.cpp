@@ -7,11 +7,11 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/cloud_stream.hpp"
-#include "io/cloud_writer.hpp"
-#include "io/file.hpp"
-#include "io/text.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
+#include "surefoot/io/clouds/cloud_stream.hpp"
+#include "surefoot/io/clouds/cloud_writer.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 namespace {

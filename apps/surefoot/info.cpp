@@ -6,7 +6,7 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/recorder.hpp"
+#include "surefoot/io/recordings/recorder.hpp"
 
 namespace surefoot::app {
 namespace {

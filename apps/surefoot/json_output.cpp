@@ -13,8 +13,8 @@
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/stairs_json.hpp"
 #include "apps/surefoot/suite_rows.hpp"
-#include "server/wire/json_text.hpp"
-#include "server/wire/verdict_json.hpp"
+#include "service/gate_process/protocol/json_text.hpp"
+#include "service/gate_process/protocol/verdict_json.hpp"
 #include "surefoot/core/time.hpp"
 
 namespace surefoot::app {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apps/surefoot/board_images.hpp"
-#include "io/live_camera.hpp"
+#include "surefoot/io/live_camera/live_camera.hpp"
 
 namespace surefoot::app {
 

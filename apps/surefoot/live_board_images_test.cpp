@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "io/fake_video_device.hpp"
+#include "surefoot/io/live_camera/fake_video_device.hpp"
 
 namespace surefoot::app {
 namespace {

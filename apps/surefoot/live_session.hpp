@@ -9,7 +9,7 @@
 
 #include "apps/surefoot/eyes_check.hpp"
 #include "apps/surefoot/settings.hpp"
-#include "server/wire/snapshot_channel.hpp"
+#include "service/gate_process/channel/snapshot_channel.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/core/frame.hpp"
 #include "surefoot/grid/map_snapshot.hpp"

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::app {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "sim/scene_source.hpp"
+#include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "io/model_file.hpp"
 #include "surefoot/camera/frame_source.hpp"
+#include "surefoot/io/settings/model_file.hpp"
 
 namespace surefoot::app {
 

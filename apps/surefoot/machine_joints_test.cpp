@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "sim/scene_source.hpp"
+#include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
 namespace {

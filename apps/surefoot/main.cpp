@@ -559,7 +559,7 @@ void add_rex_link(CLI::App& app, RexLinkOptions& o, int& exit_code) {
                       "plays the REX beside the machine: asks the gate about each movement of the "
                       "joystick, twice, and moves on the second OK; exit 1 where no gate listens",
                       "surefoot rex-link --url ws://127.0.0.1:9090 --script "
-                      "server/rex_link/example_joystick.txt --tones server/rex_link/tones"),
+                      "service/rex_link/example_joystick.txt --tones service/rex_link/tones"),
              o,
              rex_link_verb,
              exit_code,

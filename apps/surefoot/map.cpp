@@ -8,10 +8,10 @@
 #include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/map_file.hpp"
 #include "surefoot/core/time.hpp"
-#include "surefoot/elevation/map_region.hpp"
-#include "surefoot/elevation/region_merge.hpp"
+#include "surefoot/elevation/region/map_region.hpp"
+#include "surefoot/elevation/region/region_merge.hpp"
+#include "surefoot/io/maps/map_file.hpp"
 
 namespace surefoot::app {
 namespace {

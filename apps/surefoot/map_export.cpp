@@ -10,12 +10,12 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "eval/picture.hpp"
-#include "io/dem_file.hpp"
-#include "io/file.hpp"
-#include "io/map_file.hpp"
-#include "io/point_cloud.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/io/clouds/point_cloud.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/maps/map_file.hpp"
 
 namespace surefoot::app {
 namespace {

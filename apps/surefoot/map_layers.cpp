@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "apps/surefoot/run_output.hpp"
-#include "surefoot/elevation/height_bounds.hpp"
+#include "surefoot/elevation/fusion/height_bounds.hpp"
 #include "surefoot/grid/tilt_variance.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "eval/layer_sheet.hpp"
+#include "surefoot/eval/maps/layer_sheet.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 
 namespace surefoot::app {

@@ -9,9 +9,9 @@
 #include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "eval/cloud_measures.hpp"
-#include "io/cloud_stream.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/clouds/cloud_measures.hpp"
+#include "surefoot/io/clouds/cloud_stream.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

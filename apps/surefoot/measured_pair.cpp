@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/image_file.hpp"
+#include "surefoot/io/images/image_file.hpp"
 #include "surefoot/stereo/matcher.hpp"
 
 namespace surefoot::app {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "io/text.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "apps/surefoot/ground_box.hpp"
-#include "io/dem_file.hpp"
-#include "io/file.hpp"
-#include "io/snapshot_file.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/maps/snapshot_file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -8,10 +8,10 @@
 #include <tuple>
 #include <utility>
 
-#include "eval/shown_part.hpp"
-#include "io/urdf_file.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/eval/maps/shown_part.hpp"
+#include "surefoot/io/settings/urdf_file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "apps/surefoot/machine_joints.hpp"
-#include "io/machine_file.hpp"
-#include "io/model_file.hpp"
-#include "server/page/page_feed.hpp"
+#include "service/page/page_feed.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/core/report.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/io/settings/model_file.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
-#include "surefoot/stairs/drift.hpp"
+#include "surefoot/stairs/tracking/drift.hpp"
 
 namespace surefoot::app {
 

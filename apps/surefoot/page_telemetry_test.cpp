@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "io/file.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "io/place_file.hpp"
+#include "surefoot/io/maps/place_file.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
-#include "surefoot/places/place_tracker.hpp"
+#include "surefoot/place_recognition/place_tracker.hpp"
 
 namespace surefoot::app {
 

@@ -11,10 +11,10 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "eval/picture.hpp"
-#include "io/config_yaml.hpp"
-#include "io/dem_file.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {

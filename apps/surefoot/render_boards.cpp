@@ -8,11 +8,11 @@
 #include "apps/surefoot/thread_pool.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "io/file.hpp"
-#include "io/image_file.hpp"
-#include "sim/board_renderer.hpp"
-#include "sim/rigs.hpp"
-#include "surefoot/calibration/board_print.hpp"
+#include "surefoot/calibration/boards/board_print.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/images/image_file.hpp"
+#include "surefoot/sim/rendering/board_renderer.hpp"
+#include "surefoot/sim/sensors/rigs.hpp"
 
 namespace surefoot::app {
 namespace {

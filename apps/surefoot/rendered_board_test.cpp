@@ -8,12 +8,12 @@
 #include <opencv2/core/utility.hpp>
 
 #include "apps/surefoot/rendered_boards.hpp"
-#include "io/file.hpp"
-#include "io/image_file.hpp"
-#include "sim/board_renderer.hpp"
-#include "surefoot/calibration/board_print.hpp"
-#include "surefoot/calibration/detect_board.hpp"
-#include "surefoot/calibration/disc_image.hpp"
+#include "surefoot/calibration/boards/board_print.hpp"
+#include "surefoot/calibration/boards/detect_board.hpp"
+#include "surefoot/calibration/boards/disc_image.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/images/image_file.hpp"
+#include "surefoot/sim/rendering/board_renderer.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "surefoot/calibration/board_print.hpp"
+#include "surefoot/calibration/boards/board_print.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/calibration/board.hpp"
+#include "surefoot/calibration/boards/board.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/rng.hpp"
 

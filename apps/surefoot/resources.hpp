@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "io/machine_file.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
 
 namespace surefoot::app {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/rex_link/rex_link.hpp"
+#include "service/rex_link/rex_link.hpp"
 
 #include <fmt/format.h>
 
@@ -14,10 +14,10 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/tone_player.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/file.hpp"
-#include "server/rex_link/link_client.hpp"
-#include "server/wire/token_file.hpp"
+#include "service/gate_process/sockets/token_file.hpp"
+#include "service/rex_link/link_client.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <numbers>
 
-#include "io/machine_file.hpp"
-#include "io/model_file.hpp"
-#include "sim/rex_gait.hpp"
-#include "sim/rex_joints.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/io/settings/model_file.hpp"
+#include "surefoot/sim/motion/rex_gait.hpp"
+#include "surefoot/sim/motion/rex_joints.hpp"
 
 namespace surefoot::app {
 namespace {

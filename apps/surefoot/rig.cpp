@@ -7,10 +7,10 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/rig_formats.hpp"
-#include "io/text.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/camera/rig_scaling.hpp"
+#include "surefoot/io/calibration/rig_formats.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 namespace {

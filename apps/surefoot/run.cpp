@@ -10,7 +10,7 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "io/file.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 int run(const RunOptions& options) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/surefoot/stairs_text.hpp"
-#include "eval/feature_errors.hpp"
+#include "surefoot/eval/stairs/feature_errors.hpp"
 
 namespace surefoot::app {
 namespace {

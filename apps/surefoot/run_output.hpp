@@ -7,7 +7,7 @@
 #include "apps/surefoot/run_session.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/machine_file.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
 
 namespace surefoot::app {
 

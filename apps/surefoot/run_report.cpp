@@ -12,12 +12,12 @@
 #include "apps/surefoot/stairs_json.hpp"
 #include "apps/surefoot/stairs_text.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "eval/classes_picture.hpp"
-#include "eval/html_report.hpp"
-#include "eval/picture.hpp"
-#include "eval/stairs_picture.hpp"
-#include "io/config_yaml.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/report/html_report.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/eval/stairs/classes_picture.hpp"
+#include "surefoot/eval/stairs/stairs_picture.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/surefoot/run_output.hpp"
-#include "eval/map_view.hpp"
+#include "surefoot/eval/maps/map_view.hpp"
 
 namespace surefoot::app {
 

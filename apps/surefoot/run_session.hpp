@@ -11,8 +11,8 @@
 #include "apps/surefoot/place_session.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/sim_truth.hpp"
-#include "io/machine_file.hpp"
 #include "surefoot/camera/frame_source.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 
 namespace surefoot::app {

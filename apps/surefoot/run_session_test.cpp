@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/scene_source.hpp"
+#include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -17,11 +17,11 @@
 #include "apps/surefoot/scan_tiles.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/file.hpp"
-#include "io/ply_stream.hpp"
-#include "sim/laser_scanner.hpp"
-#include "sim/scene_stations.hpp"
-#include "sim/scenes.hpp"
+#include "surefoot/io/clouds/ply_stream.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/sim/scenes/scene_stations.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
+#include "surefoot/sim/sensors/laser_scanner.hpp"
 
 namespace surefoot::app {
 namespace {

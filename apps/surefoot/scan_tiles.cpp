@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "io/file.hpp"
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

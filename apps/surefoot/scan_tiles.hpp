@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/cloud_writer.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/io/clouds/cloud_writer.hpp"
 
 namespace surefoot::app {
 

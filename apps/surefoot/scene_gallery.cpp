@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "eval/picture.hpp"
-#include "io/file.hpp"
-#include "sim/scene_source.hpp"
-#include "sim/scenes.hpp"
-#include "sim/truth.hpp"
 #include "surefoot/core/checked_index.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/sim/scene_source.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
 
 namespace surefoot::app {
 namespace {

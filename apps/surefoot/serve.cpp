@@ -32,12 +32,12 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/steered_walk.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/file.hpp"
-#include "server/page/page_server.hpp"
-#include "server/wire/token_file.hpp"
-#include "sim/scene_source.hpp"
+#include "service/gate_process/sockets/token_file.hpp"
+#include "service/page/page_server.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/gate/vouching.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
 namespace {

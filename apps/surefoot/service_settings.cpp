@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "io/config_yaml.hpp"
-#include "server/page/page_messages.hpp"
+#include "service/page/page_messages.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
 
 namespace surefoot::app {
 namespace {

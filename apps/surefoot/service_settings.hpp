@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/surefoot/settings.hpp"
-#include "server/page/page_settings.hpp"
+#include "service/page/page_settings.hpp"
 #include "surefoot/core/config.hpp"
 #include "surefoot/core/result.hpp"
 

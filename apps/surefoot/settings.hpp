@@ -5,15 +5,15 @@
 #include <string>
 
 #include "apps/surefoot/verbs.hpp"
-#include "eval/m3c2.hpp"
-#include "eval/maps.hpp"
-#include "io/config_yaml.hpp"
-#include "io/live_camera.hpp"
-#include "sim/laser_scanner.hpp"
-#include "sim/scene_source.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/eval/clouds/m3c2.hpp"
+#include "surefoot/eval/maps/maps.hpp"
+#include "surefoot/io/live_camera/live_camera.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
+#include "surefoot/sim/scene_source.hpp"
+#include "surefoot/sim/sensors/laser_scanner.hpp"
 
 namespace surefoot::app {
 

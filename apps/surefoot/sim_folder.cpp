@@ -5,10 +5,10 @@
 
 #include <string_view>
 
-#include "io/config_yaml.hpp"
-#include "io/file.hpp"
-#include "io/text.hpp"
 #include "surefoot/core/fnv1a.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/recorder.hpp"
+#include "surefoot/io/recordings/recorder.hpp"
 
 namespace surefoot::app {
 

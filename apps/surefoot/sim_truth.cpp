@@ -5,9 +5,9 @@
 
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/run_session.hpp"
-#include "sim/truth.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/nearest_pixel.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "eval/map_comparison.hpp"
-#include "eval/trajectory.hpp"
-#include "sim/scene_source.hpp"
 #include "surefoot/camera/frame_source.hpp"
+#include "surefoot/eval/maps/map_comparison.hpp"
+#include "surefoot/eval/trajectory/trajectory.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
+#include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
 

@@ -14,15 +14,15 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "io/dem_file.hpp"
-#include "io/file.hpp"
-#include "io/pfm.hpp"
-#include "io/trajectory_file.hpp"
-#include "sim/safety_oracle.hpp"
-#include "sim/scenes.hpp"
-#include "sim/truth.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/grid/whole_cells.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/images/pfm.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/recordings/trajectory_file.hpp"
+#include "surefoot/sim/safety_oracle/safety_oracle.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
 
 namespace surefoot::app {
 namespace {

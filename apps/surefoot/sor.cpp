@@ -7,10 +7,10 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "eval/cloud_outliers.hpp"
-#include "io/cloud_stream.hpp"
-#include "io/cloud_writer.hpp"
 #include "surefoot/core/pieces.hpp"
+#include "surefoot/eval/clouds/cloud_outliers.hpp"
+#include "surefoot/io/clouds/cloud_stream.hpp"
+#include "surefoot/io/clouds/cloud_writer.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -8,11 +8,11 @@
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/resources.hpp"
-#include "io/imu_stream.hpp"
-#include "io/recording.hpp"
-#include "io/rig_formats.hpp"
-#include "sim/rigs.hpp"
 #include "surefoot/camera/rig_units.hpp"
+#include "surefoot/io/calibration/rig_formats.hpp"
+#include "surefoot/io/recordings/imu_stream.hpp"
+#include "surefoot/io/recordings/recording.hpp"
+#include "surefoot/sim/sensors/rigs.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,13 +7,13 @@
 #include <string_view>
 
 #include "apps/surefoot/verbs.hpp"
-#include "io/live_camera.hpp"
-#include "io/machine_file.hpp"
-#include "io/recording.hpp"
-#include "sim/scene_source.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/io/live_camera/live_camera.hpp"
+#include "surefoot/io/recordings/recording.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
 

@@ -8,14 +8,14 @@
 #include "apps/surefoot/terrain_map.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "eval/classes_picture.hpp"
-#include "eval/html_report.hpp"
-#include "eval/stairs_picture.hpp"
-#include "io/config_yaml.hpp"
-#include "io/dem_file.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/report/html_report.hpp"
+#include "surefoot/eval/stairs/classes_picture.hpp"
+#include "surefoot/eval/stairs/stairs_picture.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
+#include "surefoot/stairs/classes/ground_classes.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
-#include "surefoot/stairs/ground_classes.hpp"
 
 namespace surefoot::app {
 namespace {

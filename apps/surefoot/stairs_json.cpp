@@ -9,8 +9,8 @@
 #include <numbers>
 #include <optional>
 
-#include "server/page/feature_lists.hpp"
-#include "server/wire/json_text.hpp"
+#include "service/gate_process/protocol/json_text.hpp"
+#include "service/page/feature_lists.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -6,11 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "eval/feature_errors.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/eval/stairs/feature_errors.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/stairs/classes/ground_classes.hpp"
 #include "surefoot/stairs/features.hpp"
-#include "surefoot/stairs/ground_classes.hpp"
 
 namespace surefoot::app {
 

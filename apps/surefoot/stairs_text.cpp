@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "eval/stairs_picture.hpp"
+#include "surefoot/eval/stairs/stairs_picture.hpp"
 
 namespace surefoot::app {
 namespace {

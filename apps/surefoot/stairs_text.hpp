@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "eval/html_report.hpp"
+#include "surefoot/eval/report/html_report.hpp"
 #include "surefoot/stairs/features.hpp"
 
 namespace surefoot::app {

@@ -9,10 +9,10 @@
 #include <thread>
 #include <vector>
 
-#include "server/page/steering.hpp"
-#include "server/rex_link/link_client.hpp"
-#include "sim/commanded_motion.hpp"
+#include "service/page/steering.hpp"
+#include "service/rex_link/link_client.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/sim/motion/commanded_motion.hpp"
 
 namespace surefoot::app {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/laser_scanner.hpp"
+#include "surefoot/sim/sensors/laser_scanner.hpp"
 
 namespace surefoot::app {
 

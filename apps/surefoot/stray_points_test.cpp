@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "sim/sensor_scenes_for_test.hpp"
+#include "surefoot/sim/sensors/sensor_scenes_testing.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/surefoot/suite_case.hpp"
-#include "eval/html_report.hpp"
+#include "surefoot/eval/report/html_report.hpp"
 
 namespace surefoot::app {
 

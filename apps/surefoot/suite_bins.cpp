@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "io/text.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "eval/error_histogram.hpp"
-#include "eval/map_comparison.hpp"
+#include "surefoot/eval/maps/map_comparison.hpp"
+#include "surefoot/eval/report/error_histogram.hpp"
 
 namespace surefoot::app {
 

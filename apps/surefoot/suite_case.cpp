@@ -13,8 +13,8 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/suite_depth.hpp"
 #include "apps/surefoot/suite_verdicts.hpp"
-#include "eval/picture.hpp"
 #include "surefoot/core/assert.hpp"
+#include "surefoot/eval/report/picture.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -8,10 +8,10 @@
 #include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/suite_bins.hpp"
 #include "apps/surefoot/suite_steps.hpp"
-#include "io/machine_file.hpp"
-#include "sim/scene_source.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
 

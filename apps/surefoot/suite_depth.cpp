@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "eval/sparsification.hpp"
+#include "surefoot/eval/depth/sparsification.hpp"
 
 namespace surefoot::app {
 namespace {

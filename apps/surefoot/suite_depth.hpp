@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sim/scene_source.hpp"
 #include "surefoot/core/report.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
+#include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {
 

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "apps/surefoot/log.hpp"
-#include "sim/scene_source.hpp"
-#include "sim/scenes.hpp"
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/core/nearest_names.hpp"
+#include "surefoot/sim/scene_source.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "apps/surefoot/suite_progress.hpp"
-#include "sim/scenes.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -11,9 +11,9 @@
 #include "apps/surefoot/suite_answers.hpp"
 #include "apps/surefoot/suite_rows.hpp"
 #include "apps/surefoot/suite_table.hpp"
-#include "eval/html_report.hpp"
-#include "eval/picture.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/report/html_report.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

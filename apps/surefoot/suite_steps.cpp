@@ -8,9 +8,9 @@
 
 #include "apps/surefoot/ground_box.hpp"
 #include "apps/surefoot/offline_map.hpp"
-#include "sim/safety_oracle.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/grid/whole_cells.hpp"
+#include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "apps/surefoot/suite_verdicts.hpp"
-#include "sim/truth.hpp"
 #include "surefoot/core/machine.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
 
 namespace surefoot::app {
 

@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "apps/surefoot/source.hpp"
-#include "sim/motion_scripts.hpp"
-#include "sim/scenes.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/grid/snapshot_builder.hpp"
+#include "surefoot/sim/motion/motion_scripts.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
 
 namespace surefoot::app {
 namespace {

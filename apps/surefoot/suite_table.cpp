@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "io/text.hpp"
 #include "surefoot/core/assert.hpp"
+#include "surefoot/io/text.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/surefoot/suite_case.hpp"
-#include "io/file.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 

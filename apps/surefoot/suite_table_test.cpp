@@ -10,7 +10,7 @@
 
 #include "apps/surefoot/suite_report.hpp"
 #include "apps/surefoot/suite_rows.hpp"
-#include "io/file.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "apps/surefoot/offline_map.hpp"
-#include "sim/safety_oracle.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/grid/whole_cells.hpp"
+#include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/truth.hpp"
 #include "surefoot/core/machine.hpp"
 #include "surefoot/gate/verdict.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
 
 namespace surefoot::app {
 

@@ -9,10 +9,10 @@
 #include <span>
 #include <string>
 
-#include "eval/dem.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
-#include "surefoot/elevation/cell_reduction.hpp"
+#include "surefoot/elevation/fusion/cell_reduction.hpp"
+#include "surefoot/eval/maps/dem.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 
 namespace surefoot::app {

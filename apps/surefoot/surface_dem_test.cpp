@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "surefoot/core/executors_for_test.hpp"
+#include "surefoot/core/executors_testing.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::app {

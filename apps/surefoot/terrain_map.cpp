@@ -11,12 +11,12 @@
 #include "apps/surefoot/height_image.hpp"
 #include "apps/surefoot/numbers.hpp"
 #include "apps/surefoot/surface_dem.hpp"
-#include "eval/dem.hpp"
-#include "io/dem_file.hpp"
-#include "io/file.hpp"
-#include "io/height_rules.hpp"
-#include "io/point_cloud.hpp"
-#include "io/snapshot_file.hpp"
+#include "surefoot/eval/maps/dem.hpp"
+#include "surefoot/io/clouds/point_cloud.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/io/maps/height_rules.hpp"
+#include "surefoot/io/maps/snapshot_file.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -16,11 +16,11 @@
 #include "apps/surefoot/thesis_policy_steps.hpp"
 #include "apps/surefoot/thesis_truth.hpp"
 #include "apps/surefoot/writes.hpp"
-#include "eval/picture.hpp"
-#include "eval/shown_part.hpp"
-#include "io/dem_file.hpp"
-#include "io/file.hpp"
-#include "sim/expression.hpp"
+#include "surefoot/eval/maps/shown_part.hpp"
+#include "surefoot/eval/report/picture.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/maps/dem_file.hpp"
+#include "surefoot/sim/scenes/expression.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "io/file.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

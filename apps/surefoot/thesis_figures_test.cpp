@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "io/file.hpp"
-#include "io/io_testing.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/io_testing.hpp"
 
 namespace surefoot::app {
 namespace {

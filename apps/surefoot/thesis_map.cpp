@@ -8,10 +8,10 @@
 #include <numbers>
 
 #include "apps/surefoot/cloud_pictures.hpp"
-#include "eval/cloud_distance.hpp"
-#include "eval/cloud_measures.hpp"
-#include "eval/map_edges.hpp"
-#include "eval/percentile.hpp"
+#include "surefoot/eval/clouds/cloud_distance.hpp"
+#include "surefoot/eval/clouds/cloud_measures.hpp"
+#include "surefoot/eval/maps/map_edges.hpp"
+#include "surefoot/eval/report/percentile.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::app {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "apps/surefoot/thesis_figures.hpp"
-#include "eval/m3c2.hpp"
-#include "eval/maps.hpp"
 #include "surefoot/core/pose.hpp"
+#include "surefoot/eval/clouds/m3c2.hpp"
+#include "surefoot/eval/maps/maps.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
 #include "surefoot/traversability/traversability_config.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/surefoot/thesis_plan.hpp"
 
-#include "io/config_yaml.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
 #include "surefoot/traversability/traversability_config.hpp"
 
 namespace surefoot::app {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "apps/surefoot/offline_map.hpp"
-#include "eval/thesis_policy.hpp"
-#include "sim/safety_oracle.hpp"
+#include "surefoot/eval/maps/thesis_policy.hpp"
+#include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 
 namespace surefoot::app {
 bool thesis_allows(const Machine& machine,

@@ -9,8 +9,8 @@
 
 namespace surefoot::app {
 
-/// The step query of the thesis (eval/thesis_policy) for a movement of the machine that stands at a
-/// pose in the frame of the map.
+/// The step query of the thesis (surefoot/eval/maps/thesis_policy) for a movement of the machine
+/// that stands at a pose in the frame of the map.
 [[nodiscard]] bool thesis_allows(const Machine& machine,
                                  const grid::GridGeometry& geometry,
                                  ImageView<const float> rating,

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "eval/html_report.hpp"
-#include "io/file.hpp"
-#include "server/wire/json_text.hpp"
-#include "sim/expression.hpp"
-#include "sim/scenes.hpp"
+#include "service/gate_process/protocol/json_text.hpp"
+#include "surefoot/eval/report/html_report.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/sim/scenes/expression.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
 
 namespace surefoot::app {
 namespace {

@@ -13,8 +13,8 @@
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/scan.hpp"
 #include "apps/surefoot/stray_points.hpp"
-#include "eval/cloud_outliers.hpp"
-#include "eval/voxels.hpp"
+#include "surefoot/eval/clouds/cloud_outliers.hpp"
+#include "surefoot/eval/clouds/voxels.hpp"
 #include "surefoot/grid/whole_cells.hpp"
 
 namespace surefoot::app {

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/laser_scanner.hpp"
-#include "sim/scenes.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
+#include "surefoot/sim/sensors/laser_scanner.hpp"
 
 namespace surefoot::app {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "sim/scene_file.hpp"
 #include "surefoot/core/executor.hpp"
+#include "surefoot/sim/scenes/scene_file.hpp"
 
 namespace surefoot::app {
 namespace {

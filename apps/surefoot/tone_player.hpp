@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/rex_link/rex_link.hpp"
+#include "service/rex_link/rex_link.hpp"
 #include "surefoot/core/result.hpp"
 
 namespace surefoot::app {

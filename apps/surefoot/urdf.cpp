@@ -5,8 +5,8 @@
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/verbs.hpp"
-#include "io/file.hpp"
-#include "io/urdf_file.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/settings/urdf_file.hpp"
 
 namespace surefoot::app {
 

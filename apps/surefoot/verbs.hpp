@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/feature_errors.hpp"
+#include "surefoot/eval/stairs/feature_errors.hpp"
 
 namespace surefoot::app {
 

@@ -9,10 +9,10 @@
 #include <map>
 #include <vector>
 
-#include "eval/voxels.hpp"
-#include "io/cloud_stream.hpp"
-#include "io/cloud_writer.hpp"
-#include "io/file.hpp"
+#include "surefoot/eval/clouds/voxels.hpp"
+#include "surefoot/io/clouds/cloud_stream.hpp"
+#include "surefoot/io/clouds/cloud_writer.hpp"
+#include "surefoot/io/file.hpp"
 
 namespace surefoot::app {
 namespace {

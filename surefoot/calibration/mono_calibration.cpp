@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/calibration/bundle_start.hpp"
-#include "surefoot/calibration/lens_advice.hpp"
-#include "surefoot/calibration/mono_bundle.hpp"
-#include "surefoot/calibration/view_scatter.hpp"
+#include "surefoot/calibration/bundle/bundle_start.hpp"
+#include "surefoot/calibration/bundle/mono_bundle.hpp"
+#include "surefoot/calibration/bundle/view_scatter.hpp"
+#include "surefoot/calibration/lenses/lens_advice.hpp"
 
 namespace surefoot::calibration {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/calibration/board.hpp"
-#include "surefoot/calibration/eye_fit.hpp"
-#include "surefoot/calibration/lens.hpp"
-#include "surefoot/calibration/robust_bundle.hpp"
-#include "surefoot/calibration/view_selection.hpp"
+#include "surefoot/calibration/boards/board.hpp"
+#include "surefoot/calibration/bundle/eye_fit.hpp"
+#include "surefoot/calibration/bundle/robust_bundle.hpp"
+#include "surefoot/calibration/bundle/view_selection.hpp"
+#include "surefoot/calibration/lenses/lens.hpp"
 #include "surefoot/camera/camera_model.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/result.hpp"

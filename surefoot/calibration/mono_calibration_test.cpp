@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "surefoot/calibration/lens_mapping.hpp"
-#include "surefoot/calibration/synthetic_views_for_test.hpp"
+#include "surefoot/calibration/lenses/lens_mapping.hpp"
+#include "surefoot/calibration/synthetic_views_testing.hpp"
 
 namespace surefoot::calibration {
 namespace {

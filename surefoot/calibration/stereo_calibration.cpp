@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/calibration/rectified_errors.hpp"
-#include "surefoot/calibration/relative_pose.hpp"
-#include "surefoot/calibration/view_scatter.hpp"
+#include "surefoot/calibration/bundle/relative_pose.hpp"
+#include "surefoot/calibration/bundle/view_scatter.hpp"
+#include "surefoot/calibration/lenses/rectified_errors.hpp"
 #include "surefoot/camera/rectifier.hpp"
 
 namespace surefoot::calibration {

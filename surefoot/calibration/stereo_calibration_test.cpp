@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "surefoot/calibration/rectified_errors.hpp"
-#include "surefoot/calibration/synthetic_views_for_test.hpp"
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/calibration/lenses/rectified_errors.hpp"
+#include "surefoot/calibration/synthetic_views_testing.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 
 namespace surefoot::calibration {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::camera {

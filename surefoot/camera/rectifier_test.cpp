@@ -14,7 +14,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::camera {

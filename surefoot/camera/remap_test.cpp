@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "surefoot/camera/simd_targets_for_test.hpp"
+#include "surefoot/camera/simd_targets_testing.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::camera {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "surefoot/camera/simd_targets_for_test.hpp"
+#include "surefoot/camera/simd_targets_testing.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::camera {

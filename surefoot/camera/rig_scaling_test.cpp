@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 
 namespace surefoot::camera {
 namespace {

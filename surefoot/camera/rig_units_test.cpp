@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "surefoot/camera/rigs_testing.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
-#include "surefoot/camera/test_rigs.hpp"
 
 namespace surefoot::camera {
 namespace {

@@ -5,11 +5,11 @@
 #include <cstdint>
 
 #include "surefoot/core/report.hpp"
-#include "surefoot/elevation/cell_reduction.hpp"
 #include "surefoot/elevation/elevation_config.hpp"
 #include "surefoot/elevation/elevation_layers.hpp"
-#include "surefoot/elevation/height_residuals.hpp"
-#include "surefoot/elevation/viewpoint_history.hpp"
+#include "surefoot/elevation/fusion/cell_reduction.hpp"
+#include "surefoot/elevation/fusion/height_residuals.hpp"
+#include "surefoot/elevation/visibility/viewpoint_history.hpp"
 #include "surefoot/grid/map_region.hpp"
 
 namespace surefoot::elevation {

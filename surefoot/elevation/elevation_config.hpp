@@ -4,14 +4,14 @@
 #include <optional>
 #include <string>
 
-#include "surefoot/elevation/cell_reduction.hpp"
-#include "surefoot/elevation/height_drift.hpp"
-#include "surefoot/elevation/height_fusion.hpp"
-#include "surefoot/elevation/pixel_filter.hpp"
-#include "surefoot/elevation/prefilter.hpp"
-#include "surefoot/elevation/sensor_variance.hpp"
-#include "surefoot/elevation/viewpoint_history.hpp"
-#include "surefoot/elevation/visibility.hpp"
+#include "surefoot/elevation/fusion/cell_reduction.hpp"
+#include "surefoot/elevation/fusion/height_drift.hpp"
+#include "surefoot/elevation/fusion/height_fusion.hpp"
+#include "surefoot/elevation/fusion/sensor_variance.hpp"
+#include "surefoot/elevation/sampling/pixel_filter.hpp"
+#include "surefoot/elevation/sampling/prefilter.hpp"
+#include "surefoot/elevation/visibility/viewpoint_history.hpp"
+#include "surefoot/elevation/visibility/visibility.hpp"
 
 namespace surefoot::elevation {
 

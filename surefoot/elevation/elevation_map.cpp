@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "surefoot/elevation/depth_points.hpp"
-#include "surefoot/elevation/map_region.hpp"
-#include "surefoot/elevation/reduce_cells.hpp"
+#include "surefoot/elevation/fusion/reduce_cells.hpp"
+#include "surefoot/elevation/region/map_region.hpp"
 #include "surefoot/elevation/row_blocks.hpp"
+#include "surefoot/elevation/sampling/depth_points.hpp"
 
 namespace surefoot::elevation {
 namespace {

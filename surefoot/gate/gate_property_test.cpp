@@ -10,7 +10,7 @@
 #include <cstring>
 #include <set>
 
-#include "surefoot/core/allocations_for_test.hpp"
+#include "surefoot/core/allocations_testing.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/gate/gate_testing.hpp"

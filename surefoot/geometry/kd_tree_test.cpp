@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-#include "surefoot/core/executors_for_test.hpp"
+#include "surefoot/core/executors_testing.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/geometry/spatial_order.hpp"
 #include "surefoot/geometry/surface_normal.hpp"

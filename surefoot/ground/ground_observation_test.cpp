@@ -11,7 +11,7 @@
 
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/rng.hpp"
-#include "surefoot/ground/frames_for_test.hpp"
+#include "surefoot/ground/frames_testing.hpp"
 #include "surefoot/ground/ground_calibration.hpp"
 
 namespace surefoot::ground {

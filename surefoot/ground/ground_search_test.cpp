@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/ground/views_for_test.hpp"
+#include "surefoot/ground/views_testing.hpp"
 
 namespace surefoot::ground {
 namespace {

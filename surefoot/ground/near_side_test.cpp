@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "surefoot/ground/frames_for_test.hpp"
+#include "surefoot/ground/frames_testing.hpp"
 #include "surefoot/ground/settle_plane.hpp"
 
 namespace surefoot::ground {

@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "surefoot/odometry/recordings_for_test.hpp"
+#include "surefoot/odometry/recordings_testing.hpp"
 
 namespace surefoot::odometry::testing {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "surefoot/core/frame.hpp"
-#include "surefoot/odometry/inertial_tracker.hpp"
+#include "surefoot/odometry/inertial/inertial_tracker.hpp"
 
 namespace surefoot::odometry {
 

@@ -8,13 +8,13 @@
 
 #include "surefoot/camera/frame_watch.hpp"
 #include "surefoot/core/time.hpp"
-#include "surefoot/odometry/front_end.hpp"
 #include "surefoot/odometry/health.hpp"
-#include "surefoot/odometry/inertial_tracker.hpp"
+#include "surefoot/odometry/inertial/inertial_tracker.hpp"
 #include "surefoot/odometry/machine_tracker.hpp"
-#include "surefoot/odometry/measured_noise.hpp"
-#include "surefoot/odometry/point_front_end.hpp"
 #include "surefoot/odometry/still_detector.hpp"
+#include "surefoot/odometry/visual/front_end.hpp"
+#include "surefoot/odometry/visual/measured_noise.hpp"
+#include "surefoot/odometry/visual/point_front_end.hpp"
 
 namespace surefoot::odometry {
 namespace {

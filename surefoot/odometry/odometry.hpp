@@ -8,8 +8,8 @@
 #include "surefoot/core/config.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/frame.hpp"
-#include "surefoot/odometry/inertial_config.hpp"
-#include "surefoot/odometry/point_frame.hpp"
+#include "surefoot/odometry/inertial/inertial_config.hpp"
+#include "surefoot/odometry/visual/point_frame.hpp"
 
 namespace surefoot::odometry {
 

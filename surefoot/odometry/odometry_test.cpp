@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "surefoot/core/time.hpp"
-#include "surefoot/odometry/synthetic_for_test.hpp"
+#include "surefoot/odometry/synthetic_testing.hpp"
 
 namespace surefoot::odometry {
 namespace {

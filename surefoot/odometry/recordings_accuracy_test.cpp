@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "surefoot/odometry/odometry.hpp"
-#include "surefoot/odometry/recordings_for_test.hpp"
+#include "surefoot/odometry/recordings_testing.hpp"
 
 namespace surefoot::odometry {
 namespace {

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "surefoot/core/time.hpp"
-#include "surefoot/odometry/recordings_for_test.hpp"
+#include "surefoot/odometry/recordings_testing.hpp"
 
 namespace surefoot::odometry::testing {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/odometry/tracks.hpp"
+#include "surefoot/odometry/visual/tracks.hpp"
 
 namespace surefoot::odometry {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 

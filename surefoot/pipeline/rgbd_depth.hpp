@@ -3,7 +3,7 @@
 
 #include "surefoot/camera/depth_image.hpp"
 #include "surefoot/camera/rectifier.hpp"
-#include "surefoot/elevation/sensor_variance.hpp"
+#include "surefoot/elevation/fusion/sensor_variance.hpp"
 
 namespace surefoot::pipeline {
 

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "surefoot/camera/test_rigs.hpp"
+#include "surefoot/camera/rigs_testing.hpp"
 #include "surefoot/core/rng.hpp"
 
 namespace surefoot::pipeline {

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/core/allocations_for_test.hpp"
+#include "surefoot/core/allocations_testing.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
-#include "surefoot/elevation/height_bounds.hpp"
-#include "surefoot/stairs/feature_follower.hpp"
+#include "surefoot/elevation/fusion/height_bounds.hpp"
+#include "surefoot/stairs/tracking/feature_follower.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/traversability.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "surefoot/specular/fake_floor_for_test.hpp"
+#include "surefoot/specular/fake_floor_testing.hpp"
 
 namespace surefoot::specular {
 namespace {

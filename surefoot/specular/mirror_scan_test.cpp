@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/specular/fake_floor_for_test.hpp"
+#include "surefoot/specular/fake_floor_testing.hpp"
 #include "surefoot/specular/suspicion.hpp"
 
 namespace surefoot::specular {

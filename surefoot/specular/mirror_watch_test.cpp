@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/core/allocations_for_test.hpp"
-#include "surefoot/specular/fake_floor_for_test.hpp"
+#include "surefoot/core/allocations_testing.hpp"
+#include "surefoot/specular/fake_floor_testing.hpp"
 
 namespace surefoot::specular {
 namespace {

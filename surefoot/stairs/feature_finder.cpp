@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "surefoot/stairs/edge_relations.hpp"
+#include "surefoot/stairs/edges/edge_relations.hpp"
 
 namespace surefoot::stairs {
 namespace {

@@ -4,18 +4,18 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/stairs/doors.hpp"
-#include "surefoot/stairs/edge_lines.hpp"
-#include "surefoot/stairs/edge_points.hpp"
-#include "surefoot/stairs/edge_profile.hpp"
+#include "surefoot/stairs/doors/doors.hpp"
+#include "surefoot/stairs/edges/edge_lines.hpp"
+#include "surefoot/stairs/edges/edge_points.hpp"
+#include "surefoot/stairs/edges/edge_profile.hpp"
+#include "surefoot/stairs/edges/step_evidence.hpp"
 #include "surefoot/stairs/features.hpp"
-#include "surefoot/stairs/flight_sides.hpp"
-#include "surefoot/stairs/flights.hpp"
-#include "surefoot/stairs/sight_faces.hpp"
-#include "surefoot/stairs/sight_steps.hpp"
+#include "surefoot/stairs/flights/flight_sides.hpp"
+#include "surefoot/stairs/flights/flights.hpp"
+#include "surefoot/stairs/flights/sight_faces.hpp"
+#include "surefoot/stairs/flights/sight_steps.hpp"
+#include "surefoot/stairs/flights/step_fit.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
-#include "surefoot/stairs/step_evidence.hpp"
-#include "surefoot/stairs/step_fit.hpp"
 #include "surefoot/stairs/terrain.hpp"
 #include "surefoot/traversability/reachability.hpp"
 

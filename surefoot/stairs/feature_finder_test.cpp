@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/stairs/terrain_for_test.hpp"
+#include "surefoot/stairs/terrain_testing.hpp"
 
 namespace surefoot::stairs {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "surefoot/core/config.hpp"
-#include "surefoot/stairs/class_config.hpp"
-#include "surefoot/stairs/doors.hpp"
-#include "surefoot/stairs/follow_config.hpp"
-#include "surefoot/stairs/planar_patches.hpp"
+#include "surefoot/stairs/classes/class_config.hpp"
+#include "surefoot/stairs/classes/planar_patches.hpp"
+#include "surefoot/stairs/doors/doors.hpp"
+#include "surefoot/stairs/tracking/follow_config.hpp"
 
 namespace surefoot::stairs {
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/core/executors_for_test.hpp"
+#include "surefoot/core/executors_testing.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/stereo/matcher.hpp"
-#include "surefoot/stereo/test_scene.hpp"
+#include "surefoot/stereo/scene_testing.hpp"
 
 namespace surefoot::stereo {
 namespace {

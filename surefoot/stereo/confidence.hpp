@@ -22,7 +22,7 @@ struct MatchEvidence {
 ///   sigma^2 = floor^2 + (gain residual / gradient)^2 + (share shift)^2 + (jump nearness)^2
 ///             + (hole unknown_share)^2, at most kMaxSigma_px.
 /// Fitted to Middlebury cones and cloth3 and to four scenes seen by the simulated ZED at one and
-/// two times its noise (experiments/sigma_fit.cpp: likelihood of Student's t, and of every image 68
+/// two times its noise (lab/sigma_fit/main.cpp: likelihood of Student's t, and of every image 68
 /// and 95 % within one and two sigma; the share of the shift was held), then all coefficients times
 /// 1.02, so that 68 % lie within one sigma on average; rounded. Other pairs and scenes, and what
 /// was held out: docs/experiments/matching.md. Images of an ideal camera scatter two to three times

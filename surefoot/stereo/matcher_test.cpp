@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "surefoot/core/executors_for_test.hpp"
+#include "surefoot/core/executors_testing.hpp"
 #include "surefoot/stereo/confidence.hpp"
-#include "surefoot/stereo/test_scene.hpp"
+#include "surefoot/stereo/scene_testing.hpp"
 
 namespace surefoot::stereo {
 namespace {

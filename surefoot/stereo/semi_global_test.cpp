@@ -8,10 +8,10 @@
 #include <thread>
 #include <vector>
 
-#include "surefoot/core/executors_for_test.hpp"
+#include "surefoot/core/executors_testing.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/stereo/census_window.hpp"
-#include "surefoot/stereo/test_targets.hpp"
+#include "surefoot/stereo/stereo_targets_testing.hpp"
 
 namespace surefoot::stereo {
 namespace {

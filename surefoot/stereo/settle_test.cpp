@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/rng.hpp"
-#include "surefoot/stereo/test_targets.hpp"
+#include "surefoot/stereo/stereo_targets_testing.hpp"
 
 namespace surefoot::stereo {
 namespace {

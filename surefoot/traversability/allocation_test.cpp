@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "surefoot/core/allocations_for_test.hpp"
+#include "surefoot/core/allocations_testing.hpp"
 #include "surefoot/traversability/foothold.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"

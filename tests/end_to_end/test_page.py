@@ -1,4 +1,4 @@
-"""`surefoot serve` as a browser meets it: files, the WebSocket at /page, its messages (server/page/messages.json)."""
+"""`surefoot serve` as a browser meets it: files, the WebSocket at /page, its messages (service/page/messages.json)."""
 import gzip
 import http.client
 import json

@@ -1,4 +1,4 @@
-"""What the engineer's view is told and may do: stairs with their measures, settings, recordings (server/page/messages.json)."""
+"""What the engineer's view is told and may do: stairs with their measures, settings, recordings (service/page/messages.json)."""
 import json
 import pathlib
 import signal

@@ -24,7 +24,7 @@ after(async () => {
   assert.equal(code, 0);
 });
 
-/// server/wire/wire_testing.hpp has these tokens.
+/// service/gate_process/wire_testing.hpp has these tokens.
 const tokenOf = (role) => `${role}-token-of-tests`;
 
 /// An open connection of roslib, as a guest or with the token of a role.

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <thread>
 
-#include "server/wire/websocket_server.hpp"
-#include "server/wire/wire_testing.hpp"
+#include "service/gate_process/sockets/websocket_server.hpp"
+#include "service/gate_process/wire_testing.hpp"
 
 int main() {
     using namespace surefoot::wire;

@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "sim/scenes.hpp"
-#include "sim/truth.hpp"
 #include "surefoot/core/rng.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
+#include "surefoot/stairs/classes/ground_classes.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
-#include "surefoot/stairs/ground_classes.hpp"
 #include "tests/terrain/scene_eyes.hpp"
 
 namespace surefoot::terrain {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/truth.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
 #include "tests/terrain/scene_eyes.hpp"
 
 namespace surefoot::terrain {

@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/analytic_stereo.hpp"
-#include "sim/rigs.hpp"
-#include "sim/scenes.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
+#include "surefoot/sim/sensors/analytic_stereo.hpp"
+#include "surefoot/sim/sensors/rigs.hpp"
 
 namespace surefoot::terrain {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "sim/scene_source.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
+#include "surefoot/sim/scene_source.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"
 
 namespace surefoot::terrain {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { LayerMessage } from "./messages.ts";
 
-/// Cividis (Nunez et al. 2018), the same anchors as eval/colormap.cpp: colours linear in sRGB between them.
+/// Cividis (Nunez et al. 2018), the same anchors as surefoot/eval/report/colormap.cpp: colours linear in sRGB between them.
 const kCividis: readonly (readonly [number, number, number])[] = [
   [0, 34, 78],
   [0, 46, 106],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the service says, as server/page/messages.json writes it down. The tables below are compared with
+/// What the service says, as service/page/messages.json writes it down. The tables below are compared with
 /// that file by a test. Nothing here knows a socket, a clock or a picture.
 
 export const kProtocol = 1;

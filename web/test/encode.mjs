@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes messages after server/page/messages.json, for the tests and for the fake service.
+// Writes messages after service/page/messages.json, for the tests and for the fake service.
 import { readFileSync } from "node:fs";
 
 export const contract = JSON.parse(
-  readFileSync(new URL("../../server/page/messages.json", import.meta.url), "utf8"),
+  readFileSync(new URL("../../service/page/messages.json", import.meta.url), "utf8"),
 );
 const { binary } = contract;
 

@@ -8,7 +8,7 @@ import * as messages from "../build/unit/messages.js";
 import { arrayBuffer, contract, encodeMap, encodePose } from "./encode.mjs";
 
 const vectors = JSON.parse(
-  readFileSync(new URL("../../server/page/message_vectors.json", import.meta.url), "utf8"),
+  readFileSync(new URL("../../service/page/message_vectors.json", import.meta.url), "utf8"),
 );
 
 const bytesOf = (hex) => arrayBuffer(Buffer.from(hex, "hex"));

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the body for machines/rex.yaml, from the simulated gait.
+// Usage: body_parts [FIRST_SEED [SEEDS]]     prints the lines of `body.parts`
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "surefoot/sim/motion/body_trace.hpp"
+
+int main(int argc, char** argv) {
+    using namespace surefoot::sim;
+    const std::uint64_t seed = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 21;
+    const int seeds = argc > 2 ? std::atoi(argv[2]) : 8;
+    const auto parts = trace_body(rex_movements({}), {}, seed, seeds);
+    if (!parts) {
+        fmt::print(stderr, "body_parts: {}\n", parts.error().message);
+        return 1;
+    }
+    // Outward to whole centimetres: the gait is an assumption anyhow.
+    const auto down = [](double x_m) { return 0.01 * std::floor(100.0 * x_m); };
+    const auto up = [](double x_m) { return 0.01 * std::ceil(100.0 * x_m); };
+    for (const TracedPart& part : *parts) {
+        const double x0 = down(part.box.min_m.x());
+        const double x1 = up(part.box.max_m.x());
+        const double y0 = down(part.box.min_m.y());
+        const double y1 = up(part.box.max_m.y());
+        fmt::print(
+            "    - {{name: {}, center_x_m: {:.3f}, center_y_m: {:.3f}, length_m: {:.2f}, width_m: "
+            "{:.2f}, low_m: {:.2f}, high_m: {:.2f}}}\n",
+            part.name,
+            0.5 * (x0 + x1),
+            0.5 * (y0 + y1),
+            x1 - x0,
+            y1 - y0,
+            down(part.low_m),
+            up(part.high_m));
+    }
+    return 0;
+}

@@ -1,0 +1,643 @@
+// SPDX-License-Identifier: Apache-2.0
+// Does the gate miss hazards, and what does it stop that is safe?
+// Usage: gate_scenes TIER SCRATCH FIRST_SEED SCENES [KINDS [FROM]]
+//   gate_scenes maps out/scenes 73001 30000
+// TIER: maps    true heights with the errors that maps of whole runs have (map_noise), as clean as
+//               they are, at the measured noise and at twice that; and as wrong as measured but
+//               stating the least sigma everywhere
+//       depth   the map of a run with analytic depth and true poses
+//       images  the map of a run of the whole chain with images of the fitted ZED
+//       curve   maps again, with the noise and single limits of the gate scaled
+//       drift   maps again; the machine stands beside where it believes, by as much as the map says
+// gate_scenes again SCRATCH KIND SCENE_SEED: one hazard of `maps` again, by the seed in its line;
+// what the gate says, and again.csv with the cells of each map.
+//
+// SCENES hazards and as many safe scenes (maps: a tenth, runs: a fifth) of each kind (KINDS: names
+// with commas between), from the number FROM on. Each has one movement that the oracle (sim::judge)
+// calls clearly dangerous or clearly safe; scenes that are neither are drawn again. Every hundredth
+// scene (of runs: every one) is asked all 26 movements too.
+//
+// Results are files of SCRATCH/TIER: one a chunk of scenes, made whole or not at all, so that the
+// same call goes on where it was stopped.
+//   KIND_SEED_FROM.csv  kind,variant,what,count
+//     what: hazards, missed (dangerous and OK), hazards_unknown (refused for want of knowledge
+//     alone), safe, refused, safe_unknown (likewise), thesis_missed, thesis_refused, all_...: the
+//     same of all movements; reason:NAME and proof:NAME (not held) of refused safe ones, alone:NAME
+//     of a reason without others; beside:NAME the reasons of refused safe movements in scenes with
+//     a hazard; danger:NAME the first danger of each hazard; drawn (scenes, with those drawn again)
+//   KIND_SEED_FROM.misses.csv  each hazard that was allowed: how to make the scene again, the
+//     movement, what the oracle says
+//   KIND_SEED_FROM.refused.txt  of runs: what the gate says of each safe movement that it refused
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/offline_map.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
+#include "apps/surefoot/thesis_policy_steps.hpp"
+#include "lab/scenes/hazard_scene.hpp"
+#include "lab/scenes/map_noise.hpp"
+#include "lab/scenes/scene_chain.hpp"
+#include "lab/scenes/scene_sight.hpp"
+#include "surefoot/camera/rectifier.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/gate/verdict_text.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/text.hpp"
+#include "surefoot/sim/safety_oracle/safety_oracle.hpp"
+#include "surefoot/sim/sensors/rigs.hpp"
+#include "surefoot/traversability/traversability.hpp"
+
+namespace surefoot::experiments {
+namespace {
+
+constexpr int kMostDraws = 40;
+constexpr int kAllEvery = 100;
+constexpr int kSafeEvery = 10;       ///< on maps
+constexpr int kSafeEveryOfRuns = 5;  ///< which last seconds
+
+/// A gate to be asked, and the errors of the map that it is asked about.
+struct Variant {
+    std::string name;
+    Machine machine;
+    int map = 0;  ///< those with the same number are asked about the same map
+    std::optional<MapNoise> noise = std::nullopt;  ///< none: a clean map
+    double shift_m = 0.0;  ///< 1 sigma, both axes: the machine stands beside where it believes
+};
+
+/// A scene whose movement is clearly dangerous, or clearly safe.
+struct Question {
+    HazardScene scene;
+    sim::SafetyAnswer truth;
+    int draws = 0;
+    std::uint64_t scene_seed = 0;
+};
+
+bool can_stand(const sim::SafetyAnswer& truth) {
+    return !truth.has(sim::Danger::no_stance) && !truth.has(sim::Danger::not_level_here);
+}
+
+/// Scene number `index` of a campaign; draws are 0 and the scene is not to be used when none of
+/// many came out clear.
+Question draw(Hazard kind,
+              bool relief_only,
+              std::uint64_t seed,
+              std::uint64_t index,
+              const Machine& machine,
+              Placing placing) {
+    Question question;
+    for (int k = 0; k < kMostDraws; ++k) {
+        const auto stream =
+            static_cast<std::uint64_t>(kind) * kMostDraws + static_cast<std::uint64_t>(k);
+        question.scene_seed = mix_seed(mix_seed(seed, index), stream) >> 16U;
+        question.scene =
+            make_hazard_scene(kind, relief_only, question.scene_seed, machine, placing);
+        question.truth = sim::judge(
+            question.scene.scene(), machine, question.scene.T_world_body, question.scene.command);
+        if (!question.truth.clear_cut || !can_stand(question.truth) ||
+            question.truth.safe != relief_only)
+            continue;
+        question.draws = k + 1;
+        break;
+    }
+    return question;
+}
+
+class Tally {
+  public:
+    void add(const std::string& variant, const std::string& what, int count = 1) {
+        counts_[{variant, what}] += count;
+    }
+    [[nodiscard]] std::string csv(Hazard kind) const {
+        std::string text = "kind,variant,what,count\n";
+        for (const auto& [key, count] : counts_)
+            text += fmt::format("{},{},{},{}\n",
+                                kHazardNames[static_cast<int>(kind)],
+                                key.first,
+                                key.second,
+                                count);
+        return text;
+    }
+    std::string misses =
+        "kind,thing,relief_only,seed,variant,command,relief_mm,x_m,y_m,yaw_rad,edge_x_m,edge_y_m,"
+        "normal_x,normal_y,"
+        "danger,value_m,limit_m,danger_x_m,danger_y_m,sentence\n";
+    std::string refused;
+
+  private:
+    std::map<std::pair<std::string, std::string>, int> counts_;
+};
+
+/// Where the machine believes to stand on a map.
+gate::Query query_of(int command, const Pose& T_odom_body) {
+    const double yaw = yaw_rad(T_odom_body);
+    return gate::make_query(static_cast<std::uint8_t>(command),
+                            T_odom_body.translation_m.x(),
+                            T_odom_body.translation_m.y(),
+                            std::cos(yaw),
+                            std::sin(yaw));
+}
+
+gate::Verdict ask(const Machine& machine,
+                  const grid::MapSnapshot& map,
+                  const Pose& T_odom_body,
+                  int command) {
+    gate::Query query = query_of(command, T_odom_body);
+    std::vector<std::string> assumed;
+    if (const auto area = app::vouch_for_start(machine, query, map, -1.0, assumed))
+        query.vouched = *area;
+    return app::decide_offline(machine, query, map);
+}
+
+bool only_unknown(const gate::Verdict& verdict) {
+    gate::ReasonSet unknown(gate::Reason::unknown_cells);
+    unknown.add(gate::Reason::outside_map);
+    return (verdict.reasons.bits() & ~unknown.bits()) == 0;
+}
+
+std::string missed_line(const Question& question,
+                        const std::string& variant,
+                        int command,
+                        const Pose& T_odom_body,
+                        const sim::SafetyAnswer& truth) {
+    const HazardScene& s = question.scene;
+    const sim::Finding& f = truth.dangers.front();
+    return fmt::format(
+        "{},{},{},{},{},{},{:.1f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{:.4f},{:.4f}"
+        ",{:.4f},{:.4f},\"{}\"\n",
+        kHazardNames[static_cast<int>(s.asked)],
+        kHazardNames[static_cast<int>(s.thing)],
+        s.relief_only ? 1 : 0,
+        question.scene_seed,
+        variant,
+        command,
+        1e3 * s.relief_m,
+        T_odom_body.translation_m.x(),
+        T_odom_body.translation_m.y(),
+        yaw_rad(T_odom_body),
+        s.edge_m.x(),
+        s.edge_m.y(),
+        s.normal.x(),
+        s.normal.y(),
+        sim::to_string(f.danger),
+        f.value,
+        f.limit,
+        f.where_m.x(),
+        f.where_m.y(),
+        truth.sentence());
+}
+
+void count_refusal(const gate::Verdict& verdict, const std::string& variant, Tally& tally) {
+    int reasons = 0;
+    std::string name;
+    for (int i = 0; i < gate::kReasonCount; ++i) {
+        const auto reason = static_cast<gate::Reason>(i);
+        if (!verdict.reasons.contains(reason)) continue;
+        name = gate::to_string(reason);
+        tally.add(variant, "reason:" + name);
+        ++reasons;
+    }
+    if (reasons == 1) tally.add(variant, "alone:" + name);
+    for (int i = 0; i < static_cast<int>(gate::Proof::count); ++i) {
+        const auto proof = static_cast<gate::Proof>(i);
+        if (verdict.evidence.lacks(proof))
+            tally.add(variant, fmt::format("proof:{}", gate::to_string(proof)));
+    }
+}
+
+/// A safe movement in a scene with a hazard.
+void count_beside(const gate::Verdict& verdict, const std::string& variant, Tally& tally) {
+    tally.add(variant, "beside_safe");
+    if (verdict.decision == gate::Decision::ok) return;
+    tally.add(variant, "beside_refused");
+    tally.add(variant, fmt::format("beside:{}", gate::to_string(verdict.primary)));
+}
+
+/// One verdict beside the truth. `prefix`: "" for the scene's own movement, "all_" for the rest.
+void count_verdict(const gate::Verdict& verdict,
+                   bool truly_safe,
+                   const std::string& variant,
+                   const std::string& prefix,
+                   Tally& tally) {
+    const bool ok = verdict.decision == gate::Decision::ok;
+    tally.add(variant, prefix + (truly_safe ? "safe" : "hazards"));
+    if (!ok && only_unknown(verdict))
+        tally.add(variant, prefix + (truly_safe ? "safe_unknown" : "hazards_unknown"));
+    if (truly_safe && !ok) tally.add(variant, prefix + "refused");
+    if (!truly_safe && ok) tally.add(variant, prefix + "missed");
+    if (truly_safe && !ok && prefix.empty()) count_refusal(verdict, variant, tally);
+}
+
+/// A map with everything that is asked of it.
+struct AskedMap {
+    const grid::MapSnapshot& snapshot;
+    grid::GridGeometry geometry;
+    ImageView<const float> rating;
+    Pose T_odom_body;
+};
+
+void ask_own(const Question& question, const AskedMap& map, const Variant& variant, Tally& tally) {
+    const int command = question.scene.command;
+    const gate::Verdict verdict = ask(variant.machine, map.snapshot, map.T_odom_body, command);
+    count_verdict(verdict, question.truth.safe, variant.name, "", tally);
+    if (!question.truth.safe) {
+        tally.add(variant.name,
+                  fmt::format("danger:{}", sim::to_string(question.truth.dangers.front().danger)));
+        if (verdict.decision == gate::Decision::ok)
+            tally.misses +=
+                missed_line(question, variant.name, command, map.T_odom_body, question.truth);
+    }
+    if (question.truth.safe && verdict.decision != gate::Decision::ok)
+        tally.refused += fmt::format(
+            "{}: {}\n",
+            question.scene_seed,
+            gate::text_of(verdict, query_of(command, map.T_odom_body), variant.machine));
+    const bool thesis =
+        app::thesis_allows(variant.machine, map.geometry, map.rating, map.T_odom_body, command);
+    if (thesis != question.truth.safe)
+        tally.add(variant.name, question.truth.safe ? "thesis_refused" : "thesis_missed");
+}
+
+/// The truths of all movements from where the machine stands, made once a scene.
+std::vector<sim::SafetyAnswer> all_truths(const sim::Scene& scene,
+                                          const Machine& machine,
+                                          const Pose& T_world_body) {
+    std::vector<sim::SafetyAnswer> truths;
+    for (int command = 1; command < Machine::kMovementCodes; ++command)
+        truths.push_back(sim::judge(scene, machine, T_world_body, command));
+    return truths;
+}
+
+void ask_all(const Question& question,
+             const std::vector<sim::SafetyAnswer>& truths,
+             const AskedMap& map,
+             const Variant& variant,
+             Tally& tally) {
+    for (int command = 1; command < Machine::kMovementCodes; ++command) {
+        const sim::SafetyAnswer& truth = truths[static_cast<std::size_t>(command - 1)];
+        if (!truth.clear_cut || !can_stand(truth)) continue;
+        const gate::Verdict verdict = ask(variant.machine, map.snapshot, map.T_odom_body, command);
+        count_verdict(verdict, truth.safe, variant.name, "all_", tally);
+        if (truth.safe && !question.scene.relief_only) count_beside(verdict, variant.name, tally);
+        if (!truth.safe && verdict.decision == gate::Decision::ok)
+            tally.misses +=
+                missed_line(question, variant.name + "/all", command, map.T_odom_body, truth);
+    }
+}
+
+MapNoise overconfident(MapNoise noise) {
+    noise.overconfident = true;
+    noise.outlier_share = 1e-4;
+    noise.outlier_most_m = 0.060;
+    return noise;
+}
+
+/// The maps of a campaign.
+std::vector<Variant> map_variants(const Machine& machine) {
+    return {{"noise 0", machine, 0},
+            {"noise 1", machine, 1, MapNoise()},
+            {"noise 2", machine, 2, doubled_image_noise()},
+            {"overconfident", machine, 3, overconfident(MapNoise())}};
+}
+
+MadeMap map_of(const HazardScene& scene, const SceneCells& cells, const Variant& variant) {
+    if (!variant.noise) return clean_map(cells);
+    Rng rng(mix_seed(scene.seed, 1));
+    return noisy_map(cells, *variant.noise, scene.way_m == 0.0, rng);
+}
+
+Pose believed_pose(const Question& question, double shift_m) {
+    Pose pose = question.scene.T_world_body;
+    Rng rng(mix_seed(question.scene_seed, 2));
+    pose.translation_m.head<2>() += shift_m * Eigen::Vector2d(rng.normal(), rng.normal());
+    return pose;
+}
+
+/// Drifts that the gate's limit for a cell (25 mm) lets pass, stated as they are.
+std::vector<Variant> drift_variants(const Machine& machine) {
+    std::vector<Variant> all;
+    int map = 0;
+    for (const double shift_mm : {0.0, 2.5, 5.0, 10.0, 17.0, 25.0}) {
+        for (const bool sure : {false, true}) {
+            MapNoise noise;
+            noise.drift_m = std::max(noise.drift_m, 1e-3 * shift_mm - 1e-6);
+            all.push_back({fmt::format("{} {}", sure ? "overconfident drift" : "drift", shift_mm),
+                           machine,
+                           map++,
+                           sure ? overconfident(noise) : noise,
+                           1e-3 * shift_mm});
+        }
+    }
+    return all;
+}
+
+/// Asks about the scenes of one tier.
+class Campaign {
+  public:
+    Campaign(std::string tier,
+             std::string folder,
+             const Machine& machine,
+             std::vector<Variant> variants)
+        : tier_(std::move(tier)),
+          folder_(std::move(folder)),
+          machine_(machine),
+          variants_(std::move(variants)),
+          rig_(camera::Rectifier::make(*sim::rig_preset("zed_vga")).value().rig()),
+          rater_(*traversability::preset("rex_zed")) {}
+
+    /// The scenes of one chunk, hazards and safe ones.
+    [[nodiscard]] Status run_chunk(Hazard kind,
+                                   std::uint64_t seed,
+                                   std::uint64_t from,
+                                   std::uint64_t count) {
+        const std::string stem =
+            fmt::format("{}/{}_{}_{}", folder_, kHazardNames[static_cast<int>(kind)], seed, from);
+        if (io::is_file(stem + ".csv")) return {};
+        Tally tally;
+        for (std::uint64_t index = from; index < from + count; ++index) {
+            for (const bool relief_only : {false, true}) {
+                if (relief_only && index % safe_every() != 0) continue;
+                Status done = tier_ == "maps" || tier_ == "curve" || tier_ == "drift"
+                                  ? ask_on_map(kind, relief_only, seed, index, tally)
+                                  : ask_after_run(kind, relief_only, seed, index, tally);
+                if (!done) return done;
+            }
+        }
+        if (auto written = io::write_file(stem + ".misses.csv", tally.misses); !written)
+            return written;
+        const bool is_run = tier_ == "depth" || tier_ == "images";
+        if (is_run && !tally.refused.empty()) {
+            if (auto written = io::write_file(stem + ".refused.txt", tally.refused); !written)
+                return written;
+        }
+        if (auto written = io::write_file(stem + ".part", tally.csv(kind)); !written)
+            return written;
+        std::filesystem::rename(stem + ".part", stem + ".csv");
+        return {};
+    }
+
+  private:
+    [[nodiscard]] std::uint64_t safe_every() const {
+        if (tier_ == "maps") return kSafeEvery;
+        return tier_ == "depth" || tier_ == "images" ? kSafeEveryOfRuns : 1;
+    }
+    [[nodiscard]] Status ask_on_map(
+        Hazard kind, bool relief_only, std::uint64_t seed, std::uint64_t index, Tally& tally) {
+        const Question question = draw(kind, relief_only, seed, index, machine_, Placing::anywhere);
+        tally.add("scenes",
+                  relief_only ? "drawn_safe" : "drawn_hazards",
+                  question.draws > 0 ? question.draws : kMostDraws);
+        if (question.draws == 0) {
+            tally.add("scenes", relief_only ? "never_clear_safe" : "never_clear_hazards");
+            return {};
+        }
+        const HazardScene& scene = question.scene;
+        const SceneCells cells(scene, Sight(scene, rig_));
+        std::vector<sim::SafetyAnswer> truths;
+        if (index % kAllEvery == 0)
+            truths = all_truths(scene.scene(), machine_, scene.T_world_body);
+        int made = -1;
+        MadeMap map;
+        for (const Variant& variant : variants_) {
+            if (variant.map != made) {
+                made = variant.map;
+                map = map_of(scene, cells, variant);
+                if (auto taken = snapshot_of(map, scene.T_world_body, *snapshot_); !taken)
+                    return taken;
+                rater_.rate(map.height_m.view(), map.geometry.resolution_m, serial_, rating_);
+            }
+            const AskedMap asked{*snapshot_,
+                                 map.geometry,
+                                 rating_.traversability.view(),
+                                 believed_pose(question, variant.shift_m)};
+            ask_own(question, asked, variant, tally);
+            if (!truths.empty()) ask_all(question, truths, asked, variant, tally);
+        }
+        return {};
+    }
+
+    [[nodiscard]] Status ask_after_run(
+        Hazard kind, bool relief_only, std::uint64_t seed, std::uint64_t index, Tally& tally) {
+        Question question = draw(kind, relief_only, seed, index, machine_, Placing::on_way);
+        if (question.draws == 0) return {};
+        const Look look = tier_ == "depth" ? Look::analytic : Look::images;
+        const auto run = run_chain(question.scene, look, 1.0, folder_, serial_);
+        // A map that cannot be made is a result.
+        if (!run) {
+            fmt::print(stderr,
+                       "{} {}: {}\n",
+                       kHazardNames[static_cast<int>(kind)],
+                       index,
+                       run.error().message);
+            tally.add("scenes", "no_map");
+            return {};
+        }
+        if (auto taken = run->pipeline->snapshot(1, *snapshot_); !taken) return taken;
+        const auto& geometry = run->pipeline->map().geometry();
+        const Image<float> heights = run->pipeline->map().layers().height_m.copy();
+        rater_.rate(heights.view(), geometry.resolution_m, serial_, rating_);
+        const AskedMap asked{
+            *snapshot_, geometry, rating_.traversability.view(), run->pipeline->T_odom_body()};
+        // Where the run really ended, a millimetre or two from where it was to end.
+        const auto truths = all_truths(run->source->truth().scene, machine_, run->T_world_body);
+        question.truth = truths[static_cast<std::size_t>(question.scene.command - 1)];
+        const bool still = question.truth.clear_cut && can_stand(question.truth) &&
+                           question.truth.safe == relief_only;
+        tally.add("scenes", still ? "kept" : "not_clear_any_more");
+        for (const Variant& variant : variants_) {
+            if (still) ask_own(question, asked, variant, tally);
+            ask_all(question, truths, asked, variant, tally);
+        }
+        return {};
+    }
+
+    std::string tier_;
+    std::string folder_;
+    Machine machine_;
+    std::vector<Variant> variants_;
+    camera::RectifiedRig rig_;
+    traversability::Traversability rater_;
+    traversability::TraversabilityLayers rating_;
+    Serial serial_;
+    std::unique_ptr<grid::MapSnapshot> snapshot_ = std::make_unique<grid::MapSnapshot>();
+};
+
+/// Every limit looser by a factor, as far as a machine file may state it.
+void loosen(GateLimits& limits, double factor) {
+    const auto times = [factor](std::int32_t& limit, std::int32_t most) {
+        limit = std::min(most, static_cast<std::int32_t>(std::lround(factor * limit)));
+    };
+    times(limits.step[0].up_tenth_mm, 3'000);
+    times(limits.step[0].down_tenth_mm, 3'000);
+    times(limits.patch_residual_tenth_mm, 500);
+    times(limits.patch_sigma_tenth_mm, 100);
+    times(limits.cell_sigma_tenth_mm, 300);
+    times(limits.swing_clearance_tenth_mm, 2'000);
+    times(limits.drop_tenth_mm, 1'000);
+    limits.min_normal_z = std::max(0.98, std::cos(factor * std::acos(limits.min_normal_z)));
+    limits.foot_margin_tenth_mm = static_cast<std::int32_t>(limits.foot_margin_tenth_mm / factor);
+    limits.drop_band_tenth_mm =
+        std::max(500, static_cast<std::int32_t>(limits.drop_band_tenth_mm / factor));
+}
+
+/// The noise, and single limits: those of sureness at noise 1, those of what a foot or a body
+/// passes on the overconfident map, where nothing else refuses. Labels are those of the machine as
+/// it is.
+std::vector<Variant> curve_variants(const Machine& machine) {
+    std::vector<Variant> all;
+    int map = 0;
+    MapNoise noise;
+    const auto with = [&](const char* name, std::initializer_list<double> values, auto&& change) {
+        for (const double value : values) {
+            Variant changed{fmt::format("{} {}", name, value), machine, map, noise};
+            change(changed.machine.limits, value);
+            if (changed.machine.problem() == nullptr) all.push_back(std::move(changed));
+        }
+    };
+    const auto tenth_mm = [](double mm) {
+        return static_cast<std::int32_t>(std::lround(10.0 * mm));
+    };
+    with("sigma_factor", {3.0, 5.0, 7.0}, [](GateLimits& l, double v) { l.sigma_factor = v; });
+    with("patch_residual_mm", {10.0, 15.0, 50.0}, [&](GateLimits& l, double v) {
+        l.patch_residual_tenth_mm = tenth_mm(v);
+    });
+    with("patch_sigma_mm", {2.0, 4.0, 10.0}, [&](GateLimits& l, double v) {
+        l.patch_sigma_tenth_mm = tenth_mm(v);
+    });
+    with("every_limit", {0.75, 1.5, 2.0, 3.0, 5.0}, loosen);
+    for (const double factor : {1.0, 0.5, 1.5, 2.0, 3.0, 4.0}) {
+        all.push_back({fmt::format("noise {}", factor), machine, map++, MapNoise().times(factor)});
+    }
+    noise = overconfident(MapNoise());
+    with("step_mm", {10.0, 15.0, 30.0, 40.0, 60.0, 100.0}, [&](GateLimits& l, double v) {
+        l.step[0].up_tenth_mm = l.step[0].down_tenth_mm = tenth_mm(v);
+    });
+    with("drop_mm", {25.0, 35.0, 70.0, 100.0}, [&](GateLimits& l, double v) {
+        l.drop_tenth_mm = tenth_mm(v);
+    });
+    with("swing_clearance_mm", {15.0, 25.0, 60.0, 80.0, 120.0}, [&](GateLimits& l, double v) {
+        l.swing_clearance_tenth_mm = tenth_mm(v);
+    });
+    for (const double factor : {1.0, 2.0, 4.0, 6.0})
+        all.push_back({fmt::format("overconfident {}", factor),
+                       machine,
+                       map++,
+                       overconfident(MapNoise().times(factor))});
+    return all;
+}
+
+/// A scene again, with the cells that the gate saw.
+int show_again(const std::string& folder,
+               const std::string& kind_name,
+               const std::string& seed,
+               const Machine& machine) {
+    const auto* const at = std::find(std::begin(kHazardNames), std::end(kHazardNames), kind_name);
+    if (at == std::end(kHazardNames))
+        return app::report(usage_error("no kind of hazard: " + kind_name));
+    const auto kind = static_cast<Hazard>(at - std::begin(kHazardNames));
+    const HazardScene scene = make_hazard_scene(
+        kind, false, std::strtoull(seed.c_str(), nullptr, 10), machine, Placing::anywhere);
+    const auto truth = sim::judge(scene.scene(), machine, scene.T_world_body, scene.command);
+    fmt::print("movement {}, {}\n", scene.command, truth.sentence());
+    const camera::RectifiedRig rig =
+        camera::Rectifier::make(*sim::rig_preset("zed_vga")).value().rig();
+    const SceneCells cells(scene, Sight(scene, rig));
+    const auto snapshot = std::make_unique<grid::MapSnapshot>();
+    std::string csv = "variant,x_m,y_m,low_mm,high_mm,under_mm,seen,map_mm,sigma_mm,clearance_mm\n";
+    for (const Variant& variant : map_variants(machine)) {
+        const MadeMap map = map_of(scene, cells, variant);
+        if (auto taken = snapshot_of(map, scene.T_world_body, *snapshot); !taken)
+            return app::report(taken.error());
+        const gate::Verdict verdict = ask(machine, *snapshot, scene.T_world_body, scene.command);
+        fmt::print("{}: {}\n",
+                   variant.name,
+                   gate::text_of(verdict, query_of(scene.command, scene.T_world_body), machine));
+        for (std::size_t i = 0; i < cells.cells().size(); ++i) {
+            const SceneCells::Cell& cell = cells.cells().data()[i];
+            const auto nx = static_cast<std::size_t>(map.geometry.nx);
+            const Eigen::Vector2d p =
+                map.geometry.center_m({static_cast<int>(i % nx), static_cast<int>(i / nx)});
+            csv += fmt::format("{},{:.4f},{:.4f},{:.1f},{:.1f},{:.1f},{},{:.1f},{:.1f},{:.1f}\n",
+                               variant.name,
+                               p.x(),
+                               p.y(),
+                               1e3F * cell.low_m,
+                               1e3F * cell.high_m,
+                               1e3F * cell.under_m,
+                               cell.seen ? 1 : 0,
+                               1e3F * map.height_m.data()[i],
+                               1e3F * std::sqrt(map.variance_m2.data()[i]),
+                               1e3F * map.clearance_m.data()[i]);
+        }
+    }
+    const Status written = io::write_file(folder + "/again.csv", csv);
+    return written ? 0 : app::report(written.error());
+}
+
+int run(const std::vector<std::string>& words) {
+    const std::vector<std::string> tiers{"maps", "depth", "images", "curve", "drift", "again"};
+    const bool known =
+        words.size() >= 4 && std::find(tiers.begin(), tiers.end(), words[0]) != tiers.end();
+    if (!known)
+        return app::report(usage_error(
+            "gate_scenes maps|depth|images|curve|drift SCRATCH FIRST_SEED SCENES [KINDS [FROM]]"));
+    const auto machine_file = app::load_machine("rex");
+    if (!machine_file) return app::report(machine_file.error());
+    const Machine& machine = (*machine_file)->machine;
+    if (words[0] == "again") return show_again(words[1], words[2], words[3], machine);
+    const std::string folder = words[1] + "/" + words[0];
+    if (auto made = io::make_folder(folder); !made) return app::report(made.error());
+    const std::uint64_t seed = std::strtoull(words[2].c_str(), nullptr, 10);
+    const std::uint64_t scenes = std::strtoull(words[3].c_str(), nullptr, 10);
+    std::vector<Hazard> kinds;
+    for (int kind = 0; kind < kHazards; ++kind) {
+        const std::string name = kHazardNames[kind];
+        const auto wanted =
+            words.size() > 4 ? io::split(words[4], ",") : std::vector<std::string_view>{};
+        if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
+            kinds.push_back(static_cast<Hazard>(kind));
+    }
+    std::vector<Variant> variants;
+    if (words[0] == "maps") {
+        variants = map_variants(machine);
+    } else if (words[0] == "curve") {
+        variants = curve_variants(machine);
+    } else if (words[0] == "drift") {
+        variants = drift_variants(machine);
+    } else {
+        variants.push_back({"noise 1", machine});
+    }
+    const std::uint64_t chunk = words[0] == "maps"                           ? 250
+                                : words[0] == "curve" || words[0] == "drift" ? 50
+                                                                             : 1;
+    const std::uint64_t first = words.size() > 5 ? std::strtoull(words[5].c_str(), nullptr, 10) : 0;
+    Campaign campaign(words[0], folder, machine, std::move(variants));
+    for (std::uint64_t from = first; from < scenes; from += chunk) {
+        for (const Hazard kind : kinds) {
+            if (auto done = campaign.run_chunk(kind, seed, from, std::min(chunk, scenes - from));
+                !done)
+                return app::report(done.error());
+        }
+        fmt::print(stderr, "{} {} {}\r", words[0], seed, from + chunk);
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace surefoot::experiments
+
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    return surefoot::experiments::run({argv + 1, argv + argc});
+}

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// Does the matcher know where it is wrong? On Middlebury pairs and on the simulated ZED. Its
+// coefficients: sigma_fit.
+// Usage: matcher_sigma STEREO_DATA_DIR OUT_DIR [FIRST_SEED]
+//
+// sigma.csv   kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak: trusted
+//             matches that are right within 1 px; the order of sigma and, instead, that of the cost
+//             of the second best over the best, judged by eval::sparsification over all matches;
+//             kinds: "image", and "pooled": all matches of one kind of images together
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/log.hpp"
+#include "lab/stereo_pairs/rival_matchers.hpp"
+#include "lab/stereo_pairs/stereo_pairs.hpp"
+#include "surefoot/eval/depth/sparsification.hpp"
+#include "surefoot/stereo/semi_global.hpp"
+
+namespace surefoot::experiments {
+namespace {
+
+/// Cost of the second best over that of the best, upside down: large = unsure.
+Image<float> peak_doubt(const TruePair& pair) {
+    stereo::SemiGlobalConfig config;
+    config.disparities = pair.disparities;
+    Serial serial;
+    stereo::Winners winners;
+    stereo::SemiGlobalSearch(config).search(pair.left.view(), pair.right.view(), serial, winners);
+    Image<float> doubt(pair.left.width(), pair.left.height());
+    for (std::size_t i = 0; i < doubt.size(); ++i) {
+        doubt.data()[i] = static_cast<float>(winners.cost.data()[i] + 1) /
+                          static_cast<float>(winners.second_cost.data()[i] + 1);
+    }
+    return doubt;
+}
+
+/// What sigma said of matches, and how wrong they were; of one image, or of several together.
+struct Confidences {
+    std::vector<float> errors_px;  ///< of all matches; their doubts in the same order
+    std::vector<float> sigmas_px;
+    std::vector<float> peak_doubts;
+    std::array<double, 3> within{};  ///< trusted matches within 1, 2, 3 sigma
+    double trusted = 0.0;
+    double pixels = 0.0;
+
+    void add(const TruePair& pair);
+    void add(const Confidences& other);
+    void print(fmt::ostream& out, const char* kind, const std::string& source) const;
+};
+
+void Confidences::add(const TruePair& pair) {
+    const camera::DepthImage depth = chain_depth(pair);
+    const Image<float> doubt = peak_doubt(pair);
+    for (std::size_t i = 0; i < doubt.size(); ++i) {
+        if (std::isnan(pair.truth_px.data()[i])) continue;
+        ++pixels;
+        const float error_px = depth.disparity_px.data()[i] - pair.truth_px.data()[i];
+        if (std::isnan(error_px)) continue;
+        errors_px.push_back(error_px);
+        // One number for both kinds of doubt: what is likely wrong counts as wrong by pixels.
+        const float p = depth.outlier_probability.data()[i];
+        sigmas_px.push_back(depth.sigma_px.data()[i] + 4.0F * p);
+        peak_doubts.push_back(doubt.data()[i]);
+        if (p > kTrusted || std::abs(error_px) > 1.0F) continue;
+        const double sigma_px = std::hypot(static_cast<double>(depth.sigma_px.data()[i]),
+                                           pair.step_px / std::sqrt(12.0));
+        ++trusted;
+        for (std::size_t k = 0; k < within.size(); ++k) {
+            const double limit_px = static_cast<double>(k + 1) * sigma_px;
+            within[k] += std::abs(static_cast<double>(error_px)) <= limit_px ? 1.0 : 0.0;
+        }
+    }
+}
+
+void Confidences::add(const Confidences& other) {
+    const auto append = [](std::vector<float>& to, const std::vector<float>& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    append(errors_px, other.errors_px);
+    append(sigmas_px, other.sigmas_px);
+    append(peak_doubts, other.peak_doubts);
+    for (std::size_t k = 0; k < within.size(); ++k) within[k] += other.within[k];
+    trusted += other.trusted;
+    pixels += other.pixels;
+}
+
+void Confidences::print(fmt::ostream& out, const char* kind, const std::string& source) const {
+    out.print("{},{},{},{:.1f},{:.1f},{:.1f},{:.1f},{:.4f},{:.4f}\n",
+              kind,
+              source,
+              trusted,
+              100.0 * within[0] / trusted,
+              100.0 * within[1] / trusted,
+              100.0 * within[2] / trusted,
+              100.0 * static_cast<double>(errors_px.size()) / pixels,
+              eval::sparsification(errors_px, sigmas_px).auc,
+              eval::sparsification(errors_px, peak_doubts).auc);
+}
+
+/// Each of them, then all of them together.
+void report_sigmas_of(fmt::ostream& out,
+                      const std::string& name,
+                      const std::vector<TruePair>& pairs) {
+    Confidences all;
+    for (const TruePair& pair : pairs) {
+        Confidences one;
+        one.add(pair);
+        one.print(out, "image", pair.name);
+        all.add(one);
+    }
+    all.print(out, "pooled", name);
+}
+
+Result<std::vector<TruePair>> simulated_pairs(sim::SceneOptions options) {
+    constexpr const char* kScenes[] = {"demo_stairs",
+                                       "floor",
+                                       "sill_13",
+                                       "stairs_up_ada",
+                                       "kerb_down_150",
+                                       "table",
+                                       "glass_door",
+                                       "stripes_window"};
+    std::vector<TruePair> pairs;
+    pairs.reserve(std::size(kScenes));
+    for (const char* scene : kScenes) {
+        options.scene = scene;
+        auto pair = simulated_pair(options);
+        if (!pair) return pair.error();
+        pairs.push_back(std::move(*pair));
+        ++options.seed;
+    }
+    return pairs;
+}
+
+Status report_sigmas(const std::string& file,
+                     std::vector<TruePair> pairs,
+                     std::uint64_t first_seed) {
+    auto out = fmt::output_file(file);
+    out.print("kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak\n");
+    // Truth in whole pixels says nothing.
+    std::erase_if(pairs, [](const TruePair& pair) { return pair.step_px >= 1.0; });
+    report_sigmas_of(out, "real pairs", pairs);
+    sim::SceneOptions options;
+    options.seed = first_seed;
+    for (const sim::CameraProfile profile : {sim::CameraProfile::zed, sim::CameraProfile::ideal}) {
+        options.profile = profile;
+        for (const double noise : {1.0, 2.0}) {
+            options.noise = noise;
+            const auto seen = simulated_pairs(options);
+            if (!seen) return seen.error();
+            report_sigmas_of(
+                out,
+                fmt::format("{} x {:g}",
+                            sim::kCameraProfileNames[static_cast<std::size_t>(profile)],
+                            noise),
+                *seen);
+        }
+    }
+    return {};
+}
+
+Status run(const std::string& data, const std::string& folder, std::uint64_t first_seed) {
+    auto pairs = middlebury_pairs(data);
+    if (!pairs) return pairs.error();
+    return report_sigmas(folder + "/sigma.csv", std::move(*pairs), first_seed);
+}
+
+}  // namespace
+}  // namespace surefoot::experiments
+
+// An exception ends an experiment with its message, as it should.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    using namespace surefoot;
+    if (argc < 3) {
+        fmt::print(stderr, "usage: matcher_sigma STEREO_DATA_DIR OUT_DIR [FIRST_SEED]\n");
+        return 2;
+    }
+    const std::uint64_t first_seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
+    const auto done = experiments::run(argv[1], argv[2], first_seed);
+    return done ? 0 : app::report(done.error());
+}

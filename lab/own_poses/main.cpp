@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// What do the odometry's own poses do to the map?
+// Usage: own_poses OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [CARRIERS [RIGS
+// [KEY=VALUE...]]]]]]]
+//   own_poses out/poses.csv demo_stairs,floor 20001 3 zed 160 trolley,rex,hand
+//   zed_vga,zed_vga_rolling odometry.imu.enabled=false
+//
+// Profiles: see scene_cases.hpp; FRAMES 0 = to the end of the way. Every case is seen through
+// rendered images by the whole pipeline, that starts where the machine truly stands. Beside its map
+// three others are made of the same frames: of its depth at the true poses, and of exact depth at
+// its own and at the true poses. A carrier that cannot go a scene's way is said and left out.
+//
+// One line a scene, seed, profile, carrier, rig:
+//   path_m, end_mm, end_deg     length of the true way; error at its end
+//   ate_mm                      rms error of all positions, aligned (SE3)
+//   lost                        frames
+//   ..._jump_mm, ..._spread_mm  of each map's level floor: jumps between neighbouring cells, 99 %;
+//                               spread about its plane (surefoot/eval/maps/map_edges.hpp). exact:
+//                               of exact depth, matched: of the pipeline's; true, own: poses
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "apps/surefoot/source.hpp"
+#include "lab/scenes/exact_depth.hpp"
+#include "lab/scenes/scene_cases.hpp"
+#include "surefoot/eval/maps/map_comparison.hpp"
+#include "surefoot/eval/trajectory/trajectory.hpp"
+#include "surefoot/io/text.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+#include "surefoot/sim/scene_source.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using experiments::SceneCase;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+struct Case {
+    SceneCase seen;
+    sim::CarriedBy carrier = sim::CarriedBy::scene;
+    std::string rig;
+};
+
+/// The maps that the pipeline does not make.
+class Maps {
+  public:
+    explicit Maps(const elevation::ElevationConfig& config)
+        : exact_true(config), exact_own(config), matched_true(config) {}
+
+    void add(const sim::Scene& scene,
+             const pipeline::Pipeline& pipeline,
+             const FrameReport& report,
+             const Pose& T_world_body,
+             Executor& executor) {
+        const Pose& T_odom_body = report.motion.T_odom_body;
+        exact_own.follow(T_odom_body, report.motion.relative_covariance);
+        for (auto* map : {&exact_true, &matched_true}) map->follow(T_world_body, Matrix6::Zero());
+        if (report.motion.health == Health::lost) return;
+        const std::int64_t time_ns = report.motion.time_ns;
+        const camera::RectifiedRig& rig = pipeline.rig();
+        const camera::DepthImage exact =
+            experiments::exact_depth(scene, rig, T_world_body, executor);
+        exact_own.add(rig, T_odom_body, exact, time_ns, executor);
+        exact_true.add(rig, T_world_body, exact, time_ns, executor);
+        matched_true.add(rig, T_world_body, pipeline.depth(), time_ns, executor);
+    }
+
+    elevation::ElevationMap exact_true;
+    elevation::ElevationMap exact_own;
+    elevation::ElevationMap matched_true;
+};
+
+/// ",jump_mm,spread_mm" of the level floor of a map in the world.
+std::string floor_figures(const sim::Scene& scene, const elevation::ElevationMap& map) {
+    eval::MapPair maps;
+    maps.geometry = map.geometry();
+    maps.live_m = map.layers().height_m.copy();
+    maps.truth_m = sim::dem(
+        scene,
+        {maps.geometry.origin_m, maps.geometry.nx, maps.geometry.ny, maps.geometry.resolution_m});
+    const eval::MapComparison found = eval::compare_maps(maps, {});
+    return fmt::format(",{:.2f},{:.2f}", 1e3 * found.edges.p99_abs, 1e3 * found.floor.spread_m);
+}
+
+std::string motion_figures(const Trajectory& truth, const Trajectory& found, int lost) {
+    double path_m = 0.0;
+    for (std::size_t i = 1; i < truth.size(); ++i)
+        path_m +=
+            (truth[i].T_world_body.translation_m - truth[i - 1].T_world_body.translation_m).norm();
+    const Vector6 end = difference(truth.back().T_world_body, found.back().T_world_body);
+    const auto errors = eval::evaluate_trajectory(found, truth, {});
+    return fmt::format("{:.3f},{:.2f},{:.3f},{:.3f},{}",
+                       path_m,
+                       1e3 * end.head<3>().norm(),
+                       kDegPerRad * end.tail<3>().norm(),
+                       errors ? 1e3 * errors->ate_rmse_m : std::nan(""),
+                       lost);
+}
+
+/// Nothing where the carrier cannot go the scene's way.
+Result<std::optional<std::string>> measure(const Case& now,
+                                           int frames,
+                                           const CommonOptions& common,
+                                           Executor& executor) {
+    auto settings = load_settings(common);
+    if (!settings) return settings.error();
+    sim::SceneOptions& sim = settings->sim;
+    if (Status seen = now.seen.put_into(sim); !seen) return seen.error();
+    sim.frames = frames;
+    sim.carrier = now.carrier;
+    sim.rig_preset = now.rig;
+    auto source = sim::open_scene(sim, &executor);
+    if (!source && now.carrier != sim::CarriedBy::scene) {
+        log_warning(source.error().message);
+        return std::optional<std::string>{};
+    }
+    if (!source) return source.error();
+    auto pipeline = pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor);
+    if (!pipeline) return pipeline.error();
+
+    const sim::SceneTruth& truth = (*source)->truth();
+    Maps maps(settings->pipeline.elevation);
+    std::vector<StereoFrame> first_frames;
+    Trajectory true_bodies;
+    Trajectory found_bodies;
+    int lost = 0;
+    const auto follow = [&](const StereoFrame& frame) {
+        const Pose T_world_body = experiments::true_pose(truth.trajectory, frame.time_ns);
+        const FrameReport report = pipeline->process(frame, Work::full);
+        maps.add(truth.scene, *pipeline, report, T_world_body, executor);
+        true_bodies.push_back({frame.time_ns, T_world_body});
+        found_bodies.push_back({frame.time_ns, report.motion.T_odom_body});
+        lost += report.motion.health == Health::lost ? 1 : 0;
+    };
+    const auto start = [&] {
+        pipeline->align(first_frames, truth.trajectory.front().T_world_body);
+        for (const StereoFrame& frame : first_frames) follow(frame);
+        first_frames.clear();
+    };
+    while (true) {
+        auto frame = (*source)->next();
+        if (!frame) return frame.error();
+        if (!*frame) break;
+        if (found_bodies.empty()) {
+            first_frames.push_back(std::move(**frame));
+            if (first_frames.size() == pipeline::Pipeline::kAlignmentFrames) start();
+        } else {
+            follow(**frame);
+        }
+    }
+    if (!first_frames.empty()) start();
+    return std::optional(motion_figures(true_bodies, found_bodies, lost) +
+                         floor_figures(truth.scene, maps.exact_true) +
+                         floor_figures(truth.scene, maps.exact_own) +
+                         floor_figures(truth.scene, maps.matched_true) +
+                         floor_figures(truth.scene, pipeline->map()));
+}
+
+Result<sim::CarriedBy> carrier_named(std::string_view name) {
+    const auto* const found =
+        std::find(std::begin(sim::kCarriedByNames), std::end(sim::kCarriedByNames), name);
+    if (found == std::end(sim::kCarriedByNames))
+        return usage_error(fmt::format("there is no carrier {}", name));
+    return static_cast<sim::CarriedBy>(found - std::begin(sim::kCarriedByNames));
+}
+
+int measure_all(const std::vector<std::string>& words) {
+    if (words.size() < 2)
+        return report(usage_error(
+            "own_poses OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [CARRIERS [RIGS "
+            "[KEY=VALUE...]]]]]]]"));
+    const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
+    const std::string carriers = words.size() > 6 ? words[6] : "scene";
+    const std::string rigs = words.size() > 7 ? words[7] : "zed_vga";
+    CommonOptions common;
+    if (words.size() > 8) common.settings.assign(words.begin() + 8, words.end());
+    const auto executor = make_executor({});
+    auto out = fmt::output_file(words[0]);
+    out.print(
+        "scene,seed,profile,carrier,rig,path_m,end_mm,end_deg,ate_mm,lost,"
+        "exact_true_jump_mm,exact_true_spread_mm,exact_own_jump_mm,exact_own_spread_mm,"
+        "matched_true_jump_mm,matched_true_spread_mm,matched_own_jump_mm,matched_own_spread_mm\n");
+    for (const SceneCase& seen : experiments::scene_cases({words.begin() + 1, words.end()})) {
+        for (const std::string_view carrier : io::split(carriers, ",")) {
+            for (const std::string_view rig : io::split(rigs, ",")) {
+                const auto carried = carrier_named(carrier);
+                if (!carried) return report(carried.error());
+                const auto done =
+                    measure({seen, *carried, std::string(rig)}, frames, common, *executor);
+                if (!done) return report(done.error());
+                if (!*done) continue;
+                out.print("{},{},{},{},{},{}\n",
+                          seen.scene,
+                          seen.seed,
+                          seen.profile,
+                          carrier,
+                          rig,
+                          **done);
+                out.flush();
+            }
+        }
+    }
+    return kExitOk;
+}
+
+}  // namespace
+}  // namespace surefoot::app
+
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    return surefoot::app::measure_all({argv + 1, argv + argc});
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "lab/stairs_scenes/stairs_look.hpp"
+#include "surefoot/stairs/features.hpp"
+
+/// Which of the features that were found is the one that stands in the scene?
+namespace surefoot::experiments {
+
+inline constexpr double kNear_m = 0.1;
+inline constexpr double kBeside_m = 1.0;
+inline constexpr double kTurn_rad = 10.0 / 180.0 * std::numbers::pi;
+
+inline double turned_rad(const stairs::FeaturePose& found, const TrueFeature& truth) {
+    return std::remainder(found.yaw_rad - truth.yaw_rad, 2.0 * std::numbers::pi);
+}
+
+/// How much farther than the truth's middle the line through a feature lies.
+inline double across_m(const stairs::FeaturePose& found, const TrueFeature& truth) {
+    const Eigen::Vector2d way(std::cos(found.yaw_rad), std::sin(found.yaw_rad));
+    return way.dot(found.p_m.head<2>() - truth.middle_m);
+}
+
+inline bool is_line_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
+    return (found.p_m.head<2>() - truth.middle_m).norm() < kBeside_m &&
+           std::abs(across_m(found, truth)) < kNear_m &&
+           std::abs(turned_rad(found, truth)) < kTurn_rad;
+}
+
+/// Of those that are the truth's the nearest.
+template <typename Feature, typename Matches>
+const Feature* nearest(const std::vector<Feature>& features,
+                       const TrueFeature& truth,
+                       const Matches& matches) {
+    const Feature* best = nullptr;
+    for (const Feature& feature : features) {
+        if (!matches(feature)) continue;
+        if (best == nullptr ||
+            std::abs(across_m(feature.pose, truth)) < std::abs(across_m(best->pose, truth))) {
+            best = &feature;
+        }
+    }
+    return best;
+}
+
+}  // namespace surefoot::experiments

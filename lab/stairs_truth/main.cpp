@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: Apache-2.0
+// Are stairs, drops, kerbs and doors found in the map, and how true is what is said of them?
+// Usage: stairs_truth OUT.csv SCENES [FIRST_SEED [SEEDS [MODES [EVERY [MAPS [KEY=VALUE...]]]]]]
+//        stairs_truth OUT.csv MAPS [KEY=VALUE...]
+//   stairs_truth out/up.csv lab/scenes/stairs_up.yaml#up_common 80001 200 analytic_0.25
+//   stairs_truth out/false.csv floor,room 80001 5 images_0.25,images_0.5 5
+//
+// Modes, and what the seed draws beside the scene: see stairs_scene.hpp. Poses are true ones unless
+// settings say sim.known_motion=false. EVERY: the map is looked at after so many frames; 0 = after
+// each, of which the last is judged. MAPS: a folder that keeps what the finder is given; what it
+// has is not simulated again ('-' = none). Given alone, all that is in it is judged, each by
+// itself.
+//
+// Two lines a look: what it finds alone, and what is told of it and those before it. Lengths in mm,
+// angles in deg; empty or nan = not found:
+//   way                look, or told: by FeatureFollower
+//   noise_px, bias_px, said_px   scatter and mean of disparity errors on level floor, stated sigma
+//   kind, steps, riser, going, width, sill, ahead   what is true; ahead: from the left camera
+//   found              the flight whose first edge lies within 0.1 m of the true one, within 10 deg
+//   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _cut  of it
+//   across, turn       of its first edge at the truth's middle, + = farther; of its yaw
+//   flights, of_2      all that are there but that one; those of them with two steps or more
+//   drop, drop_across, drop_height, drop_sigma, bottom_seen   the same of drops; height downward
+//   drops              all that are there but that one
+//   door, door_width, door_width_sigma, door_sill   of the opening within 0.3 m, within 15 deg
+//   sill_height        of the sill within 0.3 m
+//   find_us            time of a call, the shortest of four: cases run side by side
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/surefoot/log.hpp"
+#include "apps/surefoot/settings.hpp"
+#include "lab/stairs_scenes/stairs_look.hpp"
+#include "lab/stairs_scenes/stairs_match.hpp"
+#include "lab/stairs_scenes/stairs_scene.hpp"
+#include "surefoot/io/text.hpp"
+#include "surefoot/stairs/feature_finder.hpp"
+#include "surefoot/stairs/tracking/feature_follower.hpp"
+
+namespace surefoot::app {
+namespace {
+
+using experiments::across_m;
+using experiments::is_line_of;
+using experiments::Look;
+using experiments::nearest;
+using experiments::StairsCase;
+using experiments::TrueFeature;
+using experiments::TrueKind;
+using experiments::turned_rad;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr int kCalls = 4;
+constexpr double kDoorNear_m = 0.3;
+constexpr double kDoorTurn_rad = 15.0 / kDegPerRad;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+constexpr double mm(double length_m) {
+    return 1e3 * length_m;
+}
+
+std::string flight_columns(const std::vector<stairs::Flight>& flights, const TrueFeature& truth) {
+    const auto* const found = nearest(flights, truth, [&](const stairs::Flight& flight) {
+        const bool is_up = flight.kind == stairs::FlightKind::up;
+        return truth.kind == (is_up ? TrueKind::up : TrueKind::down) &&
+               is_line_of(flight.pose, truth);
+    });
+    const std::size_t others = flights.size() - (found != nullptr ? 1 : 0);
+    const auto of_2 = std::count_if(flights.begin(), flights.end(), [&](const auto& flight) {
+        return &flight != found && flight.steps >= 2;
+    });
+    if (found == nullptr) return fmt::format(",0{:,>10}{},{}", "", others, of_2);
+    return fmt::format(",1,{},{:.2f},{:.2f},{:.2f},{:.2f},{:.1f},{},{:.2f},{:.3f},{},{}",
+                       found->steps,
+                       mm(found->riser_m),
+                       mm(found->riser_sigma_m),
+                       mm(found->going_m),
+                       mm(found->going_sigma_m),
+                       mm(found->width_m),
+                       found->cut ? 1 : 0,
+                       mm(across_m(found->pose, truth)),
+                       kDegPerRad * turned_rad(found->pose, truth),
+                       others,
+                       of_2);
+}
+
+std::string drop_columns(const std::vector<stairs::LineFeature>& drops, const TrueFeature& truth) {
+    const bool is_drop = truth.kind == TrueKind::down || truth.kind == TrueKind::kerb;
+    const auto* const found = nearest(drops, truth, [&](const stairs::LineFeature& drop) {
+        return is_drop && is_line_of(drop.pose, truth);
+    });
+    const std::size_t others = drops.size() - (found != nullptr ? 1 : 0);
+    if (found == nullptr) return fmt::format(",0{:,>5}{}", "", others);
+    return fmt::format(",1,{:.2f},{:.2f},{:.2f},{},{}",
+                       mm(across_m(found->pose, truth)),
+                       mm(-found->height_m),
+                       mm(found->sigma_m),
+                       found->bottom_seen ? 1 : 0,
+                       others);
+}
+
+/// A door may be told from either side.
+bool is_opening_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
+    const double turn_rad = std::abs(turned_rad(found, truth));
+    return truth.kind == TrueKind::door &&
+           (found.p_m.head<2>() - truth.middle_m).norm() < kDoorNear_m &&
+           std::min(turn_rad, std::numbers::pi - turn_rad) < kDoorTurn_rad;
+}
+
+std::string door_columns(const stairs::TerrainFeatures& features, const TrueFeature& truth) {
+    const auto* const door = nearest(features.doors, truth, [&](const stairs::Door& candidate) {
+        return is_opening_of(candidate.pose, truth);
+    });
+    const auto* const sill =
+        nearest(features.sills, truth, [&](const stairs::LineFeature& candidate) {
+            return is_opening_of(candidate.pose, truth);
+        });
+    const std::string told = door == nullptr ? std::string(",0,,,")
+                                             : fmt::format(",1,{:.2f},{:.2f},{:.2f}",
+                                                           mm(door->width_m),
+                                                           mm(door->width_sigma_m),
+                                                           mm(door->sill_m));
+    return fmt::format("{},{:.2f}", told, sill == nullptr ? kNone : mm(sill->height_m));
+}
+
+constexpr const char* kHeader =
+    "scene,seed,mode,way,frame,noise_px,bias_px,said_px,kind,steps,riser,going,width,sill,ahead,"
+    "found,found_steps,found_riser,riser_sigma,found_going,going_sigma,found_width,"
+    "cut,across,turn,flights,of_2,drop,drop_across,drop_height,drop_sigma,bottom_seen,drops,"
+    "door,door_width,door_width_sigma,door_sill,sill_height,find_us\n";
+
+/// Looks of one run, one after the other.
+class Judge {
+  public:
+    explicit Judge(const stairs::StairsConfig& config) : finder_(config), follower_(config) {}
+
+    void look(const Look& look) { (void)look_once(look); }
+
+    /// The two lines of a look.
+    std::string rows(const Look& look) {
+        const std::int64_t first_ns = look_once(look);
+        std::int64_t took_ns = first_ns;
+        for (int call = 1; call < kCalls; ++call) {  // the first one of a size allocates
+            const std::int64_t start_ns = steady_now_ns();
+            finder_.find(look.terrain(), found_);
+            took_ns = std::min(took_ns, steady_now_ns() - start_ns);
+        }
+        return row(look, "look", found_, took_ns) + row(look, "told", told_, took_ns);
+    }
+
+  private:
+    std::int64_t look_once(const Look& look) {
+        constexpr std::int64_t kFrame_ns = 100'000'000;
+        const stairs::Terrain terrain = look.terrain();
+        const std::int64_t start_ns = steady_now_ns();
+        finder_.find(terrain, found_);
+        const std::int64_t took_ns = steady_now_ns() - start_ns;
+        follower_.follow(found_, terrain, {look.frame * kFrame_ns, {}}, told_);
+        return took_ns;
+    }
+
+    static std::string row(const Look& look,
+                           const char* way,
+                           const stairs::TerrainFeatures& features,
+                           std::int64_t took_ns) {
+        const TrueFeature& truth = look.truth;
+        return fmt::format(
+            "{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.2f},{:.1f},{:.1f},{:.1f}{}{}{},{}"
+            "\n",
+            look.scene,
+            look.seed,
+            look.mode,
+            way,
+            look.frame,
+            look.noise_px,
+            look.bias_px,
+            look.said_px,
+            experiments::kTrueKindNames[static_cast<int>(truth.kind)],
+            truth.steps,
+            mm(truth.riser_m),
+            mm(truth.going_m),
+            mm(truth.width_m),
+            mm(truth.sill_m),
+            mm(truth.ahead_m),
+            flight_columns(features.flights, truth),
+            drop_columns(features.drops, truth),
+            door_columns(features, truth),
+            took_ns / 1000);
+    }
+
+    stairs::FeatureFinder finder_;
+    stairs::FeatureFollower follower_;
+    stairs::TerrainFeatures found_;
+    stairs::TerrainFeatures told_;
+};
+
+struct Done {
+    std::string rows;
+    std::optional<Error> error;
+};
+
+/// Looks that are kept in a folder: one a line in a file that is written last.
+class Keep {
+  public:
+    Keep(std::string maps, const StairsCase& now)
+        : folder_(std::move(maps) + "/" + now.mode), list_(folder_ + "/" + list_name(now)) {}
+
+    [[nodiscard]] bool has_it() const { return std::filesystem::exists(list_); }
+    [[nodiscard]] Result<std::vector<Look>> read() const {
+        std::vector<Look> looks;
+        std::ifstream list(list_);
+        for (std::string name; std::getline(list, name);) {
+            auto look = experiments::read_look(folder_ + "/" + name);
+            if (!look) return look.error();
+            looks.push_back(std::move(*look));
+        }
+        return looks;
+    }
+    [[nodiscard]] Status write(const std::vector<Look>& looks) const {
+        std::string names;
+        for (const Look& look : looks) {
+            names += look.folder_name() + "\n";
+            const std::string folder = folder_ + "/" + look.folder_name();
+            if (Status saved = save_look(look, folder); !saved) return saved;
+        }
+        fmt::output_file(list_).print("{}", names);
+        return {};
+    }
+
+  private:
+    static std::string list_name(const StairsCase& now) {
+        return fmt::format(
+            "{}_{}_every{}.txt", experiments::short_name(now.scene), now.seed, now.every);
+    }
+
+    std::string folder_;
+    std::string list_;
+};
+
+Result<std::vector<Look>> looks_of(const StairsCase& now,
+                                   const std::string& maps,
+                                   const Settings& settings) {
+    const Keep keep(maps, now);
+    if (maps != "-" && keep.has_it()) return keep.read();
+    Serial alone;
+    auto looks = look_at(now, settings, alone);
+    if (!looks || maps == "-") return looks;
+    if (Status kept = keep.write(*looks); !kept) return kept.error();
+    return looks;
+}
+
+Done judge(const StairsCase& now, const std::string& maps, const Settings& settings) {
+    const auto looks = looks_of(now, maps, settings);
+    if (!looks) return {{}, looks.error()};
+    Judge judge(settings.pipeline.stairs);
+    Done done;
+    for (const Look& look : *looks) {
+        if (now.every > 0 || &look == &looks->back())
+            done.rows += judge.rows(look);
+        else
+            judge.look(look);
+    }
+    return done;
+}
+
+Done judge_saved(const std::string& folder, const Settings& settings) {
+    const auto look = experiments::read_look(folder);
+    if (!look) return {{}, look.error()};
+    return {Judge(settings.pipeline.stairs).rows(*look), {}};
+}
+
+std::vector<StairsCase> cases_of(const std::vector<std::string>& words) {
+    const auto number = [&](std::size_t i, std::uint64_t otherwise) {
+        return words.size() > i ? std::strtoull(words[i].c_str(), nullptr, 10) : otherwise;
+    };
+    const std::string modes = words.size() > 4 ? words[4] : "analytic_0.25";
+    std::vector<StairsCase> cases;
+    for (const std::string_view mode : io::split(modes, ",")) {
+        for (const std::string_view scene : io::split(words[1], ",")) {
+            for (std::uint64_t k = 0; k < number(3, 1); ++k) {
+                cases.push_back({std::string(scene),
+                                 number(2, 1) + k,
+                                 std::string(mode),
+                                 static_cast<int>(number(5, 0))});
+            }
+        }
+    }
+    return cases;
+}
+
+std::vector<std::string> saved_looks(const std::string& maps) {
+    std::vector<std::string> folders;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(maps))
+        if (entry.path().filename() == "truth.txt")
+            folders.push_back(entry.path().parent_path().string());
+    std::sort(folders.begin(), folders.end(), io::natural_less);
+    return folders;
+}
+
+/// Cases side by side, written in order.
+int write_all(int count, const std::string& path, const std::function<Done(int)>& make) {
+    const auto executor = make_executor({});
+    auto out = fmt::output_file(path);
+    out.print("{}", kHeader);
+    const int block = 2 * executor->threads();
+    for (int first = 0; first < count; first += block) {
+        std::vector<Done> done(static_cast<std::size_t>(std::min(block, count - first)));
+        executor->parallel_for(static_cast<int>(done.size()),
+                               [&](int i) { done[static_cast<std::size_t>(i)] = make(first + i); });
+        for (const Done& one : done) {
+            if (one.error) return report(*one.error);
+            out.print("{}", one.rows);
+        }
+        out.flush();
+    }
+    return kExitOk;
+}
+
+int measure_all(const std::vector<std::string>& words) {
+    if (words.size() < 2) {
+        return report(usage_error(
+            "stairs_truth OUT.csv SCENES [FIRST_SEED [SEEDS [MODES [EVERY [MAPS [KEY=VALUE...]]]]]]"
+            ", or stairs_truth OUT.csv MAPS [KEY=VALUE...]"));
+    }
+    const bool is_saved = std::filesystem::is_directory(words[1]);
+    const std::size_t first_setting = std::min<std::size_t>(is_saved ? 2 : 7, words.size());
+    CommonOptions common;
+    common.settings = {"sim.known_motion=true",
+                       "sim.analytic.drift.position_m_sqrt_m=0",
+                       "sim.analytic.drift.turn_deg_sqrt_m=0"};
+    common.settings.insert(common.settings.end(),
+                           words.begin() + static_cast<std::ptrdiff_t>(first_setting),
+                           words.end());
+    const auto settings = load_settings(common);
+    if (!settings) return report(settings.error());
+    if (is_saved) {
+        const std::vector<std::string> folders = saved_looks(words[1]);
+        return write_all(static_cast<int>(folders.size()), words[0], [&](int i) {
+            return judge_saved(folders[static_cast<std::size_t>(i)], *settings);
+        });
+    }
+    const std::string maps = words.size() > 6 ? words[6] : "-";
+    const std::vector<StairsCase> cases = cases_of(words);
+    return write_all(static_cast<int>(cases.size()), words[0], [&](int i) {
+        return judge(cases[static_cast<std::size_t>(i)], maps, *settings);
+    });
+}
+
+}  // namespace
+}  // namespace surefoot::app
+
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    return surefoot::app::measure_all({argv + 1, argv + argc});
+}

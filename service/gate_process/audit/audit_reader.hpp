@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "service/gate_process/audit/audit_frame.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::wire {
+
+/// The first thing in a log that cannot be right. Nothing after it was read.
+struct AuditDamage {
+    std::string file;
+    std::uint64_t offset = 0;               ///< where the frame begins [bytes]
+    std::optional<std::uint64_t> sequence;  ///< of the frame, where its header can be read
+    std::string what;
+
+    [[nodiscard]] std::string text() const;
+};
+
+/// What a log holds, up to its end or to its damage.
+struct AuditSummary {
+    std::uint64_t files = 0;
+    std::uint64_t bytes = 0;
+    std::uint64_t runs = 0;
+    std::uint64_t verdicts = 0;
+    std::uint64_t gaps = 0;
+    std::uint64_t lost = 0;  ///< verdicts in the gaps
+    std::uint64_t acts = 0;
+    /// Sentences about files that end within a frame, as after a loss of power: no damage, and
+    /// where the run goes on in another file, no loss.
+    std::vector<std::string> unfinished;
+    std::optional<AuditDamage> damage;
+};
+
+/// A verdict of the log and where it stands.
+struct AuditedAt {
+    const std::string& file;
+    std::uint64_t offset;
+    std::uint64_t sequence;
+    const Machine& machine;
+    const AuditRecord& record;
+};
+
+/// Follows the chain of frames through the files of a folder, in their order. Any bytes may come.
+class AuditReader {
+  public:
+    using OnVerdict = std::function<void(const AuditedAt&)>;
+    using OnAct = std::function<void(const Act&)>;
+    explicit AuditReader(OnVerdict on_verdict, OnAct on_act = {});
+
+    /// The next file. Does nothing once there is damage.
+    void read(std::string_view bytes, const std::string& file);
+    [[nodiscard]] const AuditSummary& summary() const noexcept { return summary_; }
+
+  private:
+    struct Frame {
+        FrameHeader header;
+        std::string_view payload;  ///< unpacked
+        std::uint64_t hash = 0;
+    };
+    /// Where the chain stands.
+    struct Link {
+        std::uint64_t sequence = 0;  ///< of the next frame
+        std::uint64_t previous_hash = 0;
+    };
+
+    [[nodiscard]] std::optional<Frame> next_frame(std::string_view rest);
+    [[nodiscard]] bool unpack(const FrameHeader& header, std::string_view stored, Frame& frame);
+    [[nodiscard]] bool take(const Frame& frame);
+    [[nodiscard]] bool take_file_head(const Frame& frame);
+    [[nodiscard]] bool take_verdict(const Frame& frame);
+    [[nodiscard]] bool take_gap(const Frame& frame);
+    [[nodiscard]] bool take_act(const Frame& frame);
+    [[nodiscard]] bool follows(const FrameHeader& header, const Link& link);
+    void end_unfinished(std::size_t bytes, const char* how);
+    /// Always false: "this frame is not taken".
+    bool damaged(std::string what, std::optional<std::uint64_t> sequence = {});
+
+    OnVerdict on_verdict_;
+    OnAct on_act_;
+    AuditSummary summary_;
+    std::string file_;
+    std::uint64_t offset_ = 0;
+    std::optional<FileHead> head_;  ///< of the last file that had one
+    Link link_;
+    std::string plain_;
+    AuditRecord record_;
+};
+
+/// The log files of a folder in their order, or the one file that is named.
+[[nodiscard]] Result<std::vector<std::string>> audit_files_of(const std::string& path);
+/// All of them. An error where a file cannot be read; damage is no error but in the summary.
+[[nodiscard]] Result<AuditSummary> read_audit(const std::string& path,
+                                              AuditReader::OnVerdict on_verdict,
+                                              AuditReader::OnAct on_act = {});
+
+}  // namespace surefoot::wire

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "service/gate_process/audit/audit_disk.hpp"
+#include "service/gate_process/audit/audit_frame.hpp"
+
+namespace surefoot::wire {
+
+struct AuditFiles {
+    std::uint64_t run_id = 0;  ///< of this process; names its files
+    std::uint64_t file_bytes = 16ULL
+                               << 20U;  ///< a file that would grow beyond gives way to a new one
+    std::uint64_t total_bytes = 1ULL << 30U;  ///< of the folder's logs; the oldest go first
+};
+
+/// Frames to files, in a chain that goes on over them. A frame is written whole or taken back, and
+/// where it cannot be taken back its file is left and the chain goes on in a new one. One thread;
+/// every call may take as long as the disk does.
+class AuditWriter {
+  public:
+    AuditWriter(const Machine& machine, std::unique_ptr<AuditDisk> disk, const AuditFiles& files);
+    ~AuditWriter();
+    AuditWriter(const AuditWriter&) = delete;
+    AuditWriter& operator=(const AuditWriter&) = delete;
+
+    /// Begins a file where none is open.
+    [[nodiscard]] Status open();
+    /// After an error nothing of the frame counts as written; it may be tried again.
+    [[nodiscard]] Status write(FrameKind kind, std::string_view payload);
+    /// What was written survives a loss of power. After an error the file is left.
+    [[nodiscard]] Status sync();
+    [[nodiscard]] bool is_synced() const noexcept { return synced_; }
+
+  private:
+    struct Packer;
+
+    [[nodiscard]] Status begin_file();
+    [[nodiscard]] Status append(FrameKind kind, std::string_view payload);
+    [[nodiscard]] Status put(std::string_view bytes);
+    void leave_file();
+    void remove_oldest();
+    [[nodiscard]] std::uint64_t folder_bytes() const noexcept;
+
+    struct Log {
+        std::string name;
+        std::uint64_t number = 0;
+        std::uint64_t bytes = 0;
+    };
+
+    FileHead head_;
+    std::unique_ptr<AuditDisk> disk_;
+    AuditFiles files_;
+    std::unique_ptr<Packer> packer_;
+    std::vector<Log> logs_;  ///< oldest first; the last one is open when `is_open_`
+    bool listed_ = false;
+    bool is_open_ = false;
+    bool synced_ = true;
+    std::uint64_t sequence_ = 0;
+    std::uint64_t previous_hash_ = 0;
+    std::string frame_;
+};
+
+}  // namespace surefoot::wire

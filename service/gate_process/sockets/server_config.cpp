@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/gate_process/sockets/server_config.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <array>
+
+#include "service/gate_process/protocol/arguments.hpp"
+
+namespace surefoot::wire {
+namespace {
+
+using AddressBytes = std::array<std::uint8_t, sizeof(in6_addr)>;
+
+/// Whether the whole text is an address of the family, and its bytes. inet_pton reads up to a NUL.
+bool parse_address(int family, const std::string& text, AddressBytes& bytes) {
+    return text.find('\0') == std::string::npos &&
+           inet_pton(family, text.c_str(), bytes.data()) == 1;
+}
+
+bool is_address(const std::string& address) {
+    AddressBytes bytes{};
+    return parse_address(AF_INET, address, bytes) || parse_address(AF_INET6, address, bytes);
+}
+
+bool positive(RateLimit limit) {
+    constexpr std::int64_t kMost = 1'000'000;
+    return limit.per_s > 0 && limit.per_s <= kMost && limit.burst > 0 && limit.burst <= kMost;
+}
+
+}  // namespace
+
+bool is_loopback_address(const std::string& address) {
+    constexpr std::uint8_t kNet = 127;
+    constexpr AddressBytes kOne{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
+    AddressBytes bytes{};
+    if (parse_address(AF_INET, address, bytes)) return bytes[0] == kNet;
+    return parse_address(AF_INET6, address, bytes) && bytes == kOne;
+}
+
+std::optional<std::string> problem_of_exposure(const std::string& bind_address,
+                                               const Access& access,
+                                               bool has_tls,
+                                               const std::string& insecure) {
+    if (!insecure.empty() && insecure != kInsecureSentence)
+        return std::string("--insecure: the sentence must be \"") + kInsecureSentence + '"';
+    if (is_loopback_address(bind_address)) return std::nullopt;
+    const std::string reached = "bind_address " + bind_address + " is reached from outside: ";
+    if (!access.has_tokens() || access.guest != Role::none)
+        return reached + "everybody needs a token (--token-file FILE, --guests none)";
+    if (!has_tls && insecure.empty())
+        return reached + "TLS is needed (--certificate FILE --key FILE); without it, give " +
+               "--insecure \"" + kInsecureSentence + '"';
+    return std::nullopt;
+}
+
+std::optional<std::string> ServerConfig::problem_of_address() const {
+    if (!is_address(bind_address))
+        return "bind_address '" + bind_address + "': an IP address is needed, as 127.0.0.1 or ::1";
+    if (auto problem = access.problem()) return problem;
+    if (tls.certificate_file.empty() != tls.key_file.empty())
+        return "TLS needs both files: --certificate FILE and --key FILE";
+    return problem_of_exposure(bind_address, access, !tls.empty(), insecure);
+}
+
+std::optional<std::string> ServerConfig::problem() const {
+    if (auto problem = problem_of_address()) return problem;
+    if (first_connection == 0 || first_connection > kMaxExact / 2)
+        return "first_connection: from 1 to 2^52";
+    if (const char* slots_problem = slots.problem()) return slots_problem;
+    if (accepts_per_tick <= 0 || guest_work_us <= 0 || door_work_us <= 0)
+        return "accepts_per_tick, guest_work_us, door_work_us: above 0";
+    if (tick_ms <= 0 || handshake_ms <= 0 || idle_ms <= 0 || message_ms <= 0 || write_ms <= 0)
+        return "times: above 0 ms; none of them can be switched off";
+    if (max_queue_bytes == 0 || max_read_bytes_per_s == 0)
+        return "max_queue_bytes, max_read_bytes_per_s: above 0";
+    if (!positive(control_frames) || !positive(session.messages) || !positive(session.refusals) ||
+        !positive(session.faults))
+        return "rates and bursts: from 1 to 1000000";
+    return std::nullopt;
+}
+
+}  // namespace surefoot::wire

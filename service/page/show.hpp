@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/page/page_feed.hpp"
+#include "service/page/page_map.hpp"
+#include "service/page/page_messages.hpp"
+
+namespace surefoot::page {
+
+/// What all viewers are shown: the newest frame, and each message of it that is alike for all, made
+/// once. Serials tell what is new; a later one is another number, not always a greater one.
+class Show {
+  public:
+    void introduce(PageHello its_hello, ColourLimits colours);
+    /// Takes the newest frame, where there is one.
+    void look(PageFeed& feed, std::int64_t now_ns);
+
+    [[nodiscard]] std::uint64_t serial() const { return frame_->serial; }
+    [[nodiscard]] const PagePose& pose() const { return frame_->pose; }
+    [[nodiscard]] const std::string& pose_bytes();
+    /// As the newest images have it; empty where there are none.
+    [[nodiscard]] const std::string& jpeg(PageImage which);
+    [[nodiscard]] std::string picture(PageImage which);
+    [[nodiscard]] std::int64_t images_time_ns() const { return images_time_ns_; }
+    [[nodiscard]] std::optional<std::string> layer(std::uint16_t index) const;
+    /// What the ground is; empty before the first look at it.
+    [[nodiscard]] const std::string& stairs() const { return stairs_text_; }
+    /// How it goes now.
+    [[nodiscard]] PageStatus status(std::int64_t now_ns,
+                                    int viewers,
+                                    const std::optional<PlaybackState>& playback) const;
+
+    PageHello hello;
+    PageMap map;
+    std::uint64_t hello_serial = 0;
+    std::uint64_t map_serial = 0;
+    std::uint64_t layers_serial = 0;
+    std::uint64_t images_serial = 0;
+    std::uint64_t stairs_serial = 0;
+
+  private:
+    void take_stairs();
+
+    std::unique_ptr<PageFrame> frame_ = std::make_unique<PageFrame>();
+    ColourLimits colours_;
+    std::int64_t fetched_ns_ = 0;
+    std::string pose_;
+    std::int64_t images_time_ns_ = 0;
+    GreyImage left_;
+    Image<float> disparity_px_;
+    std::array<std::optional<std::string>, kImageCount> jpegs_;
+    std::vector<PageLayer> layers_;
+    stairs::TerrainFeatures stairs_;
+    std::string stairs_text_;
+};
+
+}  // namespace surefoot::page

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "surefoot/calibration/boards/board.hpp"
+#include "surefoot/core/views.hpp"
+
+namespace surefoot::calibration {
+
+/// The image as a smooth function of the place x on the board around one point, to second order:
+/// pixel = centre + J x + (x' H_u x, x' H_v x) / 2.
+struct LocalMap {
+    Eigen::Vector2d pixel;
+    Eigen::Matrix2d J_px_m;
+    Eigen::Matrix2d H_u;
+    Eigen::Matrix2d H_v;
+    double rms_px = 0.0;  ///< of the points that it was fitted to
+};
+
+/// Least squares over pairs (place on the board relative to the expansion point [m], pixel); at
+/// least six that determine it, else nothing.
+[[nodiscard]] std::optional<LocalMap> fit_local_map(const std::vector<Eigen::Vector2d>& places_m,
+                                                    const std::vector<Eigen::Vector2d>& pixels);
+
+/// Points of a whole grid, found in any order that runs along its rows and columns, in the order of
+/// Board::points_m as detect_board promises it; nothing where they do not look like the board.
+[[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> ordered_points(
+    const Board& board,
+    const std::vector<Eigen::Vector2d>& found,
+    ImageView<const std::uint8_t> image);
+
+}  // namespace surefoot::calibration

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/calibration/boards/corner_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "surefoot/core/nearest_pixel.hpp"
+
+namespace surefoot::calibration {
+namespace {
+
+/// Of the step to the next corner: the next edge is as far again.
+constexpr double kWindow = 0.5;
+/// Beyond it light and bends change, and noise is small enough.
+constexpr double kMostRadius_px = 8.0;
+constexpr double kFirstBlur_px = 0.8;
+constexpr double kLeastBlur_px = 0.3;  ///< of the area of a pixel alone
+constexpr double kMostBlur_px = 5.0;
+constexpr int kParameters = 7;
+constexpr int kMostSteps = 30;
+constexpr double kSettled_px = 1e-4;
+/// Half of black beside white; noise alone has less.
+constexpr double kLeastContrast_dn = 4.0;
+/// Rms of what the model does not explain, of the contrast: an edge alone, half a blot and a bright
+/// reflection leave more, sharpened or noisy pictures of corners a tenth.
+constexpr double kMostMisfit = 0.3;
+/// A board that moves by several squares' widths while the shutter is open still shows edges along
+/// its way, and corners anywhere on them. Corners in noise of half their contrast are known better.
+constexpr double kMostSpread_px = 0.2;
+
+using Vector7 = Eigen::Matrix<double, kParameters, 1>;
+using Matrix7 = Eigen::Matrix<double, kParameters, kParameters>;
+
+/// Order of the parameters.
+constexpr int kRowAngle = 2;  // after the place
+constexpr int kColumnAngle = 3;
+constexpr int kLogBlur = 4;
+constexpr int kMean = 5;
+constexpr int kContrast = 6;
+
+struct Sample {
+    Eigen::Vector2d pixel;
+    double value_dn;
+};
+
+std::vector<Sample> samples_of(ImageView<const std::uint8_t> image, const CornerGuess& guess) {
+    Eigen::Matrix2d steps;
+    steps << guess.along_row_px, guess.along_column_px;
+    std::vector<Sample> samples;
+    if (!(std::abs(steps.determinant()) > 1.0)) return samples;
+    const Eigen::Matrix2d to_board = steps.inverse();
+    constexpr int kReach = 9;
+    static_assert(kReach > kMostRadius_px);
+    const auto near =
+        nearest_pixel(guess.pixel.x(), guess.pixel.y(), image.width, image.height, -kReach);
+    if (!near) return samples;  // no pixel of the image is within reach
+    const int v_end = std::min(image.height, near->v + kReach + 1);
+    const int u_end = std::min(image.width, near->u + kReach + 1);
+    samples.reserve(static_cast<std::size_t>((2 * kReach + 1) * (2 * kReach + 1)));
+    for (int v = std::max(0, near->v - kReach); v < v_end; ++v) {
+        for (int u = std::max(0, near->u - kReach); u < u_end; ++u) {
+            const Eigen::Vector2d pixel(u, v);
+            const Eigen::Vector2d from_px = pixel - guess.pixel;
+            const Eigen::Vector2d share = (to_board * from_px).cwiseAbs();
+            if (share.maxCoeff() > kWindow || from_px.norm() > kMostRadius_px) continue;
+            samples.push_back({pixel, static_cast<double>(image.row(v)[u])});
+        }
+    }
+    return samples;
+}
+
+/// One edge through the corner at a sample.
+struct Edge {
+    double step = 0.0;          ///< -1 on one side, 1 on the other
+    double per_px = 0.0;        ///< of the distance from the line
+    double distance_px = 0.0;   ///< from the line
+    double per_rad = 0.0;       ///< distance, per turn of the line
+    Eigen::Vector2d per_place;  ///< distance, per move of the corner
+};
+
+Edge edge_at(const Eigen::Vector2d& from_px, double angle_rad, double bend_per_px, double blur_px) {
+    const Eigen::Vector2d along(std::cos(angle_rad), std::sin(angle_rad));
+    const Eigen::Vector2d normal(-along.y(), along.x());
+    const double t = from_px.dot(along);
+    const double n = from_px.dot(normal);
+    Edge edge;
+    edge.distance_px = n - 0.5 * bend_per_px * t * t;
+    edge.per_rad = -t - bend_per_px * t * n;
+    edge.per_place = bend_per_px * t * along - normal;
+    const double scaled = edge.distance_px / blur_px;
+    edge.step = std::erf(scaled / std::numbers::sqrt2);
+    edge.per_px = std::sqrt(2.0 / std::numbers::pi) / blur_px * std::exp(-0.5 * scaled * scaled);
+    return edge;
+}
+
+/// Normal equations of the fit at some parameters.
+struct System {
+    double cost = 0.0;
+    Matrix7 JtJ = Matrix7::Zero();
+    Vector7 Jtr = Vector7::Zero();
+};
+
+System system_at(const std::vector<Sample>& samples, const CornerGuess& guess, const Vector7& p) {
+    System system;
+    const double blur_px = std::exp(p[kLogBlur]);
+    for (const Sample& sample : samples) {
+        const Eigen::Vector2d from_px = sample.pixel - p.head<2>();
+        const Edge row = edge_at(from_px, p[kRowAngle], guess.row_bend_per_px, blur_px);
+        const Edge column = edge_at(from_px, p[kColumnAngle], guess.column_bend_per_px, blur_px);
+        const double row_slope = p[kContrast] * row.per_px * column.step;
+        const double column_slope = p[kContrast] * column.per_px * row.step;
+        Vector7 J;
+        J.head<2>() = row_slope * row.per_place + column_slope * column.per_place;
+        J[kRowAngle] = row_slope * row.per_rad;
+        J[kColumnAngle] = column_slope * column.per_rad;
+        J[kLogBlur] = -row_slope * row.distance_px - column_slope * column.distance_px;
+        J[kMean] = 1.0;
+        J[kContrast] = row.step * column.step;
+        const double residual = sample.value_dn - p[kMean] - p[kContrast] * row.step * column.step;
+        system.cost += residual * residual;
+        system.JtJ += J * J.transpose();
+        system.Jtr += residual * J;
+    }
+    return system;
+}
+
+/// Mean and contrast are linear: they follow from the pixels where the edges are guessed.
+void start_light(const std::vector<Sample>& samples, const CornerGuess& guess, Vector7& p) {
+    p[kMean] = 0.0;
+    p[kContrast] = 0.0;
+    const System system = system_at(samples, guess, p);
+    p.tail<2>() = system.JtJ.bottomRightCorner<2, 2>().ldlt().solve(system.Jtr.tail<2>());
+}
+
+double angle_of(const Eigen::Vector2d& direction) {
+    return std::atan2(direction.y(), direction.x());
+}
+
+/// Where the blur would leave its limits it is no parameter: the others must settle without it.
+void hold_blur_at_limit(const Vector7& p, System& system) {
+    const double pull = system.Jtr[kLogBlur];
+    const bool held =
+        pull < 0.0 ? p[kLogBlur] <= std::log(kLeastBlur_px) : p[kLogBlur] >= std::log(kMostBlur_px);
+    if (!held) return;
+    system.JtJ.row(kLogBlur).setZero();
+    system.JtJ.col(kLogBlur).setZero();
+    system.JtJ(kLogBlur, kLogBlur) = 1.0;
+    system.Jtr[kLogBlur] = 0.0;
+}
+
+/// Levenberg and Marquardt. The equations where it ends, or nothing where it does not settle.
+std::optional<System> settle(const std::vector<Sample>& samples,
+                             const CornerGuess& guess,
+                             Vector7& p) {
+    System system = system_at(samples, guess, p);
+    double damping = 1e-3;
+    for (int step = 0; step < kMostSteps; ++step) {
+        hold_blur_at_limit(p, system);
+        Matrix7 damped = system.JtJ;
+        damped.diagonal() *= 1.0 + damping;
+        const Vector7 change = damped.ldlt().solve(system.Jtr);
+        Vector7 next = p + change;
+        next[kLogBlur] =
+            std::clamp(next[kLogBlur], std::log(kLeastBlur_px), std::log(kMostBlur_px));
+        const System there = system_at(samples, guess, next);
+        const bool settled = change.head<2>().norm() < kSettled_px;
+        if (there.cost <= system.cost) {
+            p = next;
+            system = there;
+            damping *= 0.1;
+        } else {
+            damping *= 10.0;  // the steps become shorter, and end where nothing is better
+        }
+        if (settled) return system;
+    }
+    return std::nullopt;
+}
+
+/// Standard deviation of the place in the direction in which the pixels leave it most open.
+double spread_px(const System& system, double misfit_dn) {
+    Matrix7 damped = system.JtJ;
+    damped.diagonal() *= 1.0 + 1e-9;
+    const Eigen::LDLT<Matrix7> solver(damped);
+    const Eigen::Matrix<double, kParameters, 2> place =
+        Eigen::Matrix<double, kParameters, kParameters>::Identity().leftCols<2>();
+    const Eigen::Matrix2d inverse = solver.solve(place).topRows<2>();
+    const double middle = 0.5 * inverse.trace();
+    const double apart =
+        std::hypot(0.5 * (inverse(0, 0) - inverse(1, 1)), 0.5 * (inverse(0, 1) + inverse(1, 0)));
+    return misfit_dn * std::sqrt(std::max(0.0, middle + apart));
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector2d> fit_corner(ImageView<const std::uint8_t> image,
+                                          const CornerGuess& guess) {
+    const std::vector<Sample> samples = samples_of(image, guess);
+    if (samples.size() < 2 * kParameters) return std::nullopt;
+    Vector7 p;
+    p << guess.pixel, angle_of(guess.along_row_px), angle_of(guess.along_column_px),
+        std::log(kFirstBlur_px), 0.0, 0.0;
+    start_light(samples, guess, p);
+    const std::optional<System> left = settle(samples, guess, p);
+    if (!left) return std::nullopt;
+    const double misfit_dn = std::sqrt(left->cost / static_cast<double>(samples.size()));
+    const double contrast_dn = std::abs(p[kContrast]);
+    const bool clear = contrast_dn >= kLeastContrast_dn && misfit_dn <= kMostMisfit * contrast_dn &&
+                       spread_px(*left, misfit_dn) <= kMostSpread_px;
+    return clear ? std::optional(Eigen::Vector2d(p.head<2>())) : std::nullopt;
+}
+
+}  // namespace surefoot::calibration

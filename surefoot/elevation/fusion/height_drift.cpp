@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/elevation/fusion/height_drift.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "surefoot/core/checked_index.hpp"
+
+namespace surefoot::elevation {
+namespace {
+
+/// Offsets beyond this are other surfaces, whatever the motion.
+constexpr double kMost_m = 0.1;
+constexpr double kBin_m = 1e-4;  ///< a tenth of what a snapshot resolves
+constexpr int kBins = 2 * 1000 + 1;
+constexpr int kTileCells = 8;
+constexpr int kLeastOfTile = 4;          ///< of the sixteen that are asked
+constexpr double kAgreeingSigmas = 2.5;  ///< as the gate of the fusion
+/// Variance of a median over that of a mean, for normal noise: pi / 2.
+constexpr double kMedianLoss = 1.5708;
+constexpr double kSlopeChi2 = 13.8;  ///< 2 degrees of freedom, 0.1 %
+/// A tilt about the camera that makes this share of the offset where the cells lie spoils it.
+constexpr double kTiltShare = 0.25;
+constexpr std::uint32_t kEveryStep = std::numeric_limits<std::uint32_t>::max();
+constexpr double kFrameShare = 0.5;  ///< the same for what lately aligned ground is off by
+
+int bin_of(double offset_m) {
+    const double bin = std::floor((offset_m + kMost_m) / kBin_m + 0.5);
+    return std::clamp(saturated_integer<int>(bin), 0, kBins - 1);
+}
+
+int tiles_along(int cells) {
+    return (cells + kTileCells - 1) / kTileCells;
+}
+
+/// What the motion added to the height since the residual was seen, at the pace before.
+double later_variance_m2(const HeightResidual& residual, std::uint32_t motions) {
+    const auto before = static_cast<double>(residual.seen_step - residual.step);
+    const auto since = static_cast<double>(motions - residual.seen_step);
+    return before > 0.0 ? static_cast<double>(residual.motion_var_m2) * since / before : 0.0;
+}
+
+bool agrees(const HeightResidual& residual, double offset_m) {
+    const double apart_m = static_cast<double>(residual.offset_m) - offset_m;
+    return apart_m * apart_m <=
+           kAgreeingSigmas * kAgreeingSigmas * static_cast<double>(residual.var_m2);
+}
+
+}  // namespace
+
+void HeightDriftConfig::describe(ConfigVisitor& visitor) {
+    visitor.boolean("enabled",
+                    enabled,
+                    "move old parts of the map by the height that the body drifted (keys below)");
+    visitor.integer(
+        "min_motions",
+        min_motions,
+        1,
+        100000,
+        "cells are old when they were last aligned this many uncertain motions ago ...");
+    visitor.number("min_drift_m",
+                   min_drift_m,
+                   0.0,
+                   1.0,
+                   "... and these may have moved them by this (1 sigma)");
+    visitor.number("level_m",
+                   level_m,
+                   0.0,
+                   1.0,
+                   "cells count where the map two cells beside them differs by no more");
+    visitor.integer("kept_motions",
+                    kept_motions,
+                    0,
+                    100000,
+                    "what frames say of old cells is kept for so many uncertain motions");
+    visitor.integer("min_cells",
+                    min_cells,
+                    1,
+                    4096,
+                    "old cells that an offset needs, every fourth being asked");
+    visitor.integer(
+        "min_tiles", min_tiles, 4, 1000000, "squares of 8 x 8 cells that an offset needs");
+    visitor.number("min_spread_m",
+                   min_spread_m,
+                   0.0,
+                   100.0,
+                   "standard deviation of their places along the longer axis");
+    visitor.number("agreeing_share",
+                   agreeing_share,
+                   0.5,
+                   1.0,
+                   "share of the old cells that have the offset within their noise");
+    visitor.number("significance_sigmas",
+                   significance_sigmas,
+                   0.1,
+                   100.0,
+                   "an offset that stands out this far moves the map [sigma of the offset]");
+    visitor.number("motion_sigmas",
+                   motion_sigmas,
+                   0.0,
+                   100.0,
+                   "an offset beyond this is no drift [sigma of the motion since]");
+    visitor.number("depth_scale_sigma",
+                   depth_scale_sigma,
+                   0.0,
+                   1.0,
+                   "relative error that all depths of a frame share");
+}
+
+std::string_view to_string(HeightDriftReason reason) noexcept {
+    switch (reason) {
+        case HeightDriftReason::off: return "off";
+        case HeightDriftReason::no_old_ground: return "no_old_ground";
+        case HeightDriftReason::few_cells: return "few_cells";
+        case HeightDriftReason::no_common_offset: return "no_common_offset";
+        case HeightDriftReason::not_significant: return "not_significant";
+        case HeightDriftReason::tilted: return "tilted";
+        case HeightDriftReason::frame_is_off: return "frame_is_off";
+        case HeightDriftReason::beyond_motion: return "beyond_motion";
+        case HeightDriftReason::moved: return "moved";
+    }
+    return "unknown";
+}
+
+bool HeightDrift::allows(double offset_m, double motion_var_m2) const noexcept {
+    return offset_m * offset_m <= config_.motion_sigmas * config_.motion_sigmas * motion_var_m2;
+}
+
+void HeightDrift::reserve(const grid::GridGeometry& geometry) {
+    steps_.reserve(HeightResiduals::kMostOld);
+    weights_.reserve(kBins);
+    tiles_.reserve(static_cast<std::size_t>(tiles_along(geometry.nx)) *
+                   static_cast<std::size_t>(tiles_along(geometry.ny)));
+}
+
+std::uint32_t HeightDrift::middle_step(std::span<const HeightResidual> old) {
+    steps_.clear();
+    steps_.reserve(old.size());
+    for (const HeightResidual& residual : old) steps_.push_back(residual.step);
+    const auto middle = steps_.begin() + static_cast<std::ptrdiff_t>((steps_.size() - 1) / 2);
+    std::nth_element(steps_.begin(), middle, steps_.end());
+    return *middle;
+}
+
+double HeightDrift::median_m(std::span<const HeightResidual> residuals, std::uint32_t last_step) {
+    weights_.assign(kBins, 0.0);
+    double sum = 0.0;
+    for (const HeightResidual& residual : residuals) {
+        if (residual.step > last_step) continue;
+        const double weight = 1.0 / static_cast<double>(residual.var_m2);
+        const int bin_of_cell = bin_of(static_cast<double>(residual.offset_m));
+        weights_[static_cast<std::size_t>(bin_of_cell)] += weight;
+        sum += weight;
+    }
+    double below = 0.0;
+    int bin = 0;
+    for (; bin < kBins - 1; ++bin) {
+        below += weights_[static_cast<std::size_t>(bin)];
+        if (below >= 0.5 * sum) break;
+    }
+    return bin * kBin_m - kMost_m;
+}
+
+void HeightDrift::add_agreeing(const HeightResidual& residual, const grid::GridGeometry& geometry) {
+    const auto cell = geometry.cell_at(residual.at_m.x(), residual.at_m.y());
+    if (!cell) return;  // the window has left it behind
+    Tile& tile = tiles_[static_cast<std::size_t>(cell->iy / kTileCells * tiles_along(geometry.nx) +
+                                                 cell->ix / kTileCells)];
+    ++tile.cells;
+    tile.sum_m += static_cast<double>(residual.offset_m);
+    tile.sum_from_m += residual.from_camera_m.cast<double>();
+}
+
+HeightDrift::Field HeightDrift::field_of_tiles() const {
+    Field field;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    for (const Tile& tile : tiles_) {
+        if (tile.cells < kLeastOfTile) continue;
+        const double n = tile.cells;
+        const Eigen::Vector3d point(
+            tile.sum_from_m.x() / n, tile.sum_from_m.y() / n, tile.sum_m / n);
+        ++field.tiles;
+        sum += point;
+        squares += point * point.transpose();
+    }
+    if (field.tiles < 4) return field;
+    const double n = field.tiles;
+    const Eigen::Matrix3d about_mean = squares - sum * sum.transpose() / n;
+    field.mean_m = sum.head<2>() / n;
+    field.offset_m = sum.z() / n;
+    field.scatter_m2 = std::max(0.0, about_mean(2, 2) / (n - 1.0));
+    const Eigen::Matrix2d places = about_mean.topLeftCorner<2, 2>();
+    const double half = 0.5 * (places(0, 0) - places(1, 1));
+    const double longer =
+        0.5 * (places(0, 0) + places(1, 1)) + std::sqrt(half * half + places(0, 1) * places(0, 1));
+    field.spread_m = std::sqrt(longer / n);
+    const double det = places(0, 0) * places(1, 1) - places(0, 1) * places(0, 1);
+    if (!(det > 0.0)) return field;
+    // Least squares for offset = mean + slope (place - mean place).
+    const Eigen::Vector2d leaning = about_mean.topRightCorner<2, 1>();
+    field.slope = {(places(1, 1) * leaning.x() - places(0, 1) * leaning.y()) / det,
+                   (places(0, 0) * leaning.y() - places(0, 1) * leaning.x()) / det};
+    const double explained_m2 = field.slope.dot(leaning);
+    const double rest_m2 = std::max(about_mean(2, 2) - explained_m2, 0.0) / (n - 3.0);
+    field.slope_chi2 = explained_m2 / std::max(rest_m2, kBin_m * kBin_m);
+    return field;
+}
+
+HeightDrift::Evidence HeightDrift::collect(std::span<const HeightResidual> residuals,
+                                           double offset_m,
+                                           std::uint32_t last_step,
+                                           const Frame& frame) {
+    const int tiles = tiles_along(frame.geometry.nx) * tiles_along(frame.geometry.ny);
+    tiles_.assign(static_cast<std::size_t>(tiles), {});
+    Evidence evidence;
+    for (const HeightResidual& residual : residuals) {
+        if (residual.step > last_step) continue;
+        ++evidence.asked;
+        if (!agrees(residual, offset_m)) continue;
+        ++evidence.agreeing;
+        add_agreeing(residual, frame.geometry);
+        evidence.ground_slope += residual.slope.cast<double>();
+        evidence.drift_m += static_cast<double>(residual.drift_m);
+        evidence.motion_var_m2 += static_cast<double>(residual.motion_var_m2);
+        evidence.later_var_m2 += later_variance_m2(residual, frame.motions);
+        evidence.height_m += static_cast<double>(residual.height_m);
+    }
+    if (evidence.agreeing == 0) return evidence;
+    const auto n = static_cast<double>(evidence.agreeing);
+    evidence.ground_slope /= n;
+    evidence.drift_m /= n;
+    evidence.motion_var_m2 /= n;
+    evidence.later_var_m2 /= n;
+    evidence.height_m /= n;
+    evidence.field = field_of_tiles();
+    return evidence;
+}
+
+double HeightDrift::variance_m2(const Evidence& evidence, const Frame& frame) const {
+    const Field& field = evidence.field;
+    if (field.tiles == 0) return 0.0;
+    const auto square = [](double value) { return value * value; };
+    const double scale_m = config_.depth_scale_sigma * (frame.camera_z_m - evidence.height_m);
+    return kMedianLoss * field.scatter_m2 / field.tiles +  //
+           2.0 * square(frame.systematic_sigma_m) +
+           square(frame.tilt_sigma_rad) * field.mean_m.squaredNorm() + square(scale_m) +
+           evidence.later_var_m2 + evidence.ground_slope.squaredNorm() * square(evidence.drift_m);
+}
+
+double HeightDrift::frame_error_m(std::span<const HeightResidual> recent,
+                                  const Eigen::Vector2d& at_m,
+                                  const Frame& frame) {
+    if (recent.size() < static_cast<std::size_t>(config_.min_cells)) return 0.0;
+    const Field field = collect(recent, median_m(recent, kEveryStep), kEveryStep, frame).field;
+    if (field.tiles < config_.min_tiles) return 0.0;
+    return field.offset_m + field.slope.dot(at_m - field.mean_m);
+}
+
+HeightDriftReason HeightDrift::reason_of(const HeightDriftReport& report,
+                                         const Evidence& evidence,
+                                         std::span<const HeightResidual> recent,
+                                         const Frame& frame) {
+    using enum HeightDriftReason;
+    if (evidence.asked < config_.min_cells) return few_cells;
+    const auto asked = static_cast<double>(evidence.asked);
+    if (static_cast<double>(evidence.agreeing) < config_.agreeing_share * asked)
+        return no_common_offset;
+    const Field& field = evidence.field;
+    if (field.tiles < config_.min_tiles || !(field.spread_m >= config_.min_spread_m))
+        return few_cells;
+    const double offset_m = std::abs(report.offset_m);
+    if (!(offset_m >= config_.significance_sigmas * report.sigma_m) || offset_m < kBin_m)
+        return not_significant;
+    const double leaning_m = std::abs(field.slope.dot(field.mean_m));
+    if (field.slope_chi2 > kSlopeChi2 && leaning_m >= kTiltShare * offset_m) return tilted;
+    if (std::abs(frame_error_m(recent, field.mean_m, frame)) >= kFrameShare * offset_m)
+        return frame_is_off;
+    return allows(offset_m, evidence.motion_var_m2) ? moved : beyond_motion;
+}
+
+HeightDrift::Verdict HeightDrift::judge(std::span<const HeightResidual> old,
+                                        std::span<const HeightResidual> recent,
+                                        const Frame& frame) {
+    Verdict verdict;
+    HeightDriftReport& report = verdict.report;
+    if (old.empty()) {
+        report.reason = HeightDriftReason::no_old_ground;
+        return verdict;
+    }
+    verdict.last_step = middle_step(old);
+    report.offset_m = median_m(old, verdict.last_step);
+    const Evidence evidence = collect(old, report.offset_m, verdict.last_step, frame);
+    report.cells = evidence.agreeing;
+    report.sigma_m = std::sqrt(variance_m2(evidence, frame));
+    report.reason = reason_of(report, evidence, recent, frame);
+    return verdict;
+}
+
+}  // namespace surefoot::elevation

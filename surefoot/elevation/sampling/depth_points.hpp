@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/report.hpp"
+#include "surefoot/elevation/elevation_config.hpp"
+#include "surefoot/elevation/fusion/cell_groups.hpp"
+
+namespace surefoot::elevation {
+
+/// Turns the trusted pixels of a depth image into points over a grid: pixel filters, range, height
+/// cut, height with its variance. Replaces the contents of `points`; counts what was left out.
+/// `grid_origin_m` is the corner of the grid in odom that x and y of the points count from.
+void points_from_depth(const ElevationConfig& config,
+                       const camera::RectifiedRig& rig,
+                       const Pose& T_odom_body,
+                       const camera::DepthImage& depth,
+                       const Eigen::Vector2d& grid_origin_m,
+                       std::vector<GridPoint>& points,
+                       FusionCounts& counts);
+
+}  // namespace surefoot::elevation

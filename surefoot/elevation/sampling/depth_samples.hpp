@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/report.hpp"
+#include "surefoot/elevation/elevation_config.hpp"
+#include "surefoot/elevation/fusion/cell_groups.hpp"
+#include "surefoot/elevation/sampling/depth_rows.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+
+namespace surefoot::elevation {
+
+/// The way from a depth image to samples in cells, in floats and registers: what
+/// `points_from_depth` and `samples_from_points` do for the sensor model `matcher`, without points
+/// in between. The same bytes for every executor and instruction set. Not thread-safe.
+class DepthSampler {
+  public:
+    /// Other sensor models, and filters that look at a cloud as a whole, need points.
+    [[nodiscard]] static bool can(const ElevationConfig& config) noexcept;
+
+    /// Adds what was left out to `counts`.
+    void sample(const ElevationConfig& config,
+                const camera::RectifiedRig& rig,
+                const Pose& T_odom_body,
+                const camera::DepthImage& depth,
+                const grid::GridGeometry& geometry,
+                Executor& executor,
+                CellSamples& samples,
+                FusionCounts& counts);
+
+  private:
+    static constexpr int kBlockRows = 16;
+
+    void sample_block(int block, const camera::DepthImage& depth, CellSamples& samples);
+    [[nodiscard]] DepthRow row_at(int v, const camera::DepthImage& depth, float* padded) const;
+
+    DepthFrame frame_;
+    int reach_px_ = 0;
+    double fy_px_ = 1.0;
+    double cy_px_ = 0.0;
+    Eigen::Matrix3d R_odom_camera_ = Eigen::Matrix3d::Identity();
+    std::vector<float> nothing_px_;  ///< a row of NaN
+    std::vector<float> padded_px_;   ///< a row of disparities between NaN, per block
+    std::vector<RowCounts> counts_;  ///< per block
+};
+
+}  // namespace surefoot::elevation

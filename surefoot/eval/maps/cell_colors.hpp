@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "surefoot/eval/report/picture.hpp"
+
+namespace surefoot::eval {
+
+/// Colour of each known cell on that scale; with hill shading where the style wants it.
+[[nodiscard]] Image<std::optional<Rgb8>> cell_colors(const grid::GridGeometry& geometry,
+                                                     const grid::Layer& layer,
+                                                     const LayerStyle& style,
+                                                     const ColorScale& scale);
+
+}  // namespace surefoot::eval

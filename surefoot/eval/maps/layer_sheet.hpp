@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "surefoot/eval/report/picture.hpp"
+
+namespace surefoot::eval {
+
+/// One layer of a sheet, in the colours of its style; the title stands over it.
+struct SheetLayer {
+    grid::Layer values;
+    LayerStyle style;
+};
+
+/// The style of a layer of the map or of its rating by its name in files ("variance" is shown as
+/// one sigma in mm and expects one in m); any other name is a plain number.
+[[nodiscard]] LayerStyle style_of_layer(std::string_view name, double safe_threshold);
+
+/// Layers of one map side by side, `columns` in a row, each with its own legend: x forward is up, y
+/// left is left, unknown is hatched grey. Shown is what is known in any of them, and the way there.
+/// Empty without a layer.
+[[nodiscard]] Picture render_layer_sheet(const grid::GridGeometry& geometry,
+                                         const std::vector<SheetLayer>& layers,
+                                         int columns,
+                                         const FigureText& text,
+                                         const Overlays& overlays);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/pose.hpp"
+#include "surefoot/eval/report/canvas.hpp"
+#include "surefoot/eval/report/colormap.hpp"
+#include "surefoot/eval/report/figure.hpp"
+
+namespace surefoot::eval {
+
+/// The ground seen from above: x forward is up, y left is left.
+struct MapView {
+    RectPx plot;
+    double x_max_m = 0.0;  ///< at the upper border
+    double y_max_m = 0.0;  ///< at the left border
+    double px_per_m = 1.0;
+
+    [[nodiscard]] PointPx to_px(const Eigen::Vector2d& p_m) const {
+        return {plot.left + (y_max_m - p_m.y()) * px_per_m,
+                plot.top + (x_max_m - p_m.x()) * px_per_m};
+    }
+    [[nodiscard]] Eigen::Vector2d from_px(PointPx p) const {
+        return {x_max_m - (p.v - plot.top) / px_per_m, y_max_m - (p.u - plot.left) / px_per_m};
+    }
+    [[nodiscard]] double x_min_m() const { return x_max_m - plot.height / px_per_m; }
+    [[nodiscard]] double y_min_m() const { return y_max_m - plot.width / px_per_m; }
+};
+
+/// What is drawn over a map; coordinates of the map's frame [m].
+struct Outline {
+    std::vector<Eigen::Vector2d> points_m;
+    Rgb8 color = palette::kInk;
+    std::string label;  ///< in the key; outlines with the same label share one entry
+};
+/// A line with a white edge.
+struct Stroke {
+    std::vector<Eigen::Vector2d> points_m;
+    Rgb8 color = palette::kInk;
+    int width_px = 4;
+    /// As of outlines; what follows a line break stands in a row of its own.
+    std::string label = {};
+    bool ticks = false;  ///< on the right-hand side, as maps show where the ground falls
+    bool arrow = false;  ///< at the last point
+};
+/// A word of a few letters on a disc, as the number of a step. One that would cover an earlier one
+/// is left out.
+struct Badge {
+    Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+    std::string text;
+    Rgb8 color = palette::kInk;
+};
+/// Small squares at places, under all lines.
+struct Dots {
+    std::vector<Eigen::Vector2d> points_m;
+    Rgb8 color = palette::kInk;
+    std::string label;  ///< in the key, where there are points
+};
+struct Mark {
+    Eigen::Vector2d point_m = Eigen::Vector2d::Zero();
+    std::string label;  ///< in the key: words over the map hide what they are about
+};
+struct Overlays {
+    std::optional<Pose> T_odom_body;
+    std::vector<Outline> outlines;  ///< footprints
+    std::vector<Eigen::Vector2d> trajectory_m;
+    std::vector<Stroke> strokes;
+    std::vector<Badge> badges;
+    std::vector<Mark> marks;
+    Dots dots;
+    bool scale_bar = true;
+    /// Length of the arrow for the body; nothing: 0.35 m, but not too small to be seen.
+    std::optional<double> body_px = {};
+};
+
+/// Ticks and names of the two axes around the plot.
+void draw_axes(Picture& picture, const MapView& view);
+/// A bar of 1 m, or of the round length that fits the plot better, in its lower left corner; a plot
+/// too small for it gets none.
+void draw_scale_bar(Picture& picture, const MapView& view);
+/// Draws inside the plot only.
+void draw_overlays(Picture& picture, const MapView& view, const Overlays& overlays);
+[[nodiscard]] std::vector<KeyEntry> key_of(const Overlays& overlays);
+
+/// Draws `points_m` as a line.
+void draw_path(Picture& picture,
+               const MapView& view,
+               const std::vector<Eigen::Vector2d>& points_m,
+               Rgb8 color,
+               int width_px);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/views.hpp"
+#include "surefoot/eval/report/colormap.hpp"
+
+namespace surefoot::eval {
+
+using Picture = Image<Rgb8>;
+
+/// A place on a picture [px]; pixel (u, v) covers [u, u + 1) x [v, v + 1).
+struct PointPx {
+    double u = 0.0;
+    double v = 0.0;
+};
+struct RectPx {
+    int left = 0;
+    int top = 0;
+    int width = 0;
+    int height = 0;
+    [[nodiscard]] int right() const noexcept { return left + width; }
+    [[nodiscard]] int bottom() const noexcept { return top + height; }
+};
+
+enum class TextAnchor : std::uint8_t { left, centre, right };
+struct TextStyle {
+    double cap_height_px = 14.0;  ///< height of a capital letter
+    Rgb8 color = palette::kInk;
+    TextAnchor anchor = TextAnchor::left;
+    bool bold = false;
+    bool upward = false;  ///< turned by 90 deg, read from below
+    bool halo = false;    ///< white edge, for text on a map
+};
+
+/// The whole number nearest to a place; those beyond all pictures become one that is 10^9 px away,
+/// and NaN becomes 0.
+[[nodiscard]] int nearest_px(double place_px) noexcept;
+
+/// Drawing. Everything is clipped at the picture's border and anti-aliased. Text is printable
+/// ASCII; any other character shows as '?'.
+[[nodiscard]] double text_width_px(const std::string& text, const TextStyle& style);
+/// `at` is the anchor in the middle of the capital letters' height.
+void draw_text(Picture& picture, PointPx at, const std::string& text, const TextStyle& style);
+void draw_line(Picture& picture, PointPx from, PointPx to, int width_px, Rgb8 color);
+void draw_polyline(Picture& picture,
+                   std::span<const PointPx> points,
+                   int width_px,
+                   Rgb8 color,
+                   bool closed = false);
+void fill_polygon(Picture& picture, std::span<const PointPx> points, Rgb8 color);
+void draw_circle(Picture& picture, PointPx center, double radius_px, int width_px, Rgb8 color);
+void fill_circle(Picture& picture, PointPx center, double radius_px, Rgb8 color);
+/// `opacity` 1 covers what is below.
+void fill_rect(Picture& picture, const RectPx& rect, Rgb8 color, double opacity = 1.0);
+void draw_rect(Picture& picture, const RectPx& rect, int width_px, Rgb8 color);
+/// Copies `source` with its top left corner at (left, top).
+void paste(Picture& picture, const Picture& source, int left, int top);
+
+/// Colour of unknown at a pixel: light grey with diagonal stripes, seen as "no value" in any
+/// palette.
+[[nodiscard]] Rgb8 hatched_grey(int u, int v) noexcept;
+
+/// PNG file of the picture as bytes; none for an empty picture. Same picture, same bytes.
+[[nodiscard]] std::vector<std::uint8_t> encode_png(const Picture& picture);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/eval/report/error_histogram.hpp"
+
+namespace surefoot::eval {
+
+/// Figures of signed errors, in the unit of the errors; every figure but count is NaN without
+/// errors. Percentiles interpolate linearly between the two nearest ranks.
+struct ErrorFigures {
+    double median_abs = 0.0;
+    double p90_abs = 0.0;
+    double p99_abs = 0.0;
+    double max_abs = 0.0;
+    double mean = 0.0;
+    double rmse = 0.0;
+    std::int64_t count = 0;
+};
+
+/// NaN errors are left out.
+[[nodiscard]] ErrorFigures error_figures(std::span<const float> errors);
+
+/// The errors whose key is in [from, to); the last bin holds its upper end too.
+struct ErrorBin {
+    double from = 0.0;
+    double to = 0.0;
+    ErrorFigures errors;
+    ErrorHistogram histogram;  ///< of the same errors, to be added up over many maps
+};
+
+/// Errors sorted into bins by a second quantity: by distance, by image column. `keys` has one key
+/// per error; `edges` ascends strictly and makes edges.size() - 1 bins, empty ones included. An
+/// error that is NaN, or whose key is NaN or outside all bins, is left out.
+[[nodiscard]] std::vector<ErrorBin> by_bins(std::span<const float> errors,
+                                            std::span<const float> keys,
+                                            std::span<const double> edges);
+
+/// How often the truth lies within one, two and three sigma: shares 0..1, NaN without errors. An
+/// honest normal sigma gives 0.683, 0.954, 0.997.
+struct SigmaCoverage {
+    double within_1_sigma = 0.0;
+    double within_2_sigma = 0.0;
+    double within_3_sigma = 0.0;
+    std::int64_t count = 0;
+};
+
+/// Share of |error| <= k sigma. Left out: errors that are NaN, and sigmas that are not finite or
+/// negative. A sigma of 0 counts, and covers an error of 0 alone.
+[[nodiscard]] SigmaCoverage sigma_coverage(std::span<const float> errors,
+                                           std::span<const float> sigmas);
+
+}  // namespace surefoot::eval

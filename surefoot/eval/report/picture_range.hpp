@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "surefoot/eval/report/figure.hpp"
+#include "surefoot/eval/report/picture.hpp"
+
+namespace surefoot::eval {
+
+/// At least one finite value.
+[[nodiscard]] bool any_known(const Image<float>& values);
+
+/// The legend of `values` drawn in a style: range, clipping, words.
+[[nodiscard]] ColorBar color_bar_of(const Image<float>& values, const LayerStyle& style);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "surefoot/eval/trajectory/trajectory.hpp"
+
+namespace surefoot::eval {
+
+/// Relative errors over stretches of one length; NaN where no stretch has it.
+struct PathError {
+    double length_m = 0.0;
+    double trans_rmse_m = 0.0;
+    double rot_rmse_deg = 0.0;
+    double trans_percent = 0.0;  ///< rms of 100 |translation error| / true path of the stretch
+    std::int64_t count = 0;      ///< stretches
+};
+
+/// Lengths that matter for a step (0.1, 0.5 m), a manoeuvre (1, 2 m) and a room (5 m).
+inline const std::vector<double> kPathLengths_m = {0.1, 0.5, 1.0, 2.0, 5.0};
+
+/// Relative pose errors over path lengths (Sturm et al. 2012, over metres instead of seconds).
+/// From every matched pose a stretch reaches to the later one whose true path from it is nearest to
+/// `length_m` (of equals the earliest), if that is off by at most a tenth of the length. These are
+/// evo's rules for `evo_rpe --delta M --delta_unit m --all_pairs --pairs_from_reference` with its
+/// usual tolerance; the error of a stretch is relative_error, so no alignment plays a part.
+/// `pairs`: as TrajectoryErrors has them. Lengths must be above 0.
+[[nodiscard]] std::vector<PathError> errors_over_path(const Trajectory& estimate,
+                                                      const Trajectory& truth,
+                                                      const std::vector<PosePair>& pairs,
+                                                      const std::vector<double>& lengths_m);
+
+}  // namespace surefoot::eval

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+#include "surefoot/io/clouds/point_cloud.hpp"
+
+namespace surefoot::io {
+
+/// Points of a cloud file block by block, for clouds larger than the memory: binary PLY and PCD,
+/// LAS and text with a point a line come piece by piece; what cannot be cut (compressed PCD, lists,
+/// PLY, PCD and VTK as text) is read whole and handed out in pieces. Formats as `read_cloud`.
+class CloudStream {
+  public:
+    [[nodiscard]] static Result<CloudStream> open(const std::string& path);
+    ~CloudStream();
+    CloudStream(CloudStream&&) noexcept;
+    CloudStream& operator=(CloudStream&&) noexcept;
+
+    /// The next points with all that is known of them; none at the end.
+    [[nodiscard]] Result<PointCloud> next();
+    /// From the first point again.
+    void rewind();
+    /// Hands all blocks, from the first point on, to `use`, which takes a PointCloud& and returns a
+    /// Status; one that is none of success ends it.
+    template <typename Use>
+    [[nodiscard]] Status each_block(const Use& use) {
+        rewind();
+        while (true) {
+            auto block = next();
+            if (!block) return block.error();
+            if (block->points_m.empty()) return {};
+            if (Status status = use(*block); !status) return status;
+        }
+    }
+    /// How many points there are, where the file says so.
+    [[nodiscard]] std::optional<std::uint64_t> points() const;
+    /// What the blocks so far do not hold of the file, a sentence each; blocks have none
+    /// themselves.
+    [[nodiscard]] std::vector<std::string> notes() const;
+
+  private:
+    class Part;
+    explicit CloudStream(std::unique_ptr<Part> part);
+    std::unique_ptr<Part> part_;
+
+    class Rows;
+    class Lines;
+    class Whole;
+};
+
+/// Where floats count from. They have 24 bits: 0.06 mm at 1 km, half a metre in a national grid.
+/// So from 1 km on an axis counts from the multiple of 100 m nearest to the first point; which
+/// changes no digit of a coordinate that was a float.
+[[nodiscard]] Eigen::Vector3d shift_for(const Eigen::Vector3d& first_m);
+
+/// Points as floats from a shift.
+struct ShiftedCloud {
+    Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+    std::vector<Eigen::Vector3f> points_m;  ///< less the shift
+    std::int64_t skipped = 0;               ///< points that were not finite
+};
+
+/// Reads points into floats block by block. The shift is that of the first finite point, unless one
+/// is given. Errors: those of the stream; a point more than 100 km from the shift.
+class ShiftedReader {
+  public:
+    ShiftedReader(std::string path, std::optional<Eigen::Vector3d> shift_m)
+        : path_(std::move(path)), shift_m_(shift_m) {}
+
+    /// Appends the finite points of a block to `out`.
+    [[nodiscard]] Status add(const PointCloud& block, std::vector<Eigen::Vector3f>& out);
+    [[nodiscard]] Eigen::Vector3d shift_m() const {
+        return shift_m_.value_or(Eigen::Vector3d::Zero());
+    }
+    [[nodiscard]] std::int64_t skipped() const noexcept { return skipped_; }
+
+  private:
+    /// One point, where it is finite.
+    [[nodiscard]] Result<std::optional<Eigen::Vector3f>> shifted(const Eigen::Vector3d& p_m);
+
+    std::string path_;
+    std::optional<Eigen::Vector3d> shift_m_;
+    std::int64_t skipped_ = 0;
+};
+
+/// The whole of a file; memory is 12 bytes a point.
+[[nodiscard]] Result<ShiftedCloud> read_shifted(
+    const std::string& path, const std::optional<Eigen::Vector3d>& shift_m = std::nullopt);
+
+}  // namespace surefoot::io

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+#include "surefoot/io/clouds/point_cloud.hpp"
+#include "surefoot/io/columns.hpp"
+
+namespace surefoot::io {
+
+/// Reads a text cloud in pieces of whole lines, for files larger than the memory: what the head and
+/// the first point have told holds for the rest. `parse_text_cloud` says how lines are read.
+///
+/// Scalars are doubles. A column whose first value is a whole number beyond 2^53 (nanoseconds since
+/// 1970) holds 64-bit whole numbers instead; a later value that is none is an error.
+class TextCloudParser {
+  public:
+    explicit TextCloudParser(std::string file) : file_(std::move(file)) {}
+
+    /// The points of further lines; there may be none. Errors name file and line.
+    [[nodiscard]] Result<PointCloud> parse(std::string_view lines);
+    /// Error where no point came, or fewer than the file announces.
+    [[nodiscard]] Status finish() const;
+    /// What was not read as it is written, a sentence each.
+    [[nodiscard]] std::vector<std::string> notes() const;
+
+  private:
+    struct Head {
+        std::vector<Column> columns;
+        std::string line;
+        int number = 0;
+        bool comment = false;
+    };
+    [[nodiscard]] Status take_line(std::string_view content, PointCloud& cloud);
+    [[nodiscard]] Status take_head(std::string_view content, bool comment);
+    [[nodiscard]] Status take_count();
+    [[nodiscard]] Status choose_columns(std::string_view content);
+    [[nodiscard]] Status name_columns();
+    void name_scalars(const std::vector<std::string>& names);
+    [[nodiscard]] Status take_point(PointCloud& cloud);
+    [[nodiscard]] Status take_scalar(std::string_view word, CloudScalar& scalar);
+
+    std::string file_;
+    int line_ = 0;  ///< number of the present line
+    std::optional<Head> head_;
+    std::optional<std::int64_t> announced_;
+    std::int64_t points_ = 0;
+    std::int64_t rounded_ = 0;  ///< whole numbers beyond 2^53 in columns of doubles
+
+    // Known from the first point on.
+    char separator_ = ' ';
+    std::size_t columns_ = 0;
+    std::array<std::size_t, 3> axes_ = {0, 1, 2};
+    std::vector<CloudScalar> scalars_;  ///< names and types, without values
+    std::vector<std::string_view> fields_;
+};
+
+}  // namespace surefoot::io

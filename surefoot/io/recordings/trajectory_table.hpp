@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+#include "surefoot/io/columns.hpp"
+#include "surefoot/io/recordings/stamps.hpp"
+
+namespace surefoot::io {
+
+/// Where a stamped pose stands in a line: stamp, x, y, z, qx, qy, qz, qw.
+using PosePlaces = std::array<std::size_t, 8>;
+
+/// How the lines of a trajectory file are read.
+struct TrajectoryLayout {
+    std::string format;  ///< as TrajectoryFile
+    bool stamped = true;
+    std::size_t columns = 0;
+    char separator = ' ';
+    PosePlaces places = {0, 1, 2, 3, 4, 5, 6, 7};
+    std::optional<StampUnit> unit;  ///< where the head names it
+};
+
+/// A line of numbers: the seven of a stamped pose, or the twelve of a 3x4 matrix.
+struct TrajectoryRow {
+    int line = 0;
+    std::string_view stamp;  ///< of the text that was read; empty without stamps
+    std::array<double, 12> numbers{};
+    bool finite = true;
+};
+
+/// Lines of a trajectory file: the layout is that of the head line, or told by the first line of
+/// numbers. Rows refer to the text.
+class TrajectoryTable {
+  public:
+    /// Errors name `file` and the line.
+    [[nodiscard]] static Result<TrajectoryTable> read(std::string_view text,
+                                                      const std::string& file);
+    [[nodiscard]] const TrajectoryLayout& layout() const noexcept { return layout_; }
+    [[nodiscard]] const std::vector<TrajectoryRow>& rows() const noexcept { return rows_; }
+
+  private:
+    [[nodiscard]] Status take_line(std::string_view content, int number);
+    [[nodiscard]] bool take_head(std::string_view content);
+    [[nodiscard]] Status choose_layout(char separator);
+    [[nodiscard]] Status take_row(int number);
+    [[nodiscard]] Status take_number(std::string_view word, std::size_t at, TrajectoryRow& row);
+
+    std::optional<TrajectoryLayout> head_;
+    std::string_view head_line_;
+    TrajectoryLayout layout_;
+    std::vector<TrajectoryRow> rows_;
+    std::vector<std::string_view> words_;  ///< of the present line
+};
+
+}  // namespace surefoot::io

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "surefoot/io/settings/yaml_tree.hpp"
+
+namespace surefoot::io {
+
+/// A group of keys of a strict file: what is asked for must be there, unless it is asked for with
+/// `has` first, and nothing else may be. The reader keeps the first error; after it everything
+/// returns defaults.
+class YamlGroup {
+  public:
+    /// `prefix`: the keys that lead here, for messages; `document`: what to call the outermost
+    /// group, which has none.
+    YamlGroup(YamlReader& reader, const YamlNode& node, std::string prefix, const char* document);
+
+    /// Whether a key is there that need not be.
+    [[nodiscard]] bool has(const char* key);
+    double number(const char* key, double min, double max);
+    /// A length in metres, as 0.1 mm.
+    std::int32_t length(const char* key, double min_m, double max_m);
+    /// A duration in milliseconds, as nanoseconds.
+    std::int64_t duration_ns(const char* key, int min_ms, int max_ms);
+    int integer(const char* key, int min, int max);
+    bool boolean(const char* key);
+    std::string text(const char* key, std::size_t max_size);
+    /// Calls `read` with the group below a key.
+    template <typename Read>
+    void group(const char* key, Read&& read) {
+        if (const YamlNode* node = take(key)) {
+            YamlGroup below(reader_, *node, path(key), document_);
+            read(below);
+            below.finish();
+        }
+    }
+    /// Calls `read` with each group of a list.
+    template <typename Read>
+    void list(const char* key, std::size_t max_count, Read&& read) {
+        const YamlNode* node = take_list(key, max_count);
+        if (node == nullptr) return;
+        for (std::size_t i = 0; i < node->items.size(); ++i) {
+            YamlGroup item(reader_, node->items[i], item_path(key, i), document_);
+            read(item);
+            item.finish();
+        }
+    }
+    void fail(const char* key, const std::string& what);
+    /// About a key of one group of a list.
+    void fail_item(const char* list, std::size_t index, const char* key, const std::string& what);
+    /// To be called last: what was not asked for does not belong here. A misspelt key says more
+    /// than the missing one that it leaves behind, so it comes first.
+    void finish();
+
+  private:
+    [[nodiscard]] std::string path(const char* key) const;
+    [[nodiscard]] std::string item_path(const char* key, std::size_t index) const;
+    void know(const char* key);
+    const YamlNode* take(const char* key);
+    const YamlNode* take_list(const char* key, std::size_t max_count);
+
+    YamlReader& reader_;
+    const YamlNode& node_;
+    std::string prefix_;
+    const char* document_;
+    std::vector<std::string> known_;
+    std::vector<std::string> wanted_;
+};
+
+}  // namespace surefoot::io

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "surefoot/core/pose.hpp"
+#include "surefoot/odometry/visual/stereo_projection.hpp"
+
+namespace surefoot::odometry {
+
+/// One measurement of a point from a pose.
+struct BundleSight {
+    int pose = 0;
+    int point = 0;
+    StereoPixel pixel_px;
+    double noise_factor = 1.0;
+};
+
+/// Poses and points that explain measurements together. `sights` is sorted by point.
+struct BundleProblem {
+    std::vector<Pose> T_world_camera;
+    std::vector<std::uint8_t> fixed;  ///< one per pose; at least one must be 1
+    std::vector<Eigen::Vector3d> p_world_m;
+    std::vector<BundleSight> sights;
+
+    void clear();
+};
+
+struct BundleConfig {
+    double sigma_px = 0.3;
+    double huber_sigmas = 1.0;
+    int iterations = 4;
+};
+
+struct BundleResult {
+    double cost_before = 0.0;  ///< robust, in squared sigmas
+    double cost_after = 0.0;
+    int steps = 0;                             ///< accepted
+    std::vector<Eigen::Matrix3d> information;  ///< of each point with the poses given [1/m^2]
+    std::vector<double> residual_sigmas;       ///< of each sight after the adjustment; inf behind
+};
+
+/// Bundle adjustment: Levenberg-Marquardt with Huber weights on (u_left, v, u_right), the points
+/// eliminated by their Schur complement (Triggs et al. 2000). Serial and deterministic.
+[[nodiscard]] BundleResult adjust_bundle(const camera::RectifiedRig& rig,
+                                         const BundleConfig& config,
+                                         BundleProblem& problem);
+
+}  // namespace surefoot::odometry

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "surefoot/camera/rectifier.hpp"
+#include "surefoot/odometry/visual/bundle.hpp"
+#include "surefoot/odometry/visual/patch.hpp"
+
+namespace surefoot::odometry {
+
+/// A remembered camera pose whose measurements hold the map together.
+struct Keyframe {
+    int id = 0;
+    Pose T_odom_camera;
+};
+
+/// A keyframe's measurement of a landmark.
+struct Sighting {
+    int keyframe = 0;  ///< id
+    StereoPixel pixel_px;
+    double noise_factor = 1.0;
+};
+
+/// A point of the scene with the look by which it is found again.
+struct Landmark {
+    std::int64_t id = -1;  ///< never reused; -1 = empty slot
+    Eigen::Vector3d p_odom_m = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in odom axes, the keyframes given
+    HostPatch patch;
+    int host = -1;  ///< id of the keyframe that the patch is from; -1 = it has none
+    /// Steps along the host image's u and v at unit depth, in host camera axes, per pixel.
+    Eigen::Matrix<double, 3, 2> host_axes = Eigen::Matrix<double, 3, 2>::Zero();
+    std::vector<Sighting> sightings;
+    int failures = 0;  ///< times in a row that it was in view and not found
+    int agreed = 0;    ///< frames whose pose it agreed with
+};
+
+/// Where a landmark should appear and how its patch is deformed there.
+struct PredictedView {
+    Eigen::Vector2d raw_px;
+    Eigen::Matrix2d host_from_view;
+};
+
+struct LandmarkMapConfig {
+    int window_keyframes = 8;  ///< adjusted together; older ones stay fixed
+    int most_keyframes = 100;
+    int most_landmarks = 3000;
+    BundleConfig bundle;
+};
+
+/// The scene that odometry remembers: keyframes and landmarks in odom. Landmarks keep their slot
+/// for life; a slot may be reused by another landmark with another id.
+class LandmarkMap {
+  public:
+    LandmarkMap(const LandmarkMapConfig& config, const camera::Rectifier& rectifier);
+
+    void clear();
+    /// One sigma of a measurement that comes from now on, and of those that are remembered when
+    /// they are adjusted next.
+    void set_noise(double sigma_px) { config_.bundle.sigma_px = sigma_px; }
+    /// Appends a keyframe and forgets the oldest when there are too many, with what it hosts.
+    int add_keyframe(const Pose& T_odom_camera);
+    /// Makes a landmark that the newest keyframe sees at `raw_px` = `pixel`; its slot, or nothing
+    /// when its patch would leave the image.
+    std::optional<int> add_landmark(ImageView<const std::uint8_t> left,
+                                    const Eigen::Vector2d& raw_px,
+                                    const StereoPixel& pixel);
+    /// The same without a look: what is found again by other means than its patch. Its slot.
+    int add_point(const StereoPixel& pixel);
+    /// Takes the patch anew from the newest keyframe's image.
+    void renew_patch(int slot, ImageView<const std::uint8_t> left, const Eigen::Vector2d& raw_px);
+    void add_sighting(int slot, const StereoPixel& pixel, double noise_factor);
+    void remove(int slot);
+    /// Bundle adjustment of the newest keyframes and all they see; drops sightings that disagree.
+    void adjust();
+    /// Removes the least useful landmarks beyond the limit, never one that `in_use` marks.
+    void limit(const std::vector<std::uint8_t>& in_use);
+
+    [[nodiscard]] bool empty() const noexcept { return keyframes_.empty(); }
+    [[nodiscard]] int slots() const noexcept { return static_cast<int>(landmarks_.size()); }
+    [[nodiscard]] Landmark& at(int slot) { return landmarks_[static_cast<std::size_t>(slot)]; }
+    [[nodiscard]] const Landmark& at(int slot) const {
+        return landmarks_[static_cast<std::size_t>(slot)];
+    }
+    [[nodiscard]] const Keyframe& newest() const { return keyframes_.back(); }
+    [[nodiscard]] int keyframes() const noexcept { return static_cast<int>(keyframes_.size()); }
+
+    /// The landmark as `side` sees it from a camera pose; nothing when behind or out of the lens.
+    [[nodiscard]] std::optional<Eigen::Vector2d> predict_pixel(const Landmark& landmark,
+                                                               camera::Side side,
+                                                               const Pose& T_odom_camera) const;
+    [[nodiscard]] std::optional<PredictedView> predict_view(const Landmark& landmark,
+                                                            camera::Side side,
+                                                            const Pose& T_odom_camera) const;
+
+  private:
+    [[nodiscard]] const Keyframe* find_keyframe(int id) const;
+    [[nodiscard]] std::optional<Eigen::Matrix<double, 3, 2>> axes_at(
+        const Eigen::Vector2d& raw_px) const;
+    void forget_oldest_keyframe();
+    void collect_problem(std::vector<int>& slots);
+    void apply(const BundleResult& result, const std::vector<int>& slots);
+
+    LandmarkMapConfig config_;
+    const camera::Rectifier& rectifier_;
+    std::vector<Keyframe> keyframes_;  ///< ids ascending without gaps
+    std::vector<Landmark> landmarks_;
+    std::vector<int> free_slots_;
+    std::int64_t next_landmark_ = 0;
+    int next_keyframe_ = 0;
+    BundleProblem problem_;
+};
+
+}  // namespace surefoot::odometry

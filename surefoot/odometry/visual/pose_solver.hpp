@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/odometry/visual/stereo_projection.hpp"
+
+namespace surefoot::odometry {
+
+/// A known point and where the camera sees it now.
+struct PointMatch {
+    Eigen::Vector3d p_world_m;
+    Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< of p_world_m, in world axes
+    StereoPixel pixel_px;
+    double noise_factor = 1.0;  ///< sigma of this measurement relative to the configured one
+    double vote = 1.0;          ///< what it counts when poses are compared by those that agree
+};
+
+struct PoseSolverConfig {
+    double sigma_px = 0.3;  ///< of each of (u_left, v, u_right)
+    int ransac_rounds = 150;
+    double ransac_threshold_px = 3.0;
+    double gate_sigmas = 3.5;   ///< residuals beyond are outliers of the refinement
+    double huber_sigmas = 1.0;  ///< residuals beyond count linearly, not squared
+    int iterations = 12;
+};
+
+struct PoseSolution {
+    bool found = false;  ///< else nothing below means anything
+    Pose T_world_camera;
+    Matrix6 covariance =
+        Matrix6::Zero();               ///< of T_world_camera (see pose.hpp), scaled by the residual
+    std::vector<std::uint8_t> inlier;  ///< one per match
+    int inliers = 0;
+    double residual_px = 0.0;     ///< rms of the pixel components of the inliers
+    double residual_scale = 1.0;  ///< rms of the inliers' residuals in sigmas; 1 = as expected
+};
+
+/// Minimal number of points for a pose with at least one to spare.
+inline constexpr int kMinimalPoseMatches = 5;
+
+/// Pose with the most votes of points within `ransac_threshold_px` of their (u_left, v):
+/// `T_predicted` first, then three-point poses of random samples (P3P). The same seed gives the
+/// same pose.
+///
+/// Fischler and Bolles 1981 (sample consensus); cv::solveP3P for the minimal problem.
+[[nodiscard]] PoseSolution find_pose(const camera::RectifiedRig& rig,
+                                     const PoseSolverConfig& config,
+                                     std::span<const PointMatch> matches,
+                                     const Pose& T_world_camera_predicted,
+                                     Rng rng);
+
+/// Robust least squares over (u_left, v, u_right) from a good start: Gauss-Newton with Huber
+/// weights and a gate, which is wide first; then only matches with a full vote count, if enough.
+/// Each residual is weighted by its pixel noise plus the projected uncertainty of its point, the
+/// points taken as independent. The covariance is the inverse information, scaled up (never down
+/// below kMinResidualScale) by the residuals.
+///
+/// Not found when fewer than kMinimalPoseMatches points agree or they leave a direction open.
+[[nodiscard]] PoseSolution refine_pose(const camera::RectifiedRig& rig,
+                                       const PoseSolverConfig& config,
+                                       std::span<const PointMatch> matches,
+                                       const Pose& T_world_camera_start);
+
+/// How many times as far as expected the matches are off a pose: the median of their residuals in
+/// sigmas over that of normal errors. No gate: this is the noise as long as fewer than half are
+/// outliers; those beyond `ransac_threshold_px` are left out. Matches with a full vote count, if
+/// enough. Nothing when too few are left.
+[[nodiscard]] std::optional<double> residual_scale_of_all(const camera::RectifiedRig& rig,
+                                                          const PoseSolverConfig& config,
+                                                          std::span<const PointMatch> matches,
+                                                          const Pose& T_world_camera);
+
+/// Normal equations of all matches at one pose, H step = b for a perturbation of the camera pose.
+struct VisualNormalEquations {
+    Matrix6 H = Matrix6::Zero();
+    Vector6 b = Vector6::Zero();
+    double cost = 0.0;       ///< robust
+    double chi2 = 0.0;       ///< of the gated-in residuals, not robust
+    double square_px = 0.0;  ///< of their pixel components
+    int rows = 0;
+    int inliers = 0;
+};
+
+/// One step of `refine_pose`, for solvers that know more than the points; `inlier` has one entry
+/// per match and is overwritten.
+[[nodiscard]] VisualNormalEquations visual_normal_equations(const camera::RectifiedRig& rig,
+                                                            const PoseSolverConfig& config,
+                                                            std::span<const PointMatch> matches,
+                                                            const Pose& T_world_camera,
+                                                            double gate_sigmas,
+                                                            std::span<std::uint8_t> inlier);
+
+/// The covariance shrinks with small residuals down to this share of the configured sigmas only.
+inline constexpr double kMinResidualScale = 0.5;
+
+/// How a perturbation of T_x_b moves T_x_a = T_x_b * T_b_a, given T_a_b (both on the right).
+[[nodiscard]] Matrix6 adjoint(const Pose& T_a_b);
+
+/// Covariance of T_a_body = T_a_camera * T_body_camera^-1 from that of T_a_camera.
+[[nodiscard]] Matrix6 camera_to_body_covariance(const Matrix6& covariance_camera,
+                                                const Pose& T_body_camera);
+
+}  // namespace surefoot::odometry

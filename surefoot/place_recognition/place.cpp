@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surefoot/place_recognition/place.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace surefoot::places {
+namespace {
+
+constexpr double kUnitTolerance = 1e-6;  ///< of a quaternion's norm
+
+bool is_rigid(const Pose& T) {
+    return T.all_finite() && std::abs(T.rotation.norm() - 1.0) < kUnitTolerance &&
+           T.translation_m.cwiseAbs().maxCoeff() <= kMostDistance_m;
+}
+
+std::optional<std::string> rig_problem(const camera::RectifiedRig& rig) {
+    const auto in = [](double value, double most) { return value > 0.0 && value <= most; };
+    if (rig.width < 1 || rig.height < 1 || rig.width > kMostImage_px || rig.height > kMostImage_px)
+        return fmt::format(
+            "images of {} x {} pixels; 1 to {} are possible", rig.width, rig.height, kMostImage_px);
+    if (!in(rig.fx_px, 1e5) || !in(rig.fy_px, 1e5))
+        return fmt::format(
+            "focal lengths of {} and {} px; up to 1e5 are possible", rig.fx_px, rig.fy_px);
+    if (!(std::abs(rig.cx_px) <= 1e5) || !(std::abs(rig.cy_px) <= 1e5))
+        return fmt::format(
+            "a principal point at ({}, {}) px; up to 1e5 is possible", rig.cx_px, rig.cy_px);
+    if (!in(rig.baseline_m, 10.0))
+        return fmt::format("a baseline of {} m; up to 10 is possible", rig.baseline_m);
+    if (!is_rigid(rig.T_body_camera)) return "a camera whose place in base_link is no pose";
+    return std::nullopt;
+}
+
+std::optional<std::string> view_problem(const View& view) {
+    if (auto problem = rig_problem(view.rig)) return problem;
+    if (view.features.size() > static_cast<std::size_t>(kMostFeatures))
+        return fmt::format(
+            "{} features; up to {} are possible", view.features.size(), kMostFeatures);
+    for (const Feature& feature : view.features) {
+        const Eigen::Vector3d px = feature.pixel_px.cast<double>();
+        const bool inside =
+            px.x() >= 0.0 && px.x() < view.rig.width && px.y() >= 0.0 && px.y() < view.rig.height;
+        if (!inside || !(px.x() - px.z() > 0.0) || !(px.x() - px.z() <= kMostImage_px))
+            return fmt::format("a feature at ({}, {}, {}) px outside its image or without depth",
+                               px.x(),
+                               px.y(),
+                               px.z());
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> Place::problem() const {
+    if (keyframes.size() > static_cast<std::size_t>(kMostKeyframes))
+        return fmt::format("{} keyframes; up to {} are possible", keyframes.size(), kMostKeyframes);
+    for (std::size_t i = 0; i < keyframes.size(); ++i) {
+        auto problem = view_problem(keyframes[i].view);
+        if (!problem && !is_rigid(keyframes[i].T_map_body)) problem = "a pose that is none";
+        if (problem) return fmt::format("keyframe {} has {}", i, *problem);
+    }
+    return std::nullopt;
+}
+
+}  // namespace surefoot::places

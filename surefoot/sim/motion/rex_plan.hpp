@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "surefoot/core/result.hpp"
+#include "surefoot/core/rng.hpp"
+#include "surefoot/sim/motion/waypoint.hpp"
+
+namespace surefoot::sim {
+
+/// Where one joystick code takes base_link, seen from where it stands.
+struct RexMovement {
+    int command = 0;  ///< code of the machine file
+    double forward_m = 0.0;
+    double left_m = 0.0;
+    double turn_rad = 0.0;  ///< left positive
+};
+
+/// Steps of the machine. The reference thesis gives forward 0.35-0.40, backward 0.25-0.35, sideways
+/// 0.10-0.30 m; the defaults are those of machines/rex.yaml.
+struct RexStepSizes {
+    double forward_m = 0.40;
+    double backward_m = 0.25;
+    double sideways_m = 0.10;
+    double turn_deg = 15.0;
+};
+
+/// All codes as machines/rex.yaml has them: 9-24 the sectors clockwise from ahead on the ellipse
+/// through the four steps, 1-8 half as far, 25 and 26 turns to the left and to the right.
+[[nodiscard]] std::vector<RexMovement> rex_movements(const RexStepSizes& sizes);
+
+/// Base_link of a standing machine, on the floor plan.
+struct RexStand {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double yaw_rad = 0.0;
+};
+[[nodiscard]] RexStand moved(const RexStand& stand, const RexMovement& movement, double share);
+
+struct RexStep {
+    double wait_s = 0.0;  ///< standing before the command
+    RexMovement movement;
+    RexStand before;
+    RexStand after;  ///< where it really ends: a few millimetres beside the commanded place
+};
+
+struct RexPlan {
+    RexStand start;
+    std::vector<RexStep> steps;
+    double last_wait_s = 0.0;
+};
+
+/// Commands through the waypoints as an operator would give them: turn in place toward the next one
+/// (or away from it, or sideways, if that takes fewer steps or the waypoint asks for it), then the
+/// sector that brings the machine nearest, again and again; at last turn to the waypoint's yaw.
+/// Stops within half a step and half a turn. A way of more than 2000 steps is a usage error.
+[[nodiscard]] Result<RexPlan> plan_rex_steps(const std::vector<Waypoint>& waypoints,
+                                             const RexStepSizes& sizes,
+                                             Rng& rng);
+
+}  // namespace surefoot::sim

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "surefoot/sim/rendering/ray_batch.hpp"
+#include "surefoot/sim/rendering/texture.hpp"
+
+namespace surefoot::sim {
+
+/// A ray in the world that has come `way_m` from the camera to `point_m`, with the angle between
+/// the rays of neighbouring pixels.
+struct Sight {
+    Eigen::Vector3d point_m;
+    Eigen::Vector3d direction;
+    double way_m = 0.0;
+    double pixel_angle_rad = 0.0;
+};
+
+/// Several of them, coordinate by coordinate; filled up to `count`.
+struct SightBatch {
+    std::size_t count = 0;
+    PointBatch points_m;
+    RayBatch directions;
+    BatchArray<double> way_m;
+    BatchArray<double> pixel_angle_rad;
+
+    [[nodiscard]] Sight operator[](std::size_t i) const {
+        return {{points_m.x[i], points_m.y[i], points_m.z[i]},
+                directions[i],
+                way_m[i],
+                pixel_angle_rad[i]};
+    }
+    void add(const Sight& sight) {
+        points_m.x[count] = sight.point_m.x();
+        points_m.y[count] = sight.point_m.y();
+        points_m.z[count] = sight.point_m.z();
+        directions.set(count, sight.direction);
+        way_m[count] = sight.way_m;
+        pixel_angle_rad[count] = sight.pixel_angle_rad;
+        ++count;
+    }
+};
+
+/// How a pattern lies on a plane: texels along its axes for each metre in the world, and where it
+/// begins.
+struct PlaneTexels {
+    Eigen::Vector3d texel_u;
+    Eigen::Vector3d texel_v;
+    Eigen::Vector3d normal;
+    double u_texel = 0.0;
+    double v_texel = 0.0;
+    double texels_per_m = 0.0;
+};
+
+/// Nearest to grazing incidence (1.1 deg) that the footprint of a pixel is stretched to.
+inline constexpr double kLeastCosine = 0.02;
+
+/// What a sight of a plane needs of the pattern, see `look_at`.
+[[nodiscard]] TexelLook look_at(const PlaneTexels& plane, const Sight& sight);
+/// The same, to the last bit and under every instruction set, for a batch.
+void look_at(const PlaneTexels& plane, const SightBatch& sights, TextureBatch& out);
+
+}  // namespace surefoot::sim

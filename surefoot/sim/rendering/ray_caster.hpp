@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "surefoot/sim/rendering/ray_field.hpp"
+#include "surefoot/sim/rendering/shutter.hpp"
+#include "surefoot/sim/scenes/scene.hpp"
+
+namespace surefoot::sim {
+
+/// Rays of one block in the world frame with their nearest hits, row by row, `width` to a row. Kept
+/// from block to block: it is filled without allocating.
+struct CastBlock {
+    static constexpr std::size_t kPixels = kBatchRays;
+    static_assert(kPixels == static_cast<std::size_t>(RayField::kBlock * RayField::kBlock));
+
+    int u0 = 0;
+    int v0 = 0;
+    int width = 0;
+    int height = 0;
+    RayBatch directions;
+    HitBatch hits;
+    [[nodiscard]] std::size_t pixels() const noexcept {
+        return static_cast<std::size_t>(width * height);
+    }
+    std::vector<int> primitives;     ///< that some ray through a pixel of the block may meet first
+    std::optional<FacePlane> plane;  ///< of the face that all rays meet first, where that is proved
+};
+
+/// Place and size of a block, the primitives that the cone round its pixels meets while its rows
+/// are exposed, and its plane, if it has only one.
+void find_primitives(const Scene& scene,
+                     const RayField& rays,
+                     const ImageViews& views,
+                     int block_x,
+                     int block_y,
+                     CastBlock& out);
+
+/// Casts the rays of a block of pixels against those primitives.
+void cast_block(const Scene& scene,
+                const RayField& rays,
+                const ImageViews& views,
+                int block_x,
+                int block_y,
+                CastBlock& out);
+
+}  // namespace surefoot::sim

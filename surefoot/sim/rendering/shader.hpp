@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/sim/rendering/plane_look.hpp"
+#include "surefoot/sim/rendering/texture.hpp"
+#include "surefoot/sim/scenes/scene.hpp"
+
+namespace surefoot::sim {
+
+/// What a ray sees. Radiance 1 = a white surface under full light. Places with another `key` differ
+/// in more than texture: another face, light instead of shadow, another thing in the mirror.
+struct Seen {
+    float radiance = 0.0F;
+    std::uint32_t key = 0;
+};
+
+/// Light that comes from the surfaces of a scene: texture, lamp with hard shadows and stripes,
+/// mirrors and panes. A mirror or a pane seen by two of the kind is matte: no deeper recursion.
+/// Panes are thin: no refraction; they cast no shadow. Immutable after construction.
+class Shader {
+  public:
+    /// The scene must outlive the shader. The seed turns the textures.
+    Shader(const Scene& scene, std::uint64_t seed);
+
+    /// A point of a surface that was hit.
+    [[nodiscard]] Seen surface(int surface, const Sight& sight) const;
+    /// The same, bit by bit, for several points of one surface, at least one, which is faster.
+    void surface(int surface, const SightBatch& sights, std::span<Seen> out) const;
+    /// Where no surface is.
+    [[nodiscard]] static Seen background() noexcept;
+    /// Does the lamp shine on a point of a surface? Always, where the scene has no shadows.
+    [[nodiscard]] bool lit(const Eigen::Vector3d& point_m) const;
+
+  private:
+    struct Face {
+        Placement placement;
+        Eigen::Vector3d normal;
+        Eigen::Vector3d tangent_u;
+        Eigen::Vector3d tangent_v;
+        PlaneTexels texels;  ///< of a plane
+        Finish finish = Finish::matte;
+        bool curved = false;
+        float gloss = 0.0F;
+        double facing_lamp = 0.0;  ///< of a plane: cosine of the lamp's incidence
+    };
+    struct Blocker {
+        int primitive = 0;
+        Sphere bounds;
+    };
+
+    void add_face(const Surface& surface, const Material& material);
+    [[nodiscard]] Seen seen(int surface, const Sight& sight, int bounces) const;
+    [[nodiscard]] Seen matte(int surface, const Sight& sight) const;
+    [[nodiscard]] Seen lit_surface(int surface,
+                                   const Sight& sight,
+                                   double facing_lamp,
+                                   float albedo,
+                                   std::span<const Blocker> blockers) const;
+    [[nodiscard]] bool lit(const Eigen::Vector3d& point_m, std::span<const Blocker> blockers) const;
+    [[nodiscard]] bool may_shade(const Sphere& blocker, const Sphere& points) const;
+    [[nodiscard]] std::vector<Blocker> blockers_of(const Face& face,
+                                                   const SightBatch& sights) const;
+    void plane(int surface, const SightBatch& sights, std::span<Seen> out) const;
+    void curved(int surface, const SightBatch& sights, std::span<Seen> out) const;
+    [[nodiscard]] Seen along(const Sight& sight, int bounces) const;
+    [[nodiscard]] SurfacePoint point_on(int surface, const Eigen::Vector3d& point_m) const;
+    [[nodiscard]] double stripes(const Sight& sight, const SurfacePoint& at) const;
+
+    const Scene* scene_;
+    Lighting lighting_;
+    Textures textures_;
+    std::vector<Face> faces_;
+    Eigen::Vector3d towards_lamp_;
+    Eigen::Vector3d across_stripes_;
+    std::vector<Blocker> blockers_;
+    double lamp_plane_m_ = 0.0;  ///< along `towards_lamp_`: everything is behind it
+};
+
+}  // namespace surefoot::sim

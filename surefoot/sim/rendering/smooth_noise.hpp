@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/sim/rendering/imaging.hpp"
+
+namespace surefoot::sim {
+
+/// Gaussian noise over an image that changes slowly: independent numbers on a lattice, low-passed
+/// by the cubic B-spline in both directions and scaled to variance 1 at every place. Its
+/// correlation along a row or a column has fallen to 1/e at `length_px`. The lattice is shifted at
+/// random, so that no pixel is preferred. A function of (seed, pixel) alone.
+class SmoothNoise {
+  public:
+    /// Every `stride`-th pixel of `columns` by `rows` such pixels.
+    SmoothNoise(const PixelNoise& noise,
+                std::uint64_t seed,
+                int columns,
+                int rows,
+                int stride,
+                double length_px);
+    /// Values of a row; `out` has one place for each column. `nodes` is scratch memory.
+    void row(int v, std::vector<float>& nodes, std::span<float> out) const;
+
+  private:
+    struct Tap {
+        int first = 0;
+        std::array<float, 4> weight;
+    };
+    [[nodiscard]] static Tap tap(double place);
+
+    int nodes_x_ = 0;
+    std::vector<float> nodes_;
+    std::vector<Tap> columns_;
+    std::vector<Tap> rows_;
+};
+
+/// Gaussian noise of unit variance that belongs to the surfaces of a scene: a function of (seed,
+/// surface, place on it). Linear between the nodes of a lattice with `size_m` between them.
+class SurfaceNoise {
+  public:
+    SurfaceNoise(std::uint64_t seed, double size_m);
+    [[nodiscard]] float at(const PixelNoise& noise, int surface, double u_m, double v_m) const;
+    /// The numbers at the corners of the last square of the lattice that was looked at.
+    /// Neighbouring pixels see the same square.
+    struct Square {
+        int surface = -1;  ///< none yet
+        double u0 = 0.0;
+        double v0 = 0.0;
+        std::array<float, 4> corners{};
+    };
+    /// The same, bit by bit, for places of which many lie in one square.
+    [[nodiscard]] float at(
+        const PixelNoise& noise, int surface, double u_m, double v_m, Square& square) const;
+
+  private:
+    void look_up(const PixelNoise& noise, int surface, double u0, double v0, Square& square) const;
+
+    std::uint64_t seed_ = 0;
+    double per_m_ = 1.0;
+};
+
+}  // namespace surefoot::sim

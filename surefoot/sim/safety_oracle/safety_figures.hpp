@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "surefoot/core/machine.hpp"
+#include "surefoot/sim/motion/planar.hpp"
+#include "surefoot/sim/scenes/primitives.hpp"
+
+namespace surefoot::sim::rules {
+
+/// The machine's figures for one movement in metres and radians.
+struct Figures {
+    std::array<Rect, 2> feet;  ///< in base_link
+    /// A part of the body: its box in base_link, without sway; heights over the soles.
+    struct Part {
+        Rect box;
+        double low_m = 0.0;
+        double high_m = 0.0;
+    };
+    std::vector<Part> body;
+    double sway_m = 0.0;
+    double lower_edge_m = 0.0;  ///< of the whole body
+    double height_m = 0.0;      ///< likewise
+    double hips_m = 0.0;        ///< base_link over the soles
+    double up_m = 0.0;
+    double down_m = 0.0;
+    double tilt_rad = 0.0;
+    double patch_side_m = 0.0;
+    double residual_m = 0.0;
+    double clearance_m = 0.0;
+    double foot_margin_m = 0.0;
+    double drop_m = 0.0;
+    double band_m = 0.0;
+    PlanarPose T_start_target;
+};
+[[nodiscard]] Figures figures_of(const Machine& machine, const Movement& movement);
+
+/// Limits multiplied by 1 - share (stricter, share > 0) or looser (share < 0). Distances that are
+/// asked for (band, margin, sway) grow where limits shrink; the user becomes taller by `taller_m`.
+[[nodiscard]] Figures stricter(const Figures& figures, double share, double taller_m);
+
+/// Region that the rules look at around `T_field_body` = identity, with room for `slack_m`.
+[[nodiscard]] Rect region_of(const Figures& figures, double slack_m);
+
+}  // namespace surefoot::sim::rules

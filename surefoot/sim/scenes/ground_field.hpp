@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "surefoot/sim/motion/planar.hpp"
+#include "surefoot/sim/scenes/scene.hpp"
+
+namespace surefoot::sim {
+
+/// What a machine that stands on some level meets on a plumb line (heights in the world frame).
+struct GroundSample {
+    /// The highest surface that a foot can meet: not higher than the reach above the level; where
+    /// everything is higher, the lowest of that. NaN where there is no ground at all.
+    double ground_m = std::numeric_limits<double>::quiet_NaN();
+    /// Where the lowest solid begins that ends above the reach; infinity where the air is free.
+    double underside_m = std::numeric_limits<double>::infinity();
+    /// Where the highest of those solids ends; minus infinity where the air is free.
+    double top_m = -std::numeric_limits<double>::infinity();
+};
+
+/// Scene geometry sampled every 5 mm on a lattice of a yawed frame: (i, j) stands at (i, j) *
+/// spacing of that frame, so that mirrored and turned worlds are sampled alike. The samples
+/// themselves are exact; what is thinner than the spacing may slip between them.
+class GroundField {
+  public:
+    static constexpr double kSpacing_m = 0.005;
+
+    /// Inclusive index ranges.
+    struct Range {
+        int min_i = 0;
+        int max_i = -1;
+        int min_j = 0;
+        int max_j = -1;
+    };
+
+    /// 16 x 16 samples and what they hold at most, so that what is plain can be passed over.
+    struct Tile {
+        Range range;
+        double lowest_ground_m = std::numeric_limits<double>::infinity();  ///< -inf: a void
+        double highest_ground_m = -std::numeric_limits<double>::infinity();
+        double lowest_underside_m = std::numeric_limits<double>::infinity();
+        double highest_top_m = -std::numeric_limits<double>::infinity();
+    };
+
+    /// `region` and `level` (where the soles stand) are in the field's frame.
+    GroundField(const Scene& scene,
+                const PlanarPose& T_world_field,
+                const Rect& region,
+                const LevelPlane& level,
+                double reach_m);
+
+    [[nodiscard]] const PlanarPose& T_world_field() const noexcept { return T_world_field_; }
+    [[nodiscard]] const Range& range() const noexcept { return range_; }
+    /// Samples inside a rectangle, cut to the field.
+    [[nodiscard]] Range range_of(const Rect& area) const;
+    [[nodiscard]] static Eigen::Vector2d point_m(int i, int j) {
+        return {kSpacing_m * i, kSpacing_m * j};
+    }
+    [[nodiscard]] std::size_t index(int i, int j) const {
+        return static_cast<std::size_t>(j - range_.min_j) * static_cast<std::size_t>(width()) +
+               static_cast<std::size_t>(i - range_.min_i);
+    }
+    [[nodiscard]] const GroundSample& at(int i, int j) const { return samples_[index(i, j)]; }
+    [[nodiscard]] const std::vector<Tile>& tiles() const noexcept { return tiles_; }
+
+    /// 1 for every sample that is joined to `seeds` by ground without a jump of more than `jump_m`
+    /// between neighbours; indices as of `index`.
+    [[nodiscard]] std::vector<char> reached_from(const std::vector<Range>& seeds,
+                                                 double jump_m) const;
+
+  private:
+    [[nodiscard]] int width() const { return range_.max_i - range_.min_i + 1; }
+    [[nodiscard]] Tile summary(const Range& range) const;
+
+    PlanarPose T_world_field_;
+    Range range_;
+    std::vector<GroundSample> samples_;
+    std::vector<Tile> tiles_;
+};
+
+/// The same question for one plumb line.
+[[nodiscard]] GroundSample sample_ground(
+    const Scene& scene, double x_m, double y_m, double level_m, double reach_m);
+
+}  // namespace surefoot::sim

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/views.hpp"
+#include "surefoot/sim/motion/motion_script.hpp"
+#include "surefoot/sim/scenes/scene.hpp"
+
+namespace surefoot::sim {
+
+/// What is true about a simulated recording. The world frame equals odom when the run starts with
+/// its first frame: ground under the first base_link.
+struct SceneTruth {
+    Scene scene;
+    camera::StereoRig rig;
+    std::vector<StampedPose> trajectory;  ///< one pose a frame
+    std::int64_t start_ns = 0;            ///< stamp of the motion's time 0
+    std::vector<StepEvent> steps;         ///< of a walking machine
+    std::vector<Stop> stops;              ///< of a trolley
+};
+
+/// Cells of a map: `origin_m` is the outer corner of cell (0, 0) in the world, images are indexed
+/// (ix, iy) with ix along +x and iy along +y.
+struct Lattice {
+    Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
+    int nx = 0;
+    int ny = 0;
+    double resolution_m = 0.025;
+
+    [[nodiscard]] Eigen::Vector2d center_m(int ix, int iy) const {
+        return origin_m + resolution_m * Eigen::Vector2d(ix + 0.5, iy + 0.5);
+    }
+};
+
+enum class DemReduce : std::uint8_t {
+    highest,  ///< highest point anywhere inside the cell, exact
+    center,   ///< highest surface at the centre of the cell
+};
+
+/// Height of the highest surface of each cell [m, world]; NaN where there is no ground. A primitive
+/// that overlaps a cell by less than a micrometre does not count: a riser on a cell border leaves
+/// the cell before it at the height of the floor.
+[[nodiscard]] Image<float> dem(const Scene& scene,
+                               const Lattice& lattice,
+                               DemReduce reduce = DemReduce::highest);
+
+/// For a map that tells a surface from what hangs over it: `dem_m`, but where `clearance_m` is
+/// known the surface at the centre of the cell that is nearest to `height_m` [m, world].
+[[nodiscard]] Image<float> dem_below_overhead(Image<float> dem_m,
+                                              const Scene& scene,
+                                              const Lattice& lattice,
+                                              ImageView<const float> height_m,
+                                              ImageView<const float> clearance_m);
+
+/// Label of the highest surface at the centre of each cell.
+[[nodiscard]] Image<Label> labels(const Scene& scene, const Lattice& lattice);
+
+struct EdgeConfig {
+    double jump_m =
+        0.03;  ///< between neighbouring cells; slopes below jump / cell size are no edge
+    int margin_cells = 2;  ///< cells this near (the larger of |dx| and |dy|) are masked too
+};
+
+/// 1 where a cell is at or within the margin of a height discontinuity (or of the end of the
+/// ground).
+[[nodiscard]] Image<std::uint8_t> edge_mask(const Image<float>& dem_m,
+                                            const EdgeConfig& config = {});
+
+struct VisibilityConfig {
+    double range_m = 2.5;    ///< from the left camera to the surface, straight
+    int min_frames = 1;      ///< in how many frames a cell must be seen
+    double margin_px = 0.0;  ///< pixels at the image border that do not count
+    int frame_stride = 1;    ///< look at every n-th pose only
+};
+
+/// 1 where the highest surface at the cell's centre is seen by the left and the right camera at
+/// once, in at least `min_frames` frames: inside both images, in range, nothing in between.
+[[nodiscard]] Image<std::uint8_t> visibility_mask(const SceneTruth& truth,
+                                                  const Lattice& lattice,
+                                                  const VisibilityConfig& config,
+                                                  Executor& executor);
+
+}  // namespace surefoot::sim

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/config.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/sim/rendering/ray_field.hpp"
+#include "surefoot/sim/rendering/smooth_noise.hpp"
+#include "surefoot/sim/scenes/scene.hpp"
+#include "surefoot/sim/sensors/stereo_shadows.hpp"
+
+namespace surefoot::sim {
+
+/// How a stereo matcher errs. Pixels are those of the full rectified image, whatever the stride.
+///
+/// Disparity of a pixel that both eyes see = exact + white + correlated + locking, with
+///   white       independent in every pixel and frame, variance (1 - correlated_share) sigma^2
+///   correlated  smooth over `correlation_px`, variance correlated_share sigma^2; the share
+///               `fixed_share` of that sticks to the surface, so that no mean over frames removes
+///               it
+///   locking     locking_px sin(2 pi d): matchers pull towards whole disparities
+/// Beside disparity jumps the nearer surface grows by a seam, and a share of what a window cannot
+/// decide is bridged by a ramp (see Shadow). All the rest that is not matched is unknown.
+///
+/// Nominal sigma: best planar windows of real pairs scatter by 0.28-0.43 px; 0.25 px is the nominal
+/// figure of the project's accuracy tables. ASSUMPTION: every other default, until measured on
+/// rendered kerbs and stairs.
+struct AnalyticStereoConfig {
+    int stride = 1;                 ///< every n-th row and column is made
+    double sigma_px = 0.25;         ///< white and correlated together
+    double correlated_share = 0.5;  ///< of the variance
+    double correlation_px = 15.0;   ///< lag at which correlation has fallen to 1/e
+    double fixed_share = 0.3;       ///< of the correlated variance: sticks to the surface
+    double fixed_size_m = 0.09;     ///< scale of that on the surface: 30 px at 1 m
+    double locking_px = 0.05;       ///< amplitude
+    double sigma_factor = 1.0;      ///< reported sigma / true sigma; < 1 = optimistic
+
+    ShadowConfig shadow;
+    double invented_share = 0.5;    ///< of shadowed and occluded pixels: bridged
+    double edge_suspicion = 0.3;    ///< outlier probability reported in seams and bridges
+    double plain_suspicion = 0.02;  ///< and elsewhere
+
+    double max_disparity_px = 128.0;  ///< search range
+    double missing_share = 0.02;      ///< of all other pixels, in patches of `patch_px`
+    double patch_px = 8.0;
+    double fade_incidence_deg = 75.0;  ///< missing from here, in growing share ...
+    double max_incidence_deg = 85.0;   ///< ... to here
+    double least_contrast =
+        0.1;  ///< contrast of the texture below which pixels get lost, in proportion
+
+    void describe(ConfigVisitor& visitor);
+};
+
+/// What rectification and a matcher would say about a scene, straight from its geometry: no image
+/// is rendered. With every error at 0 it is `rectified_disparity_px` wherever both eyes see.
+/// Mirrors and glass give nothing (ASSUMPTION). Hidden places are found among what the left eye
+/// sees, so that something only the right eye sees hides nothing. Immutable after construction;
+/// rows run through the executor, the same bytes for any.
+class AnalyticStereo {
+  public:
+    /// `rig`: the full rectified camera. Fails on a stride or a share that cannot be used. The
+    /// scene must outlive it.
+    [[nodiscard]] static Result<AnalyticStereo> make(const Scene& scene,
+                                                     const camera::RectifiedRig& rig,
+                                                     const AnalyticStereoConfig& config,
+                                                     std::uint64_t seed);
+    /// The camera of the depth images: that of `make` for stride 1, else a smaller one with
+    /// proportionally shorter focal lengths, and disparities in its own pixels.
+    [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rig_; }
+    /// What the left eye truly sees. Keep it from frame to frame: its memory is used again.
+    struct View {
+        Image<float> disparity_px;  ///< exact, of the output's pixels; NaN where no surface is
+        Image<std::int32_t> surface;
+        Image<float> fixed;           ///< noise of unit variance that sticks to the surface
+        Image<float> missing_chance;  ///< 1 for what can never be matched
+        ShadowMap shadows;
+    };
+    /// `frame` selects the noise.
+    void measure(const Pose& T_world_body,
+                 int frame,
+                 Executor& executor,
+                 View& view,
+                 camera::DepthImage& out) const;
+
+  private:
+    AnalyticStereo(const Scene& scene,
+                   const camera::RectifiedRig& rig,
+                   const AnalyticStereoConfig& config,
+                   std::uint64_t seed);
+    void cast(const Pose& T_world_body, Executor& executor, View& out) const;
+    /// What a ray that ends on a surface meets there.
+    struct Look {
+        float fixed = 0.0F;
+        float missing_chance = 1.0F;
+    };
+    [[nodiscard]] Look look(const Eigen::Vector3d& point_m,
+                            const Eigen::Vector3d& direction,
+                            int surface,
+                            SurfaceNoise::Square& square) const;
+    void cast_rows(const Pose& T_world_camera, int block_y, View& out) const;
+    struct Match {
+        float disparity_px = 0.0F;  ///< NaN = none
+        bool invented = false;
+    };
+    [[nodiscard]] Match match(const View& view, int u, int v, float luck) const;
+    void measure_row(const View& view,
+                     int v,
+                     std::span<const float> whites,
+                     std::span<const float> errors,
+                     std::span<const float> luck,
+                     camera::DepthImage& out) const;
+    [[nodiscard]] double known_share(const Material& material) const;
+    [[nodiscard]] double missing_chance(double known, double cosine) const;
+
+    const Scene* scene_;
+    AnalyticStereoConfig config_;
+    std::uint64_t seed_ = 0;
+    camera::RectifiedRig rig_;
+    RayField rays_;
+    PixelNoise noise_;
+    SurfaceNoise surface_noise_;
+    std::vector<double> known_;  ///< by surface, seen from straight ahead; 0 where nothing ever is
+    bool fixed_noise_ = false;   ///< does any stick to the surfaces?
+    double fade_cosine_ = 0.0;   ///< of `fade_incidence_deg`
+    std::vector<float> cdf_;
+};
+
+}  // namespace surefoot::sim

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "surefoot/core/config.hpp"
+#include "surefoot/sim/motion/motion.hpp"
+
+namespace surefoot::sim {
+
+/// A blow that turns the camera on its mount, once and for good (hazard H6). Turns are about the
+/// axes of base_link, through the left eye, one after the other: roll, pitch, yaw as in
+/// Rz(yaw) Ry(pitch) Rx(roll), from `at_s` on.
+struct KnockConfig {
+    double at_s = 0.0;  ///< after the first frame
+    double roll_deg = 0.0;
+    double pitch_deg = 0.0;  ///< positive = down
+    double yaw_deg = 0.0;
+
+    [[nodiscard]] bool none() const noexcept {
+        return roll_deg == 0.0 && pitch_deg == 0.0 && yaw_deg == 0.0;
+    }
+    void describe(ConfigVisitor& visitor);
+};
+
+/// ASSUMPTION: how long the camera needs to turn; a frame and a half at 15 Hz.
+inline constexpr double kKnockDuration_s = 0.1;
+
+/// Where a base_link that is fixed to the camera goes when the camera is knocked: the eyes and the
+/// IMU beside them move by this motion, the machine goes on by `machine`.
+class KnockedMotion final : public Motion {
+  public:
+    KnockedMotion(std::shared_ptr<const Motion> machine,
+                  const KnockConfig& knock,
+                  const Eigen::Vector3d& left_eye_body_m);
+    [[nodiscard]] MotionState at(double time_s) const override;
+    [[nodiscard]] double duration_s() const override { return machine_->duration_s(); }
+
+  private:
+    std::shared_ptr<const Motion> machine_;
+    double at_s_;
+    double angle_rad_;
+    Eigen::Vector3d axis_;     ///< unit, in base_link
+    Eigen::Vector3d pivot_m_;  ///< likewise
+};
+
+}  // namespace surefoot::sim

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/stairs/edges/edge_points.hpp"
+
+namespace surefoot::stairs {
+
+/// Edge points in a row: lower ground on the right hand of who goes from one end to the other.
+struct EdgeLine {
+    Eigen::Vector2d from_m = Eigen::Vector2d::Zero();
+    Eigen::Vector2d to_m = Eigen::Vector2d::Zero();
+    int points = 0;
+    double rms_m = 0.0;  ///< of the points, across
+
+    [[nodiscard]] double length_m() const { return (to_m - from_m).norm(); }
+    [[nodiscard]] Eigen::Vector2d along() const { return (to_m - from_m).normalized(); }
+    [[nodiscard]] Eigen::Vector2d down() const {
+        const Eigen::Vector2d a = along();
+        return {a.y(), -a.x()};
+    }
+};
+
+/// Groups edge points into straight lines. Points that touch and whose upper ground is level with
+/// each other form a chain; from each chain the longest unbroken lines are taken one after the
+/// other (RANSAC, Fischler and Bolles 1981, with drawn pairs of near points; the draws depend on
+/// the number of points alone). Then pieces of one line are joined across gaps.
+class EdgeLineFinder {
+  public:
+    explicit EdgeLineFinder(const StairsConfig& config) : config_(config) {}
+    /// `points` as EdgePointFinder gives them. Longest first.
+    void find(const grid::GridGeometry& grid,
+              std::span<const EdgePoint> points,
+              std::vector<EdgeLine>& out);
+
+  private:
+    struct Piece {
+        EdgeLine line;
+        std::vector<std::int32_t> members;
+        double upper_m = 0.0;  ///< medians of the members
+        double lower_m = 0.0;
+    };
+    void chain(const grid::GridGeometry& grid, std::span<const EdgePoint> points);
+    [[nodiscard]] std::int32_t root_of(std::int32_t point);
+    void take_lines(std::span<const EdgePoint> points, std::span<const std::int32_t> chain);
+    [[nodiscard]] bool fit(std::span<const EdgePoint> points, Piece& piece) const;
+    void keep_longest_run(const Eigen::Vector2d& at_m,
+                          const Eigen::Vector2d& along,
+                          std::size_t least_points);
+    void join(std::span<const EdgePoint> points);
+    [[nodiscard]] bool belong_together(const Piece& a, const Piece& b) const;
+
+    StairsConfig config_;
+    double resolution_m_ = 0.0;
+    Image<std::int32_t> first_;  ///< first point of a cell, -1 = none
+    std::vector<std::int32_t> parent_;
+    std::vector<std::int32_t> order_;  ///< points, chain by chain
+    /// A point that is in no line yet.
+    struct Left {
+        float x_m = 0.0F;
+        float y_m = 0.0F;
+        float down_x = 0.0F;
+        float down_y = 0.0F;
+        std::int32_t point = 0;
+    };
+    std::vector<Left> left_;
+    struct Placed {
+        float t_m;
+        std::int32_t point;
+    };
+    std::vector<Placed> run_;
+    std::vector<Piece> pieces_;
+};
+
+}  // namespace surefoot::stairs

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "surefoot/stairs/edges/edge_border.hpp"
+#include "surefoot/stairs/edges/edge_lines.hpp"
+#include "surefoot/stairs/features.hpp"
+#include "surefoot/stairs/stairs_config.hpp"
+#include "surefoot/stairs/terrain.hpp"
+
+namespace surefoot::stairs {
+
+/// Level ground on one side of an edge.
+struct Level {
+    double height_m = 0.0;
+    double sigma_m = 0.0;
+    double scatter_m = 0.0;  ///< of a cell
+    double begin_m = 0.0;    ///< from the edge
+    double end_m = 0.0;      ///< where it falls, rises or is no longer known
+    bool ends_unknown = false;
+    double slope = 0.0;     ///< rise over run, away from the edge
+    double middle_m = 0.0;  ///< of the ground that `height_m` is the mean of, from the edge
+};
+
+/// Ground in slices along an edge: how high it lies at which distance from it, on either side, each
+/// slice one cell deep and as long as the edge. What single cells say wrongly the middle value of
+/// a slice does not take over.
+class EdgeProfiler {
+  public:
+    explicit EdgeProfiler(const StairsConfig& config) : config_(config) {}
+
+    /// The edge with its levels; nothing where the ground above it is not known. Where the ground
+    /// does not fall after all, or nothing shows it, the edge is no higher than 0 and lies where
+    /// the line does.
+    [[nodiscard]] std::optional<Edge> measure(const Terrain& terrain, const EdgeLine& line);
+
+    struct Slice {
+        double height_m = 0.0;
+        double scatter_m = 0.0;  ///< robust standard deviation of a cell
+        double sigma_m = 0.0;    ///< median of what the map says of a cell
+        double known_share = 0.0;
+        double free_above_m = 0.0;  ///< lowest bound of unknown cells; infinite = none
+    };
+    /// The ground from `upper_m` before a line to `lower_m` behind it. The slices begin whole cells
+    /// from the line. Valid until the next call.
+    struct Slices {
+        std::span<const Slice> slices;
+        double begin_m = 0.0;  ///< of the first one, from the line; negative on the upper side
+        double cell_m = 0.0;
+
+        [[nodiscard]] int count() const { return static_cast<int>(slices.size()); }
+        [[nodiscard]] const Slice& at(int slice) const {
+            return slices[static_cast<std::size_t>(slice)];
+        }
+        [[nodiscard]] bool known(int slice) const;
+        /// How many slices, from this one on in steps of `way`, are a strip of ground between two
+        /// shadows: what is in sight of a tread that lies lower; 0 where it is none.
+        [[nodiscard]] int strip(int slice, int way) const;
+    };
+    [[nodiscard]] Slices slices(const Terrain& terrain,
+                                const EdgeLine& line,
+                                double upper_m,
+                                double lower_m);
+
+  private:
+    struct Sample {
+        int slice = 0;
+        float height_m = 0.0F;
+        float var_m2 = 0.0F;
+    };
+    void slice(const Terrain& terrain, const EdgeLine& line, double upper_m, double lower_m);
+    void gather(const Terrain& terrain, const EdgeLine& line);
+    void measure_slice(std::span<const Sample> samples, int cells, Slice& slice);
+    [[nodiscard]] Level level_from(int first, int step) const;
+    [[nodiscard]] bool ground_ends(const Terrain& terrain,
+                                   const EdgeLine& line,
+                                   const Level& upper) const;
+    double place(const Terrain& terrain, const EdgeLine& line, const Level& upper, Edge& edge);
+    [[nodiscard]] double slope_of(int begin, int step, int count) const;
+    [[nodiscard]] const Slice& at(int slice) const {
+        return slices_[static_cast<std::size_t>(slice)];
+    }
+
+    StairsConfig config_;
+    double resolution_m_ = 0.0;
+    double length_m_ = 0.0;
+    int upper_slices_ =
+        0;  ///< slices before the edge; slice k begins (k - upper_slices_) cells from it
+    std::vector<Slice> slices_;
+    std::vector<int> cells_;  ///< of each slice
+    std::vector<BorderPoint> borders_;
+    std::vector<Sample> samples_;
+    std::vector<Sample> sorted_;
+    std::vector<std::size_t> first_;  ///< of each slice in `sorted_`
+    std::vector<std::size_t> next_;
+    std::vector<float> values_;
+};
+
+}  // namespace surefoot::stairs
