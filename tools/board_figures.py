@@ -1,4 +1,4 @@
-"""Tables of docs/experiments/boards.md: finders of chessboards, rigs of wide lenses, lens models suggested."""
+"""Tables of docs/lab/boards.md: finders of chessboards, rigs of wide lenses, lens models suggested."""
 import collections
 import statistics
 

@@ -1,4 +1,4 @@
-"""Which required figures of a measured page are missed, but for those that are known (tools/known_misses.txt).
+"""Which required figures of a measured page are missed, but for those that are known (state/known_misses.txt).
 
 A page says what is required in tables whose header is HEADER: "yes" or "**no**" in the last column, "-" where nothing
 is required. The names in the first column are unique within a page.
@@ -7,7 +7,7 @@ import pathlib
 import sys
 
 HEADER = "| what | found | required | met |"
-KNOWN_MISSES = pathlib.Path(__file__).resolve().parent / "known_misses.txt"
+KNOWN_MISSES = pathlib.Path(__file__).resolve().parent.parent / "state" / "known_misses.txt"
 
 
 def figures(text):

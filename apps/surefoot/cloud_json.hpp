@@ -12,7 +12,7 @@
 #include "surefoot/eval/clouds/cloud_outliers.hpp"
 #include "surefoot/geometry/cloud_alignment.hpp"
 
-// The JSON objects of the cloud tools; the names are a contract (docs/json.md).
+// The JSON objects of the cloud tools; the names are a contract (docs/reference/json.md).
 namespace surefoot::app {
 
 [[nodiscard]] std::string voxel_json(const ThinnedCloud& thinned,

@@ -27,7 +27,7 @@ struct FrameRecorderConfig {
     std::time_t (*utc_now)() = [] { return std::time(nullptr); };  ///< names the folders
 };
 
-/// Records what a source delivers while the pages want it (docs/page.md), as `surefoot record`
+/// Records what a source delivers while the pages want it (docs/how_to/page.md), as `surefoot record`
 /// does. A thread of its own writes; who brings frames only copies them, and never waits for the
 /// disk: what does not fit into the queue is left out and counted. Its IMU samples come with the
 /// next frame.

@@ -436,7 +436,7 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
         bind(add_verb(app,
                       "serve",
                       "the whole chain, live, with the gate process beside it that answers over a "
-                      "WebSocket (docs/rosbridge.md)",
+                      "WebSocket (docs/reference/rosbridge.md)",
                       "surefoot serve sim:walk_floor --vouch 1 --walk 9,9 --port 0 --once "
                       "--set sim.sensor=analytic"),
              o,
@@ -1098,7 +1098,7 @@ void add_urdf(CLI::App& app, UrdfOptions& o, int& exit_code) {
                           urdf,
                           exit_code,
                           Reads::no_settings);
-    verb->add_option("model", o.model, "model file (docs/model_file.md), or a built-in name")
+    verb->add_option("model", o.model, "model file (docs/reference/model_file.md), or a built-in name")
         ->required()
         ->type_name("FILE|NAME");
     verb->add_option("--out", o.out_file, "the URDF; without it stdout has it")->type_name("FILE");

@@ -97,7 +97,7 @@ class ListReader {
         if (error_) return;
         const std::string where = at_.empty() || name.empty() ? at_ + name : at_ + "." + name;
         error_ = input_error(fmt::format(
-            "{}: {} {}; the names are those of stairs.json (docs/json.md)", file_, where, what));
+            "{}: {} {}; the names are those of stairs.json (docs/reference/json.md)", file_, where, what));
     }
 
     std::string file_;

@@ -15,7 +15,7 @@ namespace surefoot::experiments {
 /// What `map_noise_fit` measured on maps at the end of whole runs: the fitted ZED on a trolley that
 /// goes 1.3-2 m towards the thing, seeds 21-28 (72 runs, 192 348 cells of level ground that both
 /// eyes saw from three poses at least, within 0.9 m of the machine and 0.15 m from the thing).
-/// Where runs differ, what makes the gate's task harder is taken. docs/experiments/gate_scenes.md
+/// Where runs differ, what makes the gate's task harder is taken. docs/lab/gate_scenes.md
 /// shows the figures.
 struct MapNoise {
     /// Share of cells whose stated sigma is at most this. Most stand at the map's floor of 3 mm;

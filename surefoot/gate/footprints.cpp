@@ -9,7 +9,7 @@ namespace {
 using Corners = std::array<grid::FixedPoint, 4>;
 
 /// Drift that kBesideTenthMm and the margins of feet and body take up: up to here nothing was
-/// missed where the machine stood beside where it believed (docs/experiments/gate_scenes.md).
+/// missed where the machine stood beside where it believed (docs/lab/gate_scenes.md).
 constexpr std::int64_t kDriftWithinTenthMm = 100;
 
 /// x / 2^20 rounded to nearest, halves upward: the same for every sign of x.

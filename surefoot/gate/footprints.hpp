@@ -13,7 +13,7 @@ namespace surefoot::gate {
 /// The map shows things up to a cell of 25 mm beside their place: the rim of a table that was seen
 /// past is bare floor in the cells that it half covers. Of hazards that were missed on maps with
 /// measured noise, every one but a hole's corner had a cell that knew of it so far away
-/// (docs/experiments/gate_scenes.md).
+/// (docs/lab/gate_scenes.md).
 inline constexpr std::int64_t kBesideTenthMm = 250;
 
 /// A pose in the plane: position in units of 0.1 mm, cosine and sine of the yaw times 2^20.

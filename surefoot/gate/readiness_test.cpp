@@ -78,7 +78,7 @@ TEST(Readiness, a_forged_snapshot_is_a_latched_fault) {
     EXPECT_FALSE(station.allows()) << "until an operator re-arms";
 }
 
-/// docs/safety.md and surefoot/gate/README.md promise these; the other tests read them.
+/// docs/evidence/safety.md and surefoot/gate/README.md promise these; the other tests read them.
 TEST(Readiness, the_times_are_those_that_are_promised) {
     const ReadinessLimits limits;
     EXPECT_EQ(limits.warmup_ns, 2 * kSecondNs);

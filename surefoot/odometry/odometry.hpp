@@ -30,7 +30,7 @@ struct OdometryConfig {
     /// Poses err by what their landmarks and pixels err, and share most of both with the pose
     /// before. After this time they are taken as independent, so that motions over some seconds,
     /// which the map composes of those between frames, state the error that they have
-    /// (docs/accuracy.md).
+    /// (docs/evidence/accuracy.md).
     double landmark_s = 1.3;
     double lost_speed_m_s = 0.5;
     double lost_turn_rad_s = 0.5;

@@ -20,7 +20,7 @@ inline constexpr int kSaturated_dn = 250;
 /// Black level and read noise of 8-bit cameras lie below this.
 inline constexpr int kBlack_dn = 10;
 /// ASSUMPTION: three quarters of an image are enough. Planes were true from half an image on, the
-/// right eye's trim finds its corners from two thirds on (docs/experiments/ground.md).
+/// right eye's trim finds its corners from two thirds on (docs/lab/ground.md).
 inline constexpr double kMaxSaturatedShare = 0.25;
 inline constexpr double kMaxBlackShare = 0.75;
 

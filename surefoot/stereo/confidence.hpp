@@ -25,7 +25,7 @@ struct MatchEvidence {
 /// two times its noise (lab/sigma_fit/main.cpp: likelihood of Student's t, and of every image 68
 /// and 95 % within one and two sigma; the share of the shift was held), then all coefficients times
 /// 1.02, so that 68 % lie within one sigma on average; rounded. Other pairs and scenes, and what
-/// was held out: docs/experiments/matching.md. Images of an ideal camera scatter two to three times
+/// was held out: docs/lab/matching.md. Images of an ideal camera scatter two to three times
 /// less than it says.
 [[nodiscard]] float match_sigma_px(const MatchEvidence& evidence) noexcept;
 

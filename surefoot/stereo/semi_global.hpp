@@ -27,7 +27,7 @@ struct SemiGlobalConfig {
 inline constexpr int kCensusBits = 30;
 
 /// The paths come from the left, the right and above, not from below: on floor with the noise of
-/// the ZED what is found is 0.14 px late. Two rows leave less than 0.01 px of it (docs/experiments/
+/// the ZED what is found is 0.14 px late. Two rows leave less than 0.01 px of it (docs/lab/
 /// matching.md; lab/pixel_locking/main, floor and cross_fall, seeds 21-24).
 inline constexpr int kSearchLag_rows = 2;
 

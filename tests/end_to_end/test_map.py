@@ -1,4 +1,4 @@
-"""Saved maps: what run --save-map writes, read by a reader that knows docs/map_format.md alone; merge, export, errors."""
+"""Saved maps: what run --save-map writes, read by a reader that knows docs/reference/map_format.md alone; merge, export, errors."""
 import math
 import struct
 

@@ -1,4 +1,4 @@
-"""Remembered ground, at a seed each: lab/memory_scripts/main.cpp. The figures are in docs/experiments."""
+"""Remembered ground, at a seed each: lab/memory_scripts/main.cpp. The figures are in docs/lab."""
 import csv
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""docs/own_camera.md, done as it is written, with frames of the simulator in place of a camera's."""
+"""docs/get_started/own_camera.md, done as it is written, with frames of the simulator in place of a camera's."""
 import re
 import textwrap
 import unittest
@@ -6,7 +6,7 @@ import zlib
 
 from surefoot_cli import ROOT, CliTest, png_of, surefoot
 
-PAGE = (ROOT / "docs" / "own_camera.md").read_text()
+PAGE = (ROOT / "docs" / "get_started" / "own_camera.md").read_text()
 
 
 def grey_rows(png):

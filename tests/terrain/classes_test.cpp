@@ -165,7 +165,7 @@ constexpr const char* kScenes[] = {"demo_stairs",
                                    "door_900",
                                    "kerb_down_150"};
 
-// Exact heights, and those of a map after some looks. Other seeds: docs/stairs.md.
+// Exact heights, and those of a map after some looks. Other seeds: docs/concepts/stairs.md.
 TEST(Classes, HeightMapsOfScenesAreNamedAsTheScenesSay) {
     for (const double sigma_m : {0.0, 0.005}) {
         Confusion confusion{};

@@ -198,7 +198,7 @@ void look_below(const Climb& climb,
 
 // With the default cut, and with one that only the nearest five treads below the feet pass. Without
 // the ramps that a matcher invents behind every nose: they are another question
-// (docs/experiments/correlated_depth.md).
+// (docs/lab/correlated_depth.md).
 TEST(Climb, TwentyStepsDownKeepACorrectMapAndWhatIsBelowTheCutADrop) {
     const Climb climb("flight_20_down");
     sim::AnalyticStereoConfig errors;

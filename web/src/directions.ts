@@ -75,7 +75,7 @@ export function signOf(
   return sign("cannot", verdict.text || "the gate cannot judge");
 }
 
-/// The outlook of the gate's present state; that of another state is taken away (docs/rosbridge.md).
+/// The outlook of the gate's present state; that of another state is taken away (docs/reference/rosbridge.md).
 export function ofState(outlook: Outlook | undefined, state: string | undefined): Outlook | undefined {
   return outlook && (state === undefined || outlook.state === state) ? outlook : undefined;
 }

@@ -16,7 +16,7 @@ export interface ActResult {
   message: string;
 }
 
-/// The gate's socket (rosbridge 2, docs/rosbridge.md): what it would say, how it is, and the operator's acts.
+/// The gate's socket (rosbridge 2, docs/reference/rosbridge.md): what it would say, how it is, and the operator's acts.
 export class GateLink {
   readonly #store: Store;
   readonly #socket: ReconnectingSocket;

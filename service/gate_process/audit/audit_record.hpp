@@ -55,7 +55,7 @@ void write_record(std::uint64_t machine_hash,
                   const AuditedVerdict& audited,
                   const CellBox& zone,
                   char* out) noexcept;
-/// The version of the format that is written (docs/audit_format.md).
+/// The version of the format that is written (docs/reference/audit_format.md).
 inline constexpr std::uint32_t kFrameVersion = 3;
 /// Any bytes may come. `record` means nothing after an error. `version`: of the format that the
 /// record was written in. A snapshot of version 2 has no uncertainty of the vertical: it counts as

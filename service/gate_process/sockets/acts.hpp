@@ -9,7 +9,7 @@
 
 namespace surefoot::wire {
 
-// The numbers stand in audit logs (docs/audit_format.md): never give one a new meaning.
+// The numbers stand in audit logs (docs/reference/audit_format.md): never give one a new meaning.
 enum class ActKind : std::uint8_t { connect = 1, authenticate, ask, attest, rearm };
 enum class ActOutcome : std::uint8_t {
     done = 1,

@@ -17,7 +17,7 @@ struct ReductionConfig {
     double window_sigma = 2.5;       ///< points this close to a surface belong to it ...
     double surface_relief_m = 0.01;  ///< ... plus this: relief of the ground within a cell
     /// Errors of a semi-global matcher hang together over more pixels than a cell covers: 1.0-1.3
-    /// independent ones per cell and frame were measured (docs/experiments/correlated_depth.md).
+    /// independent ones per cell and frame were measured (docs/lab/correlated_depth.md).
     double points_per_independent = 30.0;
     double max_independent = 1.0;
     /// So many points without a common height are a vertical face, seen from the side.

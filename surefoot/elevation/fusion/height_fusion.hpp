@@ -24,7 +24,7 @@ struct FusionConfig {
     /// Added when a measurement is gated out, (10 mm)^2; less where less explains it at the gate.
     double multi_height_var_m2 = 1e-4;
     /// And one such measurement multiplies the cell's sigma by no more than this. Errors of cells
-    /// that have just refused one grow from 2.5 to 4 mm (docs/experiments/gate_scenes.md).
+    /// that have just refused one grow from 2.5 to 4 mm (docs/lab/gate_scenes.md).
     double contradiction_growth = 2.0;
     double scan_duration_s = 0.0;  ///< scan-time rule, 0 = off: see `fuse`
     GateVariance gate_variance = GateVariance::cell_and_measurement;

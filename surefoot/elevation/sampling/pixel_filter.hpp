@@ -18,14 +18,14 @@ struct PixelFilterConfig {
     double jump_sigma = 2.0;  ///< ... plus this many sigma of the disparity
     /// Matchers bridge depth edges with ramps along the line of sight. 70 with `min_points` 3
     /// leaves 2 % of the cells hidden behind drop edges invented and 97 % of the visible floor
-    /// known (docs/experiments/correlated_depth.md).
+    /// known (docs/lab/correlated_depth.md).
     double max_incidence_deg = 70.0;
     /// A table top is seen at 80-84 deg from afar, and what is dropped there leaves the floor under
     /// it as the surface. It is level, which a bridge that follows the line of sight down is not.
     double max_incidence_level_deg = 85.0;
     /// Surfaces that lean less against gravity are level, where a level one must be seen flatter
     /// than `max_incidence_deg`: so flat, noise alone leans a table by 10 deg (with 8 its far half
-    /// went unseen, docs/experiments/terrain.md). On steeper lines of sight what leans as little
+    /// went unseen, docs/lab/terrain.md). On steeper lines of sight what leans as little
     /// and is seen as flat is a bridge behind a low kerb.
     double level_deg = 15.0;
 

@@ -12,7 +12,7 @@
 namespace surefoot::elevation {
 
 /// When a remembered surface that lines of sight pass through is gone. ASSUMPTION, all of them;
-/// what they lead to: docs/accuracy.md.
+/// what they lead to: docs/evidence/accuracy.md.
 struct VisibilityConfig {
     bool cleanup = true;
     /// Lines of sight that pass over unknown cells say how deep the ground there must lie.

@@ -194,11 +194,11 @@ std::string why_no_rig(CalibrationKind kind, const YamlNode* root) {
             return looks_like(
                 "it is not read. Copy fx fy cx cy, k1 k2 p1 p2 and the pose of the right camera "
                 "into "
-                "a rig.yaml (docs/own_camera.md shows one)");
+                "a rig.yaml (docs/get_started/own_camera.md shows one)");
         case CalibrationKind::okvis:
             return looks_like(
                 "it is not read. Copy focal length, principal point, distortion and the poses T_SC "
-                "into a rig.yaml (docs/own_camera.md shows one)");
+                "into a rig.yaml (docs/get_started/own_camera.md shows one)");
         case CalibrationKind::basalt:
             return looks_like(
                 "it is not read. Give the Kalibr camchain or the EuRoC folder that it was made "

@@ -9,7 +9,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/map_region.hpp"
 
-/// Regions of an elevation map as files: docs/map_format.md has every byte.
+/// Regions of an elevation map as files: docs/reference/map_format.md has every byte.
 namespace surefoot::io {
 
 /// Files of a newer major version are not read; a newer minor one may add header fields and layers,

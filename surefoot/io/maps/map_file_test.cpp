@@ -17,7 +17,7 @@ namespace {
 using grid::MapRegion;
 using testing::contains;
 
-// Where things lie in a file of version 1.0: docs/map_format.md.
+// Where things lie in a file of version 1.0: docs/reference/map_format.md.
 constexpr std::size_t kMajorAt = 8;
 constexpr std::size_t kMinorAt = 10;
 constexpr std::size_t kHeaderBytesAt = 12;

@@ -8,7 +8,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/place_recognition/place.hpp"
 
-/// Remembered places as files: docs/place_format.md has every byte.
+/// Remembered places as files: docs/reference/place_format.md has every byte.
 namespace surefoot::io {
 
 /// Files of a newer major version are not read; a newer minor one may add fields to the header, to

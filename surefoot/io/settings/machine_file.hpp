@@ -21,7 +21,7 @@ struct JointRange {
 };
 
 /// What a machine file says. machines/rex.yaml shows every key but `deviations`, which
-/// docs/machine_file.md explains.
+/// docs/reference/machine_file.md explains.
 struct MachineFile {
     std::string name;
     Machine machine;               ///< what the gate needs

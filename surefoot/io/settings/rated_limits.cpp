@@ -15,7 +15,7 @@ namespace surefoot::io {
 namespace {
 
 /// The limits of machines/rex.yaml: with these the hazards, the faults and the false stops of
-/// docs/safety.md were counted.
+/// docs/evidence/safety.md were counted.
 constexpr std::array kRatedLimits{
     RatedLimit{"limits.walk.up_m", 0.02, true, "the flat gait was not tried on higher steps"},
     RatedLimit{"limits.walk.down_m", 0.02, true, "the flat gait was not tried on deeper steps"},

@@ -8,9 +8,9 @@
 #include "surefoot/io/settings/yaml_group.hpp"
 #include "surefoot/io/settings/yaml_tree.hpp"
 
-/// Limits of the gate for which the evidence of docs/safety.md was taken. A machine file that
+/// Limits of the gate for which the evidence of docs/evidence/safety.md was taken. A machine file that
 /// allows more leaves that evidence, so that a person must sign for it, limit by limit
-/// (docs/machine_file.md).
+/// (docs/reference/machine_file.md).
 namespace surefoot::io {
 
 struct RatedLimit {

@@ -13,7 +13,7 @@ enum class CameraProfile : std::uint8_t { ideal, zed, euroc, zed_alone };
 inline constexpr const char* kCameraProfileNames[] = {"ideal", "zed", "euroc", "zed_alone"};
 
 /// What a real camera does beyond the ideal one. The figures are frozen: fitted to `zed_office` and
-/// `euroc_still` by `tools/experiments camera_fit`, see docs/experiments/reality_gap.md; the turn
+/// `euroc_still` by `tools/experiments camera_fit`, see docs/lab/reality_gap.md; the turn
 /// of the ZED's right eye was measured on corners of the same recording. `zed_alone` is
 /// that camera and nothing else: before a heap of things as in its recording it scatters as the
 /// recording does on the seeds of the fit, a quarter more on others. `zed` stands before plain
