@@ -7,7 +7,7 @@ BUILD := build/release
 OUT ?= out
 JOBS ?= $(shell nproc)
 
-.PHONY: demo test check nightly setup build asan clean
+.PHONY: demo test check docs nightly setup build asan clean
 .DEFAULT_GOAL := build
 
 setup:
@@ -34,6 +34,12 @@ asan: setup
 
 check:
 	@tools/check
+
+# The documentation site, in build/docs; a link that leads nowhere is an error.
+docs:
+	@tools/setup docs
+	@mkdocs build --strict --quiet
+	@echo "the documents are in build/docs/index.html"
 
 nightly: build
 	@tools/nightly
