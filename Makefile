@@ -11,14 +11,23 @@ JOBS ?= $(shell nproc)
 .DEFAULT_GOAL := build
 
 setup:
-	@tools/setup
+	@tools/setup develop
 
+# Tests, benchmarks and lab/ too; `make demo` leaves them out.
 build: setup
 	@tools/build_page
-	@test -f $(BUILD)/build.ninja || cmake --preset release > /dev/null
+	@grep -qs '^SUREFOOT_DEVELOPER:BOOL=ON' $(BUILD)/CMakeCache.txt || cmake --preset release -DSUREFOOT_DEVELOPER=ON > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
 
-demo: build
+demo:
+	@echo "make demo: 1. packages"
+	@tools/setup run
+	@echo "make demo: 2. the live page"
+	@tools/build_page
+	@echo "make demo: 3. the programs (the first time about MINUTES minutes on two cores)"
+	@test -f $(BUILD)/build.ninja || cmake --preset release -DSUREFOOT_DEVELOPER=OFF > /dev/null
+	@NINJA_STATUS='[%f of %t, %e s] ' cmake --build $(BUILD) -j $(JOBS) --target surefoot surefoot-gate
+	@echo "make demo: 4. the demonstration"
 	@tools/demo $(BUILD)/apps/surefoot/surefoot $(OUT)/demo
 
 test: build
