@@ -20,13 +20,13 @@
 #include <memory>
 #include <numbers>
 
-#include "apps/surefoot/resources.hpp"
 #include "service/gate_process/audit/audit_log.hpp"
 #include "service/gate_process/gatekeeper.hpp"
 #include "service/gate_process/sockets/port_holder.hpp"
 #include "service/gate_process/sockets/token_file.hpp"
 #include "service/gate_process/sockets/websocket_server.hpp"
 #include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/machines/built_in_machines.hpp"
 
 namespace surefoot::app {
 namespace {
@@ -226,7 +226,7 @@ int serve(const Options& options, const io::MachineFile& file) {
 }
 
 int run(Options options) {
-    const auto machine = find_machine(options.machine);
+    const auto machine = machines::load_machine(options.machine);
     if (!machine) return fail(machine.error());
     for (const io::Deviation& deviation : machine->deviations)
         fmt::print(stderr, "surefoot-gate: {}: {}\n", options.machine, io::text_of(deviation));

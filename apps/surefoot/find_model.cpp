@@ -10,7 +10,7 @@ namespace surefoot::app {
 namespace {
 
 Result<io::MachineModel> parse_built_in(std::string_view name) {
-    const auto text = find_resource(model_resources(), "models", name);
+    const auto text = machines::find_resource(model_resources(), "models", name);
     if (!text) return text.error();
     return io::parse_model(*text, fmt::format("model {}", name));
 }

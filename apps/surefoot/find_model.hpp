@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/surefoot/resources.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/io/settings/model_file.hpp"
+#include "surefoot/machines/built_in_machines.hpp"
 
 namespace surefoot::app {
 
 /// The files of models/. The gate process, which shows nothing, has none of them.
-[[nodiscard]] const std::vector<Resource>& model_resources();
+[[nodiscard]] const std::vector<machines::Resource>& model_resources();
 
 /// A model of a machine by path or by built-in name; whatever is wrong with it is a usage error.
 [[nodiscard]] Result<io::MachineModel> find_model(const std::string& path_or_name);

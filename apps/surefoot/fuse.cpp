@@ -31,7 +31,8 @@ Result<elevation::AncestorConfig> load(const CommonOptions& options) {
             fmt::format("fuse --preset '{}': 'ethz' is the update that this verb compares with",
                         options.preset));
     }
-    if (auto status = apply_overrides(options, io::describe_config(settings)); !status)
+    if (auto status = apply_overrides(settings_request(options), io::describe_config(settings));
+        !status)
         return status.error();
     return settings.ancestor;
 }

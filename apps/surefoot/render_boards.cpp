@@ -5,12 +5,12 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/rendered_boards.hpp"
 #include "apps/surefoot/source.hpp"
-#include "apps/surefoot/thread_pool.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "surefoot/calibration/boards/board_print.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/images/image_file.hpp"
+#include "surefoot/perception/thread_pool.hpp"
 #include "surefoot/sim/rendering/board_renderer.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "apps/surefoot/fit_settings.hpp"
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/place_session.hpp"
@@ -11,6 +10,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "apps/surefoot/writes.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/fit_settings.hpp"
 
 namespace surefoot::app {
 int run(const RunOptions& options) {

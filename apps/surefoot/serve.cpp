@@ -19,7 +19,6 @@
 
 #include "apps/surefoot/explain.hpp"
 #include "apps/surefoot/find_model.hpp"
-#include "apps/surefoot/fit_settings.hpp"
 #include "apps/surefoot/frame_recorder.hpp"
 #include "apps/surefoot/gate_child.hpp"
 #include "apps/surefoot/interrupt.hpp"
@@ -37,6 +36,7 @@
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/gate/vouching.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/fit_settings.hpp"
 #include "surefoot/sim/scene_source.hpp"
 
 namespace surefoot::app {

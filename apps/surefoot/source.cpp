@@ -7,11 +7,11 @@
 
 #include "apps/surefoot/interrupt.hpp"
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/resources.hpp"
 #include "surefoot/camera/rig_units.hpp"
 #include "surefoot/io/calibration/rig_formats.hpp"
 #include "surefoot/io/recordings/imu_stream.hpp"
 #include "surefoot/io/recordings/recording.hpp"
+#include "surefoot/machines/built_in_machines.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
 
 namespace surefoot::app {
@@ -155,7 +155,7 @@ Result<camera::StereoRig> load_rig(const std::string& path_or_name) {
 
 Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_name) {
     if (path_or_name.empty()) return std::optional<io::MachineFile>{};
-    auto machine = find_machine(path_or_name);
+    auto machine = machines::load_machine(path_or_name);
     if (!machine) return machine.error();
     for (const io::Deviation& deviation : machine->deviations)
         log_warning(path_or_name + ": " + io::text_of(deviation));

@@ -44,7 +44,6 @@
 
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/offline_map.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/thesis_policy_steps.hpp"
 #include "lab/scenes/hazard_scene.hpp"
@@ -56,6 +55,7 @@
 #include "surefoot/gate/verdict_text.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/text.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
 #include "surefoot/traversability/traversability.hpp"

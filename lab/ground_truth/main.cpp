@@ -23,10 +23,10 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/start.hpp"
 #include "surefoot/sim/rendering/ray_caster.hpp"
 #include "surefoot/sim/scene_source.hpp"
@@ -66,7 +66,7 @@ Truth truth_of(const sim::SceneTruth& truth, const Pose& T_world_body) {
 
 Status measure(const SceneCase& now,
                int frames,
-               const CommonOptions& common,
+               const SettingsRequest& common,
                Executor& executor,
                fmt::ostream& out) {
     auto settings = load_settings(common);
@@ -130,9 +130,9 @@ int measure_all(const std::vector<std::string>& words) {
             usage_error("ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES "
                         "[KEY=VALUE...]]]]]"));
     const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
-    CommonOptions common;
-    if (words.size() > 6) common.settings.assign(words.begin() + 6, words.end());
-    const auto executor = make_executor({});
+    SettingsRequest common;
+    if (words.size() > 6) common.overrides.assign(words.begin() + 6, words.end());
+    const auto executor = make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,source,tilt_deg,height_mm,waited_s,frames,accepted,tilt_p50_deg,tilt_"

@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "apps/surefoot/fit_settings.hpp"
 #include "apps/surefoot/live_session.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "lab/hazard_injections/fault_bench.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/fit_settings.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/sim/rendering/image_faults.hpp"
 #include "surefoot/sim/scene_source.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
@@ -190,10 +190,10 @@ Result<Outcome> perceive(const io::MachineFile& file,
                          const GateBench::Plan& plan,
                          Fault fault,
                          std::uint64_t seed) {
-    auto settings = app::load_settings({});
+    auto settings = load_settings();
     if (!settings) return settings.error();
     settings->pipeline.elevation.length_m = 3.0;
-    app::fit_settings(recording.rig, file, *settings);
+    fit_settings(recording.rig, file, *settings);
     Serial serial;
     auto pipeline =
         pipeline::Pipeline::make(settings->pipeline, recording.rig, serial, stage_clock_ns);

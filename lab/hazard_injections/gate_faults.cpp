@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/surefoot/resources.hpp"
 #include "lab/hazard_injections/fault_bench.hpp"
 #include "service/gate_process/audit/audit_record.hpp"
 #include "service/gate_process/audit/audit_writer.hpp"
@@ -17,6 +16,7 @@
 #include "service/gate_process/protocol/rosbridge_session.hpp"
 #include "service/gate_process/query_zone.hpp"
 #include "surefoot/gate/gate_testing.hpp"
+#include "surefoot/machines/built_in_machines.hpp"
 
 namespace surefoot::experiments {
 namespace {
@@ -457,7 +457,7 @@ void fill_disk(GateBench& bench, Rng& rng) {
         bool failing = false;
     };
     const auto log = std::make_shared<Log>();
-    const Machine machine = app::find_machine("rex")->machine;
+    const Machine machine = machines::load_machine("rex")->machine;
     log->writer.emplace(
         machine, std::make_unique<wire::testing::MemoryDisk>(log->platter), wire::AuditFiles{});
     bench.set_audit([&bench, log, machine](const wire::Judgement& j, const MapSnapshot& map) {
@@ -573,7 +573,7 @@ Result<Outcome> start_with(const Result<io::MachineFile>& file,
 }
 
 Result<Outcome> wrong_file(std::uint64_t seed, bool faulty) {
-    auto text = app::find_resource("machines", "rex");
+    auto text = machines::find_resource(machines::built_in_machines(), "machines", "rex");
     if (!text) return text.error();
     Rng rng(mix_seed(seed, 2));
     std::string variant;

@@ -24,9 +24,9 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/resources.hpp"
 #include "lab/hazard_injections/fault_bench.hpp"
 #include "surefoot/io/text.hpp"
+#include "surefoot/machines/built_in_machines.hpp"
 
 namespace surefoot::experiments {
 namespace {
@@ -118,7 +118,7 @@ int inject_all(const std::vector<std::string>& words) {
         return app::report(usage_error("hazard_injections OUT.csv FIRST_SEED COUNT [HAZARDS]"));
     const std::uint64_t first_seed = std::strtoull(words[1].c_str(), nullptr, 10);
     const int count = std::atoi(words[2].c_str());
-    const auto machine = app::find_machine("rex");
+    const auto machine = machines::load_machine("rex");
     if (!machine) return app::report(machine.error());
     std::vector<Injection> injections = gate_injections(*machine);
     for (Injection& injection : frame_injections(*machine, std::max(2, count / 20)))

@@ -26,13 +26,13 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/exact_depth.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/odometry/odometry.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/sim/rendering/renderer.hpp"
 #include "surefoot/sim/scenes/scenes.hpp"
 #include "surefoot/sim/sensors/camera_profile.hpp"
@@ -308,7 +308,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     }
     const auto machine = app::load_machine("rex");
     if (!machine) return app::report(machine.error());
-    const auto executor = app::make_executor({});
+    const auto executor = make_executor();
     auto out = fmt::output_file(argv[1]);
     out.print(
         "pitch_deg,height_m,cameras,script,condition,seed,step,lost,known,age_s,"

@@ -24,9 +24,9 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/sim/scene_source.hpp"
 
@@ -169,13 +169,13 @@ Status walk(const Way& way,
 int measure(const std::vector<std::string>& words) {
     if (words.size() < 4)
         return report(usage_error("long_walk OUT.csv SCENE SEED MINUTES [KEY=VALUE...]"));
-    CommonOptions common;
-    common.settings.assign(words.begin() + 4, words.end());
+    SettingsRequest common;
+    common.overrides.assign(words.begin() + 4, words.end());
     auto settings = load_settings(common);
     if (!settings) return report(settings.error());
     settings->sim.scene = words[1];
     settings->sim.seed = std::strtoull(words[2].c_str(), nullptr, 10);
-    const auto executor = make_executor({});
+    const auto executor = make_executor();
     const auto way = render(settings->sim, *executor);
     if (!way) return report(way.error());
     auto out = fmt::output_file(words[0]);

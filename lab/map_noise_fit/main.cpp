@@ -20,11 +20,11 @@
 #include <string>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_chain.hpp"
 #include "lab/scenes/scene_sight.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/settings.hpp"
 
 namespace surefoot::experiments {
 namespace {
@@ -105,9 +105,7 @@ int measure(int argc, char** argv) {
     const auto machine = app::load_machine("rex");
     if (!machine) return app::report(machine.error());
     if (auto made = io::make_folder(argv[2]); !made) return app::report(made.error());
-    app::CommonOptions one_thread;
-    one_thread.threads = 1;
-    const auto executor = app::make_executor(one_thread);
+    const auto executor = make_executor(1);
     auto out = fmt::output_file(argv[1]);
     out.print(
         "kind,seed,relief_mm,dx_m,dy_m,along_m,across_m,low_mm,high_mm,floor_mm,looks,near_m,map_"

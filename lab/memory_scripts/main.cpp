@@ -39,12 +39,12 @@
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/offline_map.hpp"
 #include "apps/surefoot/run_session.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/sim/safety_oracle/safety_oracle.hpp"
 #include "surefoot/sim/scene_source.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
@@ -488,7 +488,7 @@ Status run(const Setup& setup,
            const std::string& scratch,
            Executor& executor,
            fmt::ostream& out) {
-    auto settings = app::load_settings({});
+    auto settings = load_settings();
     if (!settings) return settings.error();
     Plan plan = plan_of(setup);
     const std::string file = fmt::format(
@@ -500,8 +500,8 @@ Status run(const Setup& setup,
     if (!source) return source.error();
     settings->pipeline.ground.expected_height_m =
         (*source)->truth().trajectory.front().T_world_body.translation_m.z();
-    auto pipeline = pipeline::Pipeline::make(
-        settings->pipeline, (*source)->rig(), executor, app::steady_now_ns);
+    auto pipeline =
+        pipeline::Pipeline::make(settings->pipeline, (*source)->rig(), executor, steady_now_ns);
     if (!pipeline) return pipeline.error();
     const double sign = setup.seed % 2 == 0 ? 1.0 : -1.0;
     DriftingSource drifting(**source, sign * setup.drift, setup.stated);
@@ -559,7 +559,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     if (names.empty()) names = {"table", "door", "tread"};
     const auto machine = app::load_machine("rex");
     if (!machine) return app::report(machine.error());
-    const auto executor = app::make_executor({});
+    const auto executor = make_executor();
     const std::string scratch = file + ".scenes";
     if (auto made = io::make_folder(scratch); !made) return app::report(made.error());
     auto out = fmt::output_file(file);

@@ -29,12 +29,12 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
 #include "surefoot/camera/frame_watch.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/light.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/sim/rendering/smooth_noise.hpp"
@@ -473,7 +473,7 @@ Status follow(const Recording& recording,
 
 Status measure(const SceneCase& now,
                const std::vector<Fault>& faults,
-               const CommonOptions& common,
+               const SettingsRequest& common,
                Executor& executor,
                fmt::ostream& out) {
     auto settings = load_settings(common);
@@ -532,9 +532,9 @@ int measure_all(const std::vector<std::string>& words) {
             return std::ranges::find(wanted, fault.name) == wanted.end();
         });
     }
-    CommonOptions common;
-    if (words.size() > 6) common.settings.assign(words.begin() + 6, words.end());
-    const auto executor = make_executor({});
+    SettingsRequest common;
+    if (words.size() > 6) common.overrides.assign(words.begin() + 6, words.end());
+    const auto executor = make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,fault,severity,imu,frame,health,reason,faulty,camera,tracks,lit,"

@@ -24,10 +24,10 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 
 namespace surefoot::app {
@@ -122,7 +122,7 @@ Status measure(const Stage& stage, const Onset& onset, Executor& executor, fmt::
 }
 
 Status measure_scene(const experiments::SceneCase& now,
-                     const CommonOptions& common,
+                     const SettingsRequest& common,
                      Executor& executor,
                      fmt::ostream& out) {
     auto settings = load_settings(common);
@@ -155,9 +155,9 @@ int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2)
         return report(usage_error(
             "odometry_onset OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [KEY=VALUE...]]]]"));
-    CommonOptions common;
-    if (words.size() > 5) common.settings.assign(words.begin() + 5, words.end());
-    const auto executor = make_executor({});
+    SettingsRequest common;
+    if (words.size() > 5) common.overrides.assign(words.begin() + 5, words.end());
+    const auto executor = make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,shift_mm,spread_frames,seen_after,begun_after,end_mm,moved_before,"

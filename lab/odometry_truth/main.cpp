@@ -31,11 +31,11 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/io/recordings/trajectory_file.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/pipeline/start.hpp"
 #include "surefoot/sim/scene_source.hpp"
@@ -161,7 +161,7 @@ Result<Recording> open_recording(const std::string& folder, int frames, Executor
 
 Status measure(const SceneCase& now,
                int frames,
-               const CommonOptions& common,
+               const SettingsRequest& common,
                Executor& executor,
                fmt::ostream& out) {
     auto settings = load_settings(common);
@@ -206,9 +206,9 @@ int measure_all(const std::vector<std::string>& words) {
             usage_error("odometry_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES "
                         "[KEY=VALUE...]]]]]"));
     const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
-    CommonOptions common;
-    if (words.size() > 6) common.settings.assign(words.begin() + 6, words.end());
-    const auto executor = make_executor({});
+    SettingsRequest common;
+    if (words.size() > 6) common.overrides.assign(words.begin() + 6, words.end());
+    const auto executor = make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,path_m,end_mm,end_deg,moving,nees,rpe_mm,rpe_deg,standing,held_mm,"

@@ -29,13 +29,13 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/exact_depth.hpp"
 #include "lab/scenes/scene_cases.hpp"
 #include "surefoot/eval/maps/map_comparison.hpp"
 #include "surefoot/eval/trajectory/trajectory.hpp"
 #include "surefoot/io/text.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/sim/scene_source.hpp"
 #include "surefoot/sim/scenes/truth.hpp"
@@ -112,7 +112,7 @@ std::string motion_figures(const Trajectory& truth, const Trajectory& found, int
 /// Nothing where the carrier cannot go the scene's way.
 Result<std::optional<std::string>> measure(const Case& now,
                                            int frames,
-                                           const CommonOptions& common,
+                                           const SettingsRequest& common,
                                            Executor& executor) {
     auto settings = load_settings(common);
     if (!settings) return settings.error();
@@ -184,9 +184,9 @@ int measure_all(const std::vector<std::string>& words) {
     const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
     const std::string carriers = words.size() > 6 ? words[6] : "scene";
     const std::string rigs = words.size() > 7 ? words[7] : "zed_vga";
-    CommonOptions common;
-    if (words.size() > 8) common.settings.assign(words.begin() + 8, words.end());
-    const auto executor = make_executor({});
+    SettingsRequest common;
+    if (words.size() > 8) common.overrides.assign(words.begin() + 8, words.end());
+    const auto executor = make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,carrier,rig,path_m,end_mm,end_deg,ate_mm,lost,"

@@ -33,12 +33,12 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/place_recognition/place_tracker.hpp"
 #include "surefoot/sim/scenes/scene_file.hpp"
 #include "surefoot/sim/sensors/camera_profile.hpp"
@@ -366,7 +366,7 @@ int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 5)
         return report(usage_error("place_recall OUT.csv KINDS SCENES FIRST_SEED SEEDS [PROFILE]"));
     const std::string profile = words.size() > 5 ? words[5] : "zed_calibrated";
-    const auto executor = make_executor({});
+    const auto executor = make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "kind,scene,seed,profile,frame,revisit,refusal,matches,inliers,asked,agreeing,parts,tilt_"

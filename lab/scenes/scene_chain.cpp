@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "apps/surefoot/settings.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/start.hpp"
 
 namespace surefoot::experiments {
@@ -45,7 +45,7 @@ Result<ChainRun> run_chain(const HazardScene& scene,
                            double noise,
                            const std::string& scratch,
                            Executor& executor) {
-    auto settings = app::load_settings({});
+    auto settings = load_settings();
     if (!settings) return settings.error();
     const std::string file = fmt::format("{}/{}_{}_{}.yaml",
                                          scratch,
@@ -70,8 +70,8 @@ Result<ChainRun> run_chain(const HazardScene& scene,
     // How high base_link is over its own ground is known of every carrier: it is built so.
     settings->pipeline.ground.expected_height_m =
         run.source->truth().trajectory.front().T_world_body.translation_m.z();
-    auto pipeline = pipeline::Pipeline::make(
-        settings->pipeline, run.source->rig(), executor, app::steady_now_ns);
+    auto pipeline =
+        pipeline::Pipeline::make(settings->pipeline, run.source->rig(), executor, steady_now_ns);
     if (!pipeline) return pipeline.error();
     run.pipeline = std::make_unique<pipeline::Pipeline>(std::move(*pipeline));
     auto last = process_all(*run.source, *run.pipeline);

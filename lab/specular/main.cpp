@@ -20,12 +20,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/suite_case.hpp"
 #include "apps/surefoot/suite_verdicts.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/io/text.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/start.hpp"
 #include "surefoot/sim/scene_source.hpp"
 
@@ -62,13 +62,13 @@ struct CaseResult {
     double search_ms = 0.0;
 };
 
-Result<Chain> make_chain(const app::Settings& settings,
+Result<Chain> make_chain(const Settings& settings,
                          const sim::SceneSource& source,
                          bool search,
                          Executor& executor) {
     pipeline::PipelineConfig config = app::config_on(source.truth(), settings);
     config.specular.enabled = search;
-    auto pipeline = pipeline::Pipeline::make(config, source.rig(), executor, app::steady_now_ns);
+    auto pipeline = pipeline::Pipeline::make(config, source.rig(), executor, steady_now_ns);
     if (!pipeline) return pipeline.error();
     return Chain{std::move(*pipeline), 0.0};
 }
@@ -76,7 +76,7 @@ Result<Chain> make_chain(const app::Settings& settings,
 Result<CaseResult> run_case(const std::string& scene,
                             std::uint64_t seed,
                             int most_frames,
-                            const app::Settings& settings,
+                            const Settings& settings,
                             const Machine& machine) {
     Serial serial;
     sim::SceneOptions sim = settings.sim;
@@ -170,7 +170,7 @@ int measure(const std::vector<std::string>& words) {
         fmt::print(stderr, "usage: specular OUT.csv SCENES FIRST_SEED SEEDS [FRAMES]\n");
         return 2;
     }
-    const auto settings = app::load_settings({});
+    const auto settings = load_settings();
     const auto machine = app::load_machine("rex");
     if (!settings || !machine || !*machine) return 1;
     const std::uint64_t first = std::strtoull(words[2].c_str(), nullptr, 10);

@@ -36,10 +36,10 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "lab/stairs_scenes/stairs_look.hpp"
 #include "lab/stairs_scenes/stairs_match.hpp"
 #include "surefoot/io/text.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
 #include "surefoot/stairs/tracking/feature_follower.hpp"
 
@@ -285,8 +285,8 @@ std::map<std::string, std::vector<std::string>> runs_in(const std::string& maps)
 
 int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2) return report(usage_error("stairs_follow OUT.csv MAPS [KEY=VALUE...]"));
-    CommonOptions common;
-    common.settings.assign(words.begin() + 2, words.end());
+    SettingsRequest common;
+    common.overrides.assign(words.begin() + 2, words.end());
     const auto settings = load_settings(common);
     if (!settings) return report(settings.error());
     auto out = fmt::output_file(words[0]);

@@ -188,7 +188,7 @@ class Run {
           world_(truth_in_world(script)),
           T_odom_world_(drawn_odom(now.seed)) {}
 
-    Result<std::vector<Look>> go(const app::Settings& settings, const sim::SceneOptions& options) {
+    Result<std::vector<Look>> go(const Settings& settings, const sim::SceneOptions& options) {
         auto source = sim::open_scene(options, &executor_);
         if (!source) return source.error();
         auto pipeline = pipeline::Pipeline::make(settings.pipeline, (*source)->rig(), executor_);
@@ -298,9 +298,7 @@ Status StairsCase::put_into(sim::SceneOptions& options) const {
     return {};
 }
 
-Result<std::vector<Look>> look_at(const StairsCase& now,
-                                  app::Settings settings,
-                                  Executor& executor) {
+Result<std::vector<Look>> look_at(const StairsCase& now, Settings settings, Executor& executor) {
     sim::SceneOptions& options = settings.sim;
     if (Status put = now.put_into(options); !put) return put.error();
     const auto script = sim::make_scene(options.scene, options.seed);

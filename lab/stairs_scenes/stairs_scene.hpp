@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/settings.hpp"
 #include "lab/stairs_scenes/stairs_look.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
+#include "surefoot/perception/settings.hpp"
 
 namespace surefoot::experiments {
 
@@ -35,7 +35,7 @@ struct StairsCase {
 /// `Look::noise_px` is 1.4826 times the median distance of disparity errors from their median, at
 /// pixels that the map would take, whose surroundings of 17 x 17 pixels are level floor too.
 [[nodiscard]] Result<std::vector<Look>> look_at(const StairsCase& now,
-                                                app::Settings settings,
+                                                Settings settings,
                                                 Executor& executor);
 
 }  // namespace surefoot::experiments

@@ -42,11 +42,11 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "lab/stairs_scenes/stairs_look.hpp"
 #include "lab/stairs_scenes/stairs_match.hpp"
 #include "lab/stairs_scenes/stairs_scene.hpp"
 #include "surefoot/io/text.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
 #include "surefoot/stairs/tracking/feature_follower.hpp"
 
@@ -312,7 +312,7 @@ std::vector<std::string> saved_looks(const std::string& maps) {
 
 /// Cases side by side, written in order.
 int write_all(int count, const std::string& path, const std::function<Done(int)>& make) {
-    const auto executor = make_executor({});
+    const auto executor = make_executor();
     auto out = fmt::output_file(path);
     out.print("{}", kHeader);
     const int block = 2 * executor->threads();
@@ -337,13 +337,13 @@ int measure_all(const std::vector<std::string>& words) {
     }
     const bool is_saved = std::filesystem::is_directory(words[1]);
     const std::size_t first_setting = std::min<std::size_t>(is_saved ? 2 : 7, words.size());
-    CommonOptions common;
-    common.settings = {"sim.known_motion=true",
-                       "sim.analytic.drift.position_m_sqrt_m=0",
-                       "sim.analytic.drift.turn_deg_sqrt_m=0"};
-    common.settings.insert(common.settings.end(),
-                           words.begin() + static_cast<std::ptrdiff_t>(first_setting),
-                           words.end());
+    SettingsRequest common;
+    common.overrides = {"sim.known_motion=true",
+                        "sim.analytic.drift.position_m_sqrt_m=0",
+                        "sim.analytic.drift.turn_deg_sqrt_m=0"};
+    common.overrides.insert(common.overrides.end(),
+                            words.begin() + static_cast<std::ptrdiff_t>(first_setting),
+                            words.end());
     const auto settings = load_settings(common);
     if (!settings) return report(settings.error());
     if (is_saved) {

@@ -34,12 +34,12 @@
 
 #include "apps/surefoot/log.hpp"
 #include "apps/surefoot/run_session.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
 #include "surefoot/eval/maps/maps.hpp"
 #include "surefoot/eval/report/error_bins.hpp"
 #include "surefoot/io/text.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/sim/safety_oracle/cell_safety.hpp"
 #include "surefoot/sim/scene_source.hpp"
@@ -306,7 +306,7 @@ Status measure(const SceneCase& now,
                const io::MachineFile& machine,
                Executor& executor,
                Results& out) {
-    auto settings = load_settings({});
+    auto settings = load_settings();
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
     if (Status seen = now.put_into(sim); !seen) return seen.error();
@@ -369,7 +369,7 @@ int measure_all(const std::vector<std::string>& words) {
     if (!noise || *noise < 0.0) return report(usage_error("no noise: " + words[5]));
     const auto machine = load_machine("rex");
     if (!machine) return report(machine.error());
-    const auto executor = make_executor({});
+    const auto executor = make_executor();
     Results out{fmt::output_file(words[0]), fmt::output_file(words[0] + ".wrong.csv")};
     out.wrong.print("scene,seed,profile,x_m,y_m,truth,called\n");
     out.cases.print("scene,seed,profile,median_mm,p90_mm,coverage,sigma_1,sigma_2,sigma_3");

@@ -32,7 +32,6 @@
 #include <vector>
 
 #include "apps/surefoot/log.hpp"
-#include "apps/surefoot/settings.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/elevation/fusion/ancestor.hpp"
@@ -42,6 +41,7 @@
 #include "surefoot/ground/ground_calibration.hpp"
 #include "surefoot/ground/sample_points.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/settings.hpp"
 #include "surefoot/sim/rendering/renderer.hpp"
 #include "surefoot/sim/scenes/scenes.hpp"
 #include "surefoot/sim/scenes/truth.hpp"
@@ -410,7 +410,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
         return 2;
     }
     const bool drawn = faults == "drawn";
-    const auto executor = app::make_executor({});
+    const auto executor = make_executor();
     Tables out{fmt::output_file(folder + "/runs.csv"),
                fmt::output_file(folder + "/heights.csv"),
                folder,

@@ -3,15 +3,15 @@
 
 #include <optional>
 
-#include "apps/surefoot/settings.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/perception/settings.hpp"
 
-namespace surefoot::app {
+namespace surefoot {
 
 /// What the camera and the machine file know goes into settings that the user left alone.
 void fit_settings(const camera::StereoRig& rig,
                   const std::optional<io::MachineFile>& machine,
                   Settings& settings);
 
-}  // namespace surefoot::app
+}  // namespace surefoot

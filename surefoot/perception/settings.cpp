@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/surefoot/settings.hpp"
+#include "surefoot/perception/settings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <thread>
 
-#include "apps/surefoot/thread_pool.hpp"
 #include "surefoot/core/fnv1a.hpp"
 #include "surefoot/core/nearest_names.hpp"
+#include "surefoot/perception/thread_pool.hpp"
 
-namespace surefoot::app {
+namespace surefoot {
 
 void Settings::describe(ConfigVisitor& visitor) {
     pipeline.describe(visitor);
@@ -26,23 +28,23 @@ void Settings::describe(ConfigVisitor& visitor) {
     visitor.group("live", live);
 }
 
-Result<Settings> load_settings(const CommonOptions& options) {
+Result<Settings> load_settings(const SettingsRequest& request) {
     Settings settings;
     const auto describe = io::describe_config(settings);
-    if (!options.preset.empty()) {
-        const auto preset = traversability::preset(options.preset);
+    if (!request.preset.empty()) {
+        const auto preset = traversability::preset(request.preset);
         if (!preset) {
             const std::vector<std::string> names(std::begin(traversability::kPresetNames),
                                                  std::end(traversability::kPresetNames));
-            const std::string likely = did_you_mean(options.preset, names);
+            const std::string likely = did_you_mean(request.preset, names);
             return usage_error(fmt::format("--preset {}: there is no such preset{} There are: {}",
-                                           options.preset,
+                                           request.preset,
                                            likely.empty() ? "." : likely,
                                            fmt::join(names, ", ")));
         }
         settings.pipeline.traversability = *preset;
     }
-    if (auto status = apply_overrides(options, describe); !status) return status.error();
+    if (auto status = apply_overrides(request, describe); !status) return status.error();
     if (const auto problem = settings.pipeline.problem()) return usage_error(*problem);
     if (const auto problem = settings.live.problem()) return usage_error(*problem);
     const bool own_view = settings.pipeline.camera != camera::RectificationConfig{};
@@ -55,13 +57,13 @@ Result<Settings> load_settings(const CommonOptions& options) {
     return settings;
 }
 
-Status apply_overrides(const CommonOptions& options, const io::DescribeConfig& describe) {
-    if (!options.config_file.empty()) {
+Status apply_overrides(const SettingsRequest& request, const io::DescribeConfig& describe) {
+    if (!request.config_file.empty()) {
         // A settings file that cannot be read is a wrong call, as a wrong key in it is.
-        if (auto status = io::read_config(options.config_file, describe); !status)
+        if (auto status = io::read_config(request.config_file, describe); !status)
             return usage_error(status.error().message);
     }
-    for (const std::string& setting : options.settings) {
+    for (const std::string& setting : request.overrides) {
         if (auto status = io::override_config(setting, describe); !status) return status;
     }
     return {};
@@ -71,10 +73,8 @@ std::uint64_t hash_of(const Settings& settings) {
     return fnv1a(io::format_config_of(settings));
 }
 
-std::unique_ptr<Executor> make_executor(const CommonOptions& options) {
-    const int threads = options.threads > 0
-                            ? options.threads
-                            : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+std::unique_ptr<Executor> make_executor(int threads) {
+    if (threads <= 0) threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     if (threads == 1) return std::make_unique<Serial>();
     return std::make_unique<ThreadPool>(threads);
 }
@@ -85,4 +85,4 @@ std::int64_t steady_now_ns() {
         .count();
 }
 
-}  // namespace surefoot::app
+}  // namespace surefoot

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/surefoot/fit_settings.hpp"
+#include "surefoot/perception/fit_settings.hpp"
 
-namespace surefoot::app {
+namespace surefoot {
 namespace {
 
 /// RGB-D cameras bring the Kinect's error model unless the user chose one.
@@ -33,4 +33,4 @@ void fit_settings(const camera::StereoRig& rig,
     expect_machine(machine, settings);
 }
 
-}  // namespace surefoot::app
+}  // namespace surefoot

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/surefoot/thread_pool.hpp"
+#include "surefoot/perception/thread_pool.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace surefoot::app {
+namespace surefoot {
 namespace {
 
 std::vector<int> calls_per_index(Executor& executor, int count) {
@@ -73,4 +73,4 @@ TEST(ThreadPool, ANestedCallRunsOnItsOwnThread) {
 }
 
 }  // namespace
-}  // namespace surefoot::app
+}  // namespace surefoot

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/surefoot/thread_pool.hpp"
+#include "surefoot/perception/thread_pool.hpp"
 
 #include <utility>
 
-namespace surefoot::app {
+namespace surefoot {
 namespace {
 
 /// Looks a while whether there is something to do before a thread goes to sleep: to wake it takes
@@ -85,4 +85,4 @@ void ThreadPool::run_worker() {
     }
 }
 
-}  // namespace surefoot::app
+}  // namespace surefoot

@@ -11,7 +11,7 @@
 
 #include "surefoot/core/executor.hpp"
 
-namespace surefoot::app {
+namespace surefoot {
 
 /// Executor on `threads` threads, the calling one included. A call from within another (nested, or
 /// from a second thread) runs on its own thread alone. When a piece of work throws, the pieces that
@@ -46,4 +46,4 @@ class ThreadPool final : public Executor {
     std::vector<std::thread> workers_;
 };
 
-}  // namespace surefoot::app
+}  // namespace surefoot

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "surefoot/machines/built_in_machines.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <filesystem>
 #include <memory>
 
-#include "apps/surefoot/resources.hpp"
 #include "surefoot/core/nearest_names.hpp"
 #include "surefoot/gate/canary.hpp"
 
-namespace surefoot::app {
+namespace surefoot::machines {
 
-Result<std::string> find_resource(std::string_view folder, std::string_view name) {
-    return find_resource(resources(), folder, name);
-}
-
-Result<std::string> find_resource(const std::vector<Resource>& among,
+Result<std::string> find_resource(const std::vector<Resource>& resources,
                                   std::string_view folder,
                                   std::string_view name) {
     const std::string wanted = fmt::format("{}/{}.yaml", folder, name);
     std::vector<std::string> known;
-    for (const Resource& resource : among) {
+    for (const Resource& resource : resources) {
         if (resource.name == wanted) return std::string(resource.text);
         if (resource.name.starts_with(fmt::format("{}/", folder))) {
             known.emplace_back(
@@ -57,10 +54,10 @@ Status self_test(const std::string& name, const Machine& machine) {
 
 }  // namespace
 
-Result<io::MachineFile> find_machine(const std::string& path_or_name) {
+Result<io::MachineFile> load_machine(const std::string& path_or_name) {
     const auto read = [&]() -> Result<io::MachineFile> {
         if (std::filesystem::exists(path_or_name)) return io::read_machine(path_or_name);
-        const auto text = find_resource("machines", path_or_name);
+        const auto text = find_resource(built_in_machines(), "machines", path_or_name);
         if (!text) return text.error();
         return io::parse_machine(*text, fmt::format("machine {}", path_or_name));
     };
@@ -70,4 +67,4 @@ Result<io::MachineFile> find_machine(const std::string& path_or_name) {
     return machine;
 }
 
-}  // namespace surefoot::app
+}  // namespace surefoot::machines

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "surefoot/camera/frame_source.hpp"
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/frame.hpp"
+#include "surefoot/core/report.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/perception/settings.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+#include "surefoot/pipeline/start.hpp"
+
+namespace surefoot {
+
+/// Opens a recording: a folder in the layout of EuRoC, KITTI or TUM RGB-D, a folder of side-by-side
+/// images, or a side-by-side video. `rig_file`: a calibration in any format that
+/// docs/get_started/own_camera.md names; empty = the one of the recording. Errors name file and
+/// cause.
+[[nodiscard]] Result<std::unique_ptr<camera::FrameSource>> open_recording(
+    const std::string& path, const std::string& rig_file = {});
+
+/// A machine file by path, or a built-in machine by name ("rex"). Errors name file, line, key and
+/// limit.
+[[nodiscard]] Result<io::MachineFile> load_machine(const std::string& path_or_name);
+
+/// The whole chain behind one object: from frames of a stereo or depth camera to a rated map of the
+/// ground, its stairs and drops, and the gate's verdict on a movement.
+///
+///     auto source = surefoot::open_recording("my_recording");
+///     auto perception = surefoot::Perception::make((*source)->rig());
+///     for (auto frame = (*source)->next(); frame && *frame; frame = (*source)->next())
+///         for (const surefoot::FrameReport& report : perception->process(**frame))
+///             std::cout << report.motion.T_odom_body.translation_m.transpose() << '\n';
+///
+/// Start-up: the first frames are kept until they show gravity and the ground (pipeline::StartUp),
+/// then odom is placed and the kept frames are processed. Frames: odom, z up, below the first
+/// base_link; see NOTATION.md. Not thread-safe; owns its threads. Costs about 36 ms of one core for
+/// a frame of 672 x 376 pixels (docs/evidence/benchmarks.md).
+class Perception {
+  public:
+    /// `rig`: the camera; where it does not say how it is mounted, the machine's mount counts.
+    /// `machine`: needed for verdicts. `threads`: 0 = one for each core. Fails with the first
+    /// problem of rig or settings.
+    [[nodiscard]] static Result<Perception> make(const camera::StereoRig& rig,
+                                                 std::optional<io::MachineFile> machine = {},
+                                                 Settings settings = {},
+                                                 int threads = 0);
+
+    /// Takes the next frame in time order. Returns the reports of all frames that were processed by
+    /// this call: none during start-up, several at its end, then one. They are valid until the next
+    /// call. `Work::odometry` measures the motion alone, at a fraction of the time.
+    std::span<const FrameReport> process(const StereoFrame& frame, Work work = Work::full);
+    /// Call when the source ends: a recording that is shorter than the start-up is processed now.
+    std::span<const FrameReport> finish();
+
+    /// Whether odom is placed: before, map and features are empty.
+    [[nodiscard]] bool is_started() const noexcept { return !start_.has_value(); }
+    /// The map of the ground, robot-centric, in odom.
+    [[nodiscard]] const elevation::ElevationMap& map() const noexcept { return pipeline_->map(); }
+    /// Slope, step height, roughness and traversability of each cell of the map.
+    [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
+        return pipeline_->rating();
+    }
+    /// Stairs, drops, kerbs, sills and doors, tracked over time.
+    [[nodiscard]] const stairs::TerrainFeatures& features() const noexcept {
+        return pipeline_->features();
+    }
+    /// What the gate may know, as of the last frame. An error names what does not fit.
+    [[nodiscard]] Result<std::unique_ptr<grid::MapSnapshot>> snapshot() const;
+    /// "May the machine make this movement from where it is now?" as of the last frame. Everything
+    /// that is missing inhibits: no machine, no map, an unknown command. For tests and analysis: a
+    /// machine that moves asks the gate process (surefoot-gate), which also watches the age of the
+    /// map and the health of perception.
+    [[nodiscard]] gate::Verdict verdict(std::uint8_t command) const;
+    /// The verdict as one sentence: what, where, value and limit.
+    [[nodiscard]] std::string text_of(const gate::Verdict& verdict) const;
+
+    /// Everything else: alignment, camera, depth image of the last frame, footholds.
+    [[nodiscard]] const pipeline::Pipeline& pipeline() const noexcept { return *pipeline_; }
+    [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
+
+  private:
+    Perception(Settings settings,
+               std::optional<io::MachineFile> machine,
+               std::unique_ptr<Executor> executor,
+               pipeline::Pipeline pipeline);
+    void process_kept_frames();
+
+    Settings settings_;
+    std::uint64_t settings_hash_;
+    std::optional<io::MachineFile> machine_;
+    std::unique_ptr<Executor> executor_;  // the pipeline refers to it: its address must stay
+    std::unique_ptr<pipeline::Pipeline> pipeline_;
+    std::optional<pipeline::StartUp> start_;  ///< until odom is placed
+    std::vector<FrameReport> reports_;
+};
+
+}  // namespace surefoot

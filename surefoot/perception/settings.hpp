@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/eval/clouds/m3c2.hpp"
+#include "surefoot/eval/maps/maps.hpp"
+#include "surefoot/io/live_camera/live_camera.hpp"
+#include "surefoot/io/settings/config_yaml.hpp"
+#include "surefoot/pipeline/pipeline_config.hpp"
+#include "surefoot/sim/scene_source.hpp"
+#include "surefoot/sim/sensors/laser_scanner.hpp"
+
+namespace surefoot {
+
+/// Every setting of the program. `surefoot config` prints all keys with units and defaults.
+struct Settings {
+    pipeline::PipelineConfig pipeline;
+    eval::EvalMapsConfig maps;
+    eval::M3c2Config m3c2;
+    sim::SceneOptions sim;          ///< how simulated scenes are seen
+    sim::LaserScannerConfig laser;  ///< and scanned
+    io::CameraConfig live;          ///< how live cameras are used
+
+    void describe(ConfigVisitor& visitor);
+};
+
+/// Where settings come from. Later sources win: defaults, preset, file, overrides.
+struct SettingsRequest {
+    std::string preset;                  ///< of traversability, see traversability::kPresetNames
+    std::string config_file;             ///< YAML, as `surefoot config` writes it
+    std::vector<std::string> overrides;  ///< "elevation.resolution_m=0.02"
+};
+
+/// The settings, checked. Every problem is a usage error that names file, line, key and limit.
+[[nodiscard]] Result<Settings> load_settings(const SettingsRequest& request = {});
+/// Applies the file and the overrides of `request` to a configuration object.
+[[nodiscard]] Status apply_overrides(const SettingsRequest& request,
+                                     const io::DescribeConfig& describe);
+/// Hash of every setting. The map snapshot and each verdict carry it.
+[[nodiscard]] std::uint64_t hash_of(const Settings& settings);
+
+/// An executor on this many threads; 0 = one for each core of the computer.
+[[nodiscard]] std::unique_ptr<Executor> make_executor(int threads = 0);
+/// Steady clock for stage times [ns].
+[[nodiscard]] std::int64_t steady_now_ns();
+
+}  // namespace surefoot

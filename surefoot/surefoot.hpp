@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Everything that a program needs that gives frames to Surefoot and asks what the ground is.
+/// Programs that use a single module include its header instead (docs/index.md).
+#include "surefoot/elevation/elevation_map.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/perception.hpp"
+#include "surefoot/stairs/feature_finder.hpp"
+#include "surefoot/traversability/traversability.hpp"
