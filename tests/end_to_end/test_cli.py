@@ -27,7 +27,7 @@ class Verbs(CliTest):
         self.assertEqual(sorted(listed), sorted({verb[0] for verb in VERBS}))
 
     def test_every_help_has_an_example_and_the_example_runs(self):
-        for folder in ("tests", "server"):
+        for folder in ("tests", "service"):
             (self.dir / folder).symlink_to(ROOT / folder)
         for verb in VERBS:
             process = surefoot(*verb, "--help")

@@ -9,7 +9,7 @@ import unittest
 from fake_rosbridge import FakeRosbridge
 from surefoot_cli import BINARY, ROOT, CliTest, surefoot
 
-TONES = ROOT / "server" / "rex_link" / "tones"
+TONES = ROOT / "service" / "rex_link" / "tones"
 PATIENCE_S = 60.0
 PUSHES = "".join(f"{time_s:.1f} 9\n{time_s + 0.9:.1f} 0\n" for time_s in (0.5, 2.0, 3.5))
 

@@ -33,7 +33,7 @@ constexpr std::array kRatedLimits{
     RatedLimit{"limits.drop_m", 0.05, true, "the lowest kerb is 75 mm"},
     RatedLimit{"limits.drop_band_m", 0.10, false, "an edge may lie closer to a foot"},
     RatedLimit{"limits.drop_evidence", 0.5, true, "a drop needs more evidence to be one"},
-    RatedLimit{"limits.drift_m", 0.025, false, "remembered ground is trusted where it was"},
+    RatedLimit{"limits.drift_m", 0.025, true, "ground may have moved farther since it was seen"},
     RatedLimit{"limits.tread_share", 0.80, false, "a tread carries less of a foot"},
     RatedLimit{"limits.tread_overhang_m", 0.073, true, "a foot reaches farther over a nosing"},
     RatedLimit{"limits.frame_age_ms", 200, true, "an older map is asked"},
