@@ -10,7 +10,26 @@ import re
 from mkdocs.exceptions import PluginError
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+SECTIONS = {"get_started": "Get started", "how_to": "How to", "concepts": "Concepts", "reference": "Reference",
+            "evidence": "Evidence", "lab": "Lab notebook"}
+FIRST = {"get_started": ["install", "own_camera", "understand_the_answer", "use_the_library"],
+         "concepts": ["depth", "odometry", "ground_and_gravity", "elevation_map", "traversability", "stairs", "gate"],
+         "evidence": ["index", "headline_figures", "safety", "accuracy", "benchmarks", "foreign_data"], "lab": ["index"],
+         "reference": ["cli", "settings", "glossary", "hazards", "gate_reasons"]}
 LINK = re.compile(r"\[([^\]]*)\]\(([^)\s#]+)(#[^)\s]*)?\)")
+
+
+def on_config(config):
+    """The navigation: one section a folder, the pages to read first at its top."""
+    docs = ROOT / "docs"
+    config["nav"] = [{"Home": "index.md"}]
+    for folder, title in SECTIONS.items():
+        names = [path.stem for path in (docs / folder).glob("*.md") if path.stem != "accuracy_notes"]
+        first = [name for name in FIRST.get(folder, []) if name in names]
+        config["nav"].append({title: [f"{folder}/{name}.md" for name in first + sorted(set(names) - set(first))]})
+    config["nav"][-2]["Evidence"].append("evidence/results/README.md")
+    config["nav"].append({"Decisions": "decisions/index.md"})
+    return config
 
 
 def on_page_markdown(markdown, page, **_):
