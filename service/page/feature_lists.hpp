@@ -8,17 +8,19 @@
 
 namespace surefoot::page {
 
-/// Flights, drops, kerbs, sills, doors and edges, as stairs.json and pages have them. Poses are
-/// x, y, z [m] and yaw [rad] in the frame of the map; std = standard error, spread = scatter of the
-/// single ones; drops and kerbs have positive heights. What was followed has `id`, `looks` and
-/// `last_seen_s`. What is no number is null.
+/// The lists "flights", "drops", "kerbs", "sills", "doors" and "edges", as stairs.json and the
+/// page's "stairs" message have them (docs/reference/json.md). A pose is [x_m, y_m, z_m, yaw_rad]
+/// in the frame of the map. `std` is a standard error, `spread` the scatter of the single steps.
+/// Drops and kerbs have positive heights. A tracked feature also has `id`, `looks` (number of
+/// observations) and `last_seen_s` (age of the last observation at `features.time_ns`). A value
+/// that is NaN or infinite becomes null.
 [[nodiscard]] wire::Json feature_lists(const stairs::TerrainFeatures& features);
 
-/// The "stairs" message of messages.json.
+/// The "stairs" message of messages.json, one line of JSON.
 [[nodiscard]] std::string stairs_text(const stairs::TerrainFeatures& features);
 
-/// Whether a page would learn nothing from the second that it does not know from the first: time
-/// alone that has passed is nothing.
+/// True when both hold the same features, apart from the times of the observations. A page then
+/// needs no new "stairs" message.
 [[nodiscard]] bool say_the_same(const stairs::TerrainFeatures& one,
                                 const stairs::TerrainFeatures& other);
 

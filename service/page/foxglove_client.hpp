@@ -22,10 +22,13 @@ struct SocketMessage {
     std::string bytes;
 };
 
-/// One client of the Foxglove WebSocket protocol, as texts in and messages out: no socket, no
-/// thread, no clock. It gets what it subscribed to, the newest of each channel, and with each frame
-/// the source's time. Ground and images come as often as 2 MB a second allow at most, the one that
-/// waited longest first.
+/// One client of the Foxglove WebSocket protocol: it reads the client's messages and decides which
+/// messages leave next. It has no socket, no thread and no clock; the caller passes the steady
+/// clock's `now_ns`.
+///
+/// The client gets the newest message of each channel that it subscribed to, and the source's time
+/// with each frame. Ground, points and images share a budget of 2 MB/s. When several of them are
+/// due, the channel that waited longest goes first. Not thread-safe.
 class FoxgloveClient {
   public:
     static constexpr std::int64_t kMostBytesPerSecond = 2'000'000;
@@ -33,14 +36,17 @@ class FoxgloveClient {
     static constexpr std::int64_t kPointsEvery_ns = 1'000'000'000;
     static constexpr std::int64_t kCameraEvery_ns = 200'000'000;
 
-    /// The service introduces itself first. `session`: see foxglove_server_info.
+    /// Queues the two messages that the service sends first: serverInfo and advertise. `session`:
+    /// see foxglove_server_info().
     FoxgloveClient(const std::string& name, const std::string& session);
 
-    /// What the client sent. Whatever cannot be met is answered by a status; an error is the
-    /// sentence to let it go with.
+    /// Reads one message of the client. A request that the service cannot serve is answered with a
+    /// status message. On an error the caller must close the connection and send the error's
+    /// sentence. An error means that the client sent too many unreadable texts, or too many
+    /// requests before it received the replies.
     [[nodiscard]] Status take(bool is_text, std::string_view bytes, std::int64_t now_ns);
-    /// What leaves now. Only when all that left before has gone: so a slow client is sent less
-    /// often, never what is old.
+    /// The messages to send now, in order. Call it only after all earlier messages have left: a
+    /// slow client then gets fewer messages, but never an old one.
     [[nodiscard]] std::vector<SocketMessage> next(FoxgloveShow& show, std::int64_t now_ns);
 
     [[nodiscard]] bool listens_to(FoxgloveChannel channel) const { return of(channel).has_value(); }
@@ -50,9 +56,9 @@ class FoxgloveClient {
 
   private:
     struct Subscription {
-        std::uint32_t id = 0;                 ///< the client's number for it
-        std::optional<std::uint64_t> seen;    ///< serial of what it was sent last
-        std::optional<std::int64_t> sent_ns;  ///< when
+        std::uint32_t id = 0;                 ///< chosen by the client
+        std::optional<std::uint64_t> seen;    ///< serial of the last message sent
+        std::optional<std::int64_t> sent_ns;  ///< when that message was sent
     };
     using Slot = std::optional<Subscription>;
 
@@ -66,7 +72,7 @@ class FoxgloveClient {
     void take(const FoxgloveSubscribe& request);
     void take(const FoxgloveUnsubscribe& request);
     void take(const FoxgloveUnserved& request);
-    /// The first reason against a wish, or nothing.
+    /// Adds one subscription, or returns the reason why that is not possible.
     [[nodiscard]] std::optional<std::string> subscribe(FoxgloveSubscribe::Wish wish);
     void say(FoxgloveLevel level, const std::string& sentence);
 
@@ -83,7 +89,7 @@ class FoxgloveClient {
     std::vector<SocketMessage> replies_;
     wire::TokenBucket unreadable_;
     std::uint64_t frame_serial_ = 0;
-    std::int64_t free_ns_ = 0;  ///< from then on there is room for something large
+    std::int64_t free_ns_ = 0;  ///< earliest time of the next large message
 };
 
 }  // namespace surefoot::page

@@ -15,20 +15,20 @@
 #include "surefoot/core/result.hpp"
 
 /// The messages between the service and a client of the Foxglove WebSocket protocol; each function
-/// makes or reads one of them. Payloads are JSON after the schemas of foxglove_schemas.hpp. Nothing
-/// that goes out here is a permission. No socket, no clock, no file.
+/// makes or reads one of them. Payloads are JSON that follows the schemas of foxglove_schemas.hpp.
+/// No message is a permission to step. All functions are pure: no socket, no clock, no file.
 namespace surefoot::page {
 
-/// What a client can subscribe to.
+/// The channels that a client can subscribe to.
 enum class FoxgloveChannel : std::uint8_t {
     ground,         ///< foxglove.Grid
     ground_points,  ///< foxglove.PointCloud
     camera,         ///< foxglove.CompressedImage
     transforms,     ///< foxglove.FrameTransforms
     pose,           ///< foxglove.PoseInFrame
-    status,         ///< ours: health and the times of the stages
-    verdict,        ///< ours: each verdict of the gate
-    outlook,        ///< ours: what the gate would say to each movement
+    status,         ///< own schema: health, and the duration of each stage
+    verdict,        ///< own schema: each verdict of the gate
+    outlook,        ///< own schema: the verdict that the gate would give each movement
 };
 inline constexpr std::size_t kFoxgloveChannelCount = 8;
 inline constexpr std::array kFoxgloveChannels{FoxgloveChannel::ground,
@@ -41,49 +41,51 @@ inline constexpr std::array kFoxgloveChannels{FoxgloveChannel::ground,
                                               FoxgloveChannel::outlook};
 static_assert(kFoxgloveChannels.size() == kFoxgloveChannelCount);
 
-/// The number by which clients know a channel, from 1.
+/// The channel's number in the protocol, from 1.
 [[nodiscard]] constexpr std::uint32_t id_of(FoxgloveChannel channel) noexcept {
     return static_cast<std::uint32_t>(channel) + 1;
 }
 [[nodiscard]] const char* topic_of(FoxgloveChannel channel) noexcept;
 
-/// The subprotocol to answer with: the newest that we speak of those in a Sec-WebSocket-Protocol
-/// ("foxglove.websocket.v1, foxglove.sdk.v1"); nothing where there is none.
+/// The subprotocol to answer with: the newest one that both sides support. `offered` is the value
+/// of the header Sec-WebSocket-Protocol, for example "foxglove.websocket.v1, foxglove.sdk.v1".
+/// Empty if the client offers no supported subprotocol.
 [[nodiscard]] std::optional<std::string_view> foxglove_protocol_of(
     std::string_view offered) noexcept;
 
-// Texts of the service.
-/// `session` is the same as long as the channels mean the same.
+// Texts that the service sends.
+/// The first message of a connection. `session` identifies one run of the service: a client that
+/// reconnects to the same session may keep its channels.
 [[nodiscard]] std::string foxglove_server_info(const std::string& name, const std::string& session);
 [[nodiscard]] std::string foxglove_advertise();
 enum class FoxgloveLevel : std::uint8_t { info = 0, warning = 1, error = 2 };
 [[nodiscard]] std::string foxglove_status(FoxgloveLevel level, const std::string& sentence);
 
-// Binary messages of the service.
+// Binary messages that the service sends. Times before 1970 become 0.
 [[nodiscard]] std::string foxglove_message(std::uint32_t subscription,
                                            std::int64_t time_ns,
                                            std::string_view payload);
 [[nodiscard]] std::string foxglove_time(std::int64_t time_ns);
 
-// Payloads. Lengths in m, heights and positions in odom.
-/// The part of the map in which something is known, one cell at least, flat at the height of odom.
-/// Fields of a cell: height_m (float32, NaN = unknown), sigma_mm, state (both as in PageCell), and
-/// its colour, transparent where the ground is unknown.
+// Payloads. Lengths are in m; heights and positions are in odom.
+/// foxglove.Grid: the smallest rectangle of the map that holds all cells with any data, at least
+/// one cell, in the plane z = 0 of odom. Each cell has height_m (float32, NaN = unknown), sigma_mm
+/// and state (both as in PageCell) and a colour, which is transparent where the ground is unknown.
 [[nodiscard]] std::string ground_payload(const PageMap& map);
-/// A point at the middle of each known cell, with its colour.
+/// foxglove.PointCloud: one coloured point at the centre of each known cell.
 [[nodiscard]] std::string ground_points_payload(const PageMap& map);
-/// Of the rectified left camera.
+/// foxglove.CompressedImage of the rectified left camera.
 [[nodiscard]] std::string camera_payload(std::int64_t time_ns, std::string_view jpeg);
-/// odom -> base_link, and base_link -> camera where that is known.
+/// foxglove.FrameTransforms: odom -> base_link, and base_link -> camera if it is known.
 [[nodiscard]] std::string transforms_payload(const PagePose& pose,
                                              const std::optional<Pose>& T_body_camera);
 [[nodiscard]] std::string pose_payload(const PagePose& pose);
 [[nodiscard]] std::string status_payload(const PageStatus& status, CameraState camera);
 
-// What clients ask for.
+// Requests of a client.
 struct FoxgloveSubscribe {
     struct Wish {
-        std::uint32_t subscription = 0;  ///< the client's own number
+        std::uint32_t subscription = 0;  ///< chosen by the client
         std::uint32_t channel = 0;
     };
     std::vector<Wish> wishes;
@@ -91,12 +93,13 @@ struct FoxgloveSubscribe {
 struct FoxgloveUnsubscribe {
     std::vector<std::uint32_t> subscriptions;
 };
-/// Something that we do not offer.
+/// An operation that the service does not offer.
 struct FoxgloveUnserved {
     std::string operation;
 };
 using FoxgloveRequest = std::variant<FoxgloveSubscribe, FoxgloveUnsubscribe, FoxgloveUnserved>;
-/// One text of a client, of 16 KiB at most; what cannot be read is an error in words.
+/// Reads one text of a client, at most kMaxFoxgloveText_bytes long. The error says in words why the
+/// text is not a valid request.
 inline constexpr std::size_t kMaxFoxgloveText_bytes = 16 * 1024;
 [[nodiscard]] Result<FoxgloveRequest> parse_foxglove_request(std::string_view text);
 

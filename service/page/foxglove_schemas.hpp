@@ -7,12 +7,13 @@
 
 namespace surefoot::page {
 
-/// "foxglove.Grid".
+/// The name of the channel's schema, for example "foxglove.Grid".
 [[nodiscard]] const char* schema_name_of(FoxgloveChannel channel) noexcept;
 
-/// The JSON schema of a channel's payload. Clients build tables from it: each property names one
-/// plain type, arrays hold one plain type, objects say what is in them. What may be null, and lists
-/// of lists, are in the payload, but not in its schema.
+/// The JSON schema of a channel's payload. Clients build tables from the schema, so each property
+/// has one plain type, each array has elements of one plain type, and each object lists its
+/// properties. Values that may be null, and lists of lists, are in the payload but not in the
+/// schema.
 [[nodiscard]] std::string schema_of(FoxgloveChannel channel);
 
 }  // namespace surefoot::page

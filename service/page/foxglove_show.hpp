@@ -13,8 +13,8 @@
 
 namespace surefoot::page {
 
-/// What clients of Foxglove are shown: the newest payload of each channel, made once for all of
-/// them, and only when somebody asks for it.
+/// Holds the newest payload of each Foxglove channel. A payload is made once for all clients, and
+/// only when a client asks for it. Not thread-safe: use it on the page's thread.
 class FoxgloveShow {
   public:
     struct Verdict {
@@ -24,21 +24,24 @@ class FoxgloveShow {
     };
     static constexpr std::size_t kRememberedVerdicts = 16;
 
-    /// `show` outlives it.
+    /// `show` must outlive this object.
     explicit FoxgloveShow(Show& show) : show_(show) {}
 
-    /// In every turn, after `Show::look`.
+    /// Updates the status. Call it on every tick, after `Show::look`.
     void look(std::int64_t now_ns, const std::optional<PlaybackState>& playback);
-    /// The newest frame's time is that of the news: the gate's clock is another.
+    /// Takes a message of the gate. The message gets the newest frame's time, because the gate uses
+    /// another clock.
     void hear(GateNews news);
 
-    /// Another number with everything new; 0 = there is nothing yet. Not of verdicts.
+    /// Changes whenever the channel has a new payload; 0 = no payload yet. Always 0 for `verdict`:
+    /// use verdicts().
     [[nodiscard]] std::uint64_t serial(FoxgloveChannel channel) const;
-    /// Empty where there is nothing to see.
+    /// The newest payload; empty if the channel has none, for example no image or no finite pose.
+    /// Always empty for `verdict`.
     [[nodiscard]] const std::string& payload(FoxgloveChannel channel);
-    /// Of the source's clock.
+    /// Time of the newest payload on the source's clock.
     [[nodiscard]] std::int64_t time_ns(FoxgloveChannel channel) const;
-    /// The last ones, in order.
+    /// The last kRememberedVerdicts verdicts, oldest first.
     [[nodiscard]] const std::deque<Verdict>& verdicts() const { return verdicts_; }
     [[nodiscard]] std::uint64_t frame_serial() const { return show_.serial(); }
     [[nodiscard]] std::int64_t now_ns() const { return show_.pose().time_ns; }

@@ -14,7 +14,7 @@ class io_context;
 
 namespace surefoot::page {
 
-/// What of the gate's topics somebody listens to.
+/// The topics of the gate that at least one client wants.
 struct GateTopics {
     bool verdict = false;
     bool outlook = false;
@@ -22,24 +22,26 @@ struct GateTopics {
 };
 enum class GateTopic : std::uint8_t { verdict, outlook };
 
-/// The body of a message, JSON on one line.
+/// One message that the gate published; `body` is JSON on one line.
 struct GateNews {
     GateTopic topic = GateTopic::verdict;
     std::string body;
 };
-/// What a text of the gate publishes of the topics above; nothing for all else that it says.
+/// Reads one text of the gate (rosbridge protocol). Empty unless the text publishes one of the
+/// topics above.
 [[nodiscard]] std::optional<GateNews> read_gate_news(std::string_view text);
 
-/// Where the gate's service is.
+/// Where the gate's rosbridge service listens.
 struct GateService {
-    std::string address;     ///< in numbers
-    std::uint16_t port = 0;  ///< 0 = there is none yet
-    std::string token;       ///< empty = it wants none
+    std::string address;     ///< numeric IP address; 0.0.0.0 and :: mean this machine
+    std::uint16_t port = 0;  ///< 0 = not known yet
+    std::string token;       ///< empty = the gate needs none
     friend bool operator==(const GateService&, const GateService&) = default;
 };
 
-/// Hears what the gate tells everybody: one more client of its rosbridge service, which only
-/// listens, and only while somebody wants to hear it. All happens in the thread that runs `io`.
+/// Subscribes to the gate's public topics as one more client of its rosbridge service. It sends no
+/// question. It is connected only while at least one topic is wanted. All work happens on the
+/// thread that runs `io`; `want` must be called on that thread.
 class GateListener {
   public:
     using Sink = std::function<void(GateNews news)>;
@@ -49,8 +51,9 @@ class GateListener {
     GateListener& operator=(const GateListener&) = delete;
     ~GateListener();
 
-    /// Call it every few milliseconds. A connection that cannot be made or breaks is tried again
-    /// twice a second; without a topic there is none.
+    /// Sets the wanted topics. Call it every few milliseconds: a connection that failed or broke is
+    /// tried again at most twice a second. Without a wanted topic, or with port 0, the connection
+    /// is closed.
     void want(const GateService& service, GateTopics topics, std::int64_t now_ns);
 
   private:
@@ -61,7 +64,7 @@ class GateListener {
     boost::asio::io_context& io_;
     Sink sink_;
     GateService service_;
-    std::shared_ptr<Connection> connection_;  ///< shared with its own waiting handlers
+    std::shared_ptr<Connection> connection_;  ///< shared with its pending handlers
     std::int64_t retry_ns_ = 0;
 };
 

@@ -7,10 +7,10 @@
 
 namespace surefoot::page {
 
-// Numbers leave as they lie in memory.
+// Messages are little-endian; MessageWriter copies numbers as they are in memory.
 static_assert(std::endian::native == std::endian::little);
 
-/// Appends numbers to a message, without gaps.
+/// Appends numbers to a binary message, without padding.
 class MessageWriter {
   public:
     explicit MessageWriter(std::string& out) : out_(out) {}

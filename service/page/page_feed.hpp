@@ -14,45 +14,47 @@
 
 namespace surefoot::page {
 
-/// A frame as perception hands it over. Buffers go round: what is not filled anew is of a frame
-/// before.
+/// A frame that perception hands to the page. Buffers are recycled: a field that perception does
+/// not fill keeps the value of an earlier frame.
 struct PageFrame {
-    std::uint64_t serial = 0;  ///< of the frame, from 1
-    bool has_map = false;      ///< a whole, sealed one
+    std::uint64_t serial = 0;  ///< number of the frame, from 1
+    bool has_map = false;      ///< `map` is a complete, sealed snapshot
     grid::MapSnapshot map;
-    std::int64_t map_time_ns = 0;  ///< of the frame that it took in last, of the source's clock
+    std::int64_t map_time_ns = 0;  ///< time of the last frame in the map, source's clock
     PagePose pose;
     PageStatus status;
-    std::vector<PageLayer> layers;  ///< of those that a page wants; empty = none this time
-    bool has_stairs = false;        ///< what the ground is comes with this frame
+    /// The layers that a page wants; empty = no layers in this frame.
+    std::vector<PageLayer> layers;
+    bool has_stairs = false;  ///< `stairs` was filled for this frame
     stairs::TerrainFeatures stairs;
-    std::int64_t images_time_ns = 0;  ///< 0 = no images this time
+    std::int64_t images_time_ns = 0;  ///< 0 = no images in this frame
     GreyImage left;
     Image<float> disparity_px;  ///< NaN or infinite = unknown
 };
 
-/// How often a page is sent what costs at most, whatever it asks for. Any thread.
+/// Upper limits of the rates at which the service sends maps, images and layers to a page. A page's
+/// own wish cannot exceed them. Thread-safe.
 struct PageRates {
     std::atomic<double> map_hz{PageWish::kMaxMap_hz};
     std::atomic<double> image_hz{PageWish::kMaxImage_hz};
     std::atomic<double> layer_hz{2.0};
 };
 
-/// From perception to the page's thread: the newest frame, the others are lost. Neither side waits
-/// for the other longer than two pointers change places.
+/// Passes the newest frame from perception to the page's thread; frames in between are dropped.
+/// Neither thread waits for the other longer than a swap of two pointers.
 class PageFeed {
   public:
-    // Perception.
+    // For the perception thread only; the wants_... functions are thread-safe.
     [[nodiscard]] PageFrame& blank() noexcept { return *blank_; }
-    /// The blank is the newest frame now; there is another blank.
+    /// Publishes the frame in blank(). Afterwards blank() refers to another frame.
     void hand_over();
     [[nodiscard]] bool wants_images() const noexcept { return wants_images_; }
     [[nodiscard]] bool wants_layers() const noexcept { return wants_layers_; }
     [[nodiscard]] bool wants_stairs() const noexcept { return wants_stairs_; }
 
-    // The page's thread.
-    /// The newest frame in exchange for the one that was had; false, and nothing changes, when
-    /// there is none since.
+    // For the page's thread only.
+    /// Swaps `frame` with the newest frame. Returns false and changes nothing if no new frame was
+    /// published since the last call.
     [[nodiscard]] bool fetch(std::unique_ptr<PageFrame>& frame);
     void want(bool images, bool layers, bool stairs) noexcept;
 

@@ -11,32 +11,35 @@
 
 namespace surefoot::page {
 
-/// What the page says about the ground of a cell. Bits 0-1 of a cell's state.
+/// The page's colour class of a cell: bits 0-1 of the cell's state. See ground_state().
 enum class GroundState : std::uint8_t { unknown = 0, free = 1, unsafe = 2, unsure = 3 };
 
-inline constexpr std::uint8_t kVouchedBit = 1U << 2U;  ///< an operator answers for it
+/// Operator attestation: an operator confirmed this ground.
+inline constexpr std::uint8_t kVouchedBit = 1U << 2U;
 inline constexpr std::uint8_t kDropBit = 1U << 3U;  ///< evidence of a drop above the gate's limit
-inline constexpr std::uint8_t kOverheadBit = 1U << 4U;  ///< something hangs lower than the machine
+/// Something in the way of the machine's body.
+inline constexpr std::uint8_t kOverheadBit = 1U << 4U;
 
-/// A cell as the page gets it; messages.json has the meaning of each value.
+/// A cell as the page receives it. messages.json defines each value.
 struct PageCell {
     static constexpr std::int16_t kUnknownHeight = std::numeric_limits<std::int16_t>::min();
     static constexpr std::uint8_t kSigmaSaturated_mm = 255;
 
-    std::int16_t height_mm = kUnknownHeight;  ///< over the map's base
+    std::int16_t height_mm = kUnknownHeight;  ///< above PageMap::base_z_tenth_mm
     std::uint8_t sigma_mm = kSigmaSaturated_mm;
     std::uint8_t state = 0;
     friend bool operator==(const PageCell&, const PageCell&) = default;
 };
 static_assert(sizeof(PageCell) == 4, "cells leave as they lie in memory");
 
-/// The ground as the page shows it. Element = iy * nx + ix, in odom, as in MapSnapshot.
+/// The map as the page shows it. The element of cell (ix, iy) is iy * nx + ix, in odom, as in
+/// MapSnapshot.
 struct PageMap {
     std::uint64_t version = 0;
-    std::int64_t frame_time_ns = 0;  ///< of the source's clock
+    std::int64_t frame_time_ns = 0;  ///< time on the source's clock
     std::int64_t origin_x_tenth_mm = 0;
     std::int64_t origin_y_tenth_mm = 0;
-    std::int32_t base_z_tenth_mm = 0;  ///< heights of cells count from here
+    std::int32_t base_z_tenth_mm = 0;  ///< zero of PageCell::height_mm, in odom
     std::int32_t resolution_tenth_mm = 0;
     std::int32_t nx = 0;
     std::int32_t ny = 0;
@@ -44,39 +47,41 @@ struct PageMap {
     std::vector<PageCell> cells;
 };
 
-/// What of a machine colours its ground.
+/// The machine's limits that decide the colour of a cell. The default for drop_evidence is its
+/// largest value.
 struct ColourLimits {
     std::int32_t cell_sigma_tenth_mm = 0;
     std::int32_t up_tenth_mm = 0;
     std::int32_t down_tenth_mm = 0;
     std::uint8_t drop_evidence = std::numeric_limits<std::uint8_t>::max();
-    std::int32_t machine_height_tenth_mm = 0;  ///< 0: nothing hangs too low
+    /// Highest body part; 0: no check for obstacles above the ground.
+    std::int32_t machine_height_tenth_mm = 0;
 };
 [[nodiscard]] ColourLimits colour_limits(const Machine& machine) noexcept;
 
-/// For the eye alone, and no permission: it judges a cell and its four neighbours, where the gate
-/// judges whole feet, their ways and the body.
-/// - unknown: never measured.
-/// - unsure: less sure than the gate requires of a cell.
-/// - unsafe: evidence of a drop; something that stands on the cell or hangs over it lower than the
-///   machine is high; or a step to a neighbour, higher or lower than a walking machine steps.
-/// - free: all others.
+/// The colour class of a cell. It is for display only and is not a permission to step: it rates one
+/// cell and its four neighbours, while the gate rates whole feet, their paths and the body.
+/// - unknown: the cell was never measured.
+/// - unsure: the cell's sigma exceeds the gate's limit for a cell.
+/// - unsafe: evidence of a drop; or an obstacle on or over the cell lower than the machine's
+///   height; or a height difference to a neighbour above the step limits of walking.
+/// - free: all other cells.
 [[nodiscard]] GroundState ground_state(const grid::MapSnapshot& snapshot,
                                        int ix,
                                        int iy,
                                        const ColourLimits& limits) noexcept;
 
-/// Fills `out` from a snapshot that is sound (nx, ny within kMaxSide). `out.base_z_tenth_mm` stays
-/// while the machine is within 20 m of it, so that heights keep their meaning from message to
-/// message. Allocates only while maps grow.
+/// Fills `out` from a valid snapshot (nx and ny within kMaxSide). `out.base_z_tenth_mm` stays the
+/// same while the machine is within 20 m of it in height, so that unchanged cells keep their values
+/// from message to message. Allocates memory only when the map grows.
 void fill_page_map(const grid::MapSnapshot& snapshot,
                    std::int64_t frame_time_ns,
                    const ColourLimits& limits,
                    PageMap& out);
 
-/// The bytes of a map message: what changed since `before`, or all that is known where there was
-/// no map before, where it lay otherwise (size, resolution, base, a shift by parts of a cell), or
-/// where that is shorter.
+/// The binary map message. It holds only the cells that changed since `before`. It holds all known
+/// cells instead if `before` is null, if the two grids do not match (size, resolution, base height,
+/// or a shift by a fraction of a cell), or if that is shorter.
 [[nodiscard]] std::string map_message(const PageMap& map, const PageMap* before);
 
 }  // namespace surefoot::page

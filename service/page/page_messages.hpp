@@ -19,8 +19,8 @@
 #include "surefoot/core/machine.hpp"
 #include "surefoot/core/result.hpp"
 
-/// The messages between the service and its page, as messages.json has them; each function makes or
-/// reads one of them. No socket, no clock, no file.
+/// The messages between the service and its page, as messages.json defines them; each function
+/// makes or reads one of them. All functions are pure: no socket, no clock, no file.
 namespace surefoot::page {
 
 inline constexpr std::uint8_t kProtocol = 1;
@@ -28,23 +28,23 @@ inline constexpr const char* kModelPath = "/machine.urdf";
 enum class MessageKind : std::uint8_t { map = 1, pose = 2, image = 3, layer = 4 };
 enum class PageImage : std::uint8_t { left = 0, disparity = 1 };
 inline constexpr std::size_t kImageCount = 2;
-/// In the order of PageImage.
+/// Names of the images, in the order of PageImage.
 inline constexpr std::array<const char*, kImageCount> kImageNames{"left", "disparity"};
 
 void write_header(MessageWriter& write, MessageKind kind);
 
-/// base_link after one frame.
+/// The pose of base_link after one frame.
 struct PagePose {
-    std::int64_t time_ns = 0;  ///< of the source's clock
+    std::int64_t time_ns = 0;  ///< time on the source's clock
     Pose T_odom_body;
-    /// Of x, y in odom and yaw, as the motions since odom began have it.
+    /// Uncertainty of x and y in odom and of yaw, accumulated over the motions since odom began.
     double variance_x_m2 = 0.0;
     double variance_y_m2 = 0.0;
     double covariance_xy_m2 = 0.0;
     double variance_yaw_rad2 = 0.0;
     Health health = Health::lost;
     CameraState camera = CameraState::unknown;
-    std::vector<float> joints_rad;  ///< in the order of PageHello::Machine::joints, or none
+    std::vector<float> joints_rad;  ///< in the order of PageHello::Machine::joints, or empty
 };
 [[nodiscard]] std::string pose_message(const PagePose& pose);
 
@@ -52,52 +52,53 @@ struct PagePose {
                                         PageImage which,
                                         std::string_view jpeg);
 
-/// One layer of the map, in odom; NaN = unknown.
+/// One layer of the map, in odom. A NaN value means unknown.
 struct PageLayer {
     std::uint64_t map_version = 0;
     std::int64_t origin_x_tenth_mm = 0;
     std::int64_t origin_y_tenth_mm = 0;
     std::int32_t resolution_tenth_mm = 0;
-    std::uint16_t index = 0;  ///< of its name in PageHello::layers
+    std::uint16_t index = 0;  ///< index of the layer's name in PageHello::layers
     Image<float> values;
 };
 [[nodiscard]] std::string layer_message(const PageLayer& layer);
 
-/// What a page must know before anything else.
+/// The first message to a page: what the page needs to read all other messages.
 struct PageHello {
     struct Machine {
         std::string name;
         surefoot::Machine limits;
-        std::vector<std::string> part_names;  ///< of limits.body
+        std::vector<std::string> part_names;  ///< names of the parts in limits.body, same order
         struct Joint {
             std::string name;
-            double stand_rad = 0.0;  ///< shown where a pose brings no angles
+            double stand_rad = 0.0;  ///< angle to show if a pose has no angles
         };
-        std::vector<Joint> joints;  ///< those of the model that move
-        std::string urdf;           ///< the model, served at kModelPath; empty = there is none
+        std::vector<Joint> joints;  ///< the movable joints of the model
+        std::string urdf;           ///< the URDF text, served at kModelPath; empty = no model
     };
     struct GroundPoint {
         double x_m = 0.0;
         double y_m = 0.0;
     };
     std::string program;      ///< "surefoot 0.1.0"
-    std::string source;       ///< as the user named it
+    std::string source;       ///< the source as the user named it
     std::string source_kind;  ///< simulated | recording | live
     std::uint16_t gate_port = 0;
     std::vector<std::string> layers;
     std::optional<Machine> machine;
-    std::vector<GroundPoint> blind_zone;  ///< in base_link, see messages.json
+    std::vector<GroundPoint> blind_zone;  ///< polygon in base_link, see messages.json
     bool can_steer = false;
-    double rate_hz = 0.0;                 ///< of the source; 0 = not known
-    std::optional<Pose> T_body_camera{};  ///< rectified left camera in base_link, where it is known
+    double rate_hz = 0.0;                 ///< frame rate of the source; 0 = not known
+    std::optional<Pose> T_body_camera{};  ///< rectified left camera in base_link, if known
 };
 [[nodiscard]] std::string hello_text(const PageHello& hello);
 
-/// Who holds the joystick, and what became of the last movement that was asked for.
+/// The "steer" message for one page. `yours`: this page holds the joystick; `taken`: any page holds
+/// it. `last`: the result of the last requested movement.
 [[nodiscard]] std::string steer_text(bool yours, bool taken, const SteerOutcome& last);
 
 enum class SourceState : std::uint8_t { waiting, running, paused, ended };
-/// "waiting".
+/// The name in messages, for example "waiting".
 [[nodiscard]] const char* to_string(SourceState state) noexcept;
 struct PageStage {
     const char* name = "";
@@ -105,60 +106,60 @@ struct PageStage {
     double median_ms = 0.0;
 };
 struct PageStatus {
-    std::int64_t time_ns = 0;  ///< of the last frame, of the source's clock
+    std::int64_t time_ns = 0;  ///< time of the last frame on the source's clock
     std::int64_t frames = 0;
-    double rate_hz = 0.0;  ///< frames of the last seconds
+    double rate_hz = 0.0;  ///< measured frame rate of the last seconds
     SourceState state = SourceState::waiting;
-    std::string text;  ///< a sentence for people
+    std::string text;  ///< a sentence for the user
     Health health = Health::lost;
     std::vector<std::string> reasons;
     std::vector<PageStage> stages;
     int viewers = 0;
 };
-/// How a recording is played.
+/// The state of the playback of a recording.
 struct PlaybackState {
-    int frame = 0;   ///< shown last, or the one that somebody jumps to
-    int frames = 0;  ///< of the whole recording; 0 = not known, and nobody can jump
+    int frame = 0;   ///< the frame shown last, or the target of a pending jump
+    int frames = 0;  ///< length of the recording; 0 = not known, no jumps
     bool paused = false;
     double speed = 1.0;  ///< times real time
 };
-/// `playback`: nothing where the source is no recording.
+/// `playback`: empty if the source is not a recording.
 [[nodiscard]] std::string status_text(const PageStatus& status,
                                       const std::optional<PlaybackState>& playback);
 
-/// What a page wants to be sent.
+/// The data that a page wants to receive.
 struct PageWish {
     static constexpr double kMaxMap_hz = 10.0;
     static constexpr double kMaxImage_hz = 5.0;
     static constexpr double kSlowest_hz = 0.1;
 
-    std::vector<std::uint16_t> layers;  ///< places in PageHello::layers, each once
+    std::vector<std::uint16_t> layers;  ///< indices into PageHello::layers, no duplicates
     std::array<bool, kImageCount> images{};
-    bool stairs = false;    ///< and what else the ground is
-    bool settings = false;  ///< of the run
+    bool stairs = false;    ///< the "stairs" message with all feature lists
+    bool settings = false;  ///< the "settings" message
     double map_hz = 5.0;
     double image_hz = 2.0;
 };
 
-/// The page holds the joystick at this command; 0 = it lets go.
+/// The page holds the joystick at `command`; 0 = the page releases the joystick.
 struct JoystickWord {
     std::uint8_t command = 0;
 };
 
-/// What is missing stays as it is.
+/// A change of the playback. Empty members stay unchanged.
 struct PlaybackWish {
     static constexpr double kSlowest = 0.1;
     static constexpr double kFastest = 16.0;
 
     std::optional<bool> paused;
     std::optional<double> speed;
-    std::optional<int> frame;  ///< to go on from; map and odom begin anew there
+    std::optional<int> frame;  ///< continue from this frame; map and odom are reset
 };
 
 using PageRequest = std::variant<PageWish, JoystickWord, PlaybackWish, SettingWish, RecordWish>;
-/// One message of a page (messages.json): keys of "want" that are missing keep their defaults,
-/// rates and speeds beyond their limits are cut. An unknown operation, key, layer or image, or a
-/// wrong type is an error in words.
+/// Reads one message of a page, as messages.json defines it. Missing keys of "want" keep their
+/// defaults; rates and speeds are clamped to their limits. The error says in words which operation,
+/// key, layer, image or type is wrong. `layers`: PageHello::layers.
 [[nodiscard]] Result<PageRequest> parse_request(std::string_view text,
                                                 std::span<const std::string> layers);
 

@@ -21,29 +21,31 @@
 namespace surefoot::page {
 
 struct PageServerConfig {
-    std::string bind_address = "127.0.0.1";  ///< another than loopback needs a token
-    std::uint16_t port = 8080;               ///< 0 = any free one
-    int more_ports = 16;                     ///< tried after it, where others are taken
-    std::string token;                       ///< of the WebSocket's URL, as ?token=
-    wire::TlsFiles tls;                      ///< empty: plain HTTP, on this machine alone or
-    std::string insecure;                    ///< with wire::kInsecureSentence
-    /// Where the page is reached through a proxy or a tunnel, as "https://robot.example".
+    /// Beyond loopback: needs a token, and TLS or `insecure`.
+    std::string bind_address = "127.0.0.1";
+    std::uint16_t port = 8080;  ///< 0 = any free port
+    int more_ports = 16;        ///< number of following ports to try if `port` is in use
+    std::string token;          ///< required in the WebSocket's URL as ?token=; empty = none
+    wire::TlsFiles tls;         ///< empty: plain HTTP, on loopback only
+    std::string insecure;       ///< wire::kInsecureSentence allows plain HTTP beyond loopback
+    /// Addresses of the page through a proxy or a tunnel, e.g. "https://robot.example".
     std::vector<std::string> origins;
-    /// Of Foxglove, where it is a web page of another machine, or a file (file://).
+    /// Origins of Foxglove if it is a web page of another machine, or a local file (file://).
     std::vector<std::string> foxglove_origins;
-    /// Clients are those who look. Requests for files are answered at the door.
+    /// Limits of connections. Only WebSockets count as clients; a request for a file ends before
+    /// that.
     wire::SlotLimits slots{16, 0, 256, 8};
-    int header_ms = 5000;   ///< from the connection to the last byte of its request
-    int answer_ms = 20000;  ///< for a file to leave
-    int write_ms = 10000;   ///< for a message to a viewer to leave
+    int header_ms = 5000;   ///< limit from the connection to the last byte of the request
+    int answer_ms = 20000;  ///< limit for sending a file
+    int write_ms = 10000;   ///< limit for sending one message to a viewer
 
     /// The first problem in words, or nullptr.
     [[nodiscard]] const char* problem() const;
 };
 
-/// What pages may do to the source and to the service; never to the gate.
+/// What pages may control: the source and the service, never the gate. All members are thread-safe.
 struct PageControls {
-    Steering steering;  ///< followed where the hello says can_steer
+    Steering steering;  ///< used only if PageHello::can_steer
     Playback playback;
     PageSettings settings;
     RecordingDesk recording;
@@ -51,18 +53,23 @@ struct PageControls {
 
 class PageSockets;
 
-/// Serves the embedded page over HTTP, its messages (messages.json) over a WebSocket at /page, and
-/// at every other path the WebSocket protocol of Foxglove to whoever offers its subprotocol; all on
-/// the thread that calls `run`. A viewer that is slow is sent less often, never what is old: the
-/// next message is made when the last one has left. Who sends what is not understood is told so and
-/// let go. With a certificate all of it goes through TLS (wire::TlsDoor); clients of this same
-/// machine may still speak plainly. A request must name the page by a name or address of this
-/// computer and its own port, and a web page that opens a socket must be the page itself
-/// (page_door.hpp). A connection that is slow with its request, or takes nothing, is ended;
-/// wire::Slots says which one when all are taken.
+/// Serves three things on one port: the embedded page over HTTP; its messages (messages.json) over
+/// a WebSocket at /page; and the Foxglove WebSocket protocol at every other path, for clients that
+/// offer its subprotocol.
+///
+/// All work happens on the thread that calls `run`. The next message for a viewer is made when the
+/// previous one has left: a slow viewer gets fewer messages, but never an old one. A viewer that
+/// sends an invalid message gets the reason and is disconnected. With a certificate everything uses
+/// TLS (wire::TlsDoor), but clients on the same machine may still connect without TLS.
+///
+/// A request must name the page by a name or address of this computer and the page's port. A web
+/// page that opens a socket must be the page itself (page_door.hpp) or a configured origin. The
+/// server ends connections that send their request too slowly or do not receive. When all slots are
+/// taken, wire::Slots chooses the connection to end.
 class PageServer {
   public:
-    /// Listens. Errors name the address and what is in the way.
+    /// Opens the port and listens. The error names the address and the reason. `feed` and
+    /// `controls` must outlive the server.
     [[nodiscard]] static Result<std::unique_ptr<PageServer>> open(const PageServerConfig& config,
                                                                   PageFeed& feed,
                                                                   PageControls& controls);
@@ -70,12 +77,12 @@ class PageServer {
     PageServer& operator=(const PageServer&) = delete;
     ~PageServer();
 
-    /// Before `run`, and from any thread whenever something in it changed. `colours`: what of the
-    /// machine the ground is coloured by.
+    /// Sets the first message to pages and the limits that colour the ground (colour_limits()).
+    /// Call it before `run`, and again from any thread when something in it changed.
     void introduce(PageHello hello, ColourLimits colours);
-    /// Until `stop`.
+    /// Serves until `stop` is called.
     void run();
-    /// From any thread.
+    /// Ends `run`. Thread-safe.
     void stop();
     [[nodiscard]] std::uint16_t port() const noexcept;
 

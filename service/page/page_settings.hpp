@@ -11,43 +11,43 @@
 
 namespace surefoot::page {
 
-/// A setting that the run uses, as `surefoot config` has it.
+/// One setting of the run, with the same texts as `surefoot config` prints.
 struct PageSetting {
-    std::string key;    ///< with its groups: "elevation.length_m"
-    std::string value;  ///< now
-    std::string unit;   ///< "m"; empty where it has none
+    std::string key;    ///< with its groups, e.g. "elevation.length_m"
+    std::string value;  ///< the value in use now
+    std::string unit;   ///< "m"; empty if the setting has no unit
     std::string range;
     std::string comment;
-    bool changeable = false;  ///< while the service runs
+    bool changeable = false;  ///< a page may change it while the service runs
 };
 
-/// A page wants a setting to be so; the value is written as for --set.
+/// A page's request to change one setting. The value is written as for --set.
 struct SettingWish {
     std::string key;
     std::string value;
 };
 
-/// What became of a wish.
+/// The result of a SettingWish.
 struct SettingAnswer {
     std::string key;
     bool accepted = false;
-    std::string value;  ///< now; empty where there is no such setting
-    std::string text;   ///< a sentence: what was done, or why it was refused
+    std::string value;  ///< the value in use now; empty if the setting does not exist
+    std::string text;   ///< a sentence: the change, or the reason of the refusal
 };
 
-/// The settings that pages see, and may change where the service offers it: whoever asked last is
-/// followed, everybody is shown. Any thread.
+/// The settings that pages see, and may change if the service allows it. The last request wins; all
+/// pages see the result. Thread-safe.
 class PageSettings {
   public:
-    /// Makes one of the changeable settings so: the value as it is now, or in words why not. Called
-    /// on the thread of `ask`, one at a time.
+    /// Applies a changeable setting. Returns the value now in use, or an error with the reason.
+    /// Called on the thread of `ask`, one call at a time; it must not call this object.
     using Change = std::function<Result<std::string>(const SettingWish& wish)>;
 
     void offer(std::vector<PageSetting> settings, Change change);
     [[nodiscard]] SettingAnswer ask(const SettingWish& wish);
 
     [[nodiscard]] std::vector<PageSetting> all() const;
-    /// Grows with each change; 0 = nothing was offered yet.
+    /// Increases with each change; 0 = offer() was not called yet.
     [[nodiscard]] std::uint64_t serial() const;
 
   private:

@@ -8,21 +8,21 @@
 
 namespace surefoot::page {
 
-/// How a recording is played, as the pages ask for it: whoever asked last is followed, everybody is
-/// shown. Any thread.
+/// The playback of a recording, shared by the pages and the player. The last request wins; all
+/// pages see the result. Thread-safe.
 class Playback {
   public:
-    /// The source can be played so from now on. Until then nobody can ask for anything.
+    /// Declares that the source is a recording. Requests before this call have no effect.
     void offer(const PlaybackState& state);
-    /// Nothing where the source is no recording.
+    /// Empty if the source is not a recording.
     [[nodiscard]] std::optional<PlaybackState> state() const;
 
-    /// Of a page.
+    /// A page's request. The frame of a jump is clamped to the recording.
     void ask(const PlaybackWish& wish);
 
-    /// Of who plays: the frame that was shown last.
+    /// The player reports the frame that it showed last. Ignored while a jump is pending.
     void at(int frame);
-    /// The frame that somebody wants to see next, once.
+    /// Returns the target of a pending jump, once.
     [[nodiscard]] std::optional<int> take_jump();
     [[nodiscard]] bool jump_wanted() const;
 

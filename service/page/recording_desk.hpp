@@ -9,45 +9,45 @@
 namespace surefoot::page {
 
 enum class RecordingStage : std::uint8_t {
-    off,    ///< nothing can be recorded; `text` says why
-    ready,  ///< `text`: how the last one ended, if there was one
+    off,    ///< recording is not possible; `text` says why
+    ready,  ///< `text` says how the last recording ended, if there was one
     recording,
-    finishing,  ///< what is queued is written still
-    failed,     ///< `text` says why; another one can be begun
+    finishing,  ///< the queued frames are still being written
+    failed,     ///< `text` says why; a new recording may begin
 };
 
-/// Of the recording that runs, or of the last one.
+/// The state of the current recording, or of the last one.
 struct RecordingState {
     RecordingStage stage = RecordingStage::off;
     std::string folder;
-    std::int64_t frames = 0;    ///< written
-    std::int64_t left_out = 0;  ///< because the disk was too slow
-    std::int64_t bytes = 0;     ///< of the images
-    double duration_s = 0.0;    ///< from the first stamp to the last
+    std::int64_t frames = 0;    ///< number of frames written
+    std::int64_t left_out = 0;  ///< frames dropped because the disk was too slow
+    std::int64_t bytes = 0;     ///< size of the images
+    double duration_s = 0.0;    ///< from the first frame's time stamp to the last one
     std::string text;
     friend bool operator==(const RecordingState&, const RecordingState&) = default;
 };
 /// The "recording" message of messages.json.
 [[nodiscard]] std::string recording_text(const RecordingState& state);
 
-/// A page wants a recording to begin or to end.
+/// A page's request to begin or to end a recording.
 struct RecordWish {
     bool on = false;
 };
 
-/// Between the pages and who records: there is one recording at a time, everybody is shown it, and
-/// whoever asked last is followed. Any thread.
+/// Connects the pages with the recorder. There is one recording at a time, all pages see its state,
+/// and the last request wins. Thread-safe.
 class RecordingDesk {
   public:
-    /// Of who records, from now on; without a function nobody can ask any more. It is called on the
-    /// thread of `ask`, and must not call this object.
+    /// The recorder sets the function that receives requests; an empty function refuses them all.
+    /// The function runs on the thread of `ask` and must not call this object.
     void serve_with(std::function<void(const RecordWish& wish)> asked);
     void tell(RecordingState state);
 
-    /// False where nothing can be recorded.
+    /// Passes a page's request to the recorder. False if recording is not possible.
     bool ask(const RecordWish& wish);
     [[nodiscard]] RecordingState state() const;
-    /// Grows with each change.
+    /// Increases with each change of the state.
     [[nodiscard]] std::uint64_t serial() const;
 
   private:

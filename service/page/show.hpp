@@ -14,25 +14,27 @@
 
 namespace surefoot::page {
 
-/// What all viewers are shown: the newest frame, and each message of it that is alike for all, made
-/// once. Serials tell what is new; a later one is another number, not always a greater one.
+/// Holds the newest frame and the messages that are the same for all viewers; each message is made
+/// once. A changed serial means new content: a later serial is different, but not always greater.
+/// Not thread-safe: use it on the page's thread.
 class Show {
   public:
     void introduce(PageHello its_hello, ColourLimits colours);
-    /// Takes the newest frame, where there is one.
+    /// Fetches the newest frame from `feed`, if there is a new one.
     void look(PageFeed& feed, std::int64_t now_ns);
 
     [[nodiscard]] std::uint64_t serial() const { return frame_->serial; }
     [[nodiscard]] const PagePose& pose() const { return frame_->pose; }
     [[nodiscard]] const std::string& pose_bytes();
-    /// As the newest images have it; empty where there are none.
+    /// JPEG of the newest image; empty if there is none.
     [[nodiscard]] const std::string& jpeg(PageImage which);
     [[nodiscard]] std::string picture(PageImage which);
     [[nodiscard]] std::int64_t images_time_ns() const { return images_time_ns_; }
     [[nodiscard]] std::optional<std::string> layer(std::uint16_t index) const;
-    /// What the ground is; empty before the first look at it.
+    /// The newest "stairs" message; empty before the first one.
     [[nodiscard]] const std::string& stairs() const { return stairs_text_; }
-    /// How it goes now.
+    /// The status at `now_ns` (steady clock). It says so in words if no frame has come for a
+    /// second.
     [[nodiscard]] PageStatus status(std::int64_t now_ns,
                                     int viewers,
                                     const std::optional<PlaybackState>& playback) const;

@@ -7,31 +7,31 @@
 
 namespace surefoot::page {
 
-/// What became of the last movement that a page asked for.
+/// The result of the last movement that a page asked for.
 struct SteerOutcome {
-    std::uint64_t serial = 0;  ///< grows with each
+    std::uint64_t serial = 0;  ///< increases with each outcome
     std::uint8_t command = 0;
-    std::string verdict;  ///< of the gate's last answer; "-" where none came
+    std::string verdict;  ///< verdict of the gate's last answer; "-" if no answer came
     bool moved = false;
-    std::string text;  ///< the gate's reason, a sentence for people
+    std::string text;  ///< the gate's reason, a sentence for the user
 };
 
-/// The joystick of a simulated machine on the pages: one page holds it, the others are told. Who
-/// holds it has it until it was let go for five seconds, or the page went. A page says again and
-/// again that it holds; a second without a word is as if it had let go. Any thread; times are the
-/// steady clock's.
+/// The joystick of a simulated machine, shared by all pages. Only one page holds it at a time. That
+/// page keeps it until 5 s after the release, or until the page disconnects. A page that holds the
+/// joystick must repeat its command; 1 s without a command counts as a release. Thread-safe; times
+/// are those of the steady clock.
 class Steering {
   public:
-    /// The page `viewer` (never 0) holds the joystick at `command`, or lets go with 0. False, and
-    /// nothing changes, while another page has it.
+    /// The page `viewer` (never 0) holds the joystick at `command`, or releases it with 0. Returns
+    /// false and changes nothing while another page holds it.
     bool hold(std::uint64_t viewer, std::uint8_t command, std::int64_t now_ns);
     void leave(std::uint64_t viewer);
-    /// The page that has it; 0 = none.
+    /// The page that holds the joystick; 0 = none.
     [[nodiscard]] std::uint64_t holder(std::int64_t now_ns) const;
-    /// Where the joystick stands; 0 = at rest.
+    /// The current command; 0 = at rest.
     [[nodiscard]] std::uint8_t command(std::int64_t now_ns) const;
 
-    /// Gives the outcome the next serial.
+    /// Stores the outcome and gives it the next serial.
     void tell(SteerOutcome outcome);
     [[nodiscard]] SteerOutcome outcome() const;
 

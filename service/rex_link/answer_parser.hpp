@@ -8,28 +8,31 @@
 #include "service/rex_link/rex_link.hpp"
 #include "surefoot/core/result.hpp"
 
-/// Questions and answers as texts of the rosbridge protocol, version 2.
+/// Formats questions and parses answers as texts of the rosbridge protocol, version 2.
 namespace surefoot::rex_link {
 
 inline constexpr const char* kStepService = "/surefoot/step";
 inline constexpr std::size_t kLongestAnswer_bytes = 16384;
 
-/// An answer and what it says to people.
+/// An answer, with its texts for the user.
 struct ParsedAnswer {
     Answer answer;
     std::string primary;  ///< reason code
-    std::string text;     ///< a sentence, printable
+    std::string text;     ///< a sentence without control characters
 };
 
-/// The call of the service. Its `id` carries nonce, sequence and command, and comes back in the
-/// answer: so an answer names its question twice.
+/// The rosbridge call of kStepService, as JSON. Its `id` holds nonce, sequence and command. The
+/// gate returns the `id`, so an answer names its question twice: in the `id` and in its values.
 [[nodiscard]] std::string format_question(std::uint64_t nonce, const Question& question);
 
-/// An answer is one JSON object with every field that it needs, each of its type and within its
-/// range, none twice, and nothing that contradicts: `id` and values name the same question, verdict
-/// and result code the same decision, and an OK has no reasons. All else is an error with a
-/// sentence, which inhibits. Allocates no more than a small multiple of `bytes`, of which there may
-/// be 16 kB.
+/// Parses one answer. Any deviation from the format is an error with a sentence, and the caller
+/// must then inhibit. A valid answer is one JSON object that has every required field, with the
+/// right type and within its range. No name occurs twice. Nothing in it is contradictory: `id` and
+/// values name the same question, verdict and result code the same decision, and only an OK has no
+/// reasons.
+///
+/// `bytes` may have at most kLongestAnswer_bytes. Allocates at most a small multiple of that.
+/// Thread-safe.
 [[nodiscard]] Result<ParsedAnswer> parse_answer(std::string_view bytes);
 
 }  // namespace surefoot::rex_link

@@ -10,18 +10,19 @@
 #include "service/rex_link/rex_link.hpp"
 #include "surefoot/core/result.hpp"
 
-/// The REX link over a WebSocket, in real time.
+/// Runs the REX link over a WebSocket, in real time.
 namespace surefoot::rex_link {
 
-/// Where the gate listens. No name service is asked: that may take seconds.
+/// Where the gate listens. The address is numeric because a name lookup may take seconds.
 struct GateAddress {
-    std::string address;  ///< IPv4 or IPv6, in numbers
+    std::string address;  ///< numeric IPv4 or IPv6 address
     std::uint16_t port = 9090;
-    std::string target = "/";  ///< path and query; a token goes here
-    /// Adds a token to the query; an empty one adds nothing.
+    std::string target = "/";  ///< path and query; the query may hold a token
+    /// Adds ?token=... to the target; an empty token adds nothing.
     void show_token(const std::string& token);
 };
-/// ws://ADDRESS[:PORT][/TARGET]; ADDRESS in numbers, IPv6 in brackets, or localhost.
+/// Parses ws://ADDRESS[:PORT][/TARGET]. ADDRESS is numeric (IPv6 in brackets) or localhost. The
+/// default port is 9090.
 [[nodiscard]] Result<GateAddress> parse_gate_url(std::string_view url);
 
 struct LinkClientConfig {
@@ -36,35 +37,36 @@ enum class LinkEventKind : std::uint8_t {
     joystick,
     question,
     answer,
-    damaged,  ///< bytes that are no answer
+    damaged,  ///< received bytes that are not a valid answer
     inhibited,
     tone,
     motion,
 };
-/// "connected".
+/// The name of the kind, for example "connected".
 [[nodiscard]] const char* to_string(LinkEventKind kind) noexcept;
 
-/// One line of what happened. Only what the kind has is filled in.
+/// One event of a run. Only the members that belong to the kind are set.
 struct LinkEvent {
     LinkEventKind kind = LinkEventKind::connected;
-    std::int64_t time_ns = 0;    ///< since the beginning of the run
+    std::int64_t time_ns = 0;    ///< since the start of the run
     std::uint64_t sequence = 0;  ///< question, answer
     std::uint8_t command = 0;    ///< joystick, question, answer, motion
     AnswerVerdict verdict = AnswerVerdict::error;
     Tone tone = Tone::cannot_judge;
     Inhibit inhibit = Inhibit::gate_error;
     std::int64_t duration_ns = 0;  ///< motion
-    std::string text;              ///< answer: its sentence; damaged, disconnected: why
+    std::string text;              ///< answer: its sentence; damaged, disconnected: the reason
 };
 
-/// The joystick's code at a time since the beginning, or nothing once the user has finished. Asked
-/// every 2 ms; must not wait.
+/// Returns the joystick's code (0 = at rest) at a time since the start of the run, or nothing to
+/// end the run. Called about every 2 ms; must not block.
 using Joystick = std::function<std::optional<std::uint8_t>(std::int64_t elapsed_ns)>;
-/// Told of every event; must not wait.
+/// Receives every event, on the thread of run_link(); must not block.
 using LinkEventSink = std::function<void(const LinkEvent&)>;
 
-/// Plays the REX master unit until the user has finished, on the calling thread. A connection that
-/// cannot be made or breaks is an event and is tried again. Reads the steady clock.
+/// Plays the REX master unit until `joystick` returns nothing. Runs on the calling thread and reads
+/// the steady clock. If a connection cannot be made or breaks, it is tried again after
+/// `reconnect_pause_ns`; a break is also an event.
 void run_link(const LinkClientConfig& config, const Joystick& joystick, const LinkEventSink& sink);
 
 }  // namespace surefoot::rex_link
