@@ -23,7 +23,7 @@ Json pose_json(const stairs::FeaturePose& pose) {
     return {number(pose.p_m.x()), number(pose.p_m.y()), number(pose.p_m.z()), number(pose.yaw_rad)};
 }
 
-/// Adds what is known over several looks, where it was followed; `now_ns`: the last look of all.
+/// Adds the tracking data of a tracked feature. `now_ns`: time of the newest observation of all.
 Json followed_json(Json json, const stairs::Followed& followed, std::int64_t now_ns) {
     if (followed.id == 0) return json;
     json["id"] = followed.id;
@@ -100,7 +100,7 @@ Json list_json(const std::vector<T>& values,
     return list;
 }
 
-/// As if all had been seen by the last look.
+/// The lists as if the newest observation had found all features: comparing them ignores time.
 Json timeless_lists(stairs::TerrainFeatures features) {
     const auto seen_now = [&features](auto& list) {
         for (auto& feature : list) feature.followed.last_seen_ns = features.time_ns;

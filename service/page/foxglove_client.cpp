@@ -12,7 +12,7 @@
 namespace surefoot::page {
 namespace {
 
-/// Texts that nobody can read: some are a client of another version, more are a flood.
+/// Limit of unreadable texts. A few may come from a client of another version; more are a flood.
 constexpr wire::RateLimit kUnreadable{1, 8};
 constexpr std::size_t kMostReplies = 64;
 
@@ -78,7 +78,7 @@ std::optional<std::string> FoxgloveClient::subscribe(FoxgloveSubscribe::Wish wis
     return std::nullopt;
 }
 
-// One status a request, however long its list is.
+// One status message per request, however long its list is.
 void FoxgloveClient::take(const FoxgloveSubscribe& request) {
     std::optional<std::string> first_problem;
     for (const FoxgloveSubscribe::Wish wish : request.wishes) {
@@ -129,7 +129,7 @@ void FoxgloveClient::send_verdicts(const FoxgloveShow& show, std::vector<SocketM
     Slot& slot = of(FoxgloveChannel::verdict);
     if (!slot) return;
     const std::uint64_t newest = show.verdicts().empty() ? 0 : show.verdicts().back().serial;
-    // What was said before it listened is nothing for it.
+    // A new subscriber gets no earlier verdicts.
     const std::uint64_t seen = slot->seen.value_or(newest);
     slot->seen = newest;
     for (const FoxgloveShow::Verdict& verdict : show.verdicts()) {
@@ -148,7 +148,7 @@ std::optional<FoxgloveChannel> FoxgloveClient::large_one_due(const FoxgloveShow&
         const std::uint64_t serial = show.serial(large.channel);
         if (!slot || serial == 0 || slot->seen == serial) continue;
         if (slot->sent_ns && now_ns - *slot->sent_ns < large.every_ns) continue;
-        // Nothing is less than any time: what was never sent comes first.
+        // An empty optional is less than any time: a channel never sent before comes first.
         if (first && first_sent_ns <= slot->sent_ns) continue;
         first = large.channel;
         first_sent_ns = slot->sent_ns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The protocol as the package @foxglove/ws-protocol speaks it (MIT).
+// The protocol follows the package @foxglove/ws-protocol (MIT).
 #include "service/page/foxglove_messages.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ std::string base64(std::string_view bytes) {
     return out.replace(out.size() - padding, padding, padding, '=');
 }
 
-/// `head`, an object, with "data" as its last key: a megabyte of it is not looked through for
-/// characters that JSON escapes.
+/// Appends "data" as the last key of the object `head`. The base64 text bypasses the JSON library,
+/// which would search a megabyte for characters to escape.
 std::string with_data(const Json& head, std::string_view bytes) {
     std::string text = wire::dump(head);
     text.pop_back();
@@ -48,7 +48,7 @@ std::string with_data(const Json& head, std::string_view bytes) {
     return text += R"("})";
 }
 
-/// Times before 1970 cannot be said.
+/// Foxglove cannot represent times before 1970; they become 0.
 Json time_json(std::int64_t time_ns) {
     const std::int64_t said_ns = std::max<std::int64_t>(time_ns, 0);
     return {{"sec", said_ns / kNanosecondsPerSecond}, {"nsec", said_ns % kNanosecondsPerSecond}};
@@ -64,10 +64,10 @@ Json pose_json(const Pose& T) {
     return {{"position", vector_json(T.translation_m)}, {"orientation", rotation_json(T.rotation)}};
 }
 
-/// Of Foxglove's PackedElementField.
+/// Numeric types of Foxglove's PackedElementField.
 enum class NumericType : std::uint8_t { uint8 = 1, float32 = 7 };
 
-/// Says what lies in an element as it is described, in order and without gaps.
+/// Describes the packed layout of an element: fields in order, without gaps.
 class Fields {
   public:
     Fields& add(const char* name, NumericType type) {
@@ -87,8 +87,8 @@ class Fields {
     std::size_t bytes_ = 0;
 };
 
-/// Those of the page, which people with any of the usual colour blindnesses tell apart (Okabe and
-/// Ito): green free, vermilion unsafe, magenta unsure.
+/// The page's colours, which people with common colour vision deficiencies can distinguish (Okabe
+/// and Ito, 2008): green = free, vermilion = unsafe, magenta = unsure.
 void write_colour(MessageWriter& write, const PageCell& cell) {
     constexpr unsigned kGroundBits = 3;
     struct Colour {
@@ -114,7 +114,7 @@ double metres(std::int64_t tenth_mm) {
 bool is_known(const PageCell& cell) {
     return cell.height_mm != PageCell::kUnknownHeight;
 }
-/// In odom.
+/// Height in odom.
 float height_m(const PageMap& map, const PageCell& cell) {
     if (!is_known(cell)) return std::numeric_limits<float>::quiet_NaN();
     constexpr std::int64_t kTenthsPerMm = 10;
@@ -126,7 +126,7 @@ const PageCell& cell_at(const PageMap& map, int ix, int iy) {
                      static_cast<std::size_t>(ix)];
 }
 
-/// Cells of a map, ends not included.
+/// A rectangle of cells; the ends are exclusive.
 struct Window {
     int x_begin = 0;
     int y_begin = 0;
@@ -134,7 +134,7 @@ struct Window {
     int y_end = 0;
 };
 
-/// Around all cells that are known or vouched for; the first cell where there is none.
+/// The smallest window around all cells with any data; the first cell if there are none.
 Window told_part(const PageMap& map) {
     Window part{map.nx, map.ny, 0, 0};
     for (int iy = 0; iy < map.ny; ++iy) {
@@ -150,7 +150,7 @@ Window told_part(const PageMap& map) {
     return part;
 }
 
-/// Where the corner of a cell lies in odom, without its height.
+/// Position of a cell's lower corner in odom, with z = 0.
 Pose corner_of(const PageMap& map, int ix, int iy) {
     return {Eigen::Quaterniond::Identity(),
             {metres(map.origin_x_tenth_mm + std::int64_t{ix} * map.resolution_tenth_mm),
@@ -164,7 +164,7 @@ std::optional<std::uint32_t> read_number(const Json& value) {
     return value.get<std::uint32_t>();
 }
 
-/// The list that an operation is about.
+/// The array under `key`, or nullptr if there is none.
 const Json* list_in(const Json& json, const char* key) {
     const auto found = json.find(key);
     return found != json.end() && found->is_array() ? &*found : nullptr;
@@ -234,7 +234,7 @@ std::optional<std::string_view> foxglove_protocol_of(std::string_view offered) n
 }
 
 std::string foxglove_server_info(const std::string& name, const std::string& session) {
-    // `time`: stamps are of the source's clock, which is not the client's.
+    // Capability `time`: the service sends the source's clock, which differs from the client's.
     return wire::dump({{"op", "serverInfo"},
                        {"name", name},
                        {"capabilities", {"time"}},
@@ -321,7 +321,8 @@ std::string ground_points_payload(const PageMap& map) {
         for (int ix = 0; ix < map.nx; ++ix) {
             const PageCell& cell = cell_at(map, ix, iy);
             if (!is_known(cell)) continue;
-            // From the corner of the map: a float32 far away from the beginning has no millimetres.
+            // Relative to the map's corner: far from the origin of odom a float32 cannot resolve
+            // millimetres.
             write << static_cast<float>((ix + 0.5) * side_m)
                   << static_cast<float>((iy + 0.5) * side_m) << height_m(map, cell);
             write_colour(write, cell);

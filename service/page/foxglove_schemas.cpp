@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes of foxglove.*: the published schemas of Foxglove (github.com/foxglove/foxglove-sdk).
+// The foxglove.* schemas follow the published ones (github.com/foxglove/foxglove-sdk).
 #include "service/page/foxglove_schemas.hpp"
 
 #include <initializer_list>
@@ -103,7 +103,7 @@ Json status() {
     Json stages = object({});
     for (int i = 0; i < kStageCount; ++i)
         stages["properties"][to_string(static_cast<Stage>(i))] = number();
-    stages.erase("required");  // before the first frame there is none
+    stages.erase("required");  // no stages exist before the first frame
     return object({{"timestamp", time()},
                    {"state", text()},
                    {"text", text()},

@@ -8,7 +8,7 @@
 namespace surefoot::page {
 namespace {
 
-constexpr std::int64_t kStatusEvery_ns = 500'000'000;  ///< where no frame comes
+constexpr std::int64_t kStatusEvery_ns = 500'000'000;  ///< when no frame comes
 
 }  // namespace
 

@@ -24,7 +24,7 @@ using beast::error_code;
 constexpr std::int64_t kRetryAfter_ns = 500'000'000;
 constexpr auto kConnect = std::chrono::seconds(2);
 constexpr auto kIdle = std::chrono::seconds(10);
-constexpr std::size_t kLongestNews_bytes = 64 * 1024;  ///< an outlook of 26 movements has 5 kB
+constexpr std::size_t kLongestNews_bytes = 64 * 1024;  ///< an outlook of 26 movements takes 5 kB
 
 constexpr const char* name_of(GateTopic topic) {
     return topic == GateTopic::verdict ? "/surefoot/verdict" : "/surefoot/outlook";
@@ -33,7 +33,7 @@ constexpr const char* type_of(GateTopic topic) {
     return topic == GateTopic::verdict ? "surefoot/Verdict" : "surefoot/Outlook";
 }
 
-/// Whoever listens everywhere is found on this machine.
+/// The address to connect to. A server bound to all addresses is reached over loopback.
 net::ip::address reachable(const std::string& address) {
     error_code error;
     const auto parsed = net::ip::make_address(address, error);
@@ -60,7 +60,7 @@ std::optional<GateNews> read_gate_news(std::string_view text) {
     return std::nullopt;
 }
 
-/// One connection from its first byte to its end. It lives as long as a handler of it waits.
+/// One connection from its first byte to its end. Pending handlers keep it alive.
 class GateListener::Connection : public std::enable_shared_from_this<Connection> {
   public:
     Connection(net::io_context& io, const GateService& service, Sink sink)
@@ -80,7 +80,7 @@ class GateListener::Connection : public std::enable_shared_from_this<Connection>
         write();
     }
     [[nodiscard]] bool is_over() const { return over_; }
-    /// From here on nobody is told anything.
+    /// Closes the connection; the sink is not called any more.
     void abandon() {
         over_ = true;
         sink_ = {};
@@ -92,7 +92,7 @@ class GateListener::Connection : public std::enable_shared_from_this<Connection>
     void on_connect(error_code error) {
         if (over_) return;
         if (error) return abandon();
-        beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has times of its own
+        beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeouts
         stream_.set_option(websocket::stream_base::timeout{kConnect, kIdle, true});
         stream_.read_message_max(kLongestNews_bytes);
         const std::string target =

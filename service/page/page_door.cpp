@@ -30,12 +30,13 @@ std::optional<std::uint16_t> parse_port(std::string_view digits) {
     return port;
 }
 
-/// The address without its brackets, or the name as it is.
+/// An IPv6 address without its brackets; any other host unchanged.
 std::string bare(const std::string& host) {
     return host.starts_with('[') ? host.substr(1, host.size() - 2) : host;
 }
 
-/// Without a zone. Boost alone would take any text behind the '%' of one, or behind a NUL.
+/// True for an IP address without a zone. The check of the characters is needed because Boost
+/// accepts any text after '%' (the zone) or after a NUL.
 bool is_ip_address(const std::string& host) {
     if (host.find_first_not_of("0123456789abcdef:.[]") != std::string::npos) return false;
     boost::system::error_code error;
@@ -47,7 +48,7 @@ bool is_loopback_host(const std::string& host) {
     return host == "localhost" || wire::is_loopback_address(bare(host));
 }
 
-/// An origin in its parts; the port that its scheme implies is filled in.
+/// The parts of an origin; a missing port becomes the default port of the scheme.
 std::optional<HostAndPort> parse_origin(std::string_view origin) {
     for (const auto& [scheme, port] :
          {std::pair<std::string_view, std::uint16_t>{"http://", kHttp}, {"https://", kHttps}}) {
@@ -120,8 +121,9 @@ bool is_own_origin(const PageAddress& page, std::string_view host, std::string_v
 }
 
 std::vector<std::pair<std::string_view, std::string>> security_headers(std::string_view host) {
-    // The page opens a socket to itself and one to the gate, which has another port that may change
-    // while the page stays. CSP knows no IPv6 addresses: for one of them every host is right.
+    // The page opens a socket to itself and one to the gate, whose port may change while the page
+    // stays open. CSP has no syntax for IPv6 addresses: for those, sockets to every host are
+    // allowed.
     std::string sockets;
     if (const auto parsed = parse_host(host)) {
         const std::string gate = parsed->host.starts_with('[') ? "" : "//" + parsed->host + ":*";
@@ -135,7 +137,7 @@ std::vector<std::pair<std::string_view, std::string>> security_headers(std::stri
     return {{"Content-Security-Policy", policy},
             {"X-Frame-Options", "DENY"},
             {"X-Content-Type-Options", "nosniff"},
-            {"Referrer-Policy", "no-referrer"},  // the address may have a token
+            {"Referrer-Policy", "no-referrer"},  // the URL may contain a token
             {"Cross-Origin-Resource-Policy", "same-origin"},
             {"Cross-Origin-Opener-Policy", "same-origin"}};
 }

@@ -15,13 +15,13 @@ namespace {
 
 using wire::Json;
 
-/// Divided, so that 9900 is written as 0.99.
+/// A division, not a product with 1e-4: so 9900 is written exactly as 0.99.
 double metres(std::int32_t tenth_mm) noexcept {
     constexpr double kTenthMmPerMetre = 1e4;
     return tenth_mm / kTenthMmPerMetre;
 }
 
-/// Health counts the other way round in messages: more is better, as in the snapshot.
+/// In messages a larger value is better, as in the snapshot; the enum is the other way round.
 std::uint8_t health_code(Health health) noexcept {
     switch (health) {
         case Health::ok: return 2;
@@ -165,7 +165,7 @@ Result<PageRequest> read_record(const Json& json) {
     return PageRequest(RecordWish{json.at("on").get<bool>()});
 }
 
-/// A whole number from 0 to `most`.
+/// An integer from 0 to `most`; empty for anything else.
 std::optional<int> read_count(const Json& value, int most) {
     if (!value.is_number_integer() || value < 0 || value > most) return std::nullopt;
     return value.get<int>();

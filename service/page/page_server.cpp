@@ -51,10 +51,11 @@ constexpr auto kHandshake = std::chrono::seconds(5);  ///< of a WebSocket
 constexpr auto kIdle = std::chrono::seconds(10);
 constexpr std::size_t kMaxMessageBytes = 4096;
 constexpr std::int64_t kStatusEvery_ns = 500'000'000;
-constexpr std::int64_t kCountEvery_ns = 500'000'000;  ///< how far a recording is
+constexpr std::int64_t kCountEvery_ns = 500'000'000;  ///< counters of a recording
 constexpr std::int64_t kMostLayerBytesPerSecond =
-    1'200'000;  ///< of the 2 MB/s that a page may cost
-// Of a viewer, before it is let go. A wish costs a whole map, a hand on the joystick nothing.
+    1'200'000;  ///< share of layers in the 2 MB/s of a page
+// Limits of one viewer; beyond them it is disconnected. A wish may cost a whole map, a repeated
+// joystick command costs nothing.
 constexpr wire::RateLimit kWishes{5, 20};
 constexpr wire::RateLimit kMessages{40, 80};
 
@@ -62,7 +63,7 @@ std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
 }
 
-/// This computer, as its network may call it.
+/// The names of this computer in its network: the host name, also with ".local".
 std::vector<std::string> own_names() {
     error_code error;
     std::string name = net::ip::host_name(error);
@@ -73,7 +74,7 @@ std::vector<std::string> own_names() {
     return {name, name + ".local"};
 }
 
-/// What came is no request, rather than none.
+/// True if data arrived that is not a valid HTTP request (not just a closed connection).
 bool is_malformed(error_code error) {
     return error.category() == make_error_code(http::error::bad_method).category() &&
            error != http::error::end_of_stream && error != http::error::partial_message;
@@ -86,7 +87,7 @@ std::int64_t period_ns(double rate_hz) {
 
 }  // namespace
 
-/// What of perception and of the gate somebody looks at.
+/// The data of perception and of the gate that at least one viewer wants.
 struct Demand {
     bool images = false;
     bool layers = false;
@@ -105,7 +106,7 @@ struct Demand {
 
 class Viewer;
 
-/// The listener, and all that is connected. One thread.
+/// The listening port and all connections. Runs on one thread.
 class PageSockets {
   public:
     PageSockets(PageServerConfig its_config, PageFeed& feed, PageControls& its_controls)
@@ -122,10 +123,11 @@ class PageSockets {
     void leave(const Viewer& viewer);
     [[nodiscard]] std::size_t viewers() const;
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
-    /// All viewers hear the status with the next tick.
+    /// Sends the status to all viewers at the next tick.
     void tell_status() noexcept { ++status_serial_; }
     [[nodiscard]] std::uint64_t status_serial() const noexcept { return status_serial_; }
-    /// The connection becomes a viewer, perhaps in the place of another one.
+    /// Makes the connection a viewer; another connection may be ended for it. False if no slot is
+    /// free.
     [[nodiscard]] bool enter(std::uint64_t name);
     [[nodiscard]] PageAddress address() const;
 
@@ -135,7 +137,8 @@ class PageSockets {
     wire::Slots slots;
     Show show;
     FoxgloveShow foxglove{show};
-    const std::string session = fmt::format("{:x}", steady_ns());  ///< of this service
+    /// Identifies this run of the service.
+    const std::string session = fmt::format("{:x}", steady_ns());
 
   private:
     error_code listen_at(const net::ip::address& address, std::uint16_t port);
@@ -147,12 +150,12 @@ class PageSockets {
     void on_tick();
 
     PageFeed& feed_;
-    net::io_context io_{1};  // destroyed last, with all waiting handlers
+    net::io_context io_{1};  // destroyed last, with all pending handlers
     tcp::acceptor acceptor_{io_};
     std::unique_ptr<wire::TlsDoor> tls_door_;
     net::steady_timer timer_{io_};
     GateListener gate_{io_, [this](GateNews news) { foxglove.hear(std::move(news)); }};
-    std::vector<std::shared_ptr<Viewer>> connections_;  // shared with their waiting handlers
+    std::vector<std::shared_ptr<Viewer>> connections_;  // shared with their pending handlers
     std::vector<std::string> names_ = own_names();
     std::uint64_t connections_so_far_ = 0;
     std::uint64_t status_serial_ = 0;
@@ -160,10 +163,10 @@ class PageSockets {
     bool accepting_ = false;
 };
 
-/// One connection: a request for a file, a page that looks, or a client of Foxglove.
+/// One connection: a request for a file, a page, or a Foxglove client.
 class Viewer : public std::enable_shared_from_this<Viewer> {
   public:
-    /// `name`: never 0, and of no other connection.
+    /// `name`: unique number of the connection, never 0.
     Viewer(PageSockets& sockets, std::uint64_t name, tcp::socket socket)
         : sockets_(sockets),
           name_(name),
@@ -179,7 +182,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     [[nodiscard]] std::uint64_t name() const { return name_; }
 
   private:
-    /// Who has the joystick, and the outcome that was told.
+    /// The joystick's state as last sent to this viewer.
     struct Hold {
         bool yours = false;
         bool taken = false;
@@ -199,7 +202,7 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     void send_response();
     void send_file(std::string_view path, bool head);
     void send_model(bool head);
-    /// `protocol`: the subprotocol of Foxglove that the client speaks.
+    /// `protocol`: the client's Foxglove subprotocol; empty for a page.
     void upgrade(std::optional<std::string_view> protocol);
     void read();
     void on_message();
@@ -227,20 +230,21 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     beast::flat_buffer buffer_;
     std::optional<http::request_parser<http::empty_body>> parser_;
     http::response<http::string_body> response_;
-    std::string host_;  ///< of the request, when it is one of the page's
+    std::string host_;  ///< Host header of the request, if it names the page
     wire::TokenBucket messages_;
     wire::TokenBucket wishes_;
     PageWish wish_;
     std::optional<FoxgloveClient> foxglove_;
     std::deque<SocketMessage> waiting_;
     SocketMessage writing_;
-    std::optional<std::int64_t> write_since_ns_;  ///< a message is on its way
-    bool has_asked_ = false;  ///< for something: whatever it takes from now on keeps its place
-    bool looks_ = false;      ///< over a WebSocket, no request for a file
-    bool open_ = false;       ///< its WebSocket
+    std::optional<std::int64_t> write_since_ns_;  ///< start of the write in progress
+    /// Sent a message: from now on each completed write counts as service in wire::Slots.
+    bool has_asked_ = false;
+    bool looks_ = false;  ///< it is a WebSocket, not a request for a file
+    bool open_ = false;   ///< the WebSocket's handshake is complete
     bool ended_ = false;
 
-    // What it has been shown.
+    // The state that this viewer already has.
     std::optional<PageMap> map_;
     std::uint64_t hello_serial_ = 0;
     std::uint64_t frame_serial_ = 0;
@@ -308,7 +312,7 @@ void Viewer::on_request(error_code error) {
     upgrade(foxglove);
 }
 
-/// Every request, of files and of sockets: is it meant for the page?
+/// Checks of every request, for files and for sockets: one Host header that names the page.
 std::optional<Viewer::Refusal> Viewer::refuse_host() {
     const auto& request = parser_->get();
     const auto [first, last] = request.equal_range(http::field::host);
@@ -325,7 +329,7 @@ std::optional<Viewer::Refusal> Viewer::refuse_host() {
 std::optional<Viewer::Refusal> Viewer::refuse_socket(bool is_foxglove) const {
     const auto& request = parser_->get();
     const auto header = request.find(http::field::origin);
-    if (header != request.end()) {  // a program that is no browser sends none
+    if (header != request.end()) {  // programs other than browsers send no Origin
         const std::string_view origin = view(header->value());
         const auto& foxglove = sockets_.config.foxglove_origins;
         const bool is_friend =
@@ -367,7 +371,7 @@ void Viewer::send_file(std::string_view path, bool head) {
 void Viewer::send_response() {
     for (const auto& [name, value] : security_headers(host_))
         response_.set(beast::string_view(name.data(), name.size()), value);
-    // The page of this program, not of the one that ran here before.
+    // no-cache: a browser must not show the page of an older program.
     response_.set(http::field::cache_control, "no-cache");
     response_.keep_alive(false);
     beast::get_lowest_layer(ws_).expires_after(
@@ -377,7 +381,7 @@ void Viewer::send_response() {
                       [self = shared_from_this()](error_code, std::size_t) { self->end(); });
 }
 
-/// What the machine looks like, as the hello of this moment has it.
+/// Sends the machine's model (URDF) that the current hello names.
 void Viewer::send_model(bool head) {
     const auto& machine = sockets_.show.hello.machine;
     if (!machine || machine->urdf.empty())
@@ -386,10 +390,10 @@ void Viewer::send_model(bool head) {
 }
 
 void Viewer::upgrade(std::optional<std::string_view> protocol) {
-    beast::get_lowest_layer(ws_).expires_never();  // the WebSocket has a clock of its own
+    beast::get_lowest_layer(ws_).expires_never();  // the WebSocket has its own timeouts
     ws_.set_option(websocket::stream_base::timeout{kHandshake, kIdle, true});
     ws_.read_message_max(kMaxMessageBytes);
-    ws_.auto_fragment(false);  // one frame a message
+    ws_.auto_fragment(false);  // one WebSocket frame per message
     if (protocol) {
         foxglove_.emplace(sockets_.foxglove.name(), sockets_.session);
         ws_.read_message_max(kMaxFoxgloveText_bytes);
@@ -453,7 +457,7 @@ Demand Viewer::demand() const {
 void Viewer::take(const PageWish& wish) {
     if (!wishes_.take(steady_ns())) return say_goodbye("too many wishes");
     wish_ = wish;
-    // All it has is sent anew.
+    // Everything wanted is sent again.
     map_.reset();
     frame_serial_ = map_serial_ = layers_serial_ = images_serial_ = stairs_serial_ = 0;
     map_due_ns_ = images_due_ns_ = 0;
@@ -462,7 +466,7 @@ void Viewer::take(const PageWish& wish) {
 void Viewer::take(const JoystickWord& word) {
     if (!sockets_.show.hello.can_steer)
         return say_goodbye("joystick: nobody steers this source from a page");
-    // Who may not have it sees so in "steer".
+    // A page that may not hold the joystick learns it from the next "steer" message.
     sockets_.controls.steering.hold(name_, word.command, steady_ns());
 }
 
@@ -488,7 +492,7 @@ void Viewer::take(const RecordWish& wish) {
 void Viewer::say_goodbye(const std::string& sentence) {
     ended_ = true;
     websocket::close_reason reason(websocket::close_code::policy_error);
-    constexpr std::size_t kMostBytes = 120;  // 123 fit a close frame
+    constexpr std::size_t kMostBytes = 120;  // a close frame holds at most 123 bytes
     reason.reason = beast::string_view(sentence.data(), std::min(sentence.size(), kMostBytes));
     ws_.async_close(reason, [self = shared_from_this()](error_code) {
         beast::get_lowest_layer(self->ws_).close();
@@ -552,7 +556,7 @@ void Viewer::say_stairs() {
     say(show.stairs());
 }
 
-/// They are many and seldom change: a new wish alone does not bring them again.
+/// Settings are large and change rarely: a new wish alone does not send them again.
 void Viewer::say_settings() {
     const PageSettings& settings = sockets_.controls.settings;
     const std::uint64_t serial = settings.serial();
@@ -561,7 +565,7 @@ void Viewer::say_settings() {
     say(settings_text(settings.all()));
 }
 
-/// What begins and ends at once, the counts now and then.
+/// Sends a new stage at once, but changed counters only every kCountEvery_ns.
 void Viewer::say_recording(std::int64_t now_ns) {
     const RecordingDesk& desk = sockets_.controls.recording;
     const std::uint64_t serial = desk.serial();
@@ -577,7 +581,7 @@ void Viewer::say_recording(std::int64_t now_ns) {
 void Viewer::on_tick(std::int64_t now_ns) {
     if (write_since_ns_ && now_ns - *write_since_ns_ > sockets_.config.write_ms * kMs_ns)
         return end();
-    // What it has not taken yet is followed by the newest, not by all between.
+    // While a write is pending no message is made: the next ones will be of the newest frame.
     if (ended_ || !open_ || write_since_ns_ || !waiting_.empty()) return;
     if (foxglove_) {
         auto messages = foxglove_->next(sockets_.foxglove, now_ns);
@@ -656,7 +660,7 @@ Status PageSockets::listen() {
     return config.tls.empty() ? Status{} : listen_with_tls();
 }
 
-/// At the port that was free, in place of the acceptor.
+/// Replaces the acceptor by a TLS door on the same port.
 Status PageSockets::listen_with_tls() {
     error_code ignored;
     acceptor_.close(ignored);
@@ -702,7 +706,7 @@ void PageSockets::accept() {
     accepting_ = true;
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
         accepting_ = false;
-        if (error) return;  // no handles left, or gone already: the next tick tries again
+        if (error) return;  // no file handles left, or the peer has gone: the next tick tries again
         const std::string peer = wire::peer_of(socket);
         admit(std::move(socket), peer);
         accept();
@@ -722,7 +726,7 @@ bool PageSockets::enter(std::uint64_t name) {
     return entry.granted;
 }
 
-/// Another connection needs its place.
+/// Ends this connection because another one needs its slot.
 void PageSockets::end(std::optional<wire::Slots::Id> name) {
     if (!name) return;
     const auto found = std::find_if(connections_.begin(), connections_.end(), [&](const auto& c) {

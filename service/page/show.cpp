@@ -12,7 +12,8 @@
 namespace surefoot::page {
 namespace {
 
-constexpr std::int64_t kLate_ns = kNanosecondsPerSecond;  ///< without a frame: said in words
+/// After this time without a frame the status says so.
+constexpr std::int64_t kLate_ns = kNanosecondsPerSecond;
 
 }  // namespace
 
@@ -36,7 +37,7 @@ void Show::look(PageFeed& feed, std::int64_t now_ns) {
     }
     if (frame_->has_stairs) take_stairs();
     if (frame_->images_time_ns == 0) return;
-    // Kept apart from the frame: who wants them may do so only after the next frame has come.
+    // Kept apart from the frame: a viewer may ask for the images after the next frame has come.
     images_time_ns_ = frame_->images_time_ns;
     std::swap(left_, frame_->left);
     std::swap(disparity_px_, frame_->disparity_px);

@@ -7,12 +7,13 @@ namespace surefoot::page {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kSilence_ns = kSecond_ns;   ///< of who holds: let go
-constexpr std::int64_t kKept_ns = 5 * kSecond_ns;  ///< after it was let go
+constexpr std::int64_t kSilence_ns = kSecond_ns;  ///< without a command: counts as a release
+/// The page keeps the joystick this long after the release.
+constexpr std::int64_t kKept_ns = 5 * kSecond_ns;
 
 }  // namespace
 
-/// A command lasts no longer than the words for it.
+/// Time of the release. A command that is not repeated ends after kSilence_ns.
 std::int64_t Steering::let_go_ns() const {
     return command_ == 0 ? last_word_ns_ : last_word_ns_ + kSilence_ns;
 }
@@ -25,7 +26,7 @@ bool Steering::hold(std::uint64_t viewer, std::uint8_t command, std::int64_t now
     const std::lock_guard lock(mutex_);
     const std::uint64_t holder = holder_now(now_ns);
     if (holder != 0 && holder != viewer) return false;
-    // Who only lets go keeps what it has, and takes nothing.
+    // A release does not take the joystick, and a repeated release does not extend the hold.
     if (holder == 0 && command == 0) return true;
     if (holder == viewer && command_ == 0 && command == 0) return true;
     viewer_ = viewer;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only here is nlohmann-json included (six seconds a translation unit).
+// Outside tests the only file here that includes nlohmann-json: 6 s per translation unit.
 #include "service/rex_link/answer_parser.hpp"
 
 #include <fmt/format.h>
@@ -17,11 +17,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDeepest = 8;  // what a gate sends is flatter than this
+constexpr int kDeepest = 8;  // the gate's messages are less deep
 constexpr std::int64_t kNsPerMs = 1'000'000;
 constexpr std::int64_t kLongestLife_ms = 60'000;
 
-/// Names of an object may come once: two readers of one text must not read two verdicts.
+/// Finds duplicate names in an object and objects that are nested too deeply. Duplicate names must
+/// be refused: two readers of one text could read two different verdicts.
 class Shape {
   public:
     bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
@@ -52,7 +53,7 @@ bool is_text(const Json* value, const char* text) {
     return value != nullptr && value->is_string() && value->get_ref<const std::string&>() == text;
 }
 
-/// Text that a terminal can show: no control characters.
+/// The text if it has no control characters, so that a terminal can show it; else empty.
 std::optional<std::string> printable(const Json* value) {
     if (value == nullptr || !value->is_string()) return std::nullopt;
     const auto& text = value->get_ref<const std::string&>();
@@ -73,7 +74,7 @@ std::string format_id(std::uint64_t nonce, const Question& question) {
     return fmt::format("rex:{:016x}:{}:{}", nonce, question.sequence, question.command);
 }
 
-/// The question that an id names. What is read of it must give the same id again, to the letter.
+/// Reads the question from an id. The values read must format to exactly the same id.
 bool read_id(const std::string& id, Answer& answer) {
     const std::string_view text = id;
     constexpr std::size_t kNonceAt = 4, kSequenceAt = 21;
@@ -84,7 +85,7 @@ bool read_id(const std::string& id, Answer& answer) {
            format_id(answer.nonce, {answer.sequence, answer.command}) == id;
 }
 
-/// resultCode of the thesis' stepQuery.
+/// resultCode of stepQuery in the reference thesis (Lange 2016).
 int result_code_of(AnswerVerdict verdict) {
     switch (verdict) {
         case AnswerVerdict::ok: return 0;
@@ -119,7 +120,7 @@ Status read_verdict(const Json& values, Answer& answer) {
     return {};
 }
 
-/// What the values say about the question must be what the id says.
+/// Reads the values about the question; they must agree with the id.
 Status read_question(const Json& values, Answer& answer) {
     const Json* sequence = find(values, "sequence");
     if (sequence == nullptr || !sequence->is_number_unsigned() || *sequence != answer.sequence)

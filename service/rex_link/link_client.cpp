@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only here is Boost included (half a minute a translation unit).
+// Outside tests the only file here that includes Boost: half a minute per translation unit.
 #include "service/rex_link/link_client.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::int64_t steady_ns() {
         .count();
 }
 
-/// One connection from its first byte to its end. It lives as long as a handler of it is pending.
+/// One connection from its first byte to its end. Pending handlers keep it alive.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
     struct Listener {
@@ -50,12 +50,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
         beast::get_lowest_layer(stream_).async_connect(
             endpoint, [self = shared_from_this()](error_code error) { self->on_connect(error); });
     }
-    /// The newest question wins: one that could not be sent yet is dropped.
+    /// Sends the newest question; an older question that is not being sent yet is dropped.
     void send(std::string text) {
         waiting_ = std::move(text);
         if (!writing_) write();
     }
-    /// From here on nobody is told anything.
+    /// Closes the connection; the listener is not called any more.
     void abandon() {
         listener_ = {};
         error_code ignored;
@@ -65,7 +65,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   private:
     void on_connect(error_code error) {
         if (error) return end(error);
-        beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has times of its own
+        beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeouts
         beast::get_lowest_layer(stream_).socket().set_option(asio::ip::tcp::no_delay(true), error);
         auto limits = websocket::stream_base::timeout::suggested(beast::role_type::client);
         limits.handshake_timeout = std::chrono::seconds(2);
@@ -118,7 +118,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::optional<std::string> waiting_;
 };
 
-/// Brings user, state machine and connection together, on one thread.
+/// Connects joystick, state machine and connection, on one thread.
 class Client {
   public:
     Client(const LinkClientConfig& config, const Joystick& joystick, const LinkEventSink& sink)
@@ -130,7 +130,8 @@ class Client {
     }
 
     void run() {
-        const auto idle_guard = asio::make_work_guard(io_);  // wait although nothing is pending
+        // io_ waits even if no handler is pending
+        const auto idle_guard = asio::make_work_guard(io_);
         while (true) {
             const std::int64_t now_ns = steady_ns();
             const auto code = joystick_(now_ns - start_ns_);
@@ -265,7 +266,7 @@ Result<GateAddress> parse_gate_url(std::string_view url) {
     const bool printable = std::all_of(
         gate.target.begin(), gate.target.end(), [](char c) { return c > 0x20 && c < 0x7f; });
     if (!printable) return bad_url(url);
-    // A colon inside the brackets of IPv6 begins no port.
+    // A colon inside the brackets of an IPv6 address does not start a port.
     const std::size_t colon = rest.rfind(':');
     if (colon != std::string_view::npos && rest.find(']', colon) == std::string_view::npos) {
         const std::string_view digits = rest.substr(colon + 1);

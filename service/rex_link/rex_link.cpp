@@ -67,7 +67,7 @@ RexLink::RexLink(const RexLinkConfig& config) : config_(config) {
     SUREFOOT_ASSERT(!config.problem());
 }
 
-/// What every event has in common: its time is noted, and what fell due follows it.
+/// Common part of every event: note the time, handle the event, then handle expired deadlines.
 template <typename Meaning>
 Actions RexLink::event(std::int64_t now_ns, const Meaning& meaning) {
     Actions actions;
@@ -94,7 +94,8 @@ Actions RexLink::disconnected(std::int64_t now_ns) {
 Actions RexLink::joystick(std::uint8_t code, std::int64_t now_ns) {
     return event(now_ns, [&](Actions&) {
         if (code == code_) return;
-        if (attempting()) state_ = LinkState::idle;  // the user thought better of it
+        // the user changed the joystick: the attempt ends without a warning
+        if (attempting()) state_ = LinkState::idle;
         if (code_ == 0 && now_ns - rest_since_ns_ >= config_.rest_pause_ns) refused_.reset();
         if (code == 0) rest_since_ns_ = now_ns;
         code_ = code;
@@ -141,11 +142,11 @@ void RexLink::note_time(std::int64_t now_ns, Actions& actions) {
     const bool backwards = now_ns < last_ns_;
     last_ns_ = now_ns;
     if (!backwards) return;
-    rest_since_ns_ = now_ns;  // how long the joystick rested is not known
+    rest_since_ns_ = now_ns;  // the duration of the rest is unknown now
     if (attempting()) inhibit(Inhibit::clock, actions);
 }
 
-/// What falls due by the time alone, and what the joystick still asks for.
+/// Handles deadlines, and starts an attempt if the joystick asks for a movement.
 void RexLink::fall_due(std::int64_t now_ns, Actions& actions) {
     if (state_ == LinkState::stepping && now_ns >= motion_end_ns_) state_ = LinkState::idle;
     if (asking() && now_ns - attempt_.sent_ns >= config_.answer_timeout_ns)
@@ -161,7 +162,7 @@ void RexLink::fall_due(std::int64_t now_ns, Actions& actions) {
     if (state_ == LinkState::idle && code_ != 0 && !refused_[code_]) begin(now_ns, actions);
 }
 
-/// The first question about what the joystick asks for.
+/// Asks the first question about the joystick's code, or inhibits if that is not possible.
 void RexLink::begin(std::int64_t now_ns, Actions& actions) {
     if (code_ >= Machine::kMovementCodes) {
         inhibit(Inhibit::unknown_code, actions);
@@ -181,7 +182,7 @@ void RexLink::ask(LinkState state, std::int64_t now_ns, Actions& actions) {
     actions.question = attempt_.question;
 }
 
-/// Of this session, of this attempt, about this movement.
+/// True if the answer is of this session and this attempt, about this movement.
 bool RexLink::fits(const Answer& answer) const noexcept {
     return answer.nonce == nonce_ && answer.connection != 0 &&
            (attempt_.connection == 0 || answer.connection == attempt_.connection) &&
@@ -189,17 +190,19 @@ bool RexLink::fits(const Answer& answer) const noexcept {
            answer.command == attempt_.question.command;
 }
 
-/// What an answer means for the attempt. Late answers of attempts that the user ended, and OKs that
-/// come twice, mean nothing; all else that is no fresh OK to the question that waits inhibits.
+/// Applies an answer to the attempt. Late answers to earlier attempts and repeated OKs are ignored.
+/// Any other answer inhibits, unless it is a fresh OK to the current question.
 void RexLink::accept(const Answer& answer, std::int64_t now_ns, Actions& actions) {
     if (answer.nonce == nonce_ && answer.sequence < attempt_.first_sequence) return;
     if (!fits(answer)) return inhibit(Inhibit::mismatch, actions);
     if (answer.verdict == AnswerVerdict::not_traversable)
         return inhibit(Inhibit::not_traversable, actions);
     if (answer.verdict != AnswerVerdict::ok) return inhibit(Inhibit::gate_error, actions);
-    if (!asking() || answer.sequence != attempt_.question.sequence) return;  // counted before
+    // this OK was already counted
+    if (!asking() || answer.sequence != attempt_.question.sequence) return;
 
-    // An answer under way grows old, so that its life counts from the sending of the question.
+    // The validity counts from the sending of the question, so that a delay of the answer shortens
+    // it.
     const std::int64_t age_ns = now_ns - attempt_.sent_ns;
     if (age_ns >= config_.answer_timeout_ns) return inhibit(Inhibit::silence, actions);
     if (answer.valid_for_ns > config_.max_valid_for_ns) return inhibit(Inhibit::damaged, actions);
