@@ -17,7 +17,7 @@ using testing::number_at;
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kTick_ns = 20 * kMs;
 
-/// A service with one client. Time is its own.
+/// A service with one client and its own simulated time.
 struct Service {
     PageFeed feed;
     Show show;
@@ -56,7 +56,7 @@ struct Service {
     }
 };
 
-/// How many messages of each subscription there are.
+/// The number of messages of each subscription.
 std::map<std::uint32_t, int> counts_of(const std::vector<SocketMessage>& messages) {
     std::map<std::uint32_t, int> counts;
     for (const SocketMessage& message : messages) {
@@ -133,7 +133,8 @@ TEST(FoxgloveClient, NoImageIsNoMessage) {
     service.see(4);
     EXPECT_TRUE(counts_of(service.turn()).empty());
     service.see(4, true);
-    service.see(4);  // before anybody looked: the image of a frame that is no longer the newest
+    // before the client subscribed: the image of a frame that is no longer the newest
+    service.see(4);
     EXPECT_TRUE(counts_of(service.turn()).empty()) << "it went with its frame";
     service.see(4, true);
     const Json image = payload_of(service.turn(), 1);

@@ -10,8 +10,8 @@
 
 #include "service/page/foxglove_messages.hpp"
 
-/// What tests of Foxglove's messages share: readers that know of them what the protocol says, and
-/// nothing from our sources.
+/// Helpers for tests of the Foxglove messages. The readers follow the protocol and use no code of
+/// the service.
 namespace surefoot::page::testing {
 
 using Json = nlohmann::ordered_json;
@@ -47,7 +47,7 @@ inline bool is_of_type(const Json& value, const std::string& type) {
     return type == "number" && value.is_number();
 }
 
-/// The first reason why a value does not keep to a schema, or nothing.
+/// The first reason why a value violates a schema; empty if it is valid.
 inline std::string problem_of(const Json& value, const Json& schema, const std::string& where) {
     const auto type = schema.at("type").get<std::string>();
     if (!is_of_type(value, type)) return where + " is no " + type + ": " + value.dump();

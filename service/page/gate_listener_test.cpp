@@ -67,7 +67,7 @@ class Gate {
         thread_.join();
     }
     [[nodiscard]] std::uint16_t port() const { return server_->port(); }
-    /// Somebody asks for a movement; returns when the gate has answered.
+    /// Another client asks for a movement; returns when the gate has answered.
     void ask(int direction, const std::string& target = "/") const {
         net::io_context io;
         boost::beast::websocket::stream<net::ip::tcp::socket> client(io);
@@ -113,7 +113,7 @@ TEST(GateListener, HearsTheOutlookAndVerdictsAsTheGateGivesThem) {
     EXPECT_EQ(
         testing::problem_of(outlook, Json::parse(schema_of(FoxgloveChannel::outlook)), "outlook"),
         "");
-    // The other topic is asked for on the same connection; until that has come a verdict is lost.
+    // The other topic is subscribed to on the same connection; a verdict before that is lost.
     const auto heard_verdict = [&] {
         gate.ask(17);
         return listening.news.back().topic == GateTopic::verdict;

@@ -24,7 +24,8 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 PageMap small_map() {
     PageMap map;
     map.version = 7;
-    map.frame_time_ns = 1'403'636'579'763'555'584;  // a recording's: beyond a page's numbers
+    // as in a recording: above 2^53, the limit of a page's integers
+    map.frame_time_ns = 1'403'636'579'763'555'584;
     map.origin_x_tenth_mm = -500;
     map.origin_y_tenth_mm = 1250;
     map.base_z_tenth_mm = 0;
@@ -36,13 +37,14 @@ PageMap small_map() {
     map.cells[0] = {0, 3, 1};
     map.cells[1] = {-4, 255, 3};
     map.cells[5] = {-32767, 12, 2 | kDropBit};
-    map.cells[6] = {32767, 1, 2 | kOverheadBit};  // the run goes on in the next row
+    map.cells[6] = {32767, 1, 2 | kOverheadBit};  // the run continues in the next row
     map.cells[17] = {0, 0, 1 | kVouchedBit};
-    map.cells[10].state = kVouchedBit;  // nobody saw it
+    map.cells[10].state = kVouchedBit;  // attested by an operator, never measured
     return map;
 }
 
-/// A whole map, cells that change, the window that moves by (1, -1) cells, and one that lies anew.
+/// A whole map, changed cells, a window moved by (1, -1) cells, and a window that is not aligned
+/// with it.
 std::vector<PageMap> map_sequence() {
     PageMap first = small_map();
     PageMap changed = first;
@@ -66,7 +68,7 @@ std::vector<PageMap> map_sequence() {
     moved.cells[2] = {77, 4, 1};
     PageMap anew = moved;
     anew.version = 1;
-    anew.origin_x_tenth_mm += 10;  // no whole cell
+    anew.origin_x_tenth_mm += 10;  // not a whole number of cells
     return {first, changed, moved, anew};
 }
 
@@ -131,7 +133,7 @@ PageStatus status() {
             2};
 }
 
-/// One of each, a flight of three steps first.
+/// One feature of each kind; first a flight of three steps.
 stairs::TerrainFeatures features() {
     stairs::TerrainFeatures features;
     features.time_ns = 2'000'000'000;
@@ -151,7 +153,7 @@ stairs::TerrainFeatures features() {
     flight.right = {stairs::SideKind::open, 0.95};
     flight.followed = followed;
     features.flights.push_back(flight);
-    stairs::Flight step = flight;  // of one step: no going
+    stairs::Flight step = flight;  // a single step has no going
     step.kind = stairs::FlightKind::down;
     step.steps = 1;
     step.going_m = step.going_sigma_m = step.going_spread_m = kNan;
@@ -276,7 +278,7 @@ Json all_vectors(const Json& contract) {
     PageHello stranger = hello();
     stranger.machine.reset();
     stranger.blind_zone.clear();
-    PageHello shapeless = hello();  // nobody knows what it looks like
+    PageHello shapeless = hello();  // a machine without a model
     shapeless.machine->urdf.clear();
     shapeless.machine->joints.clear();
     PagePose walking = pose();

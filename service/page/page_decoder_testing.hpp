@@ -13,8 +13,7 @@
 
 #include "service/page/page_map.hpp"
 
-/// A plain decoder that knows of the messages what messages.json says, and nothing from our
-/// headers.
+/// A plain decoder that follows messages.json only and uses no code of the service.
 namespace surefoot::page::testing {
 
 using Json = nlohmann::ordered_json;
@@ -24,8 +23,8 @@ inline Json read_json(const std::string& path) {
     return Json::parse(file);
 }
 
-/// Reads numbers by the names of their types. 64-bit integers come as text, because a page's
-/// numbers end at 2^53; what is not a number comes as null.
+/// Reads numbers by the names of their types. 64-bit integers become text, because a page's
+/// integers end at 2^53; NaN becomes null.
 class TypedReader {
   public:
     explicit TypedReader(std::string_view bytes) : rest_(bytes) {}
@@ -93,7 +92,7 @@ inline void decode_map_body(const Json& kind, TypedReader& reader, Json& out) {
     }
 }
 
-/// A binary message as {"message": its name, every field}. Throws where it is none.
+/// Decodes a binary message into {"message": its name, every field}. Throws if it is invalid.
 inline Json decode(const Json& contract, std::string_view bytes) {
     const Json& binary = contract["binary"];
     TypedReader reader(bytes);
@@ -123,7 +122,7 @@ inline Json decode(const Json& contract, std::string_view bytes) {
     throw std::runtime_error("a message of an unknown kind");
 }
 
-/// The map that a page holds: what the messages so far have made of it.
+/// The map that a page holds after the messages so far.
 struct HeldMap {
     std::int64_t origin_x_tenth_mm = 0;
     std::int64_t origin_y_tenth_mm = 0;

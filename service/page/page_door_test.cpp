@@ -46,12 +46,12 @@ TEST(PageDoor, a_host_has_a_name_and_perhaps_a_port) {
                               "user@a",
                               "a/b"})
         EXPECT_FALSE(parse_host(wrong)) << wrong;
-    // A reader of C strings sees an address here and no more.
+    // Code that reads C strings would see only a valid address here.
     EXPECT_FALSE(parse_host(std::string_view("[fe80::\0 evil]:80", 17)));
     EXPECT_FALSE(parse_host(std::string_view("127.0.0.1\0.evil", 15)));
 }
 
-// A page of evil.example whose name now leads to 127.0.0.1 asks with its own name.
+// DNS rebinding: evil.example now resolves to 127.0.0.1, but the request still has that name.
 TEST(PageDoor, a_strangers_name_is_no_host_of_the_page) {
     for (const char* right :
          {"127.0.0.1:8080", "localhost:8080", "[::1]:8080", "127.0.0.9:8080", "localhost"})
@@ -131,7 +131,7 @@ TEST(PageDoor, no_other_page_may_frame_it_or_add_a_script) {
     EXPECT_EQ(header("", "Referrer-Policy"), "no-referrer");
 }
 
-// The fake service of the browser's tests reads the same file.
+// The fake service in the browser tests reads the same file.
 TEST(PageDoor, its_headers_are_those_of_the_contract) {
     std::ifstream file(std::string(SUREFOOT_SOURCE_DIR) + "/service/page/messages.json");
     auto contract = nlohmann::json::parse(file)["http_headers"];
@@ -146,7 +146,7 @@ TEST(PageDoor, its_headers_are_those_of_the_contract) {
     }
 }
 
-// What a stranger writes into Host must not become a part of the policy.
+// An attacker's text in the Host header must not become part of the policy.
 TEST(PageDoor, a_strangers_words_never_reach_the_policy) {
     const std::string policy = header("a; script-src 'unsafe-inline'", "Content-Security-Policy");
     EXPECT_EQ(policy.find("unsafe"), std::string::npos);

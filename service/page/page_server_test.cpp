@@ -37,7 +37,7 @@ class Caller {
         EXPECT_EQ(::send(socket_, text.data(), text.size(), MSG_NOSIGNAL),
                   static_cast<ssize_t>(text.size()));
     }
-    /// What comes until the page closes, or until `end` has come, or for so long.
+    /// Receives until the page closes, `end` arrives or `patience_ms` has passed.
     std::string hear(const std::string& end = "", int patience_ms = 20'000) {
         std::string heard;
         std::array<char, 4096> bytes{};
@@ -87,7 +87,7 @@ class PageServerTest : public ::testing::Test {
                     const std::string& more = "") {
         return ask("GET " + path + " HTTP/1.1\r\nHost: " + host + "\r\n" + more + "\r\n");
     }
-    /// A WebSocket; its first line.
+    /// Opens a WebSocket; returns the first line of the response.
     std::string knock(Caller& caller,
                       const std::string& path,
                       const std::string& host,

@@ -6,7 +6,7 @@
 namespace surefoot::rex_link {
 namespace {
 
-/// As the gate answers question 17 about a step ahead.
+/// The gate's OK to question 17, about a step ahead.
 const std::string kOk =
     R"({"op":"service_response","id":"rex:00000000deadbeef:17:9","service":"/surefoot/step",)"
     R"("result":true,"values":{"verdict":"OK","result_code":0,"reasons":[],"primary":"NONE",)"
@@ -19,7 +19,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
     return text.replace(at, what.size(), by);
 }
 
-/// The sentence that refuses the text, or nothing.
+/// The error's sentence, or an empty text if the answer is valid.
 std::string refusal(const std::string& text) {
     const auto parsed = parse_answer(text);
     return parsed ? "" : parsed.error().message;

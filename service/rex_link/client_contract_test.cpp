@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// "It moved" implies that the gate gave two OKs to exactly these two questions, each of which was
-// fresh when it was used. Random schedules of a proxy between link and gate that does everything
-// but forge; what the gate truly said is remembered beside both.
+// The contract: if the machine moved, the gate gave two OKs to exactly these two questions, and
+// each OK was still valid when it was used. Random schedules test it with a proxy between link and
+// gate that does everything except forging. A witness compares the motions with the gate's true
+// answers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,15 +29,15 @@ RexLinkConfig quick_steps() {
     return config;
 }
 
-/// A question as it left the link, and what is known of its fate.
+/// A question that the link sent, and its fate.
 struct Sent {
     std::uint64_t nonce = 0;
     Question question;
     std::int64_t sent_ns = 0;
-    bool spoiled = false;  ///< the link was told something since that must end the attempt
+    bool spoiled = false;  ///< the link received something that must end the attempt
 };
 
-/// What the link did, held against what the gate said.
+/// Compares the actions of the link with the answers of the gate.
 class Witness {
   public:
     void sent(std::uint64_t nonce, const Question& question, std::int64_t now_ns) {
@@ -64,12 +65,12 @@ class Witness {
         nonce_ = nonce;
         spoil_attempt();
     }
-    /// The link was told what must end an attempt, whatever it asked.
+    /// The link received something that must end the current attempt.
     void spoil_attempt() {
         for (std::size_t i = sent_.size(); i > 0 && sent_.size() - i < 2; --i)
             sent_[i - 1].spoiled = true;
     }
-    /// The link was told no to this question.
+    /// The link received a negative answer to this question.
     void spoil(std::uint64_t sequence) {
         for (Sent& sent : sent_)
             if (sent.question.sequence == sequence) sent.spoiled = true;
@@ -112,8 +113,9 @@ class Witness {
     std::string first_failure;  ///< empty = the contract holds
 
   private:
-    /// The connections that gave an OK to this question which lives at `now_ns`, counted from the
-    /// question. More than one where the question came twice and the gate began anew in between.
+    /// The connections that gave this question an OK that is still valid at `now_ns`, counted from
+    /// the question. There may be several if the question arrived twice and the gate restarted in
+    /// between.
     [[nodiscard]] std::vector<std::uint64_t> fresh_oks(const Sent& sent,
                                                        std::int64_t now_ns) const {
         std::vector<std::uint64_t> connections;
@@ -140,7 +142,7 @@ class Witness {
     std::int64_t motion_end_ns_ = 0;
 };
 
-/// One walk of chance: a user, a link, a proxy, a gate and another client of it.
+/// One random schedule: a user, a link, a proxy, a gate and another client of the gate.
 class Schedule {
   public:
     explicit Schedule(std::uint64_t seed)
@@ -175,7 +177,7 @@ class Schedule {
         std::uint64_t order = 0;
         Kind kind = Kind::tick;
         Delivery delivery = {};
-        Said said = {};  ///< to_link: of these bytes
+        Said said = {};  ///< for to_link: the answer that these bytes were made from
         bool operator<(const Event& other) const {
             return std::pair(other.time_ns, other.order) < std::pair(time_ns, order);
         }
@@ -218,7 +220,7 @@ class Schedule {
         obey(link_.connected(nonce_, now_ns_));
     }
 
-    /// The gate ends or begins anew; the link may or may not see it.
+    /// The gate stops or restarts; the link may or may not notice.
     void break_something() {
         if (rng_.below(2) == 0) gate_.restart();
         connection_ = gate_.connect();
@@ -243,7 +245,7 @@ class Schedule {
             add(delivery.delay_ns, Kind::to_link, delivery, said);
     }
 
-    /// Another client asks the same gate nearly the same.
+    /// Another client asks the same gate a similar question.
     Said answer_to_another() {
         const Question question{last_sequence_ + rng_.below(2), 9};
         return gate_.answer(format_question(rng_.next_u64(), question), gate_.connect(), now_ns_);
@@ -251,7 +253,8 @@ class Schedule {
 
     void tell_link(const Event& event) {
         const auto parsed = parse_answer(event.delivery.bytes);
-        // What whole bytes said must end the attempt that they, or no question, belong to.
+        // A truncated answer, or an unchanged one of another session, must end the current attempt.
+        // An unchanged negative answer must end the attempt of its question.
         const bool of_session = event.said.nonce == nonce_;
         if (event.delivery.truncated || (!event.delivery.altered && !of_session))
             witness.spoil_attempt();
@@ -317,7 +320,8 @@ TEST(ClientContract, MovedImpliesTwoFreshMatchingOks) {
         questions += schedule.questions;
         if (!schedule.faithful()) continue;
         ++faithful;
-        // 400 ms of step, 150 ms of delay and four ways of at most 2 ms each, in 6 s.
+        // A cycle takes 400 ms of step, 150 ms of delay and four transfers of at most 2 ms; the
+        // schedule lasts 6 s.
         EXPECT_GE(schedule.witness.motions, 10U) << "seed " << seed << ", schedule " << i;
     }
     std::printf("contract: seed %llu, %llu schedules, %llu questions, %llu motions, 0 violations\n",

@@ -14,15 +14,15 @@
 
 namespace surefoot::rex_link {
 
-/// What the fake gate does with one question.
+/// The fake gate's reaction to one question.
 struct Reply {
     std::vector<std::string> texts;  ///< sent one after the other; empty = silence
     bool binary = false;
-    bool hang_up = false;  ///< afterwards
+    bool hang_up = false;  ///< closes the connection after the texts
 };
 
-/// A rosbridge server on loopback that serves one client at a time, on a thread of its own, and
-/// replies as it is told. Ends with its last reference; the client must have left before.
+/// A rosbridge server on loopback that serves one client at a time, on its own thread, and replies
+/// as the test specifies. The destructor ends it; the client must have disconnected before.
 class FakeGate {
   public:
     using Script = std::function<Reply(const std::string& question, int count)>;

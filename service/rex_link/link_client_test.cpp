@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kPatience_ns = 30'000 * kMs;
 
-/// What stands between two marks of a text.
+/// The part of `text` between `before` and `after`.
 std::string between(const std::string& text, const std::string& before, const std::string& after) {
     const std::size_t begin = text.find(before);
     if (begin == std::string::npos) return "";
@@ -31,7 +31,7 @@ std::string ok_to(const std::string& question) {
            between(question, R"("sequence":)", "}") + "}}";
 }
 
-/// Pushes the joystick ahead until an event is seen that ends the test; rests after each warning.
+/// Pushes the joystick ahead until the wanted event occurs; rests after each warning.
 class Walk {
   public:
     explicit Walk(std::uint16_t port) {
@@ -41,7 +41,7 @@ class Walk {
     }
 
     using Wanted = std::function<bool(const LinkEvent&)>;
-    /// Whether it was seen.
+    /// True if the event occurred.
     bool until(const Wanted& wanted) {
         bool seen = false;
         std::int64_t rest_until_ns = 0;
@@ -143,7 +143,7 @@ TEST(LinkClient, AnAnswerPlayedBackFitsNothing) {
         return Reply{{old}};
     });
     Walk walk(gate.port());
-    // The OK to the first question comes again for the second: it counts once.
+    // The OK to the first question is sent again for the second question; it must count only once.
     EXPECT_TRUE(walk.until_inhibit(Inhibit::silence));
     EXPECT_EQ(walk.count(LinkEventKind::motion), 0U);
 }

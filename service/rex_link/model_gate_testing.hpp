@@ -11,7 +11,7 @@
 
 namespace surefoot::rex_link {
 
-/// One answer of the model gate as it was meant, whatever becomes of its bytes.
+/// One answer of the model gate as it was sent, before the proxy changes its bytes.
 struct Said {
     bool ok = false;
     std::uint64_t nonce = 0;  ///< as the gate read it in the question
@@ -23,21 +23,22 @@ struct Said {
     std::string bytes;
 };
 
-/// A gate for tests that answers by chance and remembers what it said. It reads and writes texts by
+/// A gate for tests that gives random answers and remembers them. It formats and parses texts
 /// itself and shares no code with the link.
 class ModelGate {
   public:
     ModelGate(Rng rng, double ok_share, bool short_lives)
         : rng_(rng), ok_share_(ok_share), short_lives_(short_lives) {}
 
-    /// Every connection gets a new name; after a restart they begin again, at worst.
+    /// Every connection gets a new number; in the worst case the numbers start again after a
+    /// restart.
     [[nodiscard]] std::uint64_t connect() { return ++last_connection_; }
     void restart() {
         last_sequence_.clear();
         if (rng_.below(2) == 0) last_connection_ = 0;
     }
 
-    /// The answer to the bytes of a question that came on a connection.
+    /// The answer to a question that arrived on a connection.
     [[nodiscard]] Said answer(const std::string& question,
                               std::uint64_t connection,
                               std::int64_t now_ns) {

@@ -19,7 +19,7 @@ Answer ok_to(const Question& question) {
     return {kNonce, kConnection, question.sequence, question.command, AnswerVerdict::ok, 300 * kMs};
 }
 
-/// A link on a connection of its own, with the joystick at rest since long.
+/// A connected link whose joystick has been at rest for long.
 class RexLinkTest : public ::testing::Test {
   protected:
     void SetUp() override { EXPECT_FALSE(link_.connected(kNonce, now_ns_).question); }
@@ -127,7 +127,7 @@ TEST_F(RexLinkTest, BothAnswersComeFromOneConnectionOfTheGate) {
     expect_inhibit(say(answer), Inhibit::mismatch);
     push(0);
     after_ms(200);
-    const Question first = asked();  // a gate that began anew is believed anew
+    const Question first = asked();  // after a restart of the gate its new connection is accepted
     answer = ok_to(first);
     answer.connection = kConnection + 1;
     EXPECT_EQ(say(answer).tone, Tone::acknowledge);
@@ -199,7 +199,7 @@ TEST_F(RexLinkTest, TheFirstOkMustLiveWhenTheSecondQuestionIsAsked) {
     push(0);
     after_ms(200);
     say(ok_to(asked()));
-    expect_inhibit(after_ms(300), Inhibit::expired);  // somebody slept
+    expect_inhibit(after_ms(300), Inhibit::expired);  // the caller was late
 }
 
 TEST_F(RexLinkTest, ADuplicateCountsOnce) {
@@ -208,7 +208,7 @@ TEST_F(RexLinkTest, ADuplicateCountsOnce) {
     expect_nothing(say(ok_to(first)));
     const Actions again = after_ms(150);
     ASSERT_TRUE(again.question);
-    expect_nothing(say(ok_to(first)));  // the first answer is no answer to the second question
+    expect_nothing(say(ok_to(first)));  // an OK to the first question does not count for the second
     const Actions allowed = say(ok_to(*again.question));
     ASSERT_TRUE(allowed.motion);
     expect_nothing(say(ok_to(*again.question)));
@@ -236,7 +236,7 @@ TEST_F(RexLinkTest, LateAnswersOfEndedAttemptsMeanNothing) {
     late.verdict = AnswerVerdict::not_traversable;
     expect_nothing(say(late));
     EXPECT_EQ(say(ok_to(present)).tone, Tone::acknowledge);
-    late.nonce = kNonce + 1;  // of another session: somebody plays old answers back
+    late.nonce = kNonce + 1;  // of another session: a replayed old answer
     expect_inhibit(say(late), Inhibit::mismatch);
 }
 
@@ -312,7 +312,7 @@ TEST_F(RexLinkTest, NothingIsAskedOrSaidWhileAStepIsUnderWay) {
 TEST_F(RexLinkTest, ARefusedDirectionIsAskedAgainOnlyAfterTheJoystickRested) {
     asked();
     after_ms(100);
-    expect_nothing(after_ms(60'000));  // held: never again
+    expect_nothing(after_ms(60'000));  // while it is held, no further question
     expect_nothing(push(0));
     after_ms(199);
     expect_nothing(push(kAhead));  // too short a rest
@@ -353,7 +353,7 @@ TEST_F(RexLinkTest, TheConnectionsEndInhibits) {
     expect_inhibit(link_.connected(kNonce + 1, now_ns_), Inhibit::disconnected);
     push(0);
     after_ms(200);
-    expect_inhibit(say(ok_to(asked())), Inhibit::mismatch);  // an answer of the session before
+    expect_inhibit(say(ok_to(asked())), Inhibit::mismatch);  // an answer of the previous session
 }
 
 TEST_F(RexLinkTest, SequencesGrowOverConnections) {
@@ -390,7 +390,7 @@ TEST_F(RexLinkTest, TimeThatGoesBackwardsInhibits) {
     expect_inhibit(say(ok_to(second)), Inhibit::clock);
     push(0);
     after_ms(500);
-    after_ms(-400);  // how long the joystick has rested is not known any more
+    after_ms(-400);  // the duration of the rest is unknown now
     after_ms(199);
     expect_nothing(push(kAhead));
 }

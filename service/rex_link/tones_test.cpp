@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of tools/tones as an ear has them: how many notes, how long, how high.
+// Measures the notes in the audio files of tools/tones: their number, length and pitch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ constexpr std::size_t kHeader_bytes = 44;
 
 struct Note {
     double duration_s = 0.0;
-    double pitch_hz = 0.0;        ///< of the strongest wave between 100 and 4000 Hz
-    double overtone_share = 0.0;  ///< amplitude an octave above, against the pitch
+    double pitch_hz = 0.0;        ///< strongest component between 100 and 4000 Hz
+    double overtone_share = 0.0;  ///< amplitude one octave above, relative to the pitch's
 };
 
 std::string read_tone(Tone tone) {
@@ -46,7 +46,7 @@ std::vector<double> samples_of(const std::string& wav) {
     return samples;
 }
 
-/// Length of the Fourier component of the stretch at a frequency.
+/// Amplitude of the stretch's Fourier component at a frequency.
 double amplitude(const std::vector<double>& stretch, double frequency_hz) {
     double cosine = 0.0, sine = 0.0;
     for (std::size_t i = 0; i < stretch.size(); ++i) {
@@ -72,7 +72,7 @@ Note note_of(const std::vector<double>& stretch) {
     return note;
 }
 
-/// Notes are what silence of 10 ms or more stands between.
+/// The notes; a silence of at least 10 ms separates them.
 std::vector<Note> notes_of(const std::vector<double>& samples) {
     constexpr std::size_t kWindow = kRate_hz / 100;
     std::vector<Note> notes;

@@ -11,18 +11,18 @@
 
 namespace surefoot::rex_link {
 
-/// Bytes that the proxy delivers, when, and what it did to them.
+/// Bytes that the proxy delivers, the time of the delivery, and the changes to the bytes.
 struct Delivery {
     std::string bytes;
     std::int64_t delay_ns = 0;
     bool truncated = false;
-    bool altered = false;  ///< some bytes are others
+    bool altered = false;  ///< some bytes were changed
 };
 
-/// Loses, doubles, delays, reorders, truncates and alters texts, each with a chance of its own.
+/// Loses, duplicates, delays, reorders, truncates and alters texts, each with its own probability.
 class UnfaithfulProxy {
   public:
-    /// A faithful one delivers every text once, as it is, within 2 ms.
+    /// A faithful proxy delivers every text once, unchanged, within 2 ms.
     UnfaithfulProxy(Rng rng, bool faithful) : rng_(rng) {
         constexpr double kChances[] = {0.0, 0.0, 0.02, 0.1, 0.3};
         for (double& chance : chances_) chance = faithful ? 0.0 : kChances[rng_.below(5)];
@@ -34,7 +34,7 @@ class UnfaithfulProxy {
         while (happens(kDouble)) deliveries.push_back(deliver(bytes));
         return deliveries;
     }
-    /// Whether an old text is to be played back now.
+    /// True if an old text should be replayed now.
     [[nodiscard]] bool replays() { return happens(kReplay); }
     [[nodiscard]] bool breaks() { return happens(kBreak); }
 
@@ -57,8 +57,9 @@ class UnfaithfulProxy {
         return delivery;
     }
 
-    /// Another value for one byte. The digits of the life and of the connection are spared: nothing
-    /// else in an answer tells that 20 ms became 90 ms, and TCP's checksum has to.
+    /// Changes the value of one byte. It never changes the digits of the validity and of the
+    /// connection: no other part of an answer repeats these two values, so that only TCP's checksum
+    /// protects them.
     void alter(Delivery& delivery) {
         const std::size_t at = rng_.below(delivery.bytes.size());
         for (const char* name : {"\"valid_for_ms\":", "\"connection\":"}) {
