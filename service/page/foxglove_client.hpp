@@ -50,6 +50,7 @@ class FoxgloveClient {
     [[nodiscard]] std::vector<SocketMessage> next(FoxgloveShow& show, std::int64_t now_ns);
 
     [[nodiscard]] bool listens_to(FoxgloveChannel channel) const { return of(channel).has_value(); }
+    /// The topics of the gate that this client needs.
     [[nodiscard]] GateTopics gate_topics() const {
         return {listens_to(FoxgloveChannel::verdict), listens_to(FoxgloveChannel::outlook)};
     }

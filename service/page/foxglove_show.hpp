@@ -43,8 +43,11 @@ class FoxgloveShow {
     [[nodiscard]] std::int64_t time_ns(FoxgloveChannel channel) const;
     /// The last kRememberedVerdicts verdicts, oldest first.
     [[nodiscard]] const std::deque<Verdict>& verdicts() const { return verdicts_; }
+    /// Number of the newest frame; 0 = no frame yet.
     [[nodiscard]] std::uint64_t frame_serial() const { return show_.serial(); }
+    /// Time of the newest frame on the source's clock.
     [[nodiscard]] std::int64_t now_ns() const { return show_.pose().time_ns; }
+    /// The name of the server in clients: program and source.
     [[nodiscard]] std::string name() const;
 
   private:

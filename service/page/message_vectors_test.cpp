@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // message_vectors.json holds an example of every message; the page's tests read the same file.
-// SUREFOOT_WRITE_VECTORS=1 page_test --gtest_filter='MessageVectors.*' writes it anew.
+// SUREFOOT_WRITE_VECTORS=1 page_test --gtest_filter='MessageVectors.*' writes the file again.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -45,9 +45,11 @@ struct PageRates {
 class PageFeed {
   public:
     // For the perception thread only; the wants_... functions are thread-safe.
+    /// The frame to fill next. It still holds the data of an earlier frame.
     [[nodiscard]] PageFrame& blank() noexcept { return *blank_; }
     /// Publishes the frame in blank(). Afterwards blank() refers to another frame.
     void hand_over();
+    /// True while a viewer wants this data; perception need not copy it otherwise.
     [[nodiscard]] bool wants_images() const noexcept { return wants_images_; }
     [[nodiscard]] bool wants_layers() const noexcept { return wants_layers_; }
     [[nodiscard]] bool wants_stairs() const noexcept { return wants_stairs_; }
@@ -56,6 +58,7 @@ class PageFeed {
     /// Swaps `frame` with the newest frame. Returns false and changes nothing if no new frame was
     /// published since the last call.
     [[nodiscard]] bool fetch(std::unique_ptr<PageFrame>& frame);
+    /// Tells perception which data the viewers want.
     void want(bool images, bool layers, bool stairs) noexcept;
 
     PageRates rates;

@@ -31,6 +31,7 @@ inline constexpr std::size_t kImageCount = 2;
 /// Names of the images, in the order of PageImage.
 inline constexpr std::array<const char*, kImageCount> kImageNames{"left", "disparity"};
 
+/// Writes the 4 bytes that every binary message starts with.
 void write_header(MessageWriter& write, MessageKind kind);
 
 /// The pose of base_link after one frame.
@@ -46,8 +47,10 @@ struct PagePose {
     CameraState camera = CameraState::unknown;
     std::vector<float> joints_rad;  ///< in the order of PageHello::Machine::joints, or empty
 };
+/// The binary message "pose".
 [[nodiscard]] std::string pose_message(const PagePose& pose);
 
+/// The binary message "image". `jpeg`: the encoded picture.
 [[nodiscard]] std::string image_message(std::int64_t time_ns,
                                         PageImage which,
                                         std::string_view jpeg);
@@ -61,6 +64,7 @@ struct PageLayer {
     std::uint16_t index = 0;  ///< index of the layer's name in PageHello::layers
     Image<float> values;
 };
+/// The binary message "layer": always the whole layer.
 [[nodiscard]] std::string layer_message(const PageLayer& layer);
 
 /// The first message to a page: what the page needs to read all other messages.
@@ -91,6 +95,7 @@ struct PageHello {
     double rate_hz = 0.0;                 ///< frame rate of the source; 0 = not known
     std::optional<Pose> T_body_camera{};  ///< rectified left camera in base_link, if known
 };
+/// The "hello" message, JSON.
 [[nodiscard]] std::string hello_text(const PageHello& hello);
 
 /// The "steer" message for one page. `yours`: this page holds the joystick; `taken`: any page holds

@@ -84,6 +84,8 @@ class PageServer {
     void run();
     /// Ends `run`. Thread-safe.
     void stop();
+    /// The port that the server listens at; it differs from the configured one if that was 0 or in
+    /// use.
     [[nodiscard]] std::uint16_t port() const noexcept;
 
   private:

@@ -43,7 +43,9 @@ class PageSettings {
     /// Called on the thread of `ask`, one call at a time; it must not call this object.
     using Change = std::function<Result<std::string>(const SettingWish& wish)>;
 
+    /// Sets the list of settings, and the function that changes one.
     void offer(std::vector<PageSetting> settings, Change change);
+    /// Changes a setting, or says in words why it cannot be changed.
     [[nodiscard]] SettingAnswer ask(const SettingWish& wish);
 
     [[nodiscard]] std::vector<PageSetting> all() const;

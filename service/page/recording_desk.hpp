@@ -42,6 +42,7 @@ class RecordingDesk {
     /// The recorder sets the function that receives requests; an empty function refuses them all.
     /// The function runs on the thread of `ask` and must not call this object.
     void serve_with(std::function<void(const RecordWish& wish)> asked);
+    /// The recorder reports its state.
     void tell(RecordingState state);
 
     /// Passes a page's request to the recorder. False if recording is not possible.

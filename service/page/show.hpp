@@ -19,17 +19,23 @@ namespace surefoot::page {
 /// Not thread-safe: use it on the page's thread.
 class Show {
   public:
+    /// Replaces the hello and the limits that colour the ground.
     void introduce(PageHello its_hello, ColourLimits colours);
     /// Fetches the newest frame from `feed`, if there is a new one.
     void look(PageFeed& feed, std::int64_t now_ns);
 
+    /// Number of the newest frame; 0 = no frame yet.
     [[nodiscard]] std::uint64_t serial() const { return frame_->serial; }
     [[nodiscard]] const PagePose& pose() const { return frame_->pose; }
+    /// The binary message of the newest pose.
     [[nodiscard]] const std::string& pose_bytes();
     /// JPEG of the newest image; empty if there is none.
     [[nodiscard]] const std::string& jpeg(PageImage which);
+    /// The binary message of the newest image.
     [[nodiscard]] std::string picture(PageImage which);
+    /// Time of the newest images on the source's clock; 0 = no images yet.
     [[nodiscard]] std::int64_t images_time_ns() const { return images_time_ns_; }
+    /// The binary message of a layer (index into PageHello::layers); empty if no frame brought it.
     [[nodiscard]] std::optional<std::string> layer(std::uint16_t index) const;
     /// The newest "stairs" message; empty before the first one.
     [[nodiscard]] const std::string& stairs() const { return stairs_text_; }

@@ -25,6 +25,7 @@ class Steering {
     /// The page `viewer` (never 0) holds the joystick at `command`, or releases it with 0. Returns
     /// false and changes nothing while another page holds it.
     bool hold(std::uint64_t viewer, std::uint8_t command, std::int64_t now_ns);
+    /// The page `viewer` disconnected: it releases the joystick at once.
     void leave(std::uint64_t viewer);
     /// The page that holds the joystick; 0 = none.
     [[nodiscard]] std::uint64_t holder(std::int64_t now_ns) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// In real time against a fake gate. No test measures time: a busy machine may be silent for 100 ms,
-// so that the user rests and tries again until what is waited for was seen, for half a minute.
+// In real time against a fake gate. No test measures time, because a busy computer may be silent
+// for 100 ms. The simulated user then rests and tries again until the wanted event occurs, at most
+// 30 s.
 #include "service/rex_link/link_client.hpp"
 
 #include <gtest/gtest.h>

@@ -66,6 +66,7 @@ enum class Inhibit : std::uint8_t {
 /// The name of the reason, for example "not_traversable".
 [[nodiscard]] const char* to_string(Inhibit inhibit) noexcept;
 
+/// A motion of the machine: the movement's joystick code and its duration.
 struct Motion {
     std::uint8_t command = 0;
     std::int64_t duration_ns = 0;
@@ -98,14 +99,17 @@ enum class LinkState : std::uint8_t {
 /// thread-safe.
 class RexLink {
   public:
+    /// Precondition: `config.problem()` is empty.
     explicit RexLink(const RexLinkConfig& config);
 
     /// A connection was established. `nonce` is a random number for this session; answers must
     /// return it.
     [[nodiscard]] Actions connected(std::uint64_t nonce, std::int64_t now_ns);
+    /// The connection ended. An attempt in progress is inhibited; a step in progress goes on.
     [[nodiscard]] Actions disconnected(std::int64_t now_ns);
     /// The joystick's code; 0 = at rest. Repeating the same code changes nothing.
     [[nodiscard]] Actions joystick(std::uint8_t code, std::int64_t now_ns);
+    /// An answer arrived. It has an effect only while an attempt is in progress.
     [[nodiscard]] Actions answer(const Answer& answer, std::int64_t now_ns);
     /// Bytes arrived that are not a valid answer.
     [[nodiscard]] Actions damaged_answer(std::int64_t now_ns);

@@ -304,7 +304,7 @@ TEST_F(RexLinkTest, NothingIsAskedOrSaidWhileAStepIsUnderWay) {
     expect_nothing(link_.disconnected(now_ns_));
     expect_nothing(link_.connected(kNonce, now_ns_));
     EXPECT_EQ(link_.state(), LinkState::stepping);
-    const Actions next = after_ms(10'000);  // what the joystick asks for now
+    const Actions next = after_ms(10'000);  // a question about the current code
     ASSERT_TRUE(next.question);
     EXPECT_EQ(next.question->command, kBack);
 }
