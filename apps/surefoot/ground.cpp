@@ -74,8 +74,7 @@ int ground(const GroundOptions& options) {
     if (!origin) return report(origin.error());
     auto cloud = io::read_cloud(options.cloud);
     if (!cloud) return report(cloud.error());
-    // Organised clouds come straight from a camera and have optical axes (y down). Others have z
-    // up.
+    // Organised clouds come from a camera and have optical axes (y down). Others have z up.
     const bool optical = options.frame.empty() ? cloud->organised() : options.frame == "optical";
     const Eigen::Vector3d sensor((*origin)[0], (*origin)[1], (*origin)[2]);
     const ground::GroundConfig& config = settings->pipeline.ground;
