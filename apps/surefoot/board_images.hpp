@@ -22,9 +22,9 @@ struct BoardSource {
     std::vector<std::string> notes;  ///< sentences, for example about files that were left out
 };
 
-/// Views that a calibration needs at most. Of a video every n-th frame is used, where n is its
-/// frame count divided by this number, rounded down. A live session takes at most this many by
-/// default.
+/// Number of views that is enough for a calibration. Of a video every n-th frame is used, where n
+/// is its frame count divided by this number, rounded down. A live session ends after this many
+/// images by default.
 inline constexpr int kMostVideoViews = 60;
 
 /// Opens `source` and passes its images to `use`, in natural order of the file names.

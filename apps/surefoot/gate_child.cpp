@@ -32,7 +32,7 @@ Result<std::string> find_program() {
     return input_error("the program surefoot-gate is not beside " + self.string());
 }
 
-/// Longest wait for the gate's line "listening on ..."; after it the start has failed.
+/// Longest silence while the gate starts. If it writes nothing for this time, the start has failed.
 constexpr int kStart_ms = 20'000;
 
 /// First line that the gate writes. It may be incomplete if the gate closed the pipe or the wait

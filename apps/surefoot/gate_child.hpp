@@ -27,7 +27,8 @@ class GateChild {
         wire::ChecksumKey key;  ///< of the snapshot channel; sent through the socket pair
     };
     /// Starts the program surefoot-gate from the folder of this program (or from its place in a
-    /// build tree). Returns when it listens, or an error if it does not within 20 s.
+    /// build tree). Returns when it listens. Returns an error if it ends or is silent
+    /// for 20 s before.
     [[nodiscard]] static Result<GateChild> start(Start how);
     GateChild(GateChild&& other) noexcept;
     GateChild& operator=(GateChild&&) = delete;
