@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step gate as a process: newest map through shared memory, questions over a WebSocket, every
-// verdict into the audit log. One thread decides; the log writes on its own.
+// The step gate as a process. It reads the newest map from shared memory, answers queries over a
+// WebSocket, and records every verdict in the audit log. One thread decides; the audit log has its
+// own writing thread.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sched.h>
@@ -34,7 +35,8 @@ namespace {
 constexpr int kExitOk = 0;
 constexpr int kExitFailed = 1;
 constexpr int kExitUsage = 2;
-/// The gate of an ended serve needs milliseconds to let go of the port.
+/// How long to wait for a port in use. The gate of a `surefoot serve` that has just ended releases
+/// its port within milliseconds.
 constexpr std::int64_t kPortPatience_ns = 1'500'000'000;
 
 std::atomic<bool> stop_wanted{false};
@@ -65,8 +67,8 @@ int fail(const Error& error) {
     return error.code == ErrorCode::usage ? kExitUsage : kExitFailed;
 }
 
-/// The key of the channel: from the program that started the gate, or from a file. A gate without
-/// one trusts no map.
+/// Reads the key of the snapshot channel from the program that started the gate, or from a file.
+/// Without a key it returns a new random one, so the gate trusts no map.
 Result<wire::ChecksumKey> channel_key(const Options& options) {
     if (options.parent_fd >= 0) {
         std::array<char, 16> bytes{};
@@ -84,13 +86,13 @@ Result<wire::ChecksumKey> channel_key(const Options& options) {
     return wire::new_checksum_key();
 }
 
-/// The program that started the gate has ended, however it ended.
+/// True if the program that started the gate has ended, normally or by a crash.
 bool is_orphan(int parent_fd) {
     char byte = 0;
     return parent_fd >= 0 && ::recv(parent_fd, &byte, 1, MSG_DONTWAIT) == 0;
 }
 
-/// Says on stderr what becomes of the channel.
+/// Reports changes of the snapshot channel's state on stderr.
 class ChannelNews {
   public:
     explicit ChannelNews(std::string path) : path_(std::move(path)) {}
@@ -116,7 +118,8 @@ class ChannelNews {
     wire::ChannelState told_ = wire::ChannelState::absent;
 };
 
-/// Listens; waits a moment for the gate of an ended serve, and names who has the port.
+/// Opens the server. If another process uses the port it retries for kPortPatience_ns, then returns
+/// an error that names that process.
 Result<std::unique_ptr<wire::WebsocketServer>> listen(const wire::ServerConfig& config,
                                                       wire::StepGate& gate,
                                                       const wire::WebsocketServer::Tick& tick) {
@@ -145,18 +148,19 @@ gate::ReadinessLimits limits_of(const io::MachineFile& file) {
     return limits;
 }
 
-/// Asks for the processor soon, and for little of it at a time: a thread that sleeps until it is
-/// asked need not wait for the end of another one's slice (milliseconds). Linux 6.12 and later; any
-/// other takes no notice, and rights are not needed. For the calling thread alone.
+/// Requests short time slices for the calling thread. The scheduler then runs it soon after it
+/// wakes up for a query, instead of at the end of another thread's slice (milliseconds). It needs
+/// no privileges. Linux before 6.12 ignores the request.
 void ask_for_short_slices() {
-    if (::sched_getscheduler(0) != SCHED_OTHER) return;  // whoever started it chose something else
-    struct {  // sched_setattr(2), whose header does not get on with the C library's
+    if (::sched_getscheduler(0) != SCHED_OTHER)
+        return;  // the starter chose another policy: keep it
+    struct {     // for sched_setattr(2); the kernel's header conflicts with the C library's
         std::uint32_t size = 48;
         std::uint32_t policy = SCHED_OTHER;
         std::uint64_t flags = 0;
-        std::int32_t nice = ::getpriority(PRIO_PROCESS, 0);  // stays what it is
+        std::int32_t nice = ::getpriority(PRIO_PROCESS, 0);  // unchanged
         std::uint32_t priority = 0;
-        std::uint64_t slice_ns = 100'000;  // the shortest there is
+        std::uint64_t slice_ns = 100'000;  // the shortest that Linux accepts
         std::uint64_t deadline_ns = 0;
         std::uint64_t period_ns = 0;
     } wish;
@@ -164,14 +168,14 @@ void ask_for_short_slices() {
     ::syscall(SYS_sched_setattr, 0, &wish, 0U);
 }
 
-/// The log of the process; none where nobody asked for one.
+/// Opens the audit log; null without --audit.
 Result<std::unique_ptr<wire::AuditLog>> open_log(const Options& options, const Machine& machine) {
     std::unique_ptr<wire::AuditLog> log;
     if (options.audit_dir.empty()) return log;
     wire::AuditConfig config;
     config.files.run_id = wire::new_run_id();
     config.files.total_bytes = static_cast<std::uint64_t>(options.audit_mb) << 20U;
-    // The newest file is never removed: where little is allowed, files are small.
+    // The newest file is never removed, so a file must be small compared with the total limit.
     config.files.file_bytes = std::min(config.files.file_bytes, config.files.total_bytes / 4);
     log = std::make_unique<wire::AuditLog>(
         machine, wire::make_folder_disk(options.audit_dir), config);
@@ -220,7 +224,7 @@ int serve(const Options& options, const io::MachineFile& file) {
     ask_for_short_slices();
     running->run();
     keeper.stop();
-    server->reset();  // the port is free while the log is written to its end
+    server->reset();  // release the port before the log writes its remaining records
     if (audit != nullptr) audit->stop();
     return kExitOk;
 }
@@ -237,14 +241,15 @@ int run(Options options) {
     options.server.access = std::move(loaded->access);
     if (options.assured && options.audit_dir.empty())
         return fail(usage_error("--assured gives no OK without a log: name its folder (--audit)"));
-    // Every start of the gate counts its clients anew: a verdict of before answers none of them.
+    // Each start of the gate begins at another connection number, so a verdict from before the
+    // start never carries the number of a present client.
     options.server.first_connection = wire::new_run_id() >> 24U | 1U;
     struct sigaction action = {};
     action.sa_handler = [](int) { stop_wanted = true; };
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);  // a limit on files is a bad disk, not the end of the gate
+    std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file size limit counts as a failed write
     return serve(options, *machine);
 }
 
@@ -314,7 +319,7 @@ int main_with_arguments(int argc, char** argv) {
                    "file with the key of the maps, as given to `surefoot serve`; 32 hexadecimal "
                    "digits, rights 600")
         ->type_name("FILE");
-    app.add_option("--parent-fd", options.parent_fd)->group("");  // of `surefoot serve` alone
+    app.add_option("--parent-fd", options.parent_fd)->group("");  // only `surefoot serve` passes it
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -326,7 +331,7 @@ int main_with_arguments(int argc, char** argv) {
 }  // namespace
 }  // namespace surefoot::app
 
-// Whatever ends the process, its clients hear nothing more, and nothing is allowed.
+// However the process ends, its clients get no further answer, so no step is allowed.
 int main(int argc, char** argv) {
     try {
         return surefoot::app::main_with_arguments(argc, argv);

@@ -10,19 +10,19 @@
 
 namespace surefoot::app {
 
-/// A verdict that the gate gives otherwise than its log says.
+/// A logged verdict that differs from the verdict this gate decides for the same query and map.
 struct AuditDifference {
     std::string file;
-    std::uint64_t offset = 0;  ///< of its frame [bytes]
-    std::uint64_t sequence = 0;
+    std::uint64_t offset = 0;    ///< of the record's frame in the file [bytes]
+    std::uint64_t sequence = 0;  ///< number of that frame
     std::vector<wire::FieldDifference> fields;
 };
 
-/// What became of the verdicts of a log when they were decided again.
+/// Result of deciding every verdict of an audit log again: how many are equal, how many differ.
 struct AuditReplay {
     std::uint64_t equal = 0;
     std::uint64_t different = 0;
-    std::optional<AuditDifference> first;
+    std::optional<AuditDifference> first;  ///< the first verdict that differs
 };
 
 }  // namespace surefoot::app

@@ -56,7 +56,7 @@ Timing timed_once(const std::function<void()>& work) {
 
 namespace {
 
-/// Forty frames of the simulated stairs through the whole chain, timed by `clock`.
+/// Runs the whole pipeline over forty frames of the simulated stairs; `clock` times the stages.
 Result<RunRecord> drive_stairs(const CommonOptions& common,
                                const Settings& settings,
                                Executor& executor,
@@ -72,7 +72,7 @@ Result<RunRecord> drive_stairs(const CommonOptions& common,
     return session.record();
 }
 
-/// Whole frames, stage by stage: once by the clock on the wall, once by processor time.
+/// Times whole frames and each stage, in one run by wall clock and in one by processor time.
 Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Executor& executor) {
     const auto settings = load_settings(common);
     if (!settings) return settings.error();
@@ -94,10 +94,11 @@ Result<std::vector<BenchResult>> bench_chain(const CommonOptions& common, Execut
     return results;
 }
 
-/// A pair of real lenses (the published calibration of EuRoC) with images of a given size.
+/// A rig with real lenses (the published calibration of the EuRoC data set), scaled to an image
+/// size.
 camera::StereoRig lenses_at(int width, int height) {
     const auto lens = [&](double f, double cx, double cy) {
-        // k1, k2 as published; the rest follows the size.
+        // k1 and k2 are as published; the other parameters scale with the image size.
         return camera::Camera{camera::PinholeRadTan{.fx_px = f * width,
                                                     .fy_px = f * width,
                                                     .cx_px = cx * width,
@@ -115,10 +116,10 @@ camera::StereoRig lenses_at(int width, int height) {
     return rig;
 }
 
-/// The same rectification by cv::remap: its maps from our rectifier.
+/// Maps for cv::remap from our rectifier, so that OpenCV performs the same rectification.
 cv::Mat opencv_source(const camera::Rectifier& rectifier, camera::Side side) {
     const camera::RectifiedRig& rig = rectifier.rig();
-    constexpr double kFar_m = 1e6;  // the eyes share their directions there
+    constexpr double kFar_m = 1e6;  // parallax is negligible at this depth
     cv::Mat source(rig.height, rig.width, CV_32FC2);
     for (int v = 0; v < rig.height; ++v) {
         for (int u = 0; u < rig.width; ++u) {
@@ -132,7 +133,8 @@ cv::Mat opencv_source(const camera::Rectifier& rectifier, camera::Side side) {
     return source;
 }
 
-/// Rectification of a pair and the points of a disparity image, beside OpenCV's, one thread each.
+/// Times the rectification of a pair and the conversion of a disparity image to points, ours and
+/// OpenCV's.
 Result<std::vector<BenchResult>> bench_camera(const CommonOptions&, Executor&) {
     constexpr int kRepeats = 51;
     std::vector<BenchResult> results;
@@ -230,7 +232,7 @@ int bench(const BenchOptions& options) {
                "peer ms",
                "its least CPU ms",
                "median CPU ms");
-    // What takes less than 10 us is told to the nanosecond.
+    // Times below 10 us are printed to the nanosecond.
     const auto in_ms = [](const std::optional<double>& value_ms) {
         if (!value_ms) return std::string("-");
         return fmt::format("{:.{}f}", *value_ms, *value_ms < 0.01 ? 6 : 3);

@@ -16,7 +16,7 @@
 namespace surefoot::app {
 namespace {
 
-/// A disk that takes everything and keeps nothing.
+/// A disk that accepts every write and stores nothing.
 class NoDisk final : public wire::AuditDisk {
   public:
     Result<std::vector<Entry>> list() override { return std::vector<Entry>{}; }
@@ -28,11 +28,11 @@ class NoDisk final : public wire::AuditDisk {
     Status remove(const std::string&) override { return {}; }
 };
 
-/// What the audit log costs the thread that decides.
+/// Times the push of one verdict into the audit log, as the deciding thread sees it.
 Result<BenchResult> bench_audit_push(const Machine& machine, const wire::AuditedVerdict& audited) {
     constexpr int kRepeats = 2000;
     wire::AuditConfig config;
-    config.memory_bytes = 128U << 20U;  // all of them: a full ring would be no copy
+    config.memory_bytes = 128U << 20U;  // room for all: a push into a full ring copies nothing
     wire::AuditLog log(machine, std::make_unique<NoDisk>(), config);
     if (auto status = log.start(); !status) return status.error();
     const BenchResult result{"gate/audit_push", timed(kRepeats, [&] { log.push(audited); })};
@@ -42,7 +42,7 @@ Result<BenchResult> bench_audit_push(const Machine& machine, const wire::Audited
     return result;
 }
 
-/// Level ground of 6x6 m, all of it known and sure to 3 mm.
+/// Level ground of 6x6 m; all cells are known with a standard deviation of 3 mm.
 Result<std::unique_ptr<grid::MapSnapshot>> level_ground(float drift_m) {
     constexpr int kSide = 240;
     const grid::Layer height_m(kSide, kSide, 0.0F);
@@ -63,8 +63,8 @@ Result<std::unique_ptr<grid::MapSnapshot>> level_ground(float drift_m) {
     return snapshot;
 }
 
-/// Asks for one movement after the other, over and over. All must be OK: such a verdict has looked
-/// at all the ground that its movement needs.
+/// Queries all movements in turn, repeatedly. All verdicts must be OK, because only then has the
+/// gate checked all the ground that the movement needs.
 class Asking {
   public:
     Asking(const Machine& machine, const grid::MapSnapshot& map) : machine_(machine), map_(map) {
@@ -102,7 +102,7 @@ Timing slower(const Timing& a, const Timing& b) noexcept {
     return a.median_ms < b.median_ms ? b : a;
 }
 
-/// Leaves nothing of the gate in the caches, as when all cores have worked on images in between.
+/// Evicts the gate's data from the caches, as image processing on all cores would do.
 class OtherMemory {
   public:
     void write() noexcept {
@@ -125,7 +125,7 @@ Result<std::vector<BenchResult>> bench_gate(const CommonOptions&, Executor&) {
     const Machine& machine = (*loaded)->machine;
     const auto sharp = level_ground(0.001F);
     if (!sharp) return sharp.error();
-    // As far as is allowed: every question is asked once more, of wider regions.
+    // With the largest allowed drift the gate checks wider regions for every query.
     const auto drifted = level_ground(1e-4F * static_cast<float>(machine.limits.drift_tenth_mm));
     if (!drifted) return drifted.error();
     Asking asking(machine, **sharp);

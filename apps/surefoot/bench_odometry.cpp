@@ -15,9 +15,9 @@ namespace surefoot::app {
 namespace {
 
 constexpr int kFrames = 70;
-constexpr int kSkipped = 15;  ///< the IMU starts within a second, the trolley stands for some time
+constexpr int kSkipped = 15;  ///< frames at the start: IMU initialisation, trolley at rest
 
-/// Lenses as EuRoC has them, on the simulator's machine.
+/// The simulator's ZED rig with the wider lenses of the EuRoC data set.
 Result<camera::StereoRig> wide_rig() {
     auto rig = sim::rig_preset("zed_vga");
     if (!rig) return rig.error();

@@ -18,13 +18,13 @@ namespace surefoot::app {
 namespace {
 
 constexpr int kCorridors = 50;
-constexpr int kKeyframes = 10;    ///< of each corridor, together as many as a place may hold
-constexpr int kQueries = 5;       ///< of each corridor that is gone through again, or anew
-constexpr int kGoneThrough = 12;  ///< corridors
+constexpr int kKeyframes = 10;    ///< per corridor; together they fill the database
+constexpr int kQueries = 5;       ///< per corridor that is queried
+constexpr int kGoneThrough = 12;  ///< corridors that are queried, of either kind
 constexpr double kApart_m = 100.0;
 static_assert(kCorridors * kKeyframes == places::kMostKeyframes);
 
-/// What is looked at: the rectified left image and its depth, and where that was in the scene.
+/// An observation: the rectified images, the depth, and the true pose in the scene.
 struct Look {
     camera::RectifiedPair images;
     DepthImage depth;
@@ -35,7 +35,8 @@ struct Look {
     }
 };
 
-/// Corridors that differ in textures and centimetres, seen by the fitted ZED.
+/// Simulated corridors, seen by a camera with the noise profile of the ZED. They differ in their
+/// textures and by centimetres in their dimensions.
 class Corridors {
   public:
     Corridors(const Settings& settings, Executor& executor)
@@ -43,7 +44,8 @@ class Corridors {
           executor_(executor),
           matcher_(stereo::make_matcher(settings.pipeline.stereo)) {}
 
-    /// `count` looks along the way of one, after the first, which stands.
+    /// `count` observations along the path through one corridor. The first frame, at rest, is left
+    /// out.
     [[nodiscard]] Result<std::vector<Look>> look(std::uint64_t seed, double rate_hz, int count) {
         sim::SceneOptions scene = settings_.sim;
         scene.scene = "corridor";
@@ -71,7 +73,7 @@ class Corridors {
         }
         return looks;
     }
-    /// Of the last look.
+    /// The rig of the last call of `look`.
     [[nodiscard]] const camera::RectifiedRig& rig() const noexcept { return rig_; }
 
   private:
@@ -85,7 +87,7 @@ places::View view_of(const Look& look, const camera::RectifiedRig& rig) {
     return {0, rig, places::describe({}, look.images.left.view(), look.depth)};
 }
 
-/// As many keyframes as a place may hold, each corridor far from the others.
+/// Fills the place database to its limit; the corridors lie far from each other.
 Result<places::PlaceMemory> remember(Corridors& corridors, std::uint64_t first_seed) {
     constexpr double kRate_hz = 1.0;
     places::PlaceMemory memory;
@@ -108,7 +110,7 @@ struct Queries {
     int recognised = 0;
 };
 
-/// Description included.
+/// Times one query, including the description of its image.
 void ask(const places::PlaceMemory& memory,
          const Look& look,
          const camera::RectifiedRig& rig,
@@ -125,7 +127,7 @@ void ask(const places::PlaceMemory& memory,
 }  // namespace
 
 Result<std::vector<BenchResult>> bench_places(const CommonOptions& common, Executor& executor) {
-    constexpr double kRate_hz = 0.7;  // looks between the keyframes, with other noise
+    constexpr double kRate_hz = 0.7;  // queries lie between keyframes and have other noise
     const auto settings = load_settings(common);
     if (!settings) return settings.error();
     Corridors corridors(*settings, executor);

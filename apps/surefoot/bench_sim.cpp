@@ -15,11 +15,11 @@
 namespace surefoot::app {
 namespace {
 
-/// A camera slower than both stands: it is rendered once for all instants of an exposure, so that
-/// its frames would tell nothing about blur.
+/// A camera slower than both limits counts as at rest. The simulator renders its frames once for
+/// the whole exposure, so they would not show the cost of blur.
 constexpr double kMoving_m_s = 0.02;
 constexpr double kTurning_rad_s = 0.02;
-/// Frames all along the way: the scenes drive, turn and stand, each for some seconds.
+/// Low, so that few frames cover the whole path, with its driving, turning and standing.
 constexpr double kRate_hz = 2.0;
 
 using Choose = std::function<void(sim::SceneOptions&)>;
@@ -30,7 +30,7 @@ bool moves(const sim::Motion& motion, double time_s) {
            state.angular_velocity_body_rad_s.norm() > kTurning_rad_s;
 }
 
-/// Frames of a scene as the simulator makes them, of those during which the camera moves.
+/// Times how long the simulator needs for a frame; only frames with a moving camera count.
 Result<Timing> time_frames(const SourceRequest& request, Executor& executor) {
     const auto script = sim::make_scene(request.source, request.seed);
     if (!script) return script.error();
@@ -44,7 +44,7 @@ Result<Timing> time_frames(const SourceRequest& request, Executor& executor) {
         const auto frame = (*source)->next();
         if (!frame) return frame.error();
         if (!*frame) break;
-        // The first one warms up.
+        // The first frame is the warm-up.
         if (i == 0 || !moves(*script->motion, i / kRate_hz)) continue;
         cpu_ms.push_back(1e-6 * static_cast<double>(cpu_now_ns() - cpu_ns));
         wall_ms.push_back(1e-6 * static_cast<double>(steady_now_ns() - wall_ns));
@@ -55,8 +55,8 @@ Result<Timing> time_frames(const SourceRequest& request, Executor& executor) {
     return Timing{wall.median, wall.p99, least_ms, percentiles(std::move(cpu_ms)).median};
 }
 
-/// What turns images into depth and motion, and is not needed where frames bring both.
-/// All figures are processor time.
+/// Times rectification, odometry and stereo matching. A source that delivers depth and motion
+/// (sim.sensor = analytic) does not need them. All figures are processor time.
 Result<Timing> time_front_end(const SourceRequest& request,
                               const Settings& settings,
                               Executor& executor) {
@@ -113,7 +113,7 @@ Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common, Executor
             if (!timing) return timing.error();
             results.push_back({fmt::format("sim/{}/{}", scene, name), *timing});
         }
-        // Odometry needs neighbours: at the rate of the chain, from the start on.
+        // Odometry needs consecutive frames, so use the scene's own rate, from the first frame on.
         constexpr int kChainFrames = 40;
         const auto timing = time_front_end(
             {scene, "", 0.0, kChainFrames, common.seed, settings->sim}, *settings, executor);

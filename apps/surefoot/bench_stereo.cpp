@@ -30,7 +30,7 @@ struct Work {
     }
 };
 
-/// The demonstration as the simulated ZED sees it, noise and all.
+/// Renders one noisy pair of the demonstration scene and rectifies it.
 Status see(const CommonOptions& common, const Settings& settings, Executor& executor, Work& work) {
     SourceRequest request{"demo_stairs", work.rig, 0.0, 1, common.seed, settings.sim};
     auto source = open_simulation(request, executor);
@@ -72,7 +72,7 @@ BenchResult time_match(const Work& work,
     return {fmt::format("stereo/{}_{}", what, work.name()), timing};
 }
 
-/// OpenCV's three-way mode with its own left-right check, uniqueness and speckle filter.
+/// Times OpenCV's SGBM in three-way mode with its left-right check, uniqueness and speckle filter.
 Timing opencv(const Work& work, const Settings& settings) {
     const auto image = [](const GreyImage& grey) {
         return cv::Mat(
@@ -96,8 +96,8 @@ Timing opencv(const Work& work, const Settings& settings) {
     });
 }
 
-/// Two matchers, each on a thread of its own: half of their time is what one pair costs if threads
-/// get in each other's way by nothing but memory and clock.
+/// Times two matchers that run on two threads without shared data. Half of that time is the lower
+/// bound for one pair on two threads: only memory bandwidth and clock frequency are shared.
 BenchResult time_two_copies(const Work& work, const Settings& settings) {
     const auto first = stereo::make_census_matcher(config_of(work, settings));
     const auto second = stereo::make_census_matcher(config_of(work, settings));
@@ -139,7 +139,7 @@ Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common, Execu
             results.push_back(time_match(work, *settings, "match_one_thread", serial));
             results.push_back(time_two_copies(work, *settings));
         }
-        // Last: its threads keep a processor busy for a while after their work.
+        // OpenCV comes last, because its threads keep spinning for a while after their work.
         results[match].peer = opencv(work, *settings);
     }
     return results;

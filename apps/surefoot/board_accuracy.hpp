@@ -12,28 +12,31 @@
 
 namespace surefoot::app {
 
-/// What the thesis measured with a bought camera (Table 4.1: flat textured board).
+/// Depth accuracy that the reference thesis (Lange 2016, Table 4.1) measured with a commercial
+/// camera on a flat textured board.
 struct ThesisAccuracy {
     const char* camera;
     double distance_m;
-    double axial_m;  ///< absolute
+    double axial_m;  ///< absolute error along the optical axis
     double std_m;
 };
 [[nodiscard]] const std::vector<ThesisAccuracy>& thesis_accuracy();
-/// "ZED", "DUO", or nothing where the thesis has no such camera.
+/// "ZED" or "DUO"; nullopt if the reference thesis did not measure the camera of this rig.
 [[nodiscard]] std::optional<std::string> thesis_camera(const std::string& rig_name);
 
-/// How far off a rig is at one distance.
+/// Depth accuracy of a rig at one distance of the board.
 struct DistanceAccuracy {
     double distance_m = 0.0;
-    int looks = 0;                            ///< pairs of images
-    std::optional<eval::BoardErrors> errors;  ///< nothing where no board was found in the depth
-    double density_percent = 0.0;             ///< of the board's pixels that gave a trusted depth
-    std::optional<ThesisAccuracy> thesis;     ///< of the same camera at the same distance
+    int looks = 0;                            ///< number of image pairs
+    std::optional<eval::BoardErrors> errors;  ///< nullopt if the depth image shows no board
+    double density_percent = 0.0;             ///< share of the board's pixels with trusted depth
+    std::optional<ThesisAccuracy> thesis;     ///< same camera, same distance
 };
 
-/// From rendered boards, or from the images of `options.pairs_file` (lines LEFT RIGHT DISTANCE_M;
-/// '#' begins a comment; paths are relative to the file). Ascending distances.
+/// Measures depth accuracy on rendered boards, or on the images that `options.pairs_file` lists.
+///
+/// Each line of that file is LEFT RIGHT DISTANCE_M; '#' begins a comment; paths are relative to
+/// the file. The rows come in order of ascending distance.
 [[nodiscard]] Result<std::vector<DistanceAccuracy>> measure_accuracy(
     const DepthAccuracyOptions& options,
     const Settings& settings,

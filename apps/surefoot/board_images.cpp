@@ -16,7 +16,7 @@ namespace {
 
 using Use = std::function<void(BoardImages)>;
 
-/// Files of one moment; `right` is empty for one camera and for side-by-side images.
+/// Image files taken at the same time; `right` is empty for one camera and for side-by-side images.
 struct Entry {
     std::string name;
     std::string left;
@@ -31,7 +31,8 @@ bool begins_with(const std::string& name, const std::string& word) {
     return name.starts_with(word);
 }
 
-/// Names of `left` with the partner that has the same rest after the word; the others are noted.
+/// Pairs each file of `left` with the file of `right` whose name is equal after the word
+/// `left_word` or `right_word`. Files without a partner are left out with a note.
 std::vector<Entry> paired(const std::string& left_folder,
                           const std::vector<std::string>& left,
                           const std::string& left_word,
@@ -55,7 +56,7 @@ std::vector<Entry> paired(const std::string& left_folder,
     return entries;
 }
 
-/// Two folders of a pair inside `folder`, where there are.
+/// The folders of the left and right images inside `folder`; nullopt if there are none.
 std::optional<std::pair<std::string, std::string>> eye_folders(const std::string& folder) {
     constexpr const char* kPairs[][2] = {
         {"left", "right"}, {"cam0/data", "cam1/data"}, {"cam0", "cam1"}, {"image_0", "image_1"}};
@@ -114,7 +115,7 @@ Result<std::vector<Entry>> mono_entries(const std::string& folder, const std::st
     return entries;
 }
 
-/// Cuts side-by-side images in two.
+/// Splits a side-by-side image into left and right.
 Status split(BoardImages& images) {
     const GreyImage both = std::move(images.left);
     if (both.width() < 2 || both.width() % 2 != 0) {

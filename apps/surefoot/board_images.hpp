@@ -10,25 +10,30 @@
 
 namespace surefoot::app {
 
-/// One moment of a calibration recording.
+/// Images of a calibration recording that were taken at the same time.
 struct BoardImages {
     std::string name;  ///< of the file or frame
-    GreyImage left;    ///< or the only one
+    GreyImage left;    ///< or the image of the only camera
     GreyImage right;   ///< empty for one camera
 };
 
-/// What is worth knowing about a source beyond its images.
+/// Remarks about a source of board images.
 struct BoardSource {
-    std::vector<std::string> notes;  ///< sentences: files left out
+    std::vector<std::string> notes;  ///< sentences, for example about files that were left out
 };
 
-/// A video has far more frames than views are needed.
+/// Number of views that is enough for a calibration. Of a video every n-th frame is used, where n
+/// is its frame count divided by this number, rounded down. A live session ends after this many
+/// images by default.
 inline constexpr int kMostVideoViews = 60;
 
-/// Opens `source` and gives its images to `use` in natural order.
-/// One camera: the images of a folder, or a video; where names begin with "left" and "right" the
-/// ones of `eye`. Two cameras: a folder with left* and right* of equal rest, folders left and right
-/// (or cam0 and cam1, image_0 and image_1) with equal names, else side-by-side images or a video.
+/// Opens `source` and passes its images to `use`, in natural order of the file names.
+///
+/// One camera: a folder of images, or a video. If file names begin with "left" and "right", `eye`
+/// ("left" or "right") selects the camera.
+/// Two cameras: a folder with pairs left* and right* whose names are otherwise equal; or folders
+/// left and right (or cam0 and cam1, image_0 and image_1) with equal file names; or a folder of
+/// side-by-side images; or a side-by-side video.
 [[nodiscard]] Result<BoardSource> for_board_images(const std::string& source,
                                                    bool stereo,
                                                    const std::string& eye,

@@ -17,7 +17,7 @@ namespace {
 
 using io::testing::TemporaryFolder;
 
-constexpr int kWidth = 32;  // of one eye
+constexpr int kWidth = 32;  // of one image
 constexpr int kHeight = 24;
 constexpr int kJpegError = 6;  // grey values
 
@@ -44,7 +44,7 @@ void write_grey(const std::string& path, int grey, int width = kWidth) {
     ASSERT_TRUE(io::write_png(path, image)) << path;
 }
 
-/// Frame i: the left half all of grey 2 i, the right half of grey 200.
+/// In frame i all pixels of the left half have grey 2 i, those of the right half grey 200.
 void write_video(const std::string& path, int frames, int width = 2 * kWidth) {
     const int code = cv::VideoWriter::fourcc('M', 'J', 'P', 'G');
     cv::VideoWriter writer(path, code, 5.0, cv::Size(width, kHeight), true);
@@ -107,8 +107,8 @@ TEST(BoardImages, OfAFolderForEachEye) {
 TEST(BoardImages, SideBySideAreCutInTwo) {
     const TemporaryFolder folder;
     GreyImage both(2 * kWidth, kHeight, 5);
-    both.at(kWidth - 1, 2) = 6;  // the last column of the left eye
-    both.at(kWidth, 2) = 7;      // the first of the right one
+    both.at(kWidth - 1, 2) = 6;  // last column of the left image
+    both.at(kWidth, 2) = 7;      // first column of the right image
     ASSERT_TRUE(io::write_png(folder / "a.png", both));
     const Given all = given(folder.path(), true);
     ASSERT_EQ(all.images.size(), 1U) << all.error;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Do the parts of the body in machines/rex.yaml hold what the simulated REX does?
+// The body parts in machines/rex.yaml must contain every link of the simulated REX in all
+// movements.
 #include <gtest/gtest.h>
 
 #include "surefoot/io/settings/machine_file.hpp"
@@ -11,7 +12,7 @@ namespace {
 TEST(BodyParts, of_the_rex_hold_every_link_at_every_moment_of_every_movement) {
     const auto file = io::read_machine("machines/rex.yaml");
     ASSERT_TRUE(file.ok()) << file.error().message;
-    // The gait draws its shift and sway anew for every seed; these are not those of the file.
+    // The gait draws shift and sway from its seed, so the test uses other values than the file.
     const auto traced = sim::trace_body(sim::rex_movements({}), {}, 101, 3);
     ASSERT_TRUE(traced.ok()) << traced.error().message;
     ASSERT_EQ(static_cast<std::size_t>(file->machine.body.count), traced->size());

@@ -22,14 +22,14 @@ namespace surefoot::app {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-/// A direction that is known no better than this is worth a word (one sigma).
+/// If the standard deviation of a viewing direction exceeds this, the user gets an explanation.
 constexpr double kMostWorst_px = 1.0;
 
 std::string found_words(const calibration::BoardView& view, const std::string& problem) {
     return problem.empty() ? fmt::format("{} points", view.ids.size()) : problem;
 }
 
-/// Looks for the board in the images of one moment and remembers what was found.
+/// Detects the board in images taken at the same time and adds the view to `run`.
 void look(const BoardImages& images, bool stereo, CalibrationRun& run) {
     FoundView found;
     found.name = images.name;
@@ -54,7 +54,7 @@ void look(const BoardImages& images, bool stereo, CalibrationRun& run) {
     run.views.push_back(std::move(found));
 }
 
-/// Why an image cannot belong to this calibration; the first image sets the size.
+/// Why an image does not fit this calibration. The first image sets the size.
 std::string size_problem(const BoardImages& images, bool stereo, calibration::ImageSize& size) {
     if (size.width == 0) size = {images.left.width(), images.left.height()};
     const auto differs = [&](const GreyImage& image) {
@@ -70,7 +70,7 @@ std::string size_problem(const BoardImages& images, bool stereo, calibration::Im
                        size.height);
 }
 
-/// Images of a live camera, with what is still missing after each of them.
+/// Takes images of a live camera and logs after each of them which views are still missing.
 Result<BoardSource> show_live(const CalibrateOptions& options,
                               const CalibrationRun& run,
                               const std::function<void(BoardImages)>& use) {
@@ -123,7 +123,7 @@ Status find_boards(const CalibrateOptions& options, CalibrationRun& run) {
     return {};
 }
 
-/// A board that no image shows is mostly one that was described wrongly.
+/// An error if no image shows the board. The most frequent cause is a wrong --board.
 Status check_found(const CalibrationRun& run) {
     const bool found = std::any_of(run.views.begin(), run.views.end(), [](const FoundView& view) {
         return !view.left.ids.empty() || !view.right.ids.empty();
@@ -141,8 +141,7 @@ Status check_found(const CalibrationRun& run) {
                     run.board.kind == calibration::BoardKind::charuco ? "in focus" : "whole"));
 }
 
-/// Another lens model that explains the boards of one of the cameras far better, in words; empty
-/// where none does.
+/// Advice to use another lens model, if one fits the views of a camera far better; else empty.
 std::string lens_advice(calibration::LensKind kind, const CalibrationRun& run) {
     for (int camera = 0; camera < run.cameras(); ++camera) {
         std::vector<calibration::BoardView> views;
@@ -154,7 +153,7 @@ std::string lens_advice(calibration::LensKind kind, const CalibrationRun& run) {
     return {};
 }
 
-/// A calibration that failed, with the lens model to try where that is the reason.
+/// The error of a failed calibration, replaced by lens advice if there is any.
 Status with_advice(const Error& error, calibration::LensKind kind, const CalibrationRun& run) {
     if (error.message.find("--model") != std::string::npos) return error;
     const std::string advice = lens_advice(kind, run);
@@ -170,7 +169,7 @@ Status solve(calibration::LensKind kind, CalibrationRun& run) {
     }
     if (run.cameras() == 1) {
         auto mono = calibration::calibrate_mono(run.board, left, run.size, kind);
-        if (!mono) return mono.error();  // it has looked for another lens model itself
+        if (!mono) return mono.error();  // contains the lens advice already
         run.mono = std::move(*mono);
     } else {
         auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);
@@ -181,7 +180,7 @@ Status solve(calibration::LensKind kind, CalibrationRun& run) {
     return {};
 }
 
-/// The guidance goes to stderr even where the calibration then fails: it says what to do.
+/// Logs notes and advice before solving, so that the user also sees them if the calibration fails.
 void advise(const CalibrationRun& run) {
     for (const std::string& note : run.notes) log_warning(note);
     for (int camera = 0; camera < run.cameras(); ++camera) {
@@ -206,7 +205,7 @@ std::string depth_words(const calibration::DepthError& error) {
     return fmt::format("{:.2f} mm at {:g} m;", kMillimetres * error.sigma_m, error.distance_m);
 }
 
-/// Whether the worst known place of the image matters, and what to do.
+/// Explains a large uncertainty in a part of the image; empty if it is small everywhere.
 std::string worst_words(const calibration::MappingSigmas& mapping) {
     if (!(mapping.largest_px > kMostWorst_px)) return "";
     return ": a corner that no board came near; it matters only if you use the image there (then "
@@ -290,7 +289,7 @@ int calibrate(const CalibrateOptions& options) {
     if (const Status status = check_found(run); !status) return report(status.error());
     advise(run);
     if (const Status status = solve(chosen, run); !status) return report(status.error());
-    // A calibration that does not fit on the disk is printed all the same.
+    // Print the result even if it cannot be written.
     const Status written = write_results(options, run);
     if (options.common.json) {
         print_answer(calibration_json(run));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From pictures of a board to the lens: the truth lies within three sigma, measured in the image,
-// because coefficients can stand in for each other.
+// Calibration of a lens from rendered images of a board. The true lens must lie within three sigma.
+// The error is measured in the image, because different coefficients can describe the same mapping.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,13 +15,14 @@ constexpr int kViews = 10;
 constexpr std::uint64_t kPoseSeed = 21;
 constexpr std::uint64_t kNoiseSeed = 1;
 
-/// Squared errors of eight or nine parameters in their own covariance: 99.9 % of chi square lie
-/// between. Nearer than pixels can be asked, whose errors go together so that few of them count
-/// (their mean of 2 may be as low as 0.016): a sigma three times too large fails, or one half as
-/// large as it should be.
+/// Bounds for the squared Mahalanobis distance of eight or nine parameters; 99.9 % of the
+/// chi-square distribution lies between them. A sigma three times too large fails this test, and so
+/// does one half as large as it should be. A test of pixel errors is weaker: they are correlated,
+/// so few of them are independent, and their mean square (expected value 2) may be as low as 0.016.
 constexpr double kLeastChiSquare = 0.71;
 constexpr double kMostChiSquare = 29.7;
-/// Of the rational lens, whose coefficients stand in for each other, only the pixels are asked.
+/// The rational lens is tested by pixel errors only, because its coefficients can compensate each
+/// other.
 constexpr double kLeastMeanSquare = 0.016;
 
 using calibration::LensKind;
@@ -34,7 +35,7 @@ constexpr const char* kCharuco = "charuco:8x5:0.03:0.022";
 struct Case {
     const char* board;
     LensKind lens;
-    int scale = 1;  ///< markers of ChArUco boards are read from 640 x 480 px on
+    int scale = 1;  ///< of the image; ChArUco markers are detected from 640 x 480 px on
 };
 
 class CalibrateRendered : public ::testing::TestWithParam<Case> {};
@@ -92,8 +93,8 @@ TEST_P(CalibrateRendered, TheLensIsTrueWithinThreeSigmaAllOverTheImage) {
     EXPECT_LT(chi_square, kMostChiSquare) << "sigma is too small";
 }
 
-/// Mean of moments of a board that moves by `motion_m` while the shutter is open, and is at
-/// `T_camera_board` in the middle of it.
+/// Image of a board that moves by `motion_m` while the shutter is open and is at `T_camera_board`
+/// in the middle of the exposure. It is the mean of images rendered at equal intervals.
 GreyImage moving_board(const calibration::Board& board,
                        const camera::Camera& camera,
                        const Pose& T_camera_board,
@@ -123,7 +124,7 @@ GreyImage moving_board(const calibration::Board& board,
     return image;
 }
 
-/// Two of ten boards move by so many pixels while the shutter is open.
+/// Two of ten boards move by this many pixels while the shutter is open.
 class CalibrateMoving : public ::testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Pixels, CalibrateMoving, ::testing::Values(5, 10, 14, 20));
 
@@ -178,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses,
                              return calibration::kLensKindNames[static_cast<int>(now.param)];
                          });
 
-/// The squares of the fisheye's boards are down to 4 px small: no good pair may leave for that.
+/// Board squares are as small as 4 px in the fisheye images. No good pair may be rejected for that.
 TEST_P(CalibrateRenderedRig, TheRightEyeIsWhereItIsSaidWithinThreeSigma) {
     const calibration::Board board = calibration::parse_board(kChessboard).value();
     const camera::StereoRig truth = testing::rig_of(GetParam());

@@ -8,7 +8,7 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written: the same run gives the same bytes.
+// Keys keep the order in which they are written, so the same run gives the same bytes.
 using Json = nlohmann::ordered_json;
 
 Json eye_json(const CalibratedEye& eye, calibration::LensKind kind) {
@@ -52,8 +52,8 @@ void add_stereo(const calibration::StereoCalibration& stereo, Json& json) {
     json["rotation_rad"] = log_so3(stereo.rig.T_left_right.rotation).norm();
     Json depth = Json::array();
     for (const calibration::DepthError& error : stereo.depth_errors)
-        depth.push_back(
-            {{"distance_m", error.distance_m}, {"sigma_m", error.sigma_m}});  // NaN: null
+        depth.push_back({{"distance_m", error.distance_m},
+                         {"sigma_m", error.sigma_m}});  // NaN is written as null
     json["depth_errors"] = depth;
 }
 

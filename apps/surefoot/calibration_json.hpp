@@ -7,9 +7,9 @@
 
 namespace surefoot::app {
 
-/// The result of `calibrate` for stdout: rms, cameras with sigmas, rejected views, advice.
+/// The result of `calibrate` as JSON for stdout: rms, cameras with sigmas, rejected views, advice.
 [[nodiscard]] std::string calibration_json(const CalibrationRun& run);
-/// views.json: every point of every view, for other tools.
+/// Content of views.json: every board point of every view, for other tools.
 [[nodiscard]] std::string views_json(const CalibrationRun& run);
 
 }  // namespace surefoot::app

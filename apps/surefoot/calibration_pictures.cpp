@@ -18,10 +18,10 @@ namespace {
 using eval::PointPx;
 namespace palette = eval::palette;
 
-/// Image planes are drawn about this wide.
+/// Approximate width of a drawn image plane.
 constexpr double kWidth_px = 900.0;
 
-/// A white sheet for the image plane of a camera, and how many of its pixels are one of the image.
+/// Empty drawing of a camera's image plane. `scale`: pixels of the drawing per pixel of the image.
 struct Plane {
     eval::Figure figure;
     double scale = 1.0;
@@ -55,7 +55,7 @@ void stripe(const calibration::Coverage& coverage, eval::Figure& figure) {
     }
 }
 
-/// Views that the result rests on, by index.
+/// For each view, whether the result uses it.
 std::vector<bool> used_views(const CalibrationRun& run) {
     std::vector<bool> used(run.views.size(), true);
     for (const calibration::RejectedView& rejected : rejected_views(run))
@@ -139,8 +139,8 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
     for (std::size_t i = 0; i < coverage.views.size(); ++i) {
         const calibration::ViewShape& view = coverage.views[i];
         if (view.spacing_px <= 0.0) continue;
-        constexpr double kDirection_deg[] = {180.0, 0.0, 270.0, 90.0};  // of NearSide, clockwise
-        // Fanned out, so that views of one side do not hide each other.
+        constexpr double kDirection_deg[] = {180.0, 0.0, 270.0, 90.0};  // by NearSide, clockwise
+        // Spread the dots of one side, so that they do not hide each other.
         const double fan_deg = 9.0 * (static_cast<double>(i % 7) - 3.0);
         const double angle_rad =
             (kDirection_deg[static_cast<std::size_t>(view.near_side)] + fan_deg) *
@@ -163,7 +163,7 @@ eval::Picture residual_picture(const CalibrationRun& run, const CalibratedEye& e
     }
     std::sort(lengths_px.begin(), lengths_px.end());
     const double usual_px = lengths_px.empty() ? 1.0 : eval::percentile_of_sorted(lengths_px, 0.95);
-    constexpr double kShown_px = 20.0;  // length of that residual in the picture
+    constexpr double kShown_px = 20.0;  // drawn length of the 95th percentile
     const double enlarged = kShown_px / std::max(usual_px, 1e-6);
     const bool right = std::string(eye.name) == "right";
     Plane plane = plane_of(

@@ -6,17 +6,17 @@
 
 namespace surefoot::app {
 
-/// Where in the image the points of all views lay: used, and left out; parts of the image that no
-/// point reached are striped.
+/// Draws the board points of all views in the image plane, used points and left-out points in
+/// different colours. Stripes mark parts of the image without any point.
 [[nodiscard]] eval::Picture coverage_picture(const CalibrationRun& run, int camera);
-/// By how much the board was tilted in each view and which of its sides came nearer; sides that no
-/// view tilted enough are striped.
+/// Draws how far the board was tilted in each view and which of its sides was nearer. Stripes mark
+/// sides for which no view is tilted enough.
 [[nodiscard]] eval::Picture tilt_picture(const CalibrationRun& run, int camera);
-/// Measured minus predicted place of every point used, enlarged so that the 95th percentile is
-/// clearly visible.
+/// Draws the residual (measured minus predicted pixel) of every point used, enlarged so that the
+/// 95th percentile is clearly visible.
 [[nodiscard]] eval::Picture residual_picture(const CalibrationRun& run, const CalibratedEye& eye);
-/// The sample pair rectified by the result, side by side, with lines along which both eyes must
-/// show the same things; empty for one camera.
+/// Draws the sample pair, rectified by the result, side by side. Corresponding points must lie on
+/// the same horizontal line. Empty for one camera.
 [[nodiscard]] eval::Picture epipolar_picture(const CalibrationRun& run);
 
 }  // namespace surefoot::app

@@ -7,8 +7,8 @@
 
 namespace surefoot::app {
 
-/// One self-contained page: where the board was seen, residuals, a rectified pair, the cameras with
-/// their uncertainty and what that means for depth, and every view that was left out, with why.
+/// One self-contained HTML page: board coverage, residuals, a rectified pair, the cameras with
+/// their uncertainty and its effect on depth, and every rejected view with the reason.
 [[nodiscard]] std::string calibration_html(const CalibrationRun& run);
 
 }  // namespace surefoot::app

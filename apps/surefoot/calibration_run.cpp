@@ -9,7 +9,7 @@
 namespace surefoot::app {
 namespace {
 
-/// What the covariance of the eye's parameters says of each and of all together.
+/// Sets the uncertainty of each parameter and of the whole mapping from the covariance.
 void add_uncertainty(const Eigen::MatrixXd& covariance,
                      calibration::LensKind kind,
                      CalibratedEye& eye) {
@@ -18,7 +18,7 @@ void add_uncertainty(const Eigen::MatrixXd& covariance,
         kind, eye.parameters, covariance, {eye.camera.width, eye.camera.height});
 }
 
-/// In the order of calibration::parameter_names.
+/// Parameters in the order of calibration::parameter_names.
 Eigen::VectorXd parameters_of(const camera::PinholeRadTan& k, calibration::LensKind kind) {
     Eigen::VectorXd all(9);
     all << k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.k1, k.k2, k.p1, k.p2, k.k3;

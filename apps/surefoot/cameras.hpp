@@ -8,7 +8,7 @@
 
 namespace surefoot::app {
 
-/// What a live camera says of itself.
+/// Properties that a live camera reports.
 struct CameraView {
     std::string device;
     std::string card;
@@ -18,13 +18,13 @@ struct CameraView {
 };
 [[nodiscard]] Result<CameraView> camera_view(const std::string& device);
 
-/// A video node of this machine: what it is called, or why it cannot be used.
+/// A video device node of this computer.
 struct CameraNode {
     std::string device;
     std::string card;
-    std::string problem;  ///< empty = it can be opened and delivers video
+    std::string problem;  ///< why it cannot be used; empty = it opens and delivers video
 };
-/// /dev/video*, in natural order.
+/// All nodes /dev/video*, in natural order.
 [[nodiscard]] std::vector<CameraNode> camera_nodes();
 
 }  // namespace surefoot::app

@@ -19,24 +19,26 @@ namespace surefoot::app {
                                      double size_m,
                                      const std::string& file);
 
-/// What a filter left of a cloud.
+/// Result of filtering a point cloud.
 struct KeptPoints {
     std::int64_t points = 0;
     std::int64_t kept = 0;
-    std::int64_t skipped = 0;  ///< that were not finite
+    std::int64_t skipped = 0;  ///< points that were not finite
+    /// Origin that was subtracted from the coordinates during the computation.
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-    std::vector<std::string> notes;  ///< what the output does not hold of the input
+    std::vector<std::string> notes;  ///< data of the input that the output lacks
 };
 [[nodiscard]] std::string sor_json(const KeptPoints& result,
                                    int others,
                                    const eval::OutlierFilter& filter,
                                    const std::string& file);
 
-/// `shift_m`: where coordinates were counted from in between; the matrix is of whole ones.
+/// `shift_m`: origin that was subtracted from the coordinates during the computation. The matrix
+/// of `found` must apply to the original coordinates.
 [[nodiscard]] std::string icp_json(const geometry::CloudAlignment& found,
                                    const Eigen::Vector3d& shift_m);
 
-/// What two clouds differ by; the last three of M3C2 alone.
+/// Distances between two clouds. Only the method M3C2 sets the last three members.
 struct CloudComparison {
     std::string method;
     eval::DistanceFigures figures;
@@ -48,15 +50,16 @@ struct CloudComparison {
 };
 [[nodiscard]] std::string clouds_json(const CloudComparison& comparison);
 
-/// Levels, stairs and, where it was asked for, the width of a door; null where none was found.
+/// Levels, stairs and the width of a door. `door_width_m`: outer nullopt = not requested, no key;
+/// inner nullopt = requested but not found, written as null.
 [[nodiscard]] std::string measure_json(const eval::HeightHistogram& heights,
                                        const eval::StairMeasures& stairs,
                                        const std::optional<std::optional<double>>& door_width_m,
                                        const Eigen::Vector3d& shift_m);
 
-/// Says what an output does not hold of a cloud.
+/// Logs a warning for each note about data of `cloud` that the output lacks.
 void tell_notes(const std::string& cloud, const std::vector<std::string>& notes);
-/// Says where coordinates were counted from, if it was not zero.
+/// Logs the origin that was subtracted from the coordinates, unless it is zero.
 void tell_shift(const Eigen::Vector3d& shift_m);
 
 }  // namespace surefoot::app

@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 
-/// The middle part of the values, from 0 on or as far to both sides.
+/// Range of values to draw: from 0, or symmetric about 0 if the distances are signed. It holds 98 %
+/// of the values.
 eval::ValueRange shown(const PlacedDistances& placed) {
     std::vector<float> sizes_m;
     for (const float d_m : placed.distances_m) {
@@ -38,7 +39,7 @@ eval::ValueRange shown(const PlacedDistances& placed) {
     return {placed.is_signed ? -high_m : 0.0, high_m};
 }
 
-/// Cells that hold some five points each, so that a picture has few holes and still shows edges.
+/// Grid whose cells hold about five points each, so that a picture has few holes but sharp edges.
 Result<eval::DemGrid> grid_of(const std::vector<Eigen::Vector3d>& points_m) {
     eval::CloudBounds bounds;
     bounds.add(points_m);
@@ -59,7 +60,7 @@ Result<eval::DemGrid> grid_of(const std::vector<Eigen::Vector3d>& points_m) {
 Status write_from_above(const std::string& path,
                         const PlacedDistances& placed,
                         const eval::ValueRange& range) {
-    std::vector<Eigen::Vector3d> at_m;  // the distance instead of the height
+    std::vector<Eigen::Vector3d> at_m;  // z is the distance instead of the height
     for (std::size_t i = 0; i < placed.points_m.size(); ++i) {
         if (std::isnan(placed.distances_m[i])) continue;
         at_m.emplace_back(static_cast<double>(placed.points_m[i].x()),
@@ -162,7 +163,8 @@ std::string heights_svg(const eval::HeightHistogram& heights,
                         const std::string& title) {
     eval::LinePlot plot;
     plot.title = fmt::format("{}: {} levels", title, heights.levels.size());
-    plot.x_label = fmt::format("height above {:.3f} m [m]", heights.low_m);  // axes begin at zero
+    plot.x_label = fmt::format("height above {:.3f} m [m]",
+                               heights.low_m);  // the axis of a plot begins at zero
     plot.y_label = fmt::format("share of the level points in {:g} mm [%]", 1e3 * heights.bin_m);
     eval::LinePlot::Line line;
     for (std::size_t i = 0; i < heights.counts.size(); ++i) {

@@ -11,22 +11,24 @@
 
 namespace surefoot::app {
 
-/// Distances at places, and what to call them.
+/// Distances at points of a cloud, with the titles of their pictures. Both spans have equal length.
 struct PlacedDistances {
     std::span<const Eigen::Vector3f> points_m;
-    std::span<const float> distances_m;  ///< NaN = none
+    std::span<const float> distances_m;  ///< NaN = this point has no distance
     bool is_signed = false;
     std::string title;
     std::string subtitle;
 };
 
-/// Into a folder: distances.png (from above, each cell the mean of its points), histogram.svg, and
-/// distances.ply, the points in the colours of the picture with their distance.
+/// Writes three files into `folder`: distances.png (view from above, each cell shows the mean of
+/// its points), histogram.svg, and distances.ply (the points with their distance, in the colours of
+/// the picture). `shift_m` is added to the points of distances.ply.
 [[nodiscard]] Status write_cloud_pictures(const std::string& folder,
                                           const PlacedDistances& placed,
                                           const Eigen::Vector3d& shift_m);
 
-/// How many level points lie how high, upward from the lowest: an SVG. `points`: all of them.
+/// Draws the histogram of heights above the lowest bin as an SVG. `points`: number of all level
+/// points, which is 100 % of the vertical axis.
 [[nodiscard]] std::string heights_svg(const eval::HeightHistogram& heights,
                                       std::int64_t points,
                                       const std::string& title);

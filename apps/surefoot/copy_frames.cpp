@@ -9,7 +9,7 @@
 namespace surefoot::app {
 namespace {
 
-/// True when there was a frame to copy.
+/// Copies the next frame; false at the end of the source.
 Result<bool> copy_one(camera::FrameSource& source,
                       io::Recorder& recorder,
                       const std::function<Status(const StereoFrame&)>& after_frame) {

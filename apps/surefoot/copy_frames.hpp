@@ -10,22 +10,22 @@
 
 namespace surefoot::app {
 
-/// How far copying got, and why it ended early.
+/// Result of copying: how many frames were copied, and the error that ended the copy early.
 struct Copied {
     int frames = 0;
-    camera::BrokenFrames broken = {};  ///< that the source passed over
-    std::optional<Error> error;  ///< of source, recorder or `after_frame`; or the user's interrupt
+    camera::BrokenFrames broken = {};  ///< frames that the source skipped
+    std::optional<Error> error;  ///< of source, recorder or `after_frame`, or a user interrupt
 };
 
-/// Starts a recording of a source. A source without images is a usage error.
+/// Creates a recording for the frames of `source`. A source without images is a usage error.
 [[nodiscard]] Result<io::Recorder> start_recording(
     const std::string& folder,
     const camera::FrameSource& source,
     io::Recorder::Existing existing = io::Recorder::Existing::refuse);
 
-/// Copies a source into a recording and closes it, frame by frame, with progress under `label`.
-/// What was copied before an error is a valid recording. `after_frame` may write more of each
-/// frame.
+/// Copies all frames of `source` into `recorder`, shows progress under `label`, and closes the
+/// recording. If an error ends the copy, the frames before it form a valid recording. `after_frame`
+/// runs after each copied frame and may write more data.
 [[nodiscard]] Copied copy_frames(const std::string& label,
                                  camera::FrameSource& source,
                                  io::Recorder& recorder,

@@ -22,7 +22,7 @@ eval::Reduce reduce_named(const std::string& name) {
     return name == "min" ? eval::Reduce::min : eval::Reduce::max;
 }
 
-/// Highest, mean or lowest.
+/// Height of each cell by --reduce max, mean or min.
 Result<grid::Layer> heights_of(const DemOptions& options,
                                io::CloudStream& cloud,
                                const eval::DemGrid& grid) {

@@ -24,7 +24,8 @@ Status write_picture(const std::string& path, const eval::Picture& picture) {
     return io::write_file(path, png);
 }
 
-/// Trusted points in the left optical frame, with their grey value and the sigma of their depth.
+/// Points with trusted depth in the left optical frame, with their grey value and the standard
+/// deviation of their depth.
 io::PointCloud cloud_of(const MeasuredPair& measured, const camera::RectifiedRig& rig) {
     Image<Eigen::Vector3f> points_m;
     camera::Reprojector(rig).points(measured.depth.disparity_px.view(), points_m);
@@ -69,7 +70,7 @@ Status write_depth(const MeasuredPair& measured, const std::string& folder) {
     if (measured.rig) {
         writes += io::write_ply(at("cloud.ply"), cloud_of(measured, *measured.rig));
     } else {
-        // What an earlier call left there would belong to other images.
+        // Remove the cloud of an earlier call; it would belong to other images.
         writes += io::remove_file(at("cloud.ply"));
     }
     return writes.first();
@@ -82,7 +83,7 @@ void print_depth(const MeasuredPair& measured, const std::string& folder) {
                measured.depth.disparity_px.height(),
                figures.density_percent,
                figures.trusted_percent);
-    // Of nothing there is no median.
+    // Without matched pixels there is no median.
     if (!std::isnan(figures.median_sigma_px))
         fmt::print("; median sigma {:.3f} px", figures.median_sigma_px);
     fmt::print("\n");

@@ -24,7 +24,7 @@ namespace surefoot::app {
 namespace {
 
 constexpr double kMmPerM = 1000.0;
-/// The thesis measured lengths on a board by one of 50.0 mm.
+/// The reference thesis (Lange 2016) measured a length of 50.0 mm on a board.
 constexpr double kLength_mm = 50.0;
 constexpr std::array kDesignRanges_m = {0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0};
 
@@ -36,7 +36,7 @@ std::string csv_of(const std::vector<std::string>& header, const Rows& rows) {
     return csv;
 }
 
-/// Columns as wide as their widest entry.
+/// Prints a table; each column is as wide as its widest entry.
 void print_table(const std::vector<std::string>& header, const Rows& rows) {
     std::vector<std::size_t> widths;
     for (std::size_t k = 0; k < header.size(); ++k) {
@@ -51,7 +51,7 @@ void print_table(const std::vector<std::string>& header, const Rows& rows) {
     for (const auto& row : rows) print(row);
 }
 
-/// The page with its table and plots, and each of them as a file of its own.
+/// Writes the report page with its table and plots, and also each of them as a separate file.
 Status write_page(const std::string& folder,
                   const std::string& name,
                   eval::ReportContent content,
@@ -113,7 +113,7 @@ eval::ReportTable accuracy_table(const std::vector<DistanceAccuracy>& rows) {
     return table;
 }
 
-/// Ours beside what the thesis measured with each of its cameras.
+/// Plot of our figures beside those that the reference thesis measured with its cameras.
 eval::LinePlot accuracy_plot(const std::string& rig,
                              const std::vector<DistanceAccuracy>& rows,
                              const char* title,

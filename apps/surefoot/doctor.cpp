@@ -20,7 +20,7 @@
 namespace surefoot::app {
 namespace {
 
-/// What the middle column of the rectified camera sees.
+/// Part of the level floor that the middle column of the rectified camera sees.
 FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
     const auto floor_x_m = [&](double row_px) {
         const Eigen::Vector3d ray_camera(0.0, (row_px - rig.cy_px) / rig.fy_px, 1.0);
@@ -32,8 +32,9 @@ FloorView floor_view(const camera::RectifiedRig& rig, double base_height_m) {
     return {floor_x_m(rig.height - 1.0), floor_x_m(0.0)};
 }
 
-/// The least that the matcher claims, on well textured ground: what the depth sigmas below and
-/// those of `depth-accuracy --design` are for. A scene's typical pixel is worse by half.
+/// Smallest standard deviation that the matcher reports, reached on well textured ground. The depth
+/// sigmas below and those of `depth-accuracy --design` assume it. The typical pixel of a scene has
+/// half as much again.
 constexpr double kDisparitySigma_px = static_cast<double>(stereo::kSigmaFloor_px);
 
 RigView view_of(const camera::StereoRig& rig,

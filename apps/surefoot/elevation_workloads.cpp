@@ -23,16 +23,16 @@ using elevation::ElevationMap;
 constexpr int kRepeats = 60;
 constexpr int kViews = 8;
 constexpr int kSide = 240;
-constexpr int kSides[] = {120, 480, 960, 1920};  ///< beside the default
+constexpr int kSides[] = {120, 480, 960, 1920};  ///< cells per side, in addition to kSide
 constexpr double kResolution_m = 0.025;
 constexpr std::int64_t kFrame_ns = 66'666'667;
 
-/// Fewer for large maps: a second or two, not minutes.
+/// Fewer repeats for large maps, so that a workload takes a second or two.
 int repeats_for(int side) {
     return std::clamp(kRepeats * kSide / side, 5, kRepeats);
 }
 
-/// A ZED's VGA image, 1 m above the floor and 32 deg down.
+/// The rectified VGA rig of a ZED, pitched 32 deg down.
 camera::RectifiedRig zed() {
     camera::RectifiedRig rig;
     rig.width = 672;
@@ -52,7 +52,8 @@ Pose body_at(double x_m) {
     return {Eigen::Quaterniond::Identity(), {x_m, 0.0, 1.0}};
 }
 
-/// Every pixel below the horizon sees the floor, or a step of 0.2 m in the middle.
+/// Simulates a depth image: each pixel below the horizon sees the floor or, in the middle columns,
+/// a surface 0.2 m above it.
 camera::DepthImage look(const camera::RectifiedRig& rig, const Pose& T_odom_body, Rng& rng) {
     const Pose T_odom_camera = T_odom_body * rig.T_body_camera;
     camera::DepthImage depth;
@@ -90,7 +91,7 @@ ElevationConfig window_of(int side) {
     return config;
 }
 
-/// One depth image after the other, from places 20 mm apart.
+/// Fuses depth images one after the other, taken at positions 20 mm apart.
 Workload fusing(std::string name, const ElevationConfig& config, int repeats, Executor& executor) {
     struct State {
         camera::RectifiedRig rig = zed();
@@ -115,7 +116,7 @@ Workload fusing(std::string name, const ElevationConfig& config, int repeats, Ex
     return {std::move(name), repeats, prepare};
 }
 
-/// The body walks on: `step_m` at a time.
+/// Moves the map with a body that advances by `step_m` each time.
 Workload moving(std::string name, double step_m, const Matrix6& covariance, int repeats) {
     struct State {
         ElevationMap map{window_of(kSide)};
@@ -141,7 +142,7 @@ void for_each_cell(const grid::GridGeometry& geometry, const F& f) {
     }
 }
 
-/// Lines of sight to every cell, and what they say of every cell.
+/// Adds a ray that ends in every cell, then queries the lowest ray over every cell.
 Workload seeing_through(std::string name, int side) {
     const auto prepare = [side]() -> Result<Workload::Job> {
         const auto lines = std::make_shared<elevation::LinesOfSight>();
@@ -157,8 +158,8 @@ Workload seeing_through(std::string name, int side) {
     return {std::move(name), repeats_for(side), prepare};
 }
 
-/// What a frame that sees the floor in every cell says of every remembered cell: the floor, and a
-/// table top in the middle that it sees under, whose cells vouch for each other.
+/// Visibility clean-up of a remembered map by a frame that sees the floor in every cell. The map
+/// holds the floor and, in the middle, a table top above the rays, whose cells support each other.
 Workload checking_sight(std::string name, int side, Executor& executor) {
     struct State {
         ElevationConfig config;
@@ -191,7 +192,7 @@ Workload checking_sight(std::string name, int side, Executor& executor) {
     return {std::move(name), repeats_for(side), prepare};
 }
 
-/// Between which heights every cell lies.
+/// Computes the lower and upper bound of the height of every cell.
 Workload bounding(std::string name, int side, double drift_m, Executor& executor) {
     struct State {
         grid::Layer height_m;

@@ -16,12 +16,12 @@
 namespace surefoot::app {
 namespace {
 
-/// Distances at points, and a line of the values file for each.
+/// Distances at points, from which the values file is written.
 struct Compared {
     CloudComparison comparison;
     std::vector<Eigen::Vector3f> points_m;
     std::vector<float> distances_m;
-    std::string lines_of;  ///< file whose points the lines are of, in its order
+    std::string lines_of;  ///< the values file has one line per point of this file
     std::vector<eval::M3c2Value> m3c2;
 };
 
@@ -70,7 +70,7 @@ Result<Compared> compare_m3c2(const EvalCloudsOptions& options,
     return result;
 }
 
-/// distance, or distance,lod,std1,std2,n1,n2,significant.
+/// A line of the values file: distance, or distance,lod,std1,std2,n1,n2,significant.
 std::string line_of(const Compared& result, std::size_t i) {
     if (result.m3c2.empty()) return fmt::format("{:.9g}\n", result.distances_m[i]);
     const eval::M3c2Value& v = result.m3c2[i];
@@ -84,7 +84,7 @@ std::string line_of(const Compared& result, std::size_t i) {
                        v.significant ? 1 : 0);
 }
 
-/// One line for each point of the file, also for those that are not finite.
+/// Writes one line for each point of `lines_of`, also for points that are not finite.
 Status write_values(const std::string& path, const Compared& result) {
     auto stream = io::CloudStream::open(result.lines_of);
     if (!stream) return stream.error();

@@ -15,15 +15,16 @@
 namespace surefoot::app {
 namespace {
 
-/// Codes per pixel of disparity where --scale says nothing: KITTI's 16-bit images hold 256ths,
-/// 8-bit images whole pixels.
+/// Codes per pixel of disparity without --scale. KITTI's 16-bit images hold 1/256 px; 8-bit images
+/// hold whole pixels.
 constexpr double kScale16 = 256.0;
 constexpr double kScale8 = 1.0;
-/// Middlebury's masks: 255 seen by both eyes, 128 hidden from one, 0 without truth; two-valued
-/// masks are 0 and 255. So only what is nearly white counts.
+/// Smallest mask value that counts as valid. Middlebury's masks hold 255 = visible in both cameras,
+/// 128 = occluded in one, 0 = no ground truth; masks with two values hold 0 and 255.
 constexpr int kLeastMask = 201;
 
-/// Code 0 is "no truth" in every data set that stores disparities as images.
+/// Disparity [px] of an image of codes. Code 0 means "no ground truth" in every data set that
+/// stores disparities as images.
 template <typename Code>
 Image<float> disparity_of(const Image<Code>& codes, double scale) {
     Image<float> disparity_px(codes.width(), codes.height());
@@ -35,7 +36,7 @@ Image<float> disparity_of(const Image<Code>& codes, double scale) {
     return disparity_px;
 }
 
-/// The truth [px], and what its codes were divided by.
+/// Ground-truth disparity, and the divisor that was applied to its codes.
 struct Truth {
     Image<float> disparity_px;
     double scale = 1.0;
@@ -101,13 +102,14 @@ void print_errors(const eval::DepthErrors& errors) {
         errors.sparsification.auc);
 }
 
-/// The --scale that would bring truth and estimate together, where they differ by a known factor.
+/// The --scale with which truth and estimate would agree, if they differ by a usual factor.
 std::optional<double> suspected_scale(const eval::DepthErrors& errors, double used) {
     const auto factor = eval::suspected_factor(errors.truth_over_estimate);
     return factor ? std::optional<double>(used * *factor) : std::nullopt;
 }
 
-/// All figures are wrong when the truth is not in pixels; nothing is changed without being asked.
+/// Warns that the scale of the truth is probably wrong. The scale itself is not changed, because
+/// only the user can know it.
 void warn_of_scale(const EvalDepthOptions& options,
                    const Truth& truth,
                    double ratio,

@@ -17,7 +17,7 @@
 namespace surefoot::app {
 namespace {
 
-/// The settings that the live run used, so that the truth goes through the identical chain.
+/// Loads the settings of the live run, so that the true map is processed identically.
 Result<Settings> settings_of(const EvalMapsOptions& options) {
     CommonOptions common = options.common;
     const std::string used = options.live_dir + "/config.yaml";
@@ -25,7 +25,7 @@ Result<Settings> settings_of(const EvalMapsOptions& options) {
     return load_settings(common);
 }
 
-/// How the live map's settings rate the true heights.
+/// Traversability of the true heights under the settings of the live map.
 grid::Layer rated(const Settings& settings, const grid::Layer& truth_m, double resolution_m) {
     Serial serial;
     traversability::TraversabilityLayers layers;
@@ -37,7 +37,7 @@ grid::Layer rated(const Settings& settings, const grid::Layer& truth_m, double r
     return layers.traversability;
 }
 
-/// One more layer of the run on the cells of its elevation.
+/// Reads another layer of the run. Its size must equal that of elevation.asc.
 Result<grid::Layer> read_layer(const std::string& path, const grid::GridGeometry& geometry) {
     const auto dem = io::read_esri_grid(path);
     if (!dem) return dem.error();
@@ -50,7 +50,7 @@ Result<grid::Layer> read_layer(const std::string& path, const grid::GridGeometry
                                    geometry.ny));
 }
 
-/// The poses and the camera of the run, where its folder has them.
+/// Adds the poses and the camera of the run, if its folder contains them.
 Status add_track(const EvalMapsOptions& options, const Settings& settings, eval::MapPair& maps) {
     const std::string track_file = options.live_dir + "/trajectory.tum";
     if (!io::is_file(track_file)) return {};

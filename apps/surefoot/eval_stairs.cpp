@@ -11,7 +11,7 @@
 namespace surefoot::app {
 namespace {
 
-/// A file, or the folder of a run that holds it.
+/// Reads stair features from a stairs.json, given by its path or by the folder of its run.
 Result<ListedFeatures> read_features(const std::string& path) {
     const std::string inside = path + "/stairs.json";
     const std::string& file = io::is_file(inside) ? inside : path;

@@ -23,7 +23,8 @@
 namespace surefoot::app {
 namespace {
 
-/// In the quick suite the gate is asked at most this far around: half of its time goes there.
+/// Largest distance at which the quick suite queries the gate. Half of its run time goes into these
+/// queries.
 constexpr double kQuickReach_m = 0.6;
 
 sim::CameraProfile profile_of(const std::string& name) {
@@ -44,15 +45,15 @@ Result<SuiteConditions> conditions_of(const EvalSuiteOptions& options) {
     return SuiteConditions{std::move(*settings), machine->value().machine, reach_m};
 }
 
-/// Everything that the figures of a case depend on beside the case itself.
+/// Hash of all conditions, apart from the case itself, that the figures of a case depend on.
 std::uint64_t conditions_hash(const EvalSuiteOptions& options, const SuiteConditions& conditions) {
     return fnv1a(fmt::format("{} {}", options.machine, conditions.reach_m),
                  hash_of(conditions.settings));
 }
 
-/// Runs the cases that are not there yet, as many at a time as the executor has threads; each runs
-/// on one thread. A case that fails is named and left out, the others go on; when a result cannot
-/// be written or the user interrupts, no further case is begun.
+/// Runs the cases that the table lacks, one case per thread of the executor. A case that fails is
+/// logged and left out, and the others go on. After a failed write or an interrupt by the user no
+/// further case starts.
 class SuiteRun {
   public:
     SuiteRun(const SuiteConditions& conditions, SuiteTable& table)
@@ -104,7 +105,7 @@ class SuiteRun {
             return;
         }
         const Error named{error.code, fmt::format("{}: {}", name, error.message)};
-        if (first_error_) log_error(first_error_->message);  // the last one is told at the end
+        if (first_error_) log_error(first_error_->message);  // the caller logs the last error
         first_error_ = named;
     }
 

@@ -26,12 +26,12 @@
 namespace surefoot::app {
 namespace {
 
-/// A part of the report that is done once and kept in its folder.
+/// A part of the report. It is computed once; its figures are stored in its folder.
 struct Part {
     std::string name;
     std::string folder;
     std::uint64_t conditions = 0;
-    int weight = 1;  ///< about how long it takes
+    int weight = 1;  ///< relative duration, for the progress display
     std::function<Result<ThesisFigures>()> work;
     std::function<void(const ThesisFigures&)> keep;
 };
@@ -65,8 +65,8 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
     const auto machine = load_machine(options.machine);
     if (!machine) return machine.error();
     if (!*machine) return usage_error("--machine: a machine file or name is needed");
-    // Every second beam: still a point for each 5 mm within 4 m of a station, in a quarter of the
-    // time. `sim --scan` makes the full ones.
+    // Use every second beam. This still gives a point every 5 mm within 4 m of a station, in a
+    // quarter of the time. `sim --scan` uses all beams.
     settings->laser.step_deg *= 2.0;
     return ThesisConditions{std::move(*settings),
                             machine->value().machine,
@@ -75,8 +75,8 @@ Result<ThesisConditions> conditions_of(const EvalSuiteOptions& options) {
                             options.out_dir};
 }
 
-/// Does those parts that are not done yet, `executor`'s threads at a time. The first error is
-/// returned, the others are told; each is remembered as a sentence.
+/// Computes the parts that are not stored yet, as many at a time as `executor` has threads. All
+/// errors are logged and added to the results; the first one is returned.
 class Parts {
   public:
     Parts(ThesisResults& results, Executor& executor) : results_(results), executor_(executor) {}
@@ -139,8 +139,8 @@ class Parts {
     std::optional<Error> first_error_;
 };
 
-/// What stands in a place and how it is lit, as its seed draws it: another version of the program
-/// may have changed it.
+/// Hash of the objects and the lighting of a simulated scene. It detects that another version of
+/// the program generates another scene from the same seed.
 std::uint64_t hash_of_place(const std::string& scene, const ThesisConditions& conditions) {
     const auto script = sim::make_scene(scene, conditions.seed);
     if (!script) return 0;
@@ -171,7 +171,7 @@ std::uint64_t hash_of_place(const std::string& scene, const ThesisConditions& co
     return hash;
 }
 
-/// Everything that the figures of a part depend on.
+/// Hash of all conditions that the figures of a part depend on.
 std::uint64_t hash_for(const ThesisConditions& conditions,
                        const std::string& part,
                        std::uint64_t place) {
@@ -183,7 +183,7 @@ std::vector<Part> scans_of(const std::vector<ThesisRun>& runs,
                            bool courtyard,
                            const ThesisConditions& conditions,
                            ThesisResults& results) {
-    // Inside one place everything is serial: as many places at a time as there are threads.
+    // Each scan is serial; the scans of different scenes run in parallel.
     constexpr int kScan = 100;
     std::vector<Part> parts;
     std::set<std::string> scenes;
@@ -241,7 +241,7 @@ std::vector<Part> recordings_of(const std::vector<ThesisRun>& runs,
     return parts;
 }
 
-/// Of what stands on the ground and the ground itself, from above.
+/// Extent of all objects of a scene, ground included, along x and y [m].
 Eigen::Vector2d size_of(const sim::Scene& scene) {
     Eigen::Vector2d low_m = Eigen::Vector2d::Constant(1e9);
     Eigen::Vector2d high_m = -low_m;
@@ -261,7 +261,7 @@ Status describe_datasets(const ThesisConditions& conditions,
         const auto script = sim::make_scene(dataset.scene, conditions.seed);
         if (!script) return script.error();
         const auto stations_m = stations_of(*script);
-        const sim::LaserScannerConfig full;  // whatever resolution the scans of the report have
+        const sim::LaserScannerConfig full;  // full resolution, unlike the report's scans
         const auto points = expected_points(script->scene, full, stations_m, executor);
         if (!points) return points.error();
         const Eigen::Vector2d size_m = size_of(script->scene);

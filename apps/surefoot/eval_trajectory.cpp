@@ -14,13 +14,13 @@
 namespace surefoot::app {
 namespace {
 
-/// Both trajectories as their files hold them.
+/// Both trajectories, as read from their files.
 struct TrajectoryPair {
     io::TrajectoryFile estimate;
     io::TrajectoryFile truth;
 };
 
-/// From --times, for each of the two that has no stamps.
+/// Gives the stamps of the --times file to each trajectory that has none.
 Status stamp_from_file(const std::string& times_file, TrajectoryPair& pair) {
     if (pair.estimate.has_stamps() && pair.truth.has_stamps()) {
         return usage_error(fmt::format(
@@ -35,7 +35,7 @@ Status stamp_from_file(const std::string& times_file, TrajectoryPair& pair) {
     return {};
 }
 
-/// From --rate: pose i of the truth, counted from the first estimate.
+/// Stamps pose i of the truth with i / --rate after the first pose of the estimate.
 Status stamp_at_rate(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
     if (pair.truth.has_stamps()) {
         return usage_error(fmt::format("--rate {:g}: {} has stamps of its own; leave it away",
@@ -50,11 +50,12 @@ Status stamp_at_rate(const EvalTrajectoryOptions& options, TrajectoryPair& pair)
     return io::give_stamps(times_ns, fmt::format("--rate {:g}", options.rate_hz), pair.truth);
 }
 
-/// Row i belongs to pose i of the other trajectory, where that one has stamps and as many poses.
-/// A truth of another length stays at 10 Hz from 0, the rate of KITTI's recordings.
+/// If one trajectory has stamps and the other has none but as many poses, pose i gets the stamp of
+/// the other's pose i. A truth of another length keeps 10 Hz from 0, the rate of KITTI's
+/// recordings.
 Status stamp_by_index(const EvalTrajectoryOptions& options, TrajectoryPair& pair) {
     const bool of_estimate = !pair.estimate.has_stamps();
-    if (of_estimate == !pair.truth.has_stamps()) return {};  // both have stamps, or none has
+    if (of_estimate == !pair.truth.has_stamps()) return {};  // both have stamps, or both lack them
     io::TrajectoryFile& bare = of_estimate ? pair.estimate : pair.truth;
     const io::TrajectoryFile& other = of_estimate ? pair.truth : pair.estimate;
     if (bare.rows == other.poses.size()) {
@@ -94,8 +95,9 @@ eval::Alignment alignment_named(const std::string& name) {
     return name == "yaw" ? eval::Alignment::yaw : eval::Alignment::se3;
 }
 
-/// The trajectory over the true one from above, and below it the error over time. Drawn in the
-/// estimate's world, whose z is up (odom): that of the truth may be a camera's (KITTI), a target's.
+/// Plots both trajectories from above, and the error over time below. The plot uses the estimate's
+/// frame, whose z axis points up (odom). The truth's frame may be that of a camera (KITTI) or of a
+/// tracking target.
 Status write_plot(const EvalTrajectoryOptions& options,
                   const Trajectory& estimate,
                   const Trajectory& truth,

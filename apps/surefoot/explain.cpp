@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kViewHalf_m = 1.5;
 
-/// The heights around the query as a layer.
+/// Layer of the heights around the query.
 struct View {
     grid::GridGeometry geometry;
     grid::Layer height_m;
@@ -52,8 +52,8 @@ View view_around(const gate::Query& query, const grid::MapSnapshot& map) {
     return view;
 }
 
-/// Cells of the view over which something hangs: a table top that the camera saw from afar is floor
-/// with little room above it.
+/// Cells of the view with an overhang above them. Example: the floor under a table top that the
+/// camera saw from a distance.
 eval::Dots hanging(const View& view, const grid::MapSnapshot& map) {
     eval::Dots dots;
     dots.label = "something hangs";

@@ -10,8 +10,8 @@
 
 namespace surefoot::app {
 
-/// Picture of the heights around the machine with its present and landing feet, the swept body and
-/// the cell that decided.
+/// Writes a picture of the heights around the machine. It shows the feet before and after the step,
+/// the volume that the body sweeps, and the cell that decided the verdict.
 [[nodiscard]] Status write_explanation(const std::string& file,
                                        const Machine& machine,
                                        const gate::Query& query,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever a file holds, nothing crashes: numbers at the ends of a float through everything that
-// makes indices of them. Under UBSan (preset asan-ubsan) each conversion is checked.
+// No content of a file may crash the program. The tests pass extreme float values to all code that
+// converts them to indices. UBSan (preset asan-ubsan) checks each conversion.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ constexpr int kSide = 48;
 constexpr double kResolution_m = 0.025;
 constexpr int kTries = 20;
 
-/// Mostly steps of ground, some cells at the ends of a float.
+/// A random extreme float value.
 float extreme(Rng& rng) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr float kEnds[] = {1e38F,
@@ -48,7 +48,7 @@ float extreme(Rng& rng) {
 
 grid::Layer extreme_map(Rng& rng, double share) {
     grid::Layer map(kSide, kSide, 0.0F);
-    // Patches as well as single cells: a void is not scattered.
+    // Extreme values fill a patch as well as single cells, because real voids are connected.
     const float patch = extreme(rng);
     const std::uint64_t first = rng.below(kSide);
     for (int iy = 0; iy < kSide; ++iy) {
@@ -147,7 +147,7 @@ TEST(ExtremeValues, CloudsOfAnyCoordinates) {
         }
         eval::CloudBounds bounds;
         bounds.add(points_m);
-        // Far points make too many cells, and are said so; then the cells of the others.
+        // The far points need too many cells, which is an error; then test a grid of usual size.
         EXPECT_FALSE(bounds.grid(kResolution_m, eval::Lattice::cell));
         eval::DemGrid grid;
         grid.geometry = geometry();

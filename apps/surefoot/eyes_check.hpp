@@ -10,21 +10,22 @@
 
 namespace surefoot::app {
 
-/// Asks the first pairs of a source whether the eyes are exchanged and whether their rows match,
-/// until one has corners enough; five at most.
+/// Checks in the first image pairs of a source whether the cameras are swapped and whether the rows
+/// of left and right image match. It stops after the first pair with enough corners, and after
+/// five pairs at the latest.
 class EyesCheck {
   public:
-    /// `source`: what messages name.
+    /// `source`: name of the source in messages.
     explicit EyesCheck(std::string source) : source_(std::move(source)) {}
-    /// After each frame. An error where left and right are exchanged; `quiet`: rows that differ are
-    /// no warning.
+    /// Call after each frame. Returns an error if left and right camera are swapped. Rows that
+    /// differ are logged as a warning unless `quiet`.
     [[nodiscard]] Status look(const pipeline::Pipeline& pipeline,
                               const FrameReport& report,
                               bool quiet = false);
 
   private:
     std::string source_;
-    int left_ = 5;  ///< pairs that may still be asked
+    int left_ = 5;  ///< pairs that may still be checked
 };
 
 }  // namespace surefoot::app

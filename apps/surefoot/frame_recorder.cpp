@@ -17,7 +17,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Behind perception, which stands behind the gate. Linux knows the priority of threads alone.
+/// Gives the calling thread the lowest priority: the gate comes before perception, and perception
+/// before recording. On Linux setpriority with a thread id changes only that thread.
 void stand_back() {
     constexpr int kLast = 19;
     ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLast);
@@ -27,7 +28,7 @@ std::size_t bytes_of(const StereoFrame& frame) {
     return frame.left.size() + frame.right.size() + sizeof(float) * frame.depth_m.size();
 }
 
-/// What a recording holds of a frame.
+/// Copy of the parts of a frame that a recording stores; `imu_before` precedes its IMU samples.
 StereoFrame recorded_part(const StereoFrame& frame, std::vector<ImuSample> imu_before) {
     StereoFrame part;
     part.time_ns = frame.time_ns;
@@ -40,7 +41,7 @@ StereoFrame recorded_part(const StereoFrame& frame, std::vector<ImuSample> imu_b
     return part;
 }
 
-/// A folder that was not there before.
+/// Creates a new folder in `parent`, named by the time in UTC.
 Result<std::string> new_folder(const std::string& parent, std::time_t now) {
     if (auto made = io::make_folder(parent); !made) return made.error();
     const std::string name =
@@ -58,7 +59,7 @@ Result<std::string> new_folder(const std::string& parent, std::time_t now) {
     return output_error(fmt::format("{}: is there already, and so are others like it", name));
 }
 
-/// Why nothing can be recorded of a source; empty where it can.
+/// Why a source cannot be recorded; empty if it can.
 std::string why_never(const FrameRecorderConfig& config, const camera::SourceInfo& source) {
     if (config.record_dir.empty()) return "serve was started without --record-dir DIR";
     if (source.modelled_depth)
@@ -100,7 +101,7 @@ FrameRecorder::~FrameRecorder() {
 void FrameRecorder::ask(const page::RecordWish& wish) {
     if (!wish.on) return end(End::wished);
     const std::lock_guard lock(mutex_);
-    // While the last one is still being written another one would have to wait for it.
+    // Ignore the request while the previous recording is still being written.
     if (end_ == End::none && !stopped_) wanted_ = true;
     news_.notify_all();
 }
@@ -148,7 +149,7 @@ void FrameRecorder::run() {
     }
 }
 
-/// False when the service ends.
+/// Waits for a request to record; false when the service ends.
 bool FrameRecorder::wait_for_wish() {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [this] { return wanted_ || stopped_; });
@@ -194,7 +195,7 @@ void FrameRecorder::record() {
     conclude(written, *recorder);
 }
 
-/// The next one that waits; nothing when the recording ends and all is written.
+/// Waits for the next queued frame; nullopt when the recording ends and the queue is empty.
 std::optional<StereoFrame> FrameRecorder::next_frame() {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [this] { return !queue_.empty() || end_ != End::none; });
@@ -245,7 +246,8 @@ std::string FrameRecorder::reason_in_words() {
     return {};
 }
 
-/// What was written before a failure is a valid recording.
+/// Closes the recording and reports it. After a failed write, the frames before it form a valid
+/// recording.
 void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
     {
         const std::lock_guard lock(mutex_);
@@ -262,7 +264,7 @@ void FrameRecorder::conclude(const Status& written, io::Recorder& recorder) {
                                    outcome ? reason_in_words() : "; " + outcome.error().message);
     if (state_.left_out > 0)
         text += fmt::format("; {} were left out, because the disk was too slow", state_.left_out);
-    if (state_.frames == 0) {  // a folder of our own, and nothing that anybody could read
+    if (state_.frames == 0) {  // we created the folder, and it holds no frame
         std::error_code ignored;
         std::filesystem::remove_all(state_.folder, ignored);
         text = outcome ? "no frame came, so nothing was kept" : outcome.error().message;

@@ -19,33 +19,37 @@
 namespace surefoot::app {
 
 struct FrameRecorderConfig {
-    std::string record_dir;  ///< each recording is a new folder in it; empty = nothing is recorded
-    /// Frames that wait for the disk; 4 s of 672 x 376 px at 30 Hz.
+    std::string record_dir;  ///< each recording is a new folder in it; empty = recording is off
+    /// Largest size of the queue of frames that wait for the disk. The default holds 4 s of stereo
+    /// images of 672 x 376 px at 30 Hz.
     std::size_t queue_bytes = 64U << 20U;
-    /// Less is never left on the disk: the audit log of the gate may lie on it, too.
+    /// Recording stops when the disk has less free space than this. The gate's audit log may be on
+    /// the same disk.
     std::uint64_t reserve_bytes = 500'000'000;
-    std::time_t (*utc_now)() = [] { return std::time(nullptr); };  ///< names the folders
+    std::time_t (*utc_now)() = [] { return std::time(nullptr); };  ///< folder names use this time
 };
 
-/// Records what a source delivers while the pages want it (docs/how_to/page.md), as `surefoot record`
-/// does. A thread of its own writes; who brings frames only copies them, and never waits for the
-/// disk: what does not fit into the queue is left out and counted. Its IMU samples come with the
-/// next frame.
+/// Records the frames of a source while a web page requests it (docs/how_to/page.md), in the format
+/// of `surefoot record`.
+///
+/// A separate thread of low priority writes to the disk. `take` only copies the frame into a queue
+/// and never waits for the disk. A frame that does not fit into the queue is left out and counted;
+/// its IMU samples are stored with the next frame. All public functions are thread-safe.
 class FrameRecorder {
   public:
-    /// Tells the desk whether anything can be recorded, and why not.
+    /// Tells the desk whether recording is possible, and if not, why.
     FrameRecorder(FrameRecorderConfig config,
                   const camera::StereoRig& rig,
                   const camera::SourceInfo& source,
                   page::RecordingDesk& desk);
     FrameRecorder(const FrameRecorder&) = delete;
     FrameRecorder& operator=(const FrameRecorder&) = delete;
-    /// Writes what is queued.
+    /// Writes the queued frames, then ends the recording.
     ~FrameRecorder();
 
-    /// A frame came; nothing happens while nothing is recorded.
+    /// Queues a copy of the frame. Without an active recording it does nothing.
     void take(const StereoFrame& frame);
-    /// No frame comes any more: a recording ends.
+    /// Ends an active recording because the source delivers no more frames.
     void source_ended();
 
   private:
@@ -69,7 +73,7 @@ class FrameRecorder {
     const camera::StereoRig rig_;
     page::RecordingDesk& desk_;
 
-    // Of the thread that writes.
+    // Used by the writing thread only (and by the constructor before that thread starts).
     page::RecordingState state_;
     std::int64_t first_stamp_ns_ = 0;
     std::int64_t last_stamp_ns_ = 0;
@@ -78,17 +82,18 @@ class FrameRecorder {
     std::condition_variable news_;
     std::deque<StereoFrame> queue_;
     std::size_t queued_bytes_ = 0;
-    std::vector<ImuSample> imu_left_;  ///< of frames that were left out
+    std::vector<ImuSample> imu_left_;  ///< IMU samples of frames that were left out
     std::int64_t left_out_ = 0;
     std::optional<std::int64_t> last_taken_ns_;
     bool wanted_ = false;
-    bool taking_ = false;  ///< frames are queued
+    bool taking_ = false;  ///< `take` queues frames
     bool stopped_ = false;
     End end_ = End::none;
     std::thread thread_;
 };
 
-/// A source whose frames are shown to a recorder as they are delivered.
+/// Wraps a source and passes each frame that it delivers to a recorder as well. It keeps references
+/// to both; they must outlive it.
 class RecordedSource final : public camera::FrameSource {
   public:
     RecordedSource(camera::FrameSource& source, FrameRecorder& recorder)

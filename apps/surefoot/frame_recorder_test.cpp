@@ -35,7 +35,7 @@ camera::StereoRig rig() {
     return rig;
 }
 
-/// Noise, with one IMU sample just before it.
+/// A frame of noise, with one IMU sample just before it.
 StereoFrame frame_at(int index) {
     Rng rng(static_cast<std::uint64_t>(index) + 1);
     StereoFrame frame;
@@ -53,7 +53,7 @@ StereoFrame frame_at(int index) {
     return frame;
 }
 
-/// Frames 0, 1, ... so many; then the end.
+/// A source that delivers a given number of frames (0, 1, ...) and then ends.
 class CountedSource final : public camera::FrameSource {
   public:
     explicit CountedSource(int frames) : left_(frames) {}
@@ -82,7 +82,7 @@ class FrameRecorderTest : public ::testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    /// Waits until the desk says so; the test fails after a while.
+    /// Waits until the desk reports the stage; the test fails on timeout.
     page::RecordingState wait_for(RecordingStage stage) {
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
         while (desk_.state().stage != stage && std::chrono::steady_clock::now() < end)
@@ -126,7 +126,7 @@ TEST_F(FrameRecorderTest, IsOffWhereNobodyMadeImages) {
 
 TEST_F(FrameRecorderTest, WhatCameInBetweenIsARecording) {
     FrameRecorder recorder(config_, rig(), {}, desk_);
-    recorder.take(frame_at(0));  // nobody wanted it
+    recorder.take(frame_at(0));  // before the request
     begin();
     for (int i = 1; i <= 20; ++i) recorder.take(frame_at(i));
     ASSERT_TRUE(desk_.ask({false}));
@@ -161,7 +161,7 @@ TEST_F(FrameRecorderTest, NothingIsEverOverwritten) {
 }
 
 TEST_F(FrameRecorderTest, WhatADiskIsTooSlowForIsLeftOutAndCounted) {
-    config_.queue_bytes = 2 * kWidth * kHeight;  // one frame waits, no more
+    config_.queue_bytes = 2 * kWidth * kHeight;  // room for one frame
     FrameRecorder recorder(config_, rig(), {}, desk_);
     begin();
     constexpr int kFrames = 300;
@@ -175,7 +175,7 @@ TEST_F(FrameRecorderTest, WhatADiskIsTooSlowForIsLeftOutAndCounted) {
     EXPECT_EQ(state.frames + state.left_out, kFrames);
     EXPECT_NE(state.text.find("left out"), std::string::npos) << state.text;
     EXPECT_EQ(info().frames, state.frames);
-    // The inertial samples have no gap up to the last frame that was written.
+    // The IMU samples have no gap up to the last written frame.
     EXPECT_EQ(info().imu_samples, std::lround(state.duration_s / 0.05) + 1);
 }
 
@@ -233,7 +233,7 @@ TEST_F(FrameRecorderTest, ADiskIsNeverFilledToTheBrim) {
     EXPECT_NE(wait_for(RecordingStage::failed).text.find("the disk has"), std::string::npos);
 }
 
-/// What the system writes to a file is limited, as by a disk that is full.
+/// Limits the file size while it lives, so that writes fail as on a full disk.
 class FullDisk {
   public:
     FullDisk() {
@@ -267,7 +267,7 @@ TEST_F(FrameRecorderTest, AnErrorOfTheDiskIsSaidAndWhatWasBeforeItIsKept) {
         EXPECT_NE(state.text.find(".png"), std::string::npos) << state.text;
     }
     EXPECT_EQ(info().frames, 3);
-    begin();  // and another one may be tried
+    begin();  // a new recording is possible after the failure
     recorder.take(frame_at(4));
     ASSERT_TRUE(desk_.ask({false}));
     wait_for(RecordingStage::ready);

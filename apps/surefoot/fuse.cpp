@@ -18,7 +18,8 @@
 namespace surefoot::app {
 namespace {
 
-/// The settings of this verb: those of the ancestor's update under "ancestor".
+/// Settings of this verb: the group "ancestor" configures the map update of the reference
+/// implementation (ETH elevation_mapping).
 struct FuseSettings {
     elevation::AncestorConfig ancestor;
     void describe(ConfigVisitor& visitor) { visitor.group("ancestor", ancestor); }
@@ -67,8 +68,8 @@ Result<std::vector<elevation::AncestorPoint>> read_points(const std::string& pat
     return points;
 }
 
-/// "K time T move_to X Y ..." per step; indented lines are remarks. Cloud K is cloudK.f32 beside
-/// the file.
+/// Parses the line of a step, "K time T move_to X Y ...". Its points are in the file cloudK.f32 of
+/// `folder`.
 Result<elevation::FuseStep> parse_step(std::string_view line,
                                        const std::string& where,
                                        const std::string& folder) {

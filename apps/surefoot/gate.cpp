@@ -28,7 +28,7 @@ int exit_code_of(gate::Decision decision) {
     return kExitGateError;
 }
 
-/// No map is no permission: the default verdict, an ERROR, with the reason in words.
+/// Answers a query without a usable map: the verdict is ERROR, with the reason in words.
 int refuse(const GateOptions& options, std::uint8_t command, const Error& error) {
     log_error(error.message);
     gate::Verdict verdict;
@@ -55,7 +55,7 @@ Status write_audit(const std::string& folder,
     return output_error("the verdict is not in the audit log: " + done.last_error);
 }
 
-/// The movements of a machine, for people: "9 N, 25 left".
+/// The configured movements of a machine as text, for example "9 N, 25 left".
 std::string movements_of(const Machine& machine) {
     std::string text;
     for (std::size_t code = 0; code < machine.movements.size(); ++code) {
@@ -114,11 +114,12 @@ int gate(const GateOptions& options) {
     if (!options.explain_file.empty()) {
         const auto status =
             write_explanation(options.explain_file, m, query, *map->snapshot, verdict, text);
-        if (!status) log_error(status.error().message);  // the verdict stands without its picture
+        if (!status)
+            log_error(status.error().message);  // a missing picture does not change the verdict
     }
     if (!options.audit_dir.empty()) {
         const auto status = write_audit(options.audit_dir, m, query, *map->snapshot, verdict);
-        if (!status) log_error(status.error().message);  // no disk changes a verdict
+        if (!status) log_error(status.error().message);  // nor does a failed log
     }
     return exit_code_of(verdict.decision);
 }

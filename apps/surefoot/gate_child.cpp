@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::int64_t kRestartEvery_ns = 500'000'000;
 
-/// Installed side by side, or in the folders of a build.
+/// Path of surefoot-gate: in the folder of this program, or in the neighbouring folder of a build
+/// tree.
 Result<std::string> find_program() {
     std::error_code error;
     const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -31,10 +32,11 @@ Result<std::string> find_program() {
     return input_error("the program surefoot-gate is not beside " + self.string());
 }
 
-/// A gate that does not say where it listens within this time does not work.
+/// Longest silence while the gate starts. If it writes nothing for this time, the start has failed.
 constexpr int kStart_ms = 20'000;
 
-/// The first line that it writes, or what came until it closed or time was up.
+/// First line that the gate writes. It may be incomplete if the gate closed the pipe or the wait
+/// ran out.
 std::string first_line(int file) {
     std::string line;
     char byte = 0;
@@ -51,7 +53,7 @@ std::string first_line(int file) {
     return line;
 }
 
-/// "listening on ws://127.0.0.1:9090" -> 9090; 0 when it says anything else.
+/// "listening on ws://127.0.0.1:9090" -> 9090; 0 for any other text.
 std::uint16_t port_of(const std::string& line) {
     const auto colon = line.rfind(':');
     std::uint16_t port = 0;
@@ -60,13 +62,13 @@ std::uint16_t port_of(const std::string& line) {
     return port;
 }
 
-/// In the new process, before it is the gate: only calls that are safe after a fork.
+/// Runs in the forked child until it executes the gate; uses only calls that are safe after a fork.
 [[noreturn]] void become_gate(
     const char* program, char* const* words, int output, int line, pid_t parent) {
     ::dup2(output, STDOUT_FILENO);
-    ::fcntl(line, F_SETFD, 0);  // it stays open
-    // Linux shares the processor between sessions before it looks at nice values: what
-    // perception used up shall not make the gate wait. The keyboard's interrupt is for serve.
+    ::fcntl(line, F_SETFD, 0);  // keep it open across execv
+    // A session of its own: Linux shares the processor among sessions before it compares nice
+    // values, so load from perception must not delay the gate. Ctrl-C then reaches only serve.
     ::setsid();
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (::getppid() == parent) ::execv(program, words);
@@ -112,7 +114,9 @@ void GateChild::hang_up() noexcept {
 Status GateChild::launch(std::vector<std::string> arguments) {
     hang_up();
     int output[2];
-    int line[2];  // no pipe: another process of this user could open its end in /proc and read
+    // A socket pair, because another process of this user could open a pipe in /proc and read the
+    // key.
+    int line[2];
     if (::pipe2(output, O_CLOEXEC) != 0)
         return input_error("the gate process cannot be started: no pipe");
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line) != 0) {
@@ -137,7 +141,7 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     port_ = port_of(said);
     if (port_ != 0) return {};
     if (process_ > 0) {
-        ::kill(process_, SIGKILL);  // where it hangs
+        ::kill(process_, SIGKILL);  // it may hang
         ::waitpid(process_, nullptr, 0);
     }
     process_ = -1;
@@ -152,7 +156,8 @@ Result<bool> GateChild::watch(std::int64_t now_ns) {
     }
     if (now_ns < next_start_ns_) return false;
     next_start_ns_ = now_ns + kRestartEvery_ns;
-    if (auto launched = launch(how_.arguments); !launched) return launched.error();  // tried again
+    if (auto launched = launch(how_.arguments); !launched)
+        return launched.error();  // the next call retries
     ++restarts_;
     return true;
 }

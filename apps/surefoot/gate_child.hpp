@@ -12,27 +12,32 @@
 
 namespace surefoot::app {
 
-/// The gate process beside this one: started, watched, started again when it dies. Whatever
-/// becomes of it, no step is allowed meanwhile: its clients hear nothing. Its state begins at INIT.
-/// It has the priority of the thread that starts it, and ends when this process does, however it
-/// ends: it holds one end of a socket pair, and the system sends it a signal.
+/// Starts the gate process (surefoot-gate) and restarts it when it dies.
+///
+/// While the gate process is down its clients get no answer, so no step is allowed. A restarted
+/// gate begins in state INIT. The gate process inherits the priority of the thread that starts it.
+/// It ends when this process ends, even after a crash: it sees its end of a socket pair close, and
+/// the kernel sends it SIGTERM.
 class GateChild {
   public:
-    /// What the gate is started with.
+    /// Arguments and key for the gate process.
     struct Start {
-        std::vector<std::string> arguments;        ///< of every start
-        std::vector<std::string> first_arguments;  ///< of the first start, behind the others
-        wire::ChecksumKey key;                     ///< of the channel; goes through the socket pair
+        std::vector<std::string> arguments;        ///< for every start
+        std::vector<std::string> first_arguments;  ///< for the first start only, after `arguments`
+        wire::ChecksumKey key;  ///< of the snapshot channel; sent through the socket pair
     };
-    /// The program is looked for beside this one. Returns when it listens.
+    /// Starts the program surefoot-gate from the folder of this program (or from its place in a
+    /// build tree). Returns when it listens. Returns an error if it ends or is silent
+    /// for 20 s before.
     [[nodiscard]] static Result<GateChild> start(Start how);
     GateChild(GateChild&& other) noexcept;
     GateChild& operator=(GateChild&&) = delete;
-    /// Ends it.
+    /// Ends the gate process and waits for its end.
     ~GateChild();
 
-    /// Restarts the gate if it has died, twice a second at most. True in the call that did so. To
-    /// be called by the thread that started it: the gate ends with that thread.
+    /// Restarts the gate process if it has died, at most twice a second. Returns true if this call
+    /// restarted it. Call it from the thread that called `start`: the kernel ends the gate process
+    /// together with the thread that started it.
     [[nodiscard]] Result<bool> watch(std::int64_t now_ns);
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
     [[nodiscard]] int restarts() const noexcept { return restarts_; }

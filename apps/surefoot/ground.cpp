@@ -17,7 +17,8 @@
 namespace surefoot::app {
 namespace {
 
-/// The ground of a camera that may look 0-60 deg down, in its optical axes.
+/// Searches the ground plane for a camera of unknown pitch (config.search_down_deg gives the
+/// range). Points and result are in the camera's optical axes.
 ground::GroundSighting searched(const ground::GroundConfig& config,
                                 const std::vector<Eigen::Vector3d>& points_optical_m,
                                 const Eigen::Vector3d& sensor_optical_m,
@@ -34,7 +35,7 @@ ground::GroundSighting searched(const ground::GroundConfig& config,
     return sighting;
 }
 
-/// What was searched, and what to do.
+/// Error message: why no ground was found, with the limits that the user can change.
 std::string failure(const GroundOptions& options,
                     const ground::GroundConfig& config,
                     const ground::GroundSighting& sighting,
@@ -73,11 +74,11 @@ int ground(const GroundOptions& options) {
     if (!origin) return report(origin.error());
     auto cloud = io::read_cloud(options.cloud);
     if (!cloud) return report(cloud.error());
-    // Organised clouds come straight from a camera: optical axes, y down. Others have z up.
+    // Organised clouds come from a camera and have optical axes (y down). Others have z up.
     const bool optical = options.frame.empty() ? cloud->organised() : options.frame == "optical";
     const Eigen::Vector3d sensor((*origin)[0], (*origin)[1], (*origin)[2]);
     const ground::GroundConfig& config = settings->pipeline.ground;
-    // Optical axes are those of a camera, and nothing says how it is mounted.
+    // With optical axes the mounting of the camera is unknown, so its tilt is searched.
     const auto sighting =
         optical
             ? searched(config, cloud->points_m, sensor, options.common.seed)

@@ -8,7 +8,8 @@
 
 namespace surefoot::app {
 
-/// The PNG of a verb that takes --scale and --height; a usage error where one of them is missing.
+/// Reads a height map from a PNG: `scale_m_per_px` is the cell size, `height_m` the height of full
+/// white. A value that is not positive (option --scale or --height not given) is a usage error.
 [[nodiscard]] Result<io::Dem> read_height_image(const std::string& file,
                                                 double scale_m_per_px,
                                                 double height_m);

@@ -26,7 +26,7 @@ std::vector<double> numbers_of(const std::string& text) {
     return numbers;
 }
 
-/// Where the moved cloud is thought to be: a file with a 4x4 matrix, or x,y,z,yaw.
+/// Initial pose of the moved cloud: a file with a 4x4 matrix, or x,y,z,yaw (metres, degrees).
 Result<Pose> parse_guess(const std::string& guess) {
     if (guess.empty()) return Pose{};
     if (!io::is_file(guess)) {
@@ -58,7 +58,7 @@ Result<Pose> parse_guess(const std::string& guess) {
     return Pose::from_matrix(T);
 }
 
-/// The same motion where all coordinates count from `shift_m`, and back with its negative.
+/// Expresses the motion T in coordinates whose origin is `shift_m`; with -shift_m it converts back.
 Pose shifted(const Pose& T, const Eigen::Vector3d& shift_m) {
     return {T.rotation, T.translation_m + T.rotation * shift_m - shift_m};
 }
@@ -84,7 +84,7 @@ std::string matrix_text(const Pose& T) {
     return text;
 }
 
-/// Why there is no answer, and what to do.
+/// Warns why the alignment did not converge, and what to do.
 void tell_outcome(const geometry::CloudAlignment& found) {
     using geometry::AlignmentOutcome;
     switch (found.outcome) {
@@ -113,7 +113,7 @@ void tell_outcome(const geometry::CloudAlignment& found) {
     }
 }
 
-/// What the surfaces did not say.
+/// Warns of directions that the surfaces do not determine.
 void warn(const geometry::CloudAlignment& found) {
     tell_outcome(found);
     if (found.free_directions > 0 && found.free_directions < 6) {

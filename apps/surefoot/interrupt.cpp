@@ -19,7 +19,7 @@ void on_signal(int /*signal*/) {
 void watch_for_interrupts() {
     struct sigaction action = {};
     action.sa_handler = on_signal;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second one meets the default action
+    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second signal ends the program
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
 }

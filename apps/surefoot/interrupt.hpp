@@ -3,10 +3,10 @@
 
 namespace surefoot::app {
 
-/// From here on Ctrl-C and SIGTERM are remembered instead of ending the program; a second one ends
-/// it at once.
+/// From this call on, the first Ctrl-C or SIGTERM only sets a flag (see `interrupted`). A second
+/// one of the same kind ends the program at once.
 void watch_for_interrupts();
-/// True once one came.
+/// True after a Ctrl-C or SIGTERM arrived.
 [[nodiscard]] bool interrupted();
 
 }  // namespace surefoot::app

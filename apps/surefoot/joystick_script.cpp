@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kHeader = "time_s,end_s,command";
 
-/// Adds a line; false if it lies before the one that was added last, or has no code.
+/// Adds a line; false if its time or code is invalid, or its time is before the previous line's.
 bool add(std::vector<JoystickLine>& script, std::string_view time_s, std::string_view command) {
     const auto time_ns = io::parse_seconds_as_ns(time_s);
     const auto code = io::parse_int64(command);

@@ -10,20 +10,21 @@
 
 namespace surefoot::app {
 
-/// From `time_ns` on the joystick sends `code`, until the next line.
+/// From `time_ns` until the next line the joystick sends `code`.
 struct JoystickLine {
-    std::int64_t time_ns = 0;  ///< since the beginning of the script
+    std::int64_t time_ns = 0;  ///< since the start of the script
     std::uint8_t code = 0;     ///< 0 = at rest
 };
 
-/// Lines `time_s code`, in order of time, parted by white space or a comma, or
-/// `time_s,end_s,command` as `surefoot sim` writes joystick.csv (at rest from end_s on). Empty
-/// lines and those that begin with '#' or are that file's header are left out. `name` is the
-/// file's, for errors.
+/// Parses a joystick script. Errors name `name` (the file) and the line.
+///
+/// A line is `time_s code`, separated by white space or a comma, or `time_s,end_s,command` as in
+/// the joystick.csv of `surefoot sim` (at rest from end_s on). Times must not decrease. Empty
+/// lines, lines that begin with '#' and the header of joystick.csv are skipped.
 [[nodiscard]] Result<std::vector<JoystickLine>> parse_joystick_script(std::string_view text,
                                                                       const std::string& name);
 
-/// What the joystick sends at a time; at rest before the first line.
+/// The code that the joystick sends at a time since the start; 0 (at rest) before the first line.
 [[nodiscard]] std::uint8_t code_at(const std::vector<JoystickLine>& script, std::int64_t time_ns);
 
 }  // namespace surefoot::app

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only here, in calibration_json.cpp and in stairs_json.cpp is nlohmann-json included (six seconds
-// a translation unit).
+// nlohmann-json adds six seconds of compile time to a translation unit, so only the few files that
+// write or read JSON include it.
 #include "apps/surefoot/json_output.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 namespace surefoot::app {
 namespace {
 
-// Keys keep the order in which they are written: the same run gives the same bytes.
+// Keys keep the order in which they are written, so the same run gives the same bytes.
 using wire::Json;
 using wire::number;
 
@@ -97,7 +97,7 @@ Json figures_json(const eval::ErrorFigures& e, const std::string& unit) {
             {"count", e.count}};
 }
 
-/// Errors in m, by a key in `key_unit`.
+/// Errors [m] per bin; the limits of the bins are in `key_unit`.
 Json bins_json(const std::vector<eval::ErrorBin>& bins, const std::string& key_unit) {
     Json list = Json::array();
     for (const eval::ErrorBin& bin : bins) {
@@ -131,7 +131,7 @@ Json camera_json(const camera::RectifiedRig& rig) {
             {"T_body_camera", pose_json(rig.T_body_camera)}};
 }
 
-/// `count` finite numbers of a list; nothing else is taken.
+/// The `count` numbers of a list; nullopt if the list is missing or has another size or content.
 std::optional<std::vector<double>> numbers_of(const Json& object,
                                               const char* name,
                                               std::size_t count) {
@@ -226,7 +226,7 @@ Json trim_json(const std::optional<stereo::PairTrim>& trim) {
 
 Json place_json(const PlaceRecord& place) {
     Json refusals = Json::object();
-    for (int i = 1; i < places::kRefusals; ++i)  // the first is none
+    for (int i = 1; i < places::kRefusals; ++i)  // index 0 is Refusal::none
         refusals[to_string(static_cast<places::Refusal>(i))] =
             place.refusals[static_cast<std::size_t>(i)];
     const std::string& reason = place.left_as_it_was;
@@ -259,7 +259,7 @@ Json source_json(const camera::SourceInfo& source) {
     return object;
 }
 
-/// Why a run is not complete: it ended early, or its results could not be written.
+/// Why a run is incomplete: it ended early, or its results could not be written; else null.
 Json error_json(const RunRecord& record, const Status& written) {
     if (record.error) return record.error->message;
     return written ? Json(nullptr) : Json(written.error().message);
@@ -485,7 +485,7 @@ std::optional<ReportCamera> parse_report_camera(const std::string& report_json) 
 
 namespace {
 
-/// What was read of a trajectory's file.
+/// Summary of a trajectory file.
 Json trajectory_file_json(const io::TrajectoryFile& file) {
     return {{"format", file.format},
             {"stamps", file.stamps},

@@ -39,29 +39,30 @@
 #include "surefoot/io/settings/model_file.hpp"
 #include "surefoot/sim/scenes/scenes.hpp"
 
-// Every JSON object of the command line; the names are a contract (README). NaN is written as null.
+// The JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
+// written as null.
 namespace surefoot::app {
 
 [[nodiscard]] std::string report_json(const RunRecord& record,
                                       const pipeline::Pipeline& pipeline,
                                       const Status& written);
-/// The camera of a run as its report.json has it.
+/// The camera of a run, as report.json describes it.
 struct ReportCamera {
     eval::PinholeView view;
     Pose T_body_camera;  ///< rectified left optical frame in base_link
 };
-/// Nothing where the report has no camera, or one that is not whole (an older or damaged file).
-/// One sigma of the vertical in a report.json: NaN where the run did not know it, 0 in the reports
-/// of versions that did not say.
+/// Standard deviation of the vertical in a report.json: NaN if the run did not know it, 0 if the
+/// report has no such key (older versions) or is not valid JSON.
 [[nodiscard]] double parse_report_tilt_sigma_rad(const std::string& report_json);
+/// The camera of a report.json; nullopt if it is missing or incomplete (an older or damaged file).
 [[nodiscard]] std::optional<ReportCamera> parse_report_camera(const std::string& report_json);
-/// Images of a board that were drawn.
+/// Result of rendering images of a calibration board.
 [[nodiscard]] std::string rendered_boards_json(std::size_t views, const std::string& folder);
-/// The same without the list of frames, for stdout.
+/// As report_json, but without the list of frames, for stdout.
 [[nodiscard]] std::string run_json(const RunRecord& record,
                                    const pipeline::Pipeline& pipeline,
                                    const Status& written);
-/// A verb that failed before it had anything to tell.
+/// Answer of a verb that failed before it produced a result.
 [[nodiscard]] std::string failure_json(const std::string& error, int exit_code);
 [[nodiscard]] std::string verdict_json(const gate::Verdict& verdict,
                                        const std::string& text,
@@ -76,10 +77,10 @@ struct ReportCamera {
                                           const io::TrajectoryFile& estimate,
                                           const io::TrajectoryFile& truth);
 [[nodiscard]] std::string maps_json(const eval::MapComparison& result);
-/// What a truth was divided by, and what it probably should have been.
+/// Divisor from the codes of a ground-truth image to pixels of disparity.
 struct TruthScale {
     double used = 1.0;
-    std::optional<double> suspected;
+    std::optional<double> suspected;  ///< probably the right divisor, if it differs from `used`
 };
 [[nodiscard]] std::string depth_json(const eval::DepthErrors& errors, const TruthScale& scale);
 [[nodiscard]] std::string measured_depth_json(const MeasuredPair& measured,
@@ -98,7 +99,7 @@ struct TruthScale {
 [[nodiscard]] std::string settings_json(const std::vector<io::ConfigEntry>& entries);
 [[nodiscard]] std::string scenes_json(const std::vector<sim::SceneInfo>& scenes);
 [[nodiscard]] std::string recording_json(const io::RecordingInfo& info);
-/// `file`: where the URDF was written; empty = nowhere.
+/// `file`: the URDF file that was written; empty = no file.
 [[nodiscard]] std::string urdf_json(const io::MachineModel& model, const std::string& file);
 [[nodiscard]] std::string rig_json(const io::RigFile& file,
                                    const std::vector<std::string>& written);
@@ -108,7 +109,7 @@ struct TruthScale {
                                       double speed,
                                       std::int64_t late,
                                       const camera::SourceInfo& source);
-/// One event of the REX link; the file of a tone, where there is one.
+/// One event of the REX link, with the file of its tone (empty = no tone).
 struct RexLinkRow {
     rex_link::LinkEvent event;
     std::string tone_file;
@@ -133,7 +134,7 @@ struct RexLinkRow {
 [[nodiscard]] std::string camera_view_json(const CameraView& view);
 /// `problem` is empty when the settings are valid.
 [[nodiscard]] std::string check_json(const std::string& problem);
-/// `results` as `sorted` leaves them.
+/// `results`: in the order that `sorted` returns.
 [[nodiscard]] std::string suite_json(std::span<const SuiteResult> results);
 [[nodiscard]] std::string bench_json(const std::vector<BenchResult>& results);
 

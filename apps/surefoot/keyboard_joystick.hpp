@@ -9,14 +9,14 @@
 
 namespace surefoot::app {
 
-/// Reads keys as a joystick that stays where it was pushed.
+/// Translates keys into joystick codes. A code stays until another key changes it.
 class KeyReader {
   public:
-    /// w/a/s/d or arrows: a step ahead, to the left, back, to the right; q and e turn left and
-    /// right; the space bar is rest. Other keys change nothing.
+    /// Feeds bytes from the terminal. w/a/s/d or arrow keys: step ahead, left, back, right; q and
+    /// e: turn left and right; space bar: rest. Other keys have no effect.
     void read(std::string_view bytes);
     [[nodiscard]] std::uint8_t code() const noexcept { return code_; }
-    /// x was pressed, or Ctrl-D.
+    /// True after x or Ctrl-D.
     [[nodiscard]] bool finished() const noexcept { return finished_; }
 
   private:
@@ -24,12 +24,13 @@ class KeyReader {
     void key(char byte);
     void arrow(char byte);
 
-    Escape escape_ = Escape::none;  ///< arrows are ESC [ A ... D, and may come in pieces
+    Escape escape_ = Escape::none;  ///< an arrow key is ESC [ A to D; its bytes may come separately
     std::uint8_t code_ = 0;
     bool finished_ = false;
 };
 
-/// Keys of stdin. A terminal gives each key at once and shows none while this lives.
+/// Reads joystick codes from the keys on stdin. While an object lives, the terminal delivers each
+/// key at once and does not echo it; the destructor restores the terminal's settings.
 class KeyboardJoystick {
   public:
     KeyboardJoystick();
@@ -37,12 +38,12 @@ class KeyboardJoystick {
     KeyboardJoystick(const KeyboardJoystick&) = delete;
     KeyboardJoystick& operator=(const KeyboardJoystick&) = delete;
 
-    /// The code now, or nothing once the user has finished or stdin ended. Does not wait.
+    /// The current code, or nullopt after the user has finished or stdin has ended. Does not wait.
     [[nodiscard]] std::optional<std::uint8_t> poll();
 
   private:
     KeyReader keys_;
-    std::optional<termios> before_;  ///< the terminal's settings; nothing = stdin is none
+    std::optional<termios> before_;  ///< original settings; nullopt = stdin is not a terminal
 };
 
 }  // namespace surefoot::app

@@ -11,7 +11,7 @@
 namespace surefoot::app {
 namespace {
 
-/// The camera reader wants a calibration; of the one that is still to be made it knows the size.
+/// Placeholder rig of the right image size: LiveCamera needs a rig, but it is not calibrated yet.
 camera::StereoRig rig_of_size(int width, int height) {
     const camera::Camera eye{camera::PinholeRadTan{.fx_px = static_cast<double>(width),
                                                    .fy_px = static_cast<double>(width),

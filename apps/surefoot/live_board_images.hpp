@@ -10,21 +10,22 @@
 
 namespace surefoot::app {
 
-/// What a session of showing a board to a live camera is.
+/// Settings of a session in which a user shows a calibration board to a live camera.
 struct LiveBoards {
-    std::string address;  ///< DEVICE@WIDTHxHEIGHT[@RATE], width of both eyes side by side
+    std::string address;  ///< DEVICE@WIDTHxHEIGHT[@RATE]; WIDTH is that of both images together
     bool stereo = true;
-    std::string eye = {};  ///< of one camera: left or right
+    std::string eye = {};  ///< camera to use if not `stereo`: left or right
     io::CameraConfig config = {};
-    std::function<bool()> stop = {};    ///< asked while waiting; true ends the session
-    std::function<void()> opened = {};  ///< called once when the camera answers
-    /// Between two images that are used: time to move the board.
+    std::function<bool()> stop = {};    ///< polled while waiting; true ends the session
+    std::function<void()> opened = {};  ///< called once when the camera is open
+    /// Least time between two used images, so that the user can move the board.
     double pause_s = 1.0;
-    int most = kMostVideoViews;
+    int most = kMostVideoViews;  ///< number of images at which the session ends
 };
 
-/// Gives the images of a side-by-side camera to `use`, `pause_s` apart by their stamps, until there
-/// are `most` of them or `stop` says so. Frames that bring nothing new are left out.
+/// Passes images of a side-by-side camera to `use` until there are `most` or `stop` returns true.
+/// The stamps of consecutive images differ by at least `pause_s`. Repeated and incomplete frames
+/// are skipped.
 [[nodiscard]] Status for_live_images(std::unique_ptr<io::VideoDevice> device,
                                      const LiveBoards& session,
                                      const std::function<void(BoardImages)>& use);

@@ -14,10 +14,10 @@ using io::testing::FakeCamera;
 using io::testing::FakeEvent;
 using io::testing::FakeVideoDevice;
 
-constexpr int kWidth = 16;  // of one eye
+constexpr int kWidth = 16;  // of one image
 constexpr int kHeight = 8;
 
-/// Frame i: the left eye all of grey i, the right one of grey 100 + i, every 0.4 s.
+/// A frame every 0.4 s. All pixels of frame i have grey i in the left image, 100 + i in the right.
 FakeCamera camera_with(int frames) {
     FakeCamera camera;
     camera.width = 2 * kWidth;
@@ -59,7 +59,7 @@ TEST(LiveBoards, AreAPauseApartAndHaveBothEyes) {
     const Session session = held(camera_with(10), {.address = "/dev/fake@32x8", .most = 3});
     ASSERT_TRUE(session.status) << session.status.error().message;
     ASSERT_EQ(session.images.size(), 3U);
-    // 0.4 s apart: every third frame is the first one after a second.
+    // Frames are 0.4 s apart, so every third frame is the first one after the pause of 1 s.
     for (int i = 0; i < 3; ++i) {
         const BoardImages& images = session.images[static_cast<std::size_t>(i)];
         EXPECT_EQ(images.left.width(), kWidth);

@@ -52,9 +52,9 @@ void LiveSession::pace(double speed) noexcept {
     first_steady_ns_ = 0;
 }
 
-/// When a frame that came now was exposed. What waited in a driver or on the wire is older than its
-/// arrival. A stamp from the future stays one: nobody knows how old its image is, and the gate
-/// refuses it.
+/// Steady time at which a frame that just arrived was exposed. A live camera's stamp is used,
+/// because the frame may have waited in the driver or on the wire. A stamp in the future is kept:
+/// the age of its image is unknown, and the gate refuses such a frame.
 std::int64_t LiveSession::exposed_ns(std::int64_t stamp_ns) const {
     return source_.info().steady_stamps ? stamp_ns : clock_();
 }
@@ -83,7 +83,7 @@ std::optional<StereoFrame> LiveSession::next() {
     return std::move(frame).value();
 }
 
-/// The stamp of the frame that the map took in last.
+/// Publishes a snapshot; returns the stamp of the last frame that updated the map.
 Result<std::int64_t> LiveSession::publish() {
     if (auto status = pipeline_.snapshot(config_hash_, *snapshot_); !status) return status.error();
     const std::int64_t map_time_ns = snapshot_->frame_time_ns;

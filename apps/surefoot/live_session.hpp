@@ -17,13 +17,14 @@
 
 namespace surefoot::app {
 
-/// Steady times of the last frames: what the gate measures ages with. Those of a live camera are
-/// its stamps; the stamps of a recording or a simulation are of another clock, there the arrival
-/// counts.
+/// Maps the stamps of the last 64 frames to the steady clock, with which the gate measures ages.
+/// A live camera stamps its frames with that clock. The stamps of a recording or a simulation come
+/// from another clock, so the arrival time is used for them.
 class Arrivals {
   public:
     void note(std::int64_t stamp_ns, std::int64_t steady_ns) noexcept;
-    /// 0, older than everything, for a stamp that did not come lately.
+    /// Steady time of the frame with this stamp; 0 (older than every frame) if it is not among the
+    /// last ones.
     [[nodiscard]] std::int64_t steady_ns(std::int64_t stamp_ns) const noexcept;
 
   private:
@@ -35,17 +36,19 @@ class Arrivals {
     std::size_t next_ = 0;
 };
 
-/// Drives a pipeline over a source and publishes a snapshot after every frame, until the source
-/// ends, the user interrupts, or the gate asks for a beginning anew. Exchanged eyes are an
-/// error. Keeps nothing of what was.
+/// Runs a pipeline over a source and publishes a map snapshot after every frame.
+///
+/// It ends when the source ends, the user interrupts, or the gate requests a restart. Swapped
+/// cameras are an error. It keeps references to pipeline, source and writer, which must outlive it.
+/// Not thread-safe.
 class LiveSession {
   public:
-    /// Called before each frame of the source is asked for; false ends the session.
+    /// Called before each frame is fetched from the source; false ends the session.
     using BeforeFrame = std::function<bool()>;
-    /// After each frame, when its snapshot is published. `map_time_ns`: stamp of the frame that the
-    /// map took in last.
+    /// Called after the snapshot of a frame is published. `map_time_ns`: stamp of the last frame
+    /// that updated the map, on the clock of the source.
     using AfterFrame = std::function<void(const FrameReport& report, std::int64_t map_time_ns)>;
-    /// Steady time [ns]; tests and experiments bring their own.
+    /// Returns the steady time [ns]; tests and experiments pass their own clock.
     using SteadyClock = std::function<std::int64_t()>;
 
     LiveSession(pipeline::Pipeline& pipeline,
@@ -55,14 +58,14 @@ class LiveSession {
                 SteadyClock clock = steady_now_ns);
 
     enum class End : std::uint8_t { source_ended, stopped, restart_wanted };
-    /// `speed`: recordings are not played faster than that times real time; 0 = as fast as they
-    /// come. A live camera is never made to wait.
+    /// `speed`: upper limit of the playback speed as a multiple of real time; 0 = no limit. Frames
+    /// of a live camera are never delayed.
     [[nodiscard]] Result<End> run(double speed,
                                   const BeforeFrame& before_frame,
                                   const AfterFrame& after_frame = {});
-    /// From the next frame on frames are due at this speed.
+    /// Changes the playback speed from the next frame on.
     void pace(double speed) noexcept;
-    /// The snapshot that was published last.
+    /// The last published snapshot.
     [[nodiscard]] const grid::MapSnapshot& last() const noexcept { return *snapshot_; }
     [[nodiscard]] std::uint64_t published() const noexcept { return published_; }
 

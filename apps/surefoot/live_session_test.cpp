@@ -28,9 +28,9 @@ GreyImage noise(std::uint64_t seed) {
     return image;
 }
 
-/// A machine that stands on level ground; what its camera shows is not looked at but for being new.
-/// After `kGoodFrames` the images are repeated, or half of the left one is that of the last good
-/// frame.
+/// The camera of a machine that stands on level ground. Depth is given, so the images (noise) only
+/// decide whether a frame is new and whole. After `kGoodFrames` frames the images repeat or, with
+/// `tears`, the upper half of the left image comes from the last good frame.
 class FailingCamera final : public camera::FrameSource {
   public:
     explicit FailingCamera(bool tears, bool steady_stamps = false) : tears_(tears) {
@@ -125,7 +125,7 @@ TEST(LiveSessionAges, ThoseOfALiveCameraCountFromItsStamps) {
     }
 }
 
-/// Somebody paused a recording: what comes afterwards is not hurried to make up for it.
+/// Playback after a pause keeps its speed; it does not catch up the time of the pause.
 TEST(LiveSessionPace, BeginsAnewAfterAPause) {
     constexpr int kPausedAt = 9;
     constexpr double kSpeed = 20.0;
@@ -149,7 +149,7 @@ TEST(LiveSessionPace, BeginsAnewAfterAPause) {
     });
     std::filesystem::remove(path);
     ASSERT_TRUE(end.ok()) << end.error().message;
-    // The first frame after the pause comes at once, the others at their distances.
+    // The first frame after the pause comes at once, the others at their usual intervals.
     EXPECT_GE(steady_now_ns() - resumed_ns,
               static_cast<std::int64_t>((kFrames - kPausedAt - 1) * kPeriod_ns / kSpeed));
 }

@@ -24,7 +24,8 @@ spdlog::logger& logger() {
     return *instance;
 }
 
-// What the call has said so far: main answers for a verb that failed without an object.
+// State of this call. If a verb fails without printing its JSON object, main prints one with the
+// first error.
 bool has_answered = false;
 std::string first_error_sentence;
 
@@ -38,8 +39,8 @@ bool answered() noexcept {
     return has_answered;
 }
 
-// What was printed before comes before, also where stdout is a pipe or a file: an error that is
-// followed by a line of results would read as if it were mended.
+// Each function flushes stdout first, so that earlier results appear before the message even if
+// stdout is a pipe or a file. Results after an error message would look like a recovery.
 void log_info(const std::string& message) {
     std::fflush(stdout);
     logger().info(message);

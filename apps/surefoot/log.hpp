@@ -7,23 +7,24 @@
 
 namespace surefoot::app {
 
-/// The one JSON object of a call with --json, on stdout.
+/// Prints the JSON object of a call with --json on stdout. A call prints exactly one.
 void print_answer(const std::string& json_object);
-/// Whether the call has answered already.
+/// True after print_answer was called.
 [[nodiscard]] bool answered() noexcept;
 
-/// Lines on stderr; results go to stdout or into files.
+// These functions print a line on stderr. Results go to stdout or into files.
 void log_info(const std::string& message);
 void log_warning(const std::string& message);
 void log_error(const std::string& message);
 
-/// The first sentence that log_error was given; empty when nothing failed.
+/// The first message that log_error printed; empty if there was none.
 [[nodiscard]] const std::string& first_error() noexcept;
 
-/// Writes what stdout still holds. A failure of any earlier print counts: the answer is not whole.
+/// Flushes stdout. Returns an error if this or any earlier write to stdout failed, because the
+/// answer is then incomplete.
 [[nodiscard]] Status close_stdout();
 
-/// Logs the error and returns the exit code that belongs to it.
+/// Logs the error and returns the exit code for its kind.
 [[nodiscard]] int report(const Error& error);
 
 }  // namespace surefoot::app
