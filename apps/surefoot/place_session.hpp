@@ -14,8 +14,8 @@ namespace surefoot::app {
 /// Result of place recognition in a run, for report.json.
 struct PlaceRecord {
     std::string file;
-    int saved_keyframes =
-        0;  ///< keyframes read from the file; 0 = the run starts a new place database
+    /// Keyframes read from the file; 0 = the run starts a new place database.
+    int saved_keyframes = 0;
     int own_keyframes = 0;   ///< keyframes that this run made
     int kept_keyframes = 0;  ///< keyframes in the file after the run
     std::array<int, places::kRefusals>

@@ -106,12 +106,12 @@ int ground(const GroundOptions& options);
 struct GateOptions {
     CommonOptions common;
     std::string map_dir;
-    std::string pose;     ///< x,y,yaw
+    std::string pose;     ///< base_link in odom: "x,y,yaw" [m, rad]
     std::string command;  ///< a joystick code
     std::string machine = "rex";
     std::string explain_file;
-    double vouch_radius_m =
-        -1.0;  ///< attested area around base_link; < 0 = as far as the standing feet reach
+    /// Attested area around base_link; < 0 = as far as the standing feet reach.
+    double vouch_radius_m = -1.0;
     std::string audit_dir;  ///< audit log to which the verdict is added; empty = no log
 };
 /// `surefoot gate`: asks the gate about one movement on a saved map. The exit code is the verdict.
@@ -123,8 +123,8 @@ struct ServeOptions {
     std::string source;
     std::string rig_file;
     std::string machine = "rex";
-    std::string
-        model;  ///< file or built-in name; empty = the built-in model with the name of the machine
+    /// File or built-in name; empty = the built-in model with the name of the machine.
+    std::string model;
     double rate_hz = 0.0;
     int max_frames = 0;
     /// Playback speed relative to real time; 0 = unpaced. Empty = 1 for recordings and with
@@ -142,21 +142,21 @@ struct ServeOptions {
     bool assured = false;  ///< the gate never answers OK while it cannot write the audit log
     int max_rate_hz = 0;   ///< largest message rate of one client; 0 = default of the gate
     int audit_mb = 0;      ///< largest size of the audit folder [MB]; 0 = default of the gate
-    double vouch_radius_m =
-        0.0;                ///< radius of the operator attestation at the start; 0 = no attestation
+    /// Radius of the operator attestation at the start; 0 = no attestation.
+    double vouch_radius_m = 0.0;
     std::string walk;       ///< joystick codes for a simulated REX; empty = no scripted walk
     bool joystick = false;  ///< a web page steers a simulated REX
     std::string out_dir;    ///< folder for a picture of each requested movement
     std::string channel;    ///< map channel in shared memory; empty = a new file
-    std::string
-        channel_key;    ///< file with the key of the map channel; empty = a new key at every start
-    int niceness = 10;  ///< process niceness of perception, so that the gate answers in time
+    /// File with the key of the map channel; empty = a new key at every start.
+    std::string channel_key;
+    int niceness = 10;     ///< process niceness of perception, so that the gate answers in time
     int page_port = 8080;  ///< TCP port of the live page; 0 = any free port
-    std::vector<std::string>
-        foxglove_origins;  ///< web origins of Foxglove that may read but not steer
+    /// Web origins of Foxglove that may read but not steer.
+    std::vector<std::string> foxglove_origins;
     bool no_page = false;
-    std::string
-        record_dir;     ///< pages may start recordings in new folders below it; empty = not allowed
+    /// Pages may start recordings in new folders below it; empty = not allowed.
+    std::string record_dir;
     bool once = false;  ///< exit when the source or the walk ends
 };
 /// `surefoot serve`: runs perception on a source and starts the gate process beside it.
@@ -193,8 +193,8 @@ struct EvalTrajectoryOptions {
     std::string align = "se3";
     double rate_hz = 0.0;
     std::string times_file;  ///< time stamps of KITTI poses; optional
-    std::vector<double>
-        lengths_m;  ///< path lengths for relative errors; empty = 0.1, 0.5, 1, 2, 5 m
+    /// Path lengths for relative errors; empty = 0.1, 0.5, 1, 2, 5 m.
+    std::vector<double> lengths_m;
     std::string plot_file;
 };
 /// `surefoot eval trajectory`: absolute error, relative error and drift of a trajectory.
@@ -242,10 +242,10 @@ int depth(const DepthOptions& options);
 struct DepthAccuracyOptions {
     CommonOptions common;
     std::string rig = "zed_vga";      ///< file or built-in name
-    std::vector<double> distances_m;  ///< empty = the usual
+    std::vector<double> distances_m;  ///< empty = the default distances
     int repeats = 3;  ///< rendered images per distance, each with its own texture and noise
-    std::string
-        pairs_file;        ///< real images instead of rendered ones: lines "LEFT RIGHT DISTANCE_M"
+    /// Real images instead of rendered ones: lines "LEFT RIGHT DISTANCE_M".
+    std::string pairs_file;
     double board_m = 0.6;  ///< side of the square textured board
     std::string out_dir;
     bool design = false;      ///< compute the smallest resolvable height from the fields below
@@ -336,8 +336,8 @@ struct StairsOptions {
     CommonOptions common;
     std::string map;      ///< .asc, .png, a cloud, or the folder of a run
     std::string out_dir;  ///< empty = no files are written
-    std::string
-        from;  ///< standing position "x,y" [m]; empty = chosen from the map, see load_terrain()
+    /// Standing position "x,y" [m]; empty = chosen from the map, see load_terrain().
+    std::string from;
     double scale_m_per_px = 0.0;
     double height_m = 0.0;
     double resolution_m = 0.025;       ///< cell size for a cloud
