@@ -20,7 +20,8 @@ struct Workload {
     std::string name;
     int repeats = 1;  ///< repetitions for a stable time within a second or two
     Prepare prepare;
-    Prepare prepare_plain = {};  ///< same job without optimisation, for comparison; may be empty
+    /// Same job by the reference implementation (Way::plain); may be empty.
+    Prepare prepare_plain = {};
     int queries = 1;  ///< queries per call; a single query is shorter than the clock resolution
 };
 
