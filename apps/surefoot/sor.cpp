@@ -35,7 +35,7 @@ io::PointCloud kept_of(const io::PointCloud& block, const std::vector<char>& kee
     return kept;
 }
 
-/// What was written, and what the output does not hold of the input.
+/// Number of written points, and the properties of the input that the output lacks.
 struct Written {
     std::int64_t points = 0;
     std::vector<std::string> notes;

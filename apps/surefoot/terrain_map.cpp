@@ -139,7 +139,7 @@ Status read_optional_layers(const std::string& folder, TerrainMap& map) {
 }
 
 Result<TerrainMap> from_folder(const std::string& folder) {
-    // What the map keeps of the ground; a run writes it beside what is to be shown.
+    // ground.asc holds the ground heights of the map; elevation.asc of a run is for display.
     const std::string ground_file = io::join_path(folder, "ground.asc");
     const std::string height_file =
         io::is_file(ground_file) ? ground_file : io::join_path(folder, "elevation.asc");

@@ -315,7 +315,7 @@ struct EvalCloudsOptions {
     std::string compared;
     std::string method = "c2c";
     std::string cores;        ///< core points of M3C2; empty = all reference points
-    std::string values_file;  ///< empty = none
+    std::string values_file;  ///< one line per compared or core point; empty = not written
     std::string out_dir;      ///< pictures and a coloured cloud; empty = not written
 };
 /// `surefoot eval clouds`: distances between two clouds by C2C or M3C2.
@@ -403,6 +403,8 @@ struct DoctorOptions {
     std::string rig_file;
     std::string machine;
 };
+/// `surefoot doctor`: lists missing parts of the installation, or the blind zone of a rig on a
+/// machine.
 int doctor(const DoctorOptions& options);
 
 struct BenchOptions {
