@@ -18,8 +18,8 @@ struct PlaceRecord {
     int saved_keyframes = 0;
     int own_keyframes = 0;   ///< keyframes that this run made
     int kept_keyframes = 0;  ///< keyframes in the file after the run
-    std::array<int, places::kRefusals>
-        refusals{};  ///< number of keyframes by result of the recognition
+    /// Number of keyframes by result of the recognition.
+    std::array<int, places::kRefusals> refusals{};
     std::optional<std::int64_t> recognised_ns;  ///< time of the first T_map_odom
     std::optional<Pose> T_map_odom;             ///< at the end of the run
     std::string left_as_it_was;  ///< reason why the file was not written; empty = it was written

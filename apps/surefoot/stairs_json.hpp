@@ -44,9 +44,8 @@ struct StairsContext {
 /// measures only.
 struct ListedFeatures {
     stairs::TerrainFeatures features;
-    std::set<std::string>
-        /// Names of the lists in the file; a missing list makes no statement about its kind.
-        lists;
+    /// Names of the lists in the file; a missing list makes no statement about its kind.
+    std::set<std::string> lists;
 };
 
 /// Reads stairs.json or a hand-written file of true features. Each object needs `pose` (edges:

@@ -353,8 +353,8 @@ struct EvalSuiteOptions {
     std::string machine = "rex";
     std::string camera = "zed";       ///< one of sim::kCameraProfileNames
     std::vector<std::string> scenes;  ///< empty = all
-    std::vector<std::string> carriers = {
-        "scene"};                            ///< motion models: names of sim::kCarriedByNames
+    /// Motion models: names of sim::kCarriedByNames.
+    std::vector<std::string> carriers = {"scene"};
     int seeds = 1;                           ///< variants of each scene
     std::vector<double> noise = {1.0, 2.0};  ///< factors on the noise amplitude of the camera
     bool quick = false;
