@@ -10,14 +10,14 @@
 
 namespace surefoot::app {
 
-/// Fills in the angles of the machine's joints at a time of the source's clock, or nothing where
-/// they are not known then. Whoever knows the joints of a real machine, over whatever wire, is such
-/// a function too: frames need not carry what the map has no use for.
+/// Writes the joint angles of the machine at a time of the source's clock. Leaves the vector empty
+/// if the angles are not known at that time. An integration with a real machine supplies its own
+/// function.
 using JointsAt = std::function<void(std::int64_t time_ns, std::vector<float>& joints_rad)>;
 
-/// Angles of the model's moving joints, in their order, where the source knows all of them: a
-/// simulated REX, and a model with its joints' names. Else an empty function. The source must
-/// outlive the answer.
+/// Returns a function that gives the angles of the moving joints, in the order of the model. It
+/// works only for a simulated REX and a model with the joint names of the REX; otherwise the
+/// returned function is empty. The source must outlive the returned function.
 [[nodiscard]] JointsAt joints_of(const camera::FrameSource& source, const io::MachineModel& model);
 
 }  // namespace surefoot::app

@@ -32,7 +32,7 @@ TEST(MachineJoints, come_in_the_order_of_the_model) {
     std::vector<float> joints_rad;
     const std::int64_t time_ns = source->truth().trajectory[60].time_ns;
     joints_at(time_ns, joints_rad);
-    joints_at(time_ns, joints_rad);  // it fills, it does not add
+    joints_at(time_ns, joints_rad);  // must replace the content, not append to it
     const auto moving = model.moving_joints();
     ASSERT_EQ(joints_rad.size(), moving.size());
     const auto knee = std::find_if(moving.begin(), moving.end(), [](const io::ModelJoint* joint) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line: only here is CLI11 included (it costs ten seconds a translation unit).
+// The command line. Only this file includes CLI11, because CLI11 adds ten seconds of compile time
+// to a translation unit.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -18,7 +19,8 @@
 namespace surefoot::app {
 namespace {
 
-/// NaN compares as no less than any limit, and infinity as positive.
+/// CLI11's own range checks are not enough: they accept NaN in CLI::Range and infinity in
+/// CLI::PositiveNumber.
 CLI::Validator finite_number() {
     return {[](const std::string& text) {
                 double value = 0.0;
@@ -60,7 +62,7 @@ void add_common(CLI::App* verb, CommonOptions& common) {
         "--seed", common.seed, "seed of simulated scenes, the only thing that is random");
 }
 
-/// How recordings of other people are read.
+/// Adds the options that control how recordings of other programs are read.
 void add_reading(CLI::App* verb, ReadingOptions& reading) {
     verb->add_option("--pair-tolerance",
                      reading.pair_tolerance_s,
@@ -88,8 +90,8 @@ void add_skip_broken(CLI::App* verb, ReadingOptions& reading) {
         "ending at the first");
 }
 
-/// Which settings a verb reads. For those that read none --config, --set and --preset are still
-/// checked, so that one call serves all verbs, and the user is told that they change nothing here.
+/// Which settings a verb reads. A verb without settings still checks --config, --set and --preset,
+/// so that the same options work with every verb, and warns that they have no effect.
 enum class Reads { settings, own_settings, no_settings };
 
 int check_settings(const CommonOptions& common, const std::string& verb, Reads reads) {
@@ -1098,7 +1100,8 @@ void add_urdf(CLI::App& app, UrdfOptions& o, int& exit_code) {
                           urdf,
                           exit_code,
                           Reads::no_settings);
-    verb->add_option("model", o.model, "model file (docs/reference/model_file.md), or a built-in name")
+    verb->add_option(
+            "model", o.model, "model file (docs/reference/model_file.md), or a built-in name")
         ->required()
         ->type_name("FILE|NAME");
     verb->add_option("--out", o.out_file, "the URDF; without it stdout has it")->type_name("FILE");
@@ -1326,18 +1329,19 @@ void add_rest(CLI::App& app, AllOptions& all, int& exit_code) {
     info_verb->add_option("--rig", all.info.rig_file, "calibration")->type_name("FILE");
 }
 
-/// The verb of this call that was understood last: `eval maps`, not `eval`.
+/// The innermost verb of this call: `eval maps`, not `eval`.
 const CLI::App& verb_of_call(const CLI::App& app) {
     const auto verbs = app.get_subcommands();
     return verbs.empty() ? app : verb_of_call(*verbs.front());
 }
 
-/// A wrong call in one sentence: what nobody took is a mistyped verb, or an option of the verb
-/// before it; all else CLI11 names well enough.
+/// Describes a wrong call in one sentence. The first unparsed word is a misspelled option if it
+/// starts with '-', otherwise a misspelled verb. For all other errors the text of CLI11 is clear
+/// enough.
 std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App& verb = verb_of_call(app);
     std::vector<std::string> words = app.remaining(true);
-    std::erase(words, "--json");  // is no mistake: `eval --json` lacks its verb
+    std::erase(words, "--json");  // --json is not the mistake: `eval --json` lacks a verb
     if (words.empty()) return error.what();
     const std::string word = words.front().substr(0, words.front().find('='));
     std::vector<std::string> names;
@@ -1353,8 +1357,9 @@ std::string sentence_of(const CLI::App& app, const CLI::ParseError& error) {
     return fmt::format("there is no verb '{}'{}", word, did_you_mean(word, names));
 }
 
-/// --help and --version are successes; everything else is a wrong call, told in one sentence. A
-/// wrong call of `gate` must not look like permission, and 2 does not.
+/// Handles the end of parsing. --help and --version succeed; every other case is a wrong call with
+/// a one-sentence error. A wrong call of `gate` must not look like permission, so it returns
+/// kExitUsage.
 int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const std::string name = verb_of_call(app).get_name();
@@ -1364,8 +1369,9 @@ int end_of_parsing(const CLI::App& app, const CLI::ParseError& error) {
     return kExitUsage;
 }
 
-/// With --json every call prints one object: where the verb had nothing to tell, its error. That of
-/// the gate is a verdict, so that nobody reads a missing one as permission.
+/// With --json every call prints exactly one object. If the verb failed without printing a result,
+/// this function prints the error. For `gate` it prints a verdict, so that a missing verdict cannot
+/// be read as permission.
 int answer_failure(const CLI::App& app, bool json, int exit_code) {
     if (!json || exit_code == kExitOk || answered()) return exit_code;
     const bool asks_gate = app.got_subcommand("gate");
@@ -1382,7 +1388,7 @@ bool wants_json(int argc, char** argv) {
 }  // namespace
 
 int main_with_arguments(int argc, char** argv) {
-    cv::setNumThreads(1);  // threads are the executor's alone
+    cv::setNumThreads(1);  // only the executor creates threads
     CLI::App app{"surefoot: is it safe to step there?"};
     app.set_version_flag("--version", SUREFOOT_VERSION);
     app.require_subcommand(1);
@@ -1421,7 +1427,7 @@ int main_with_arguments(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         exit_code = end_of_parsing(app, error);
     } catch (const std::exception& error) {
-        const bool is_output = std::ferror(stdout) != 0;  // fmt throws where stdout takes no more
+        const bool is_output = std::ferror(stdout) != 0;  // fmt throws if writing to stdout fails
         log_error(std::string(is_output ? "stdout: " : "internal error: ") + error.what());
         exit_code = kExitFailed;
     }

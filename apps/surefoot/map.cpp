@@ -28,7 +28,7 @@ void warn_of_skipped(const io::MapFile& map, const std::string& file) {
     }
 }
 
-/// Horizontal [m], vertical [m] and angular [deg] sigma as a covariance.
+/// Reads a horizontal [m], vertical [m] and angular [deg] sigma as a covariance.
 Result<Matrix6> motion_covariance(const std::string& text) {
     const auto sigma = parse_three_numbers(
         "--motion-sigma", text, "horizontal and vertical in metres, angle in degrees");
@@ -42,7 +42,8 @@ Result<Matrix6> motion_covariance(const std::string& text) {
     return Matrix6(sigmas.cwiseAbs2().asDiagonal());
 }
 
-/// The older map pays for the way to the younger one's pose.
+/// Increases the variances of the older map by the uncertainty of the motion to the pose of the
+/// younger map.
 Status pay_for_the_way(const Matrix6& covariance,
                        const MapMergeOptions& options,
                        grid::MapRegion& first,

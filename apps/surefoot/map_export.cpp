@@ -20,10 +20,10 @@
 namespace surefoot::app {
 namespace {
 
-/// A layer as floats, which is what grids and clouds of other programs hold.
+/// A layer as floats, the type of grids and clouds in other programs.
 struct FloatLayer {
-    std::string name;    ///< of the file
-    std::string scalar;  ///< of the cloud: with the unit
+    std::string name;    ///< name in the file name
+    std::string scalar;  ///< name in the cloud, with unit
     grid::Layer values;
 };
 
@@ -35,11 +35,12 @@ grid::Layer of_known_cells(const grid::MapRegion& region, const F& value_of) {
     return out;
 }
 
-/// Seconds from the last sighting to the map's stamp: a float does not hold a time in nanoseconds.
+/// Seconds from the last observation to the stamp of the map. A float cannot hold a time in
+/// nanoseconds.
 FloatLayer age_of(const grid::MapRegion& region) {
     return {"age", "age_s", of_known_cells(region, [&](std::size_t i) {
                 const std::int64_t seen_ns = region.seen_ns.data()[i];
-                if (seen_ns == 0) return std::nanf("");  // never, in this run
+                if (seen_ns == 0) return std::nanf("");  // never observed in this run
                 return static_cast<float>(
                     1e-9 * (static_cast<double>(region.stamp_ns) - static_cast<double>(seen_ns)));
             })};
@@ -61,7 +62,7 @@ std::vector<FloatLayer> float_layers(const grid::MapRegion& region) {
     return layers;
 }
 
-/// One point per known cell, with every layer but the elevation, which is its z.
+/// One point per known cell. The elevation is z; every other layer is a scalar.
 io::PointCloud cloud_of(const grid::MapRegion& region, const std::vector<FloatLayer>& layers) {
     const grid::GridGeometry geometry = region.geometry();
     io::PointCloud cloud;
@@ -83,7 +84,7 @@ io::PointCloud cloud_of(const grid::MapRegion& region, const std::vector<FloatLa
     return cloud;
 }
 
-/// Tries every file and remembers those that were written.
+/// Attempts to write every file and records the names of the written files.
 struct Export {
     std::string folder;
     Writes writes;

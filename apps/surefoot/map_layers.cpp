@@ -13,7 +13,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Variances are shown as sigmas.
+/// Converts the variance layer to standard deviations for display.
 grid::Layer shown(const NamedLayer& layer) {
     grid::Layer values = layer.values;
     if (std::string_view(layer.name) != "variance") return values;
@@ -26,7 +26,7 @@ bool is_height(std::string_view name) {
            name == "upper_bound";
 }
 
-/// 1 = safe, 0 = shown to be unsafe, 0.5 = cannot be told or not be reached, NaN = unknown.
+/// 1 = safe, 0 = proven unsafe, 0.5 = undecided or unreachable, NaN = unknown.
 grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
     using traversability::Foothold;
     const Image<Foothold> holds = pipeline.footholds();
@@ -40,7 +40,7 @@ grid::Layer foothold_layer(const pipeline::Pipeline& pipeline) {
     return layer;
 }
 
-/// How far the ratings can be trusted.
+/// Confidence of the ratings.
 traversability::ConfidenceLayers rating_confidence(const pipeline::Pipeline& pipeline) {
     const auto& map = pipeline.map().layers();
     const grid::Layer surface_m = pipeline.surface_m();

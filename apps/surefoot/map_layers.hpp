@@ -9,18 +9,18 @@
 
 namespace surefoot::app {
 
-/// A layer by its name in files.
+/// A layer and its name in files.
 struct NamedLayer {
     const char* name;
     grid::Layer values;
 };
 
-/// Every layer of a map and of its rating, heights' bounds included; unknown where nothing has
-/// filled one yet. In the order in which they are read.
+/// All layers of the map and of its rating, with the height bounds, in display order. A layer that
+/// was never computed has only unknown cells.
 [[nodiscard]] std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline);
 
-/// PNG of all of them, `columns` side by side; heights share the range of the elevation, so that
-/// their colours can be compared.
+/// PNG that shows all layers, `columns` side by side. All height layers use the value range of the
+/// elevation, so that their colours can be compared.
 [[nodiscard]] std::vector<std::uint8_t> layer_sheet_png(const grid::GridGeometry& geometry,
                                                         std::span<const NamedLayer> layers,
                                                         double safe_threshold,

@@ -16,7 +16,8 @@
 namespace surefoot::app {
 namespace {
 
-/// Where the door is, counted from the shift; the floor is the lowest level.
+/// Reads the position of the door, relative to the shift of the cloud. The lowest level is the
+/// floor.
 Result<eval::DoorPlace> parse_door(const std::string& text,
                                    const eval::HeightHistogram& heights,
                                    const Eigen::Vector3d& shift_m) {
@@ -31,7 +32,7 @@ Result<eval::DoorPlace> parse_door(const std::string& text,
                            heights.levels.front().height_m};
 }
 
-/// Only what lies in a box from above counts.
+/// Keeps only the points inside a box in the x-y plane.
 Status keep_box(const std::string& text, io::ShiftedCloud& cloud) {
     if (text.empty()) return {};
     const auto numbers = parse_four_numbers("--box", text, "x0,y0,x1,y1 (m)");

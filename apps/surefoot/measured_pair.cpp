@@ -13,12 +13,13 @@
 namespace surefoot::app {
 namespace {
 
-/// Corners are looked for as far as the matcher looks, but at most this far: the time grows with
-/// it.
+/// Largest disparity of the corner search, to limit its run time. Below this value the search uses
+/// the disparity range of the matcher.
 constexpr int kMaxCornerDisparity_px = 256;
-/// Raw images of real rigs differ by tens of rows.
+/// Rows to search up and down: unrectified images of real rigs differ by tens of rows.
 constexpr int kFarRows_px = 32;
-/// Above this median row difference a matcher that looks along rows loses accuracy and matches.
+/// Largest acceptable median row difference. Above it, a matcher that searches along rows loses
+/// accuracy and matches.
 constexpr double kMaxRowError_px = 0.5;
 
 std::string size_text(const GreyImage& image) {

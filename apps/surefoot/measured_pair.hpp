@@ -12,45 +12,45 @@
 
 namespace surefoot::app {
 
-/// Depth of one pair of images, and how well they fit together.
+/// Depth of one pair of images, and the check of the rectification.
 struct MeasuredPair {
     camera::RectifiedPair pair;
-    std::optional<camera::RectifiedRig> rig;  ///< nothing: the pair came rectified, without a rig
+    std::optional<camera::RectifiedRig> rig;  ///< empty = the input pair was already rectified
     DepthImage depth;
     stereo::PairCheck check;
 };
 
-/// Matches whose outlier probability is above this are shown, but no point and no figure counts
-/// them.
+/// Matches with a larger outlier probability are drawn, but do not become points and do not count
+/// in the figures.
 inline constexpr float kTrustedOutlierProbability = 0.5F;
 
-/// Rectifies with the rig, where there is one, and matches as the pipeline does. Input errors:
-/// sizes that differ or do not fit the rig, images smaller than what the matcher looks at,
-/// exchanged eyes.
+/// Rectifies the frame if a rig is given, and matches it as the pipeline does. Input errors: the
+/// image sizes differ or do not fit the rig, the images are not wider than the disparity range, or
+/// the cameras are swapped.
 [[nodiscard]] Result<MeasuredPair> measure_pair(const StereoFrame& frame,
                                                 const std::optional<camera::StereoRig>& rig,
                                                 const pipeline::PipelineConfig& config,
                                                 Executor& executor);
-/// The same of two image files, which the errors name.
+/// Same as measure_pair(), for two image files. The errors name the files.
 [[nodiscard]] Result<MeasuredPair> measure_files(const std::string& left,
                                                  const std::string& right,
                                                  const std::optional<camera::StereoRig>& rig,
                                                  const pipeline::PipelineConfig& config,
                                                  Executor& executor);
 
-/// How well a rectified pair fits together. Looks farther up and down, which takes its time, only
-/// where a few rows do not suffice.
+/// Compares the rows of corresponding corners in a rectified pair. Searches a few rows first;
+/// searches more rows, which takes longer, only if too few corners matched.
 [[nodiscard]] stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities);
-/// An error where left and right are exchanged.
+/// Input error if the left and the right camera are swapped.
 [[nodiscard]] Status refuse_exchanged(const stereo::PairCheck& check);
-/// What is wrong with the rows, in words; empty where nothing is.
+/// Describes a row error of the pair; empty if the rows agree.
 [[nodiscard]] std::string row_problem(const stereo::PairCheck& check, bool has_rig);
 
-/// Share of pixels with a match [%], and the median sigma of the trusted ones [px].
+/// Density and precision of a depth image.
 struct PairFigures {
-    double density_percent = 0.0;
-    double trusted_percent = 0.0;
-    double median_sigma_px = 0.0;  ///< NaN without one
+    double density_percent = 0.0;  ///< pixels with a match
+    double trusted_percent = 0.0;  ///< pixels with a match of low outlier probability
+    double median_sigma_px = 0.0;  ///< of the trusted matches; NaN if there are no trusted matches
 };
 [[nodiscard]] PairFigures figures_of(const DepthImage& depth);
 

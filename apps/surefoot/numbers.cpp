@@ -10,7 +10,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Exactly N finite numbers with commas between; `count` is N as a word.
+/// Reads exactly N finite numbers separated by commas. `count` is N as a word.
 template <std::size_t N>
 Result<std::array<double, N>> parse_numbers(const std::string& option,
                                             const std::string& text,

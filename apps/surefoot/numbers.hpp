@@ -8,17 +8,18 @@
 
 namespace surefoot::app {
 
-/// Three finite numbers "a,b,c" of an option; the usage error names the option and what it means.
+/// Reads three finite numbers "a,b,c" from the text of an option. The usage error names the option
+/// and the meaning of the numbers.
 [[nodiscard]] Result<std::array<double, 3>> parse_three_numbers(const std::string& option,
                                                                 const std::string& text,
                                                                 const std::string& meaning);
 
-/// Four of them, "a,b,c,d".
+/// Same for four numbers "a,b,c,d".
 [[nodiscard]] Result<std::array<double, 4>> parse_four_numbers(const std::string& option,
                                                                const std::string& text,
                                                                const std::string& meaning);
 
-/// Two of them, "a,b".
+/// Same for two numbers "a,b".
 [[nodiscard]] Result<std::array<double, 2>> parse_two_numbers(const std::string& option,
                                                               const std::string& text,
                                                               const std::string& meaning);

@@ -120,13 +120,13 @@ Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
     area.active = true;
     area.center_x_tenth_mm = query.x_tenth_mm;
     area.center_y_tenth_mm = query.y_tenth_mm;
-    // Cells count only when they lie wholly inside: one diagonal more than the feet reach.
+    // Only cells that lie wholly inside the area count, so the radius is one cell diagonal larger
+    // than the reach of the feet.
     const double feet_m = kTenthMm_m * (reach_of(machine) + 1.5 * map.resolution_tenth_mm);
     // in range: at most limit_m, or what the feet of a machine reach
     area.radius_tenth_mm = static_cast<std::int32_t>(
         (radius_m < 0.0 ? std::min(feet_m, limit_m) : radius_m) / kTenthMm_m);
-    // The machine stands on the lower ground around it, not on the furniture beside it: lower
-    // quartile.
+    // Lower quartile: the machine stands on the lower ground around it, not on furniture beside it.
     const auto heights = heights_around(query, map, area.radius_tenth_mm);
     if (!heights.empty())
         area.height_tenth_mm = static_cast<std::int32_t>(heights[heights.size() / 4]);

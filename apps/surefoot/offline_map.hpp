@@ -13,31 +13,32 @@
 
 namespace surefoot::app {
 
-/// A map from a folder, and what had to be assumed to use it.
+/// A map from a folder, and the assumptions that were necessary to use it.
 struct OfflineMap {
     std::unique_ptr<grid::MapSnapshot> snapshot;
     std::vector<std::string> assumed;
 };
 
-/// map.snapshot of a run, else elevation.asc with variance.asc.
+/// Reads map.snapshot of a run. If there is no such file, reads elevation.asc with variance.asc.
 [[nodiscard]] Result<OfflineMap> load_offline_map(const std::string& folder);
 
-/// An operator's word for the ground around base_link, at the height that the map gives there. A
-/// negative radius means as far as the present feet reach. Adds a sentence to `assumed`; a
-/// usage error when the radius exceeds what the machine file allows.
+/// Makes an operator attestation for the ground around base_link, at the height of the known cells
+/// there. A negative radius means: as far as the standing feet reach. Adds a sentence to `assumed`.
+/// Usage error if the radius exceeds the limit of the machine file.
 [[nodiscard]] Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
                                                         const gate::Query& query,
                                                         const grid::MapSnapshot& map,
                                                         double radius_m,
                                                         std::vector<std::string>& assumed);
 
-/// What a gate is told offline beside map and question: it is ready, and asked right after the last
-/// thing that the run did; an old depth frame stays old.
+/// Inputs of the gate besides map and query when it runs offline. The gate state is `ready`. The
+/// time is the latest stamp of the map, so an old depth frame still counts as old.
 struct OfflineMoment {
     gate::GateHealth health{gate::GateState::ready, {}};
     std::int64_t now_ns = 0;
 };
 [[nodiscard]] OfflineMoment moment_of(const grid::MapSnapshot& map);
+/// Runs gate::decide() with moment_of(map).
 [[nodiscard]] gate::Verdict decide_offline(const Machine& machine,
                                            const gate::Query& query,
                                            const grid::MapSnapshot& map);

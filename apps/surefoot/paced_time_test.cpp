@@ -14,7 +14,8 @@ TEST(PacedTime, AnySpeedGivesATimeThatAClockCanAdd) {
     EXPECT_EQ(paced_ns(1'000'000'000, 4.0), 250'000'000);
     EXPECT_EQ(paced_ns(-1'000'000'000, 0.5), -2'000'000'000);
     EXPECT_EQ(paced_ns(1'000'000'000, std::numeric_limits<double>::infinity()), 0);
-    // The conversion of a number beyond all integers gave the smallest one: due long ago.
+    // Without the limit, the conversion of a too large number gives the smallest integer: a frame
+    // that was due long ago.
     for (const double slow : {1e-9, 1e-300, std::numeric_limits<double>::denorm_min()}) {
         EXPECT_GT(paced_ns(1'000'000'000'000, slow), std::int64_t{3'000'000'000} * 1'000'000'000);
         EXPECT_LT(paced_ns(-1'000'000'000'000, slow), 0);

@@ -20,7 +20,7 @@ constexpr double kStairs_hz = 3.0;
 constexpr std::size_t kRateFrames = 30;
 constexpr std::size_t kMedianFrames = 64;
 
-/// Layers that cost nothing but a copy.
+/// Layers that need only a copy, no computation.
 constexpr std::array kLayerNames{
     "elevation", "variance", "traversability", "slope", "step", "roughness"};
 std::array<grid::Layer, kLayerNames.size()> layers_of(const pipeline::Pipeline& pipeline) {
@@ -43,7 +43,7 @@ const char* kind_of(const camera::SourceInfo& info) {
     return info.steady_stamps ? "live" : "recording";
 }
 
-/// True when it is time again, and then not before a period has passed.
+/// True if `due_ns` has passed; then sets `due_ns` one period later.
 bool is_due(std::int64_t now_ns, double rate_hz, std::int64_t& due_ns) {
     if (now_ns < due_ns) return false;
     // in range: a page cannot wish for less than PageWish::kSlowest_hz
@@ -57,8 +57,8 @@ double median(std::deque<double> values) {
     return *middle;
 }
 
-/// What of a map is shown: all of it, of a large one the blocks around what is known, so that the
-/// picture does not change its size with every cell.
+/// The part of a map that is shown: all of a small map, or the 64 x 64 cell blocks around the known
+/// cells of a large map. Whole blocks keep the size of the picture stable while cells are added.
 eval::ShownPart shown_part(const grid::GridGeometry& geometry, const grid::Layer& height_m) {
     constexpr int kLarge = 512;
     constexpr int kBlock = 64;
@@ -78,7 +78,7 @@ eval::ShownPart shown_part(const grid::GridGeometry& geometry, const grid::Layer
             y_end = iy + 1;
         }
     }
-    if (x == nx) x = y = 0;  // nothing is known: the first block
+    if (x == nx) x = y = 0;  // no known cell: show the first block
     const auto down = [](int first) { return first / kBlock * kBlock; };
     const auto up = [](int end) { return (end + kBlock - 1) / kBlock * kBlock; };
     eval::ShownPart part{geometry, down(x), down(y)};
@@ -184,7 +184,8 @@ void PageTelemetry::fill_status(const FrameReport& report, page::PageStatus& sta
     }
 }
 
-/// What costs a copy: only while somebody wants it, and no more often than anybody is sent it.
+/// Copies images, layers and features, only if a page wants them and not faster than pages are
+/// served.
 void PageTelemetry::fill_extras(const pipeline::Pipeline& pipeline,
                                 const FrameReport& report,
                                 std::uint64_t map_version,
@@ -236,7 +237,7 @@ void PageTelemetry::tell_the_end(const pipeline::Pipeline& pipeline) {
 }
 
 void PageTelemetry::tell_new_beginning() {
-    // What there was lay in another odom.
+    // The previous features lie in the old odom frame.
     tell_state(page::SourceState::waiting, "map and position begin anew", {});
 }
 

@@ -20,12 +20,13 @@
 
 namespace surefoot::app {
 
-/// Where the camera of a machine that stands level sees no floor yet, before it: a polygon in
-/// base_link [m], counter-clockwise; empty where the camera looks at no floor.
+/// Floor in front of a level machine that is nearer than the camera can see: a polygon in base_link
+/// [m], counter-clockwise. Empty if the lower image border does not meet the floor in front of the
+/// machine.
 [[nodiscard]] std::vector<page::PageHello::GroundPoint> blind_zone_of(
     const camera::RectifiedRig& rig, double sole_depth_m);
 
-/// What a page is told first. `gate_port` may change later.
+/// First message to a page. `gate_port` may change later.
 [[nodiscard]] page::PageHello hello_of(const camera::FrameSource& source,
                                        const camera::StereoRig& rig,
                                        const std::optional<io::MachineFile>& machine,
@@ -33,22 +34,25 @@ namespace surefoot::app {
                                        std::uint16_t gate_port,
                                        double rate_hz);
 
-/// Hands what perception did over to the page's thread: pose, map and state after every frame,
-/// images, layers and what the ground is as often as pages can want them at most.
+/// Passes the results of perception to the thread of the page: pose, map and state after every
+/// frame; images, layers and terrain features only when a page wants them, at the rates of the
+/// feed.
 class PageTelemetry {
   public:
-    /// `joints_at`: who knows the joints of the machine; empty = nobody.
+    /// `joints_at` gives the joint angles of the machine; empty = the angles are unknown.
     PageTelemetry(page::PageFeed& feed, std::string source, JointsAt joints_at = {})
         : feed_(feed), source_(std::move(source)), joints_at_(std::move(joints_at)) {}
-    /// After a frame. `map`: the snapshot of this frame; `map_time_ns`: of the frame that it took
-    /// in last; both of the source's clock.
+    /// Call after every frame. `map` is the snapshot of this frame. `map_time_ns` is the stamp of
+    /// the last frame that updated the map, on the clock of the source. `now_steady_ns` is
+    /// steady-clock time.
     void tell(const pipeline::Pipeline& pipeline,
               const FrameReport& report,
               const grid::MapSnapshot& map,
               std::int64_t map_time_ns,
               std::int64_t now_steady_ns);
-    /// No frame will come any more, or not before the map has begun anew.
+    /// Tells the pages that the source has ended.
     void tell_the_end(const pipeline::Pipeline& pipeline);
+    /// Tells the pages that a new map and a new odom frame begin.
     void tell_new_beginning();
 
   private:
@@ -68,7 +72,7 @@ class PageTelemetry {
     std::int64_t images_due_ns_ = 0;
     std::int64_t layers_due_ns_ = 0;
     std::int64_t stairs_due_ns_ = 0;
-    std::deque<std::int64_t> lately_ns_;  ///< steady times of the last frames
+    std::deque<std::int64_t> lately_ns_;  ///< steady-clock times of the last frames
     std::array<std::deque<double>, kStageCount> stages_ms_;
     page::PageStatus status_;
     page::PagePose pose_;

@@ -11,7 +11,7 @@
 namespace surefoot::app {
 namespace {
 
-/// A camera 0.05 m over base_link, 0.1 m ahead of it and 0.25 m to its left, that looks ahead and
+/// A camera 0.05 m above base_link, 0.1 m ahead of it and 0.25 m to its left. It points ahead and
 /// down.
 camera::RectifiedRig rig_that_looks_down(double pitch_deg) {
     camera::StereoRig rig = camera::test::ideal_rig(640, 480, 400.0);

@@ -10,7 +10,7 @@
 namespace surefoot::app {
 
 Result<PlaceSession> PlaceSession::open(const std::string& file) {
-    // Said before the run, not after it.
+    // Report a wrong path before the run, not after it.
     const std::string folder = io::folder_of(file);
     if (!io::is_folder(folder))
         return usage_error(
@@ -30,7 +30,7 @@ PlaceSession::PlaceSession(const std::string& file, places::Place saved) {
 }
 
 void PlaceSession::after_frame(const FrameReport& report, const pipeline::Pipeline& pipeline) {
-    // A repeated or torn image says nothing about where the machine is.
+    // A repeated or torn image contains no information about the pose.
     if (!report.arrival.is_new_and_whole()) return;
     tracker_->follow(report.motion);
     const GreyImage& left = pipeline.pair().left;

@@ -11,27 +11,32 @@
 
 namespace surefoot::app {
 
-/// What a run found out about where it is, for report.json.
+/// Result of place recognition in a run, for report.json.
 struct PlaceRecord {
     std::string file;
-    int saved_keyframes = 0;  ///< that the file brought; 0: this run begins the place
-    int own_keyframes = 0;    ///< that this run made and looked for
-    int kept_keyframes = 0;   ///< that the file holds now
-    std::array<int, places::kRefusals> refusals{};  ///< keyframes by what became of them
-    std::optional<std::int64_t> recognised_ns;      ///< when T_map_odom was found first
-    std::optional<Pose> T_map_odom;                 ///< at the end
-    std::string left_as_it_was;  ///< why the file was not written; empty where it was
+    /// Keyframes read from the file; 0 = the run starts a new place database.
+    int saved_keyframes = 0;
+    int own_keyframes = 0;   ///< keyframes that this run made
+    int kept_keyframes = 0;  ///< keyframes in the file after the run
+    /// Number of keyframes by result of the recognition.
+    std::array<int, places::kRefusals> refusals{};
+    std::optional<std::int64_t> recognised_ns;  ///< time of the first T_map_odom
+    std::optional<Pose> T_map_odom;             ///< at the end of the run
+    std::string left_as_it_was;  ///< reason why the file was not written; empty = it was written
 };
 
-/// `run --place FILE`: recognises the place that FILE remembers, or begins a new one where there is
-/// no such file, and writes it with what the run saw of it. Pipeline and maps do not change.
+/// Place recognition for `surefoot run --place FILE`. Recognises the place stored in FILE, or
+/// starts a new place database if FILE does not exist, and saves it extended by the keyframes of
+/// the run. Does not change the pipeline or its maps.
 class PlaceSession {
   public:
-    /// Fails where the file is there and cannot be used; it is not touched then.
+    /// Fails if the folder of the file is missing or the file cannot be read; the file stays
+    /// unchanged then.
     [[nodiscard]] static Result<PlaceSession> open(const std::string& file);
-    /// After every processed frame.
+    /// Call after every processed frame.
     void after_frame(const FrameReport& report, const pipeline::Pipeline& pipeline);
-    /// Writes the place. A run that did not recognise its place leaves the file as it was.
+    /// Writes the place database. Leaves the file unchanged if the run did not recognise the stored
+    /// place or had no keyframe.
     [[nodiscard]] Status save();
     [[nodiscard]] const PlaceRecord& record() const noexcept { return record_; }
 

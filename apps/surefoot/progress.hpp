@@ -6,7 +6,8 @@
 
 namespace surefoot::app {
 
-/// One line on stderr that counts frames; silent when stderr is no terminal, or without a label.
+/// Counts frames in one line on stderr. Prints nothing if stderr is not a terminal or the label is
+/// empty.
 class Progress {
   public:
     Progress(std::string label, std::optional<int> total);

@@ -33,7 +33,7 @@ eval::LayerStyle style_of(const std::string& name, double safe_threshold) {
     return style;
 }
 
-/// The heights and all that was made of them, side by side.
+/// The heights and all layers computed from them, side by side.
 Status write_sheet(const RateOptions& options,
                    const Settings& settings,
                    const io::Dem& dem,

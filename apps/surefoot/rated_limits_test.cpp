@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of rated limits says for each limit in which direction it allows more. The gate itself
-// is asked: on random ground a laxer limit never refuses what a stricter one allows, and somewhere
-// it allows what the stricter one refuses.
+// The table of rated limits says for each limit in which direction it allows more. These tests ask
+// the gate about random ground: a laxer limit never refuses a step that a stricter limit allows,
+// and at least once it allows a step that the stricter limit refuses.
 #include "surefoot/io/settings/rated_limits.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ SetLimit step(std::size_t movement_class, std::int32_t StepLimits::*member) {
     };
 }
 
-/// How each key of a machine file reaches the gate.
+/// Setters of the machine limits by their key in a machine file.
 std::map<std::string, SetLimit> setters() {
     return {
         {"limits.walk.up_m", step(0, &StepLimits::up_tenth_mm)},
@@ -123,14 +123,14 @@ Case random_case(std::uint64_t seed) {
             terrain.variance.fill(static_cast<float>(sigma_m * sigma_m));
             break;
         }
-        case 3: {  // the same, where patches may be as uncertain as that
+        case 3: {  // variance of the heights, with patches that may be as uncertain
             const double sigma_m = uniform(0.008, 0.02);
             terrain.variance.fill(static_cast<float>(sigma_m * sigma_m));
             limits.patch_sigma_tenth_mm = 99;
             limits.cell_sigma_tenth_mm = 290;
             break;
         }
-        case 4: {  // the same, where only the sigma of a cell counts
+        case 4: {  // variance of the heights, when only the sigma of a cell counts
             const double sigma_m = uniform(0.005, 0.018);
             terrain.variance.fill(static_cast<float>(sigma_m * sigma_m));
             limits.patch_sigma_tenth_mm = 99;
@@ -157,7 +157,7 @@ Case random_case(std::uint64_t seed) {
         }
         case 8: terrain.box(0.35, 3.0, -3.0, 3.0, uniform(-0.04, 0.04)); break;
         case 9: one.used_ns = kNowNs + static_cast<std::int64_t>(uniform(0.0, 600.0)) * kMs; break;
-        case 10: {  // old frames, old poses, poses of the future
+        case 10: {  // old frames, old poses, poses with future stamps
             const auto age_ns = static_cast<std::int64_t>(uniform(0.0, 500.0) * 1e6);
             if (rng.uniform() < 0.3) {
                 terrain.input.frame_time_ns = kNowNs - age_ns;
@@ -208,7 +208,7 @@ Case random_case(std::uint64_t seed) {
     return one;
 }
 
-/// With the limit at a value, or as near to it as a machine may have it.
+/// Verdict with the limit at `value`, or at the nearest value that a valid machine may have.
 gate::Verdict ask(const Case& one, const SetLimit& set, double value, double rated) {
     Machine machine = one.machine;
     constexpr int kTries = 8;
@@ -220,7 +220,8 @@ gate::Verdict ask(const Case& one, const SetLimit& set, double value, double rat
     return gate::decide(machine, one.query, *one.map, gate::testing::kReady, kNowNs);
 }
 
-/// An object as high as the swing clearance is ground that a foot may meet, and its edge a drop.
+/// An object as high as the swing clearance counts as ground that a foot may step on, and its edge
+/// counts as a drop.
 bool is_edge_of_new_ground(const io::RatedLimit& limit, const gate::Verdict& verdict) {
     return std::string(limit.key) == "limits.swing_clearance_m" &&
            verdict.primary == gate::Reason::drop_off;

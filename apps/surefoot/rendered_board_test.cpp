@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boards drawn by the simulator, with known places of their points, and real ones.
+// Rendered boards with known positions of their points, and real boards.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using calibration::Board;
 using calibration::BoardSighting;
 using calibration::BoardView;
 
-/// As in the program: threads are the executor's alone.
+/// As in the program, only the executor creates threads.
 class OpencvOnOneThread : public ::testing::Environment {
   public:
     void SetUp() override { cv::setNumThreads(1); }
@@ -82,7 +82,7 @@ std::vector<Pose> poses_for(const Board& board, const camera::Camera& camera, in
     return shown_poses(board, {&eye, 1}, count, rng);
 }
 
-/// What an image shows of a board's point: of a disc the centre of gravity.
+/// True image of a board point; for a disc its centre of gravity.
 Eigen::Vector2d image_of(const camera::Camera& camera,
                          const Pose& T_camera_board,
                          const Eigen::Vector3d& point_m,
@@ -101,7 +101,7 @@ Eigen::Vector2d image_of(const camera::Camera& camera,
     return pixel;
 }
 
-/// Distances of found points from the true images of the points they are said to be.
+/// Distances between the detected points and the true images of the points with the same id.
 std::vector<double> errors_px(const Board& board,
                               const camera::Camera& camera,
                               const Pose& T_camera_board,
@@ -124,7 +124,7 @@ double mean(const std::vector<double>& values) {
     return sum / static_cast<double>(values.size());
 }
 
-/// Mean error over some poses of every board and lens.
+/// Checks the mean error over several poses of every board and lens.
 void expect_found(const sim::BoardLook& look, double limit_px) {
     for (const char* text : kBoards) {
         const Board board = board_of(text);
@@ -173,7 +173,7 @@ TEST(RenderedBoard, BigCirclesSeenAtASlantAreFoundWithTheirRadius) {
     const GreyImage image = rendered(board, pinhole(), T_camera_board);
     const BoardSighting sighting = calibration::detect_board(board, image.view());
     ASSERT_TRUE(sighting.found()) << sighting.problem;
-    // 8-bit grey on the rim leaves 0.005 px of sharp discs this large.
+    // 8-bit grey values on the rim limit the accuracy of sharp discs of this size to 0.005 px.
     constexpr double kGreySteps_px = 0.02;
     EXPECT_LT(mean(errors_px(board, pinhole(), T_camera_board, sighting.view)), kGreySteps_px);
     // A hundredth of the radius moves a calibrated picture by a hundredth of a pixel.
@@ -210,7 +210,7 @@ TEST(RenderedBoard, EyesOfARigAgreeOnBoardsThatLookAlikeWhenTurned) {
     for (const char* text : {"chessboard:7x5:0.03", "circles:6x6:0.03"}) {
         const Board board = board_of(text);
         ASSERT_GT(calibration::turns_of(board).size(), 1U) << text;
-        // Rows run almost straight down; one eye is turned a little further than the other.
+        // Rows run almost straight down; one camera is rotated a little more than the other.
         for (const double turn_rad : {1.55, -1.55}) {
             const Pose T_left_board{
                 exp_so3({0.0, 0.0, turn_rad}),
@@ -277,7 +277,7 @@ bool has_data(const std::string& folder) {
     return false;
 }
 
-/// Every `step`-th image, for time.
+/// Only every `step`-th image, to save time.
 int found_in(const std::string& folder, const Board& board, std::size_t step) {
     int found = 0;
     const auto names = io::list_files(folder, {".jpg", ".pgm"});

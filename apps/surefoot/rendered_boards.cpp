@@ -16,10 +16,10 @@ constexpr double kNearest = 0.9;
 constexpr double kFarthest = 1.7;
 constexpr double kBorder_px = 4.0;
 
-/// Whether an eye sees the whole sheet, well inside the image.
+/// True if a camera sees the whole sheet, at least kBorder_px inside the image.
 bool sees(const BoardEye& eye, const PrintedSheet::Rectangle& paper, const Pose& T_left_board) {
     const Pose T_eye_board = eye.T_left_eye.inverse() * T_left_board;
-    constexpr int kSteps = 8;  // along each side: straight edges bend in a fisheye
+    constexpr int kSteps = 8;  // samples along each side, because straight edges bend in a fisheye
     for (int i = 0; i <= kSteps; ++i) {
         const double s = static_cast<double>(i) / kSteps;
         const double x_m = paper.left_m + s * (paper.right_m - paper.left_m);

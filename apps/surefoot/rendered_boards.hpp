@@ -8,19 +8,19 @@
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/rng.hpp"
 
-// Poses for pictures of boards whose truth is known.
+// Poses of calibration boards for rendered images with known truth.
 namespace surefoot::app {
 
-/// A camera with its place in the frame of the left one.
+/// A camera and its pose in the frame of the left camera.
 struct BoardEye {
     camera::Camera camera;
     Pose T_left_eye;
 };
 [[nodiscard]] std::vector<BoardEye> eyes_of(const camera::StereoRig& rig);
 
-/// `count` poses of the board in the left optical frame, as a careful operator shows it: wherever
-/// all eyes see it whole, near and far, turned by up to 40 deg each way. Fewer where the board does
-/// not find room.
+/// Returns `count` poses of the board in the left optical frame, as a careful operator shows it:
+/// all cameras see the whole board, near and far, turned by up to 40 deg about each axis. Returns
+/// fewer poses if too few positions fit into all images.
 [[nodiscard]] std::vector<Pose> shown_poses(const calibration::Board& board,
                                             std::span<const BoardEye> eyes,
                                             int count,

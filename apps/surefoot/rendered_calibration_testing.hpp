@@ -17,14 +17,14 @@
 
 namespace surefoot::app::testing {
 
-/// 99.73 % of chi square with two degrees of freedom: three sigma.
+/// 99.73 % quantile of chi square with two degrees of freedom: three sigma.
 inline constexpr double kThreeSigma_sq = 11.83;
-/// The same with six.
+/// 99.73 % quantile of chi square with six degrees of freedom.
 inline constexpr double kThreeSigmaOfSix_sq = 20.06;
 inline constexpr int kWidth_px = 320;
 inline constexpr int kHeight_px = 240;
 
-/// Of 320 x 240 px, `scale` times finer: wide, and with a denominator that no polynomial follows.
+/// A wide lens of 320 x 240 px, times `scale`. No polynomial approximates its denominator.
 inline camera::Camera rational_camera(int scale = 1) {
     return {camera::PinholeRational{.fx_px = 210.0 * scale,
                                     .fy_px = 210.5 * scale,
@@ -42,7 +42,7 @@ inline camera::Camera rational_camera(int scale = 1) {
             kHeight_px * scale};
 }
 
-/// The same of nearly 180 deg.
+/// A fisheye lens of nearly 180 deg.
 inline camera::Camera fisheye_camera(int scale = 1) {
     return {camera::KannalaBrandt{.fx_px = 120.0 * scale,
                                   .fy_px = 120.3 * scale,
@@ -56,7 +56,8 @@ inline camera::Camera fisheye_camera(int scale = 1) {
             kHeight_px * scale};
 }
 
-/// Barrel distortion as bought cameras have it, of 67 deg; k3 of five coefficients.
+/// A lens of 67 deg with the barrel distortion of common cameras; `with_k3` selects five
+/// coefficients.
 inline camera::Camera pinhole_camera(bool with_k3, int scale = 1) {
     return {camera::PinholeRadTan{.fx_px = 240.0 * scale,
                                   .fy_px = 240.4 * scale,
@@ -81,7 +82,7 @@ inline camera::Camera camera_of(calibration::LensKind kind, int scale = 1) {
     return {};
 }
 
-/// Two such lenses, 60 mm apart and turned a little: more than a careful hand would build.
+/// A rig of two such lenses, 60 mm apart and rotated slightly, more than in a carefully built rig.
 inline camera::StereoRig rig_of(calibration::LensKind kind, int scale = 1) {
     camera::StereoRig rig;
     rig.left = camera_of(kind, scale);
@@ -97,7 +98,7 @@ inline sim::BoardLook blurred_and_noisy() {
     return look;
 }
 
-/// What is found in pictures of a board, somewhat blurred and noisy.
+/// Boards detected in `count` rendered images with slight blur and noise.
 inline std::vector<calibration::BoardView> seen_boards(const calibration::Board& board,
                                                        const camera::Camera& camera,
                                                        int count,
@@ -122,7 +123,7 @@ struct SeenPairs {
     std::vector<calibration::BoardView> right;
 };
 
-/// The same of both eyes of a rig.
+/// Boards detected in the images of both cameras of a rig.
 inline SeenPairs seen_pairs(const calibration::Board& board,
                             const camera::StereoRig& rig,
                             int count,
@@ -152,14 +153,14 @@ inline SeenPairs seen_pairs(const calibration::Board& board,
     return pairs;
 }
 
-/// Where the right eye is, beside the truth: errors and what the calibration says of them, in the
-/// frame of the right eye, translation [m] before rotation [rad].
+/// Errors of the pose of the right camera, and the standard deviations that the calibration
+/// reports: in the frame of the right camera, translation [m] before rotation [rad].
 struct RigErrors {
     Vector6 errors = Vector6::Zero();
     Vector6 sigmas = Vector6::Zero();
-    double baseline_m = 0.0;  ///< error of its length
+    double baseline_m = 0.0;  ///< error of the length of the baseline
     double baseline_sigma_m = 0.0;
-    double mahalanobis_sq = 0.0;  ///< of all six
+    double mahalanobis_sq = 0.0;  ///< squared Mahalanobis distance of all six errors
 };
 
 inline RigErrors rig_errors(const camera::StereoRig& truth,
@@ -170,7 +171,7 @@ inline RigErrors rig_errors(const camera::StereoRig& truth,
     RigErrors result;
     result.errors = difference(truth.T_left_right, found);
     result.sigmas = covariance.diagonal().cwiseSqrt();
-    // The perturbation moves the translation in the frame of the right eye.
+    // The perturbation moves the translation in the frame of the right camera.
     const Eigen::Vector3d along = found.R().transpose() * found.translation_m.normalized();
     result.baseline_m = found.translation_m.norm() - truth.T_left_right.translation_m.norm();
     result.baseline_sigma_m = std::sqrt(along.dot(covariance.topLeftCorner<3, 3>() * along));
@@ -178,7 +179,8 @@ inline RigErrors rig_errors(const camera::StereoRig& truth,
     return result;
 }
 
-/// Squared error of all parameters in their own covariance. Not of rational lenses.
+/// Squared Mahalanobis distance of all parameters from the truth, by the covariance of the
+/// calibration. Does not support rational lenses.
 inline double parameter_chi_square(const camera::Camera& truth,
                                    const calibration::MonoCalibration& estimate) {
     Eigen::VectorXd error = estimate.parameters;
@@ -197,11 +199,12 @@ inline double parameter_chi_square(const camera::Camera& truth,
     return scaled.dot(correlation.ldlt().solve(scaled));
 }
 
-/// An estimate beside the truth, all over the image: where it shows the true direction of a pixel.
+/// Errors of an estimated lens over the whole image: distance between a pixel and the projection of
+/// its true direction by the estimate.
 struct MappingErrors {
-    std::vector<double> squares;  ///< of the distance in the estimate's own standard deviations
+    std::vector<double> squares;  ///< squared distance, in standard deviations of the estimate
     std::vector<double> lengths_px;
-    /// Pixels that the estimate gives no direction, or whose true direction it cannot show.
+    /// Pixels for which the estimate has no direction, or whose true direction it cannot project.
     std::vector<Eigen::Vector2d> without_image;
 };
 
@@ -218,7 +221,8 @@ inline MappingErrors mapping_errors(const camera::Camera& truth,
                 errors.without_image.push_back(pixel);
                 continue;
             }
-            // Of the same direction: far from the boards that of `pixel` may be another one.
+            // Use the covariance at the projection of the true direction: far from the boards
+            // `pixel` itself may have another direction in the estimate.
             const auto covariance_px2 = calibration::mapping_covariance_px2(
                 estimate.kind, estimate.parameters, estimate.covariance, *found);
             if (!covariance_px2) {

@@ -22,13 +22,13 @@
 namespace surefoot::app {
 namespace {
 
-/// When frames are due on the steady clock.
+/// Schedules frames on the steady clock.
 class Schedule {
   public:
     Schedule(std::int64_t first_frame_ns, double speed)
         : start_ns_(steady_now_ns()), first_frame_ns_(first_frame_ns), speed_(speed) {}
 
-    /// Sleeps until the frame is due; false when it was due before.
+    /// Sleeps until the frame is due. Returns false if the frame is already late.
     [[nodiscard]] bool wait_for(std::int64_t frame_ns) const {
         const std::int64_t due_ns = start_ns_ + paced_ns(frame_ns - first_frame_ns_, speed_);
         const std::int64_t wait_ns = due_ns - steady_now_ns();
@@ -59,7 +59,7 @@ void print_frame(const FrameReport& seen, std::int64_t first_frame_ns) {
                                          : "");
 }
 
-/// Plays to the end, the first error or the user's interrupt.
+/// Plays until the end of the source, the first error or an interrupt by the user.
 Status play(const ReplayOptions& options,
             camera::FrameSource& source,
             pipeline::Pipeline& pipeline,
@@ -81,10 +81,10 @@ Status play(const ReplayOptions& options,
         pipeline::align_when_ready(pipeline, next, source.info().T_odom_first_body);
     for (const StereoFrame& frame : start.frames) process(frame, Work::full);
     if (start.frames.empty()) return ended;
-    // The clock starts where odom is placed.
+    // The clock starts when odom is placed.
     const Schedule schedule(start.frames.back().time_ns, options.speed);
     while (const auto frame = next()) {
-        // A frame that comes late gets odometry only, as in a live run.
+        // A late frame gets odometry only, as in a live run.
         process(*frame, schedule.wait_for(frame->time_ns) ? Work::full : Work::odometry);
     }
     return ended;

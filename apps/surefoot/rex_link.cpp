@@ -25,9 +25,9 @@ namespace {
 using rex_link::LinkEvent;
 using rex_link::LinkEventKind;
 
-constexpr int kNameWidth = 13;  // of the longest kind of event, and a space
+constexpr int kNameWidth = 13;  // longest name of an event kind, plus a space
 
-/// What an event has beyond its name, for people.
+/// Text of an event without its name, for the terminal.
 std::string words_of(const LinkEvent& event, const std::string& tone_file) {
     switch (event.kind) {
         case LinkEventKind::connected: return "";
@@ -50,7 +50,8 @@ std::string words_of(const LinkEvent& event, const std::string& tone_file) {
     return "";
 }
 
-/// The script or the keyboard; nothing once it has ended, or the user pressed Ctrl-C.
+/// Joystick from the script or the keyboard. It returns an empty optional when the script has ended
+/// or the user pressed Ctrl-C.
 Result<rex_link::Joystick> make_joystick(const RexLinkOptions& options) {
     if (options.keys) {
         return rex_link::Joystick([keyboard = std::make_shared<KeyboardJoystick>()](std::int64_t) {
@@ -69,7 +70,7 @@ Result<rex_link::Joystick> make_joystick(const RexLinkOptions& options) {
         });
 }
 
-/// Whether the user asked for a movement, and no gate was ever there to ask.
+/// True if the user requested a movement but no gate was ever connected.
 bool nobody_to_ask(const std::vector<RexLinkRow>& rows) {
     const auto has = [&rows](LinkEventKind kind) {
         return std::any_of(rows.begin(), rows.end(), [kind](const RexLinkRow& row) {

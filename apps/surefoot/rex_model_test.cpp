@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// models/rex.yaml, machines/rex.yaml and the simulated REX say the same things of one machine.
+// models/rex.yaml, machines/rex.yaml and the simulated REX describe the same machine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDeg = 180.0 / std::numbers::pi;
-constexpr double kTenthMm_m = 1e-4;  ///< to which the machine file is rounded
+constexpr double kTenthMm_m = 1e-4;  ///< rounding of the machine file
 
 class RexModel : public ::testing::Test {
   protected:
@@ -61,7 +61,8 @@ TEST_F(RexModel, JointsAreThoseOfTheSimulatedRexInTheirOrder) {
         EXPECT_EQ(moving[i]->name, sim::kRexJointNames[i]) << i;
 }
 
-/// The machine file counts flexion, abduction, dorsiflexion positive; the model by the right hand.
+/// Signs differ: in the machine file flexion, abduction and dorsiflexion are positive; the model
+/// uses the right-hand rule.
 TEST_F(RexModel, RangesAreThoseOfTheMachineFile) {
     struct Same {
         const char* machine;

@@ -15,7 +15,7 @@
 namespace surefoot::app {
 namespace {
 
-/// "672x376" as a size; nothing for an empty text.
+/// Reads a size such as "672x376"; empty for an empty text.
 Result<std::optional<io::ImageSize>> parse_size(const std::string& text) {
     if (text.empty()) return std::optional<io::ImageSize>{};
     const auto sides = io::split(text, "xX");
@@ -32,7 +32,7 @@ Result<std::optional<io::ImageSize>> parse_size(const std::string& text) {
                     text));
 }
 
-/// The rig as its file has it, at the size that was asked for.
+/// Reads the rig of a file, at the requested image size.
 Result<io::RigFile> load(const RigOptions& options) {
     const auto size = parse_size(options.resolution);
     if (!size) return size.error();

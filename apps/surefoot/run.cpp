@@ -44,7 +44,8 @@ int run(const RunOptions& options) {
     if (const auto status = io::make_folder(options.out_dir); !status)
         return report(status.error());
 
-    // What an earlier run left must not be taken for this one's, least of all by the gate.
+    // Remove results of an earlier run, so that nobody, above all the gate, takes them for results
+    // of this run.
     for (const char* name : {"map.snapshot",
                              "elevation.asc",
                              "ground.asc",
@@ -79,7 +80,8 @@ int run(const RunOptions& options) {
         fmt::print("{}", run_summary(record, *pipeline));
         if (written) fmt::print("results in {0}/, start with {0}/report.html\n", options.out_dir);
     }
-    // Both may have failed; each is said once, the run's own error decides the exit code.
+    // The run and the writing may both have failed. Each error is reported once; the error of the
+    // run decides the exit code.
     if (!written) {
         log_error(fmt::format("{}; {} holds only a part of the results: make room and run again",
                               written.error().message,

@@ -23,7 +23,7 @@ void split(std::vector<Feature>& confirmed, std::vector<Feature>& unconfirmed) {
     confirmed.erase(once, confirmed.end());
 }
 
-/// What both have, what the run alone has; what the map alone has joins the run's.
+/// Sets `in_final_map` of all tracked features and adds the features that only the final map has.
 template <typename Feature>
 void compare(const eval::KindErrors& errors,
              const std::vector<Feature>& final_map,

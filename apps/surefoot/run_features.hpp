@@ -7,21 +7,21 @@
 
 namespace surefoot::app {
 
-/// What a run says of stairs, drops, kerbs, sills and doors, split by how sure it is.
+/// Terrain features of a run (edges, drops, kerbs, sills, flights, doors), split by confirmation.
 struct RunFeatures {
     /// Found by two observations or more.
     stairs::TerrainFeatures confirmed;
-    /// Found by one observation, or by the final map alone (0 observations).
+    /// Found by one observation, or only in the final map (0 observations).
     stairs::TerrainFeatures unconfirmed;
 };
 
-/// Splits what was followed, and compares it with what the map that the run left shows by itself:
-/// each feature gets `in_final_map`, and what is in the final map alone joins `unconfirmed`, so
-/// that as many features have it as `final_map` has. Pairs are those of eval::feature_errors.
+/// Splits the tracked features and compares them with the features of the final map. Sets
+/// `in_final_map` of each tracked feature. Features that only the final map contains are added to
+/// `unconfirmed`. Features are paired as in eval::feature_errors().
 [[nodiscard]] RunFeatures compare_with_final_map(stairs::TerrainFeatures followed,
                                                  const stairs::TerrainFeatures& final_map);
 
-/// The split alone, where the final map could not be read.
+/// Splits the tracked features without a comparison, for runs whose final map cannot be read.
 [[nodiscard]] RunFeatures split_by_confirmation(stairs::TerrainFeatures followed);
 
 /// "1 flight, 2 drops, ...; 3 edges; 1 drop seen once, not confirmed".

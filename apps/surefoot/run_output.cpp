@@ -58,7 +58,7 @@ io::PointCloud map_cloud(const pipeline::Pipeline& pipeline) {
     return cloud;
 }
 
-/// What is not a setting but decides the result, as a comment above the settings.
+/// Values that are not settings but determine the result, as a comment above the settings.
 std::string command_line(const RunOptions& options) {
     std::string line = fmt::format("# surefoot {}: run {}", SUREFOOT_VERSION, options.source);
     const auto add = [&](const char* option, const std::string& value) {
@@ -76,7 +76,7 @@ std::string command_line(const RunOptions& options) {
     return line + fmt::format(" --seed {}\n", options.common.seed);
 }
 
-/// Besides the three that every run writes.
+/// All layers except the three that every run writes.
 void write_all_layers(const std::string& out,
                       const grid::GridGeometry& geometry,
                       std::span<const NamedLayer> layers,
@@ -88,8 +88,9 @@ void write_all_layers(const std::string& out,
     }
 }
 
-/// How far from base_link, along the ground, what the last frame with depth saw begins [m]: the
-/// nearest percent of its trusted pixels is left to chance. Nothing without such a frame.
+/// Horizontal distance from base_link to the nearest trusted pixel of the last frame with depth
+/// [m]. The nearest percent of the pixels is ignored as possible outliers. Empty if there is no
+/// such frame.
 std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     constexpr double kChance = 0.01;
     const camera::DepthImage& depth = pipeline.depth();
@@ -118,12 +119,13 @@ std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pi
     return *nearest;
 }
 
-/// Where everything lies beyond the map: how far, and which map would reach it.
+/// If all visible points lie outside the map: a sentence with their distance and the map length
+/// that would reach them.
 std::optional<std::string> beyond_the_map(const RunRecord& record,
                                           const pipeline::Pipeline& pipeline) {
     const double length_m = pipeline.config().elevation.length_m;
     const auto nearest_m = nearest_seen_m(record, pipeline);
-    // A window moves with the machine by whole cells, so its half is what lies ahead.
+    // The map is centred on the machine (to a cell), so half of its length lies ahead.
     if (!nearest_m || *nearest_m < 0.5 * length_m) return std::nullopt;
     return fmt::format(
         "what is seen begins {:.1f} m from base_link, the map ends at {:.1f} m: no pixel falls "
@@ -134,8 +136,8 @@ std::optional<std::string> beyond_the_map(const RunRecord& record,
         std::ceil(2.0 * *nearest_m));
 }
 
-/// The map as it is after the last frame. Its odom is that of this run alone, told from others by
-/// the run's first stamp.
+/// Writes the map after the last frame. Its odom frame belongs to this run only and is identified
+/// by the first stamp of the run.
 Status save_map(const std::string& path,
                 std::uint64_t config_hash,
                 const pipeline::Pipeline& pipeline,
@@ -156,15 +158,15 @@ grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geome
     return layer.empty() ? grid::Layer(geometry.nx, geometry.ny, std::nanf("")) : layer;
 }
 
-/// What was followed, beside what the files of the map show: `surefoot stairs` of the folder reads
-/// the same files.
+/// Compares the tracked features with those of the written map files, which `surefoot stairs` on
+/// the folder reads too.
 RunFeatures run_features(const RunOptions& options,
                          const Settings& settings,
                          const pipeline::Pipeline& pipeline) {
     StairsOptions map_of_run;
     map_of_run.map = options.out_dir;
     const auto map = load_terrain(map_of_run);
-    if (!map) return split_by_confirmation(pipeline.features());  // an empty map, or a full disk
+    if (!map) return split_by_confirmation(pipeline.features());  // empty map or full disk
     stairs::TerrainFeatures final_map;
     stairs::FeatureFinder(settings.pipeline.stairs).find(map->terrain(), final_map);
     return compare_with_final_map(pipeline.features(), final_map);

@@ -11,42 +11,43 @@
 
 namespace surefoot::app {
 
-/// Writes everything that a run produced. Goes on after a failed file and returns the first
-/// failure, so that as much as possible is kept.
+/// Writes all result files of a run. Continues after a failed file and returns the first failure.
 [[nodiscard]] Status write_results(const RunOptions& options,
                                    const Settings& settings,
                                    const std::optional<io::MachineFile>& machine,
                                    const pipeline::Pipeline& pipeline,
                                    const RunRecord& record);
 
-/// The layer, or one of unknown cells where nothing has filled it yet.
+/// Returns a copy of the layer, or a layer of unknown cells if the layer is empty.
 [[nodiscard]] grid::Layer or_unknown(const grid::Layer& layer, const grid::GridGeometry& geometry);
 
-/// A few lines for the terminal.
+/// Summary of a run for the terminal.
 [[nodiscard]] std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipeline);
 
-/// What must be said of results that were not all measured; empty when they were.
+/// Note about results that the simulator modelled instead of computing them from images; empty if
+/// there are none.
 [[nodiscard]] std::string modelled_note(const camera::SourceInfo& source);
 
-/// A line about frames that the source passed over; empty when there are none.
+/// One line about skipped broken frames; empty if there are none.
 [[nodiscard]] std::string broken_text(const camera::BrokenFrames& broken);
 
-/// Why the map holds no cell, in one sentence; empty when it holds some.
+/// One sentence with the reason why the map has no known cell; empty if it has known cells.
 [[nodiscard]] std::string empty_map_reason(const RunRecord& record,
                                            const pipeline::Pipeline& pipeline);
 
-/// Median and 99th percentile of what the frames report.
+/// Median and 99th percentile of a list of values.
 struct Percentiles {
     double median = 0.0;
     double p99 = 0.0;
     std::size_t samples = 0;
 };
 [[nodiscard]] Percentiles percentiles(std::vector<double> values);
+/// Time of one stage [ms]. Counts full frames only, except for odometry, which runs on every frame.
 [[nodiscard]] Percentiles stage_percentiles(const RunRecord& record, Stage stage);
-/// Sum of all stages of the frames that ran in full.
+/// Time of all stages together [ms], over the frames with full processing.
 [[nodiscard]] Percentiles frame_percentiles(const RunRecord& record);
 
-/// Largest resident memory of this process [MB].
+/// Peak resident memory of this process [MB].
 [[nodiscard]] double peak_memory_mb();
 
 }  // namespace surefoot::app

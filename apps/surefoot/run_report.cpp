@@ -116,7 +116,7 @@ void add_truth(const RunRecord& record,
         {"Depths within 3 sigma", fmt::format("{:.1f}", 100.0 * t.depth.within_3_sigma), "%", ""});
 }
 
-/// Edges and stairs over the heights, and what they measure.
+/// Edges and stairs drawn over the heights, with their measures.
 eval::ReportSection stairs_section(const pipeline::Pipeline& pipeline,
                                    const std::vector<std::uint8_t>& png,
                                    const std::vector<std::uint8_t>& classes_png) {

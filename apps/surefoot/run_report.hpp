@@ -6,11 +6,13 @@
 
 namespace surefoot::app {
 
-/// What is drawn over the maps of a run: the way, the body at its end, the feet of a machine.
+/// Overlays for the map pictures of a run: the path, the final pose of the body and, with a machine
+/// file, its feet.
 [[nodiscard]] eval::Overlays overlays_of(const std::optional<io::MachineFile>& machine,
                                          const RunRecord& record);
 
-/// elevation.png, traversability.png, stairs.png, classes.png and the self-contained report.html.
+/// Writes elevation.png, traversability.png, stairs.png, classes.png and the self-contained
+/// report.html.
 [[nodiscard]] Status write_pictures_and_report(const RunOptions& options,
                                                const Settings& settings,
                                                const std::optional<io::MachineFile>& machine,

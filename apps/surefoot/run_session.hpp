@@ -17,16 +17,17 @@
 
 namespace surefoot::app {
 
-/// What a run did, frame by frame, and how it ended.
+/// Frame reports of a run and its outcome.
 struct RunRecord {
     camera::SourceInfo source;
     camera::StereoRig rig;
     std::vector<FrameReport> frames;
-    FusionCounts fusion;         ///< summed over all frames
-    ArrivalCounts arrivals;      ///< likewise
-    int waited_frames = 0;       ///< before the first of `frames`, see pipeline/start.hpp
-    std::optional<Error> error;  ///< why it ended early
-    GreyImage last_left;         ///< rectified, for the report
+    FusionCounts fusion;     ///< summed over all frames
+    ArrivalCounts arrivals;  ///< summed over all frames
+    /// Frames skipped before the first of `frames`, see pipeline/start.hpp.
+    int waited_frames = 0;
+    std::optional<Error> error;  ///< reason why the run ended early
+    GreyImage last_left;         ///< last rectified left image, for the report
     camera::DepthImage last_depth;
     std::optional<TruthFigures> truth;  ///< simulated sources only
     std::optional<PlaceRecord> place;   ///< `run --place` only
@@ -35,25 +36,26 @@ struct RunRecord {
     [[nodiscard]] bool complete() const noexcept { return !error.has_value(); }
 };
 
-/// Poses of a frame that is fixed to the body, in odom; base_link itself by default.
+/// Poses in odom of a frame that is fixed to the body. The default is base_link itself.
 [[nodiscard]] Trajectory trajectory_of(std::span<const FrameReport> frames,
                                        const Pose& T_body_fixed = Pose{});
 
-/// Drives a pipeline over a source: buffers the first frames for the alignment, then processes
-/// every frame. Stops at the first error of the source, when its eyes are exchanged, or when the
-/// user interrupts; what was computed before stays in `record` and in the pipeline's map.
+/// Runs a pipeline on a source. Buffers the first frames for the alignment, then processes every
+/// frame. Stops at the first error of the source, when the cameras are swapped, or when the user
+/// interrupts. The results up to then stay in `record()` and in the map of the pipeline.
 class RunSession {
   public:
-    /// `rig`: the source's with its mount, as the pipeline uses it.
+    /// `rig`: the rig of the source with its mount, as the pipeline uses it. `depth_every`: depth
+    /// and map are updated on every n-th frame. Pipeline and source must outlive this object.
     RunSession(pipeline::Pipeline& pipeline,
                camera::FrameSource& source,
                const camera::StereoRig& rig,
                int depth_every,
                const eval::EvalMapsConfig& maps);
-    /// Called after every processed frame, while the pipeline is as that frame left it.
+    /// Called after every processed frame, before the pipeline sees the next frame.
     using AfterFrame = std::function<void(const FrameReport&)>;
-    /// Returns when the source ends, fails or is interrupted. Progress is shown under `label`; an
-    /// empty one shows none.
+    /// Returns when the source ends, fails or is interrupted. Shows progress under `label`; an
+    /// empty label shows nothing.
     void drive(const std::string& label = "run", const AfterFrame& after_frame = {});
     [[nodiscard]] RunRecord& record() noexcept { return record_; }
 

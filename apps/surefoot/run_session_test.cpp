@@ -11,7 +11,7 @@
 namespace surefoot::app {
 namespace {
 
-/// A simulated floor whose source throws after some frames, as a library out of memory would.
+/// A simulated floor whose source throws after some frames, like a library that runs out of memory.
 class ThrowingSource final : public camera::FrameSource {
   public:
     ThrowingSource(camera::FrameSource& source, int good_frames)
@@ -66,7 +66,7 @@ TEST(RunSession, MapsDepthAndMotionThatComeReady) {
     EXPECT_TRUE(record.source.modelled_motion);
     EXPECT_TRUE(pipeline->pair().left.empty());
     ASSERT_EQ(record.frames.size(), 40U);
-    // Odom begins where the alignment put the first body, and moves as the source says.
+    // Odom starts at the first body pose of the alignment and moves with the poses of the source.
     const Pose& T_odom_first = pipeline->alignment().T_odom_body;
     const auto& truth = (*floor)->truth().trajectory;
     for (std::size_t i = 0; i < record.frames.size(); ++i) {
@@ -80,7 +80,8 @@ TEST(RunSession, MapsDepthAndMotionThatComeReady) {
     EXPECT_NEAR(record.truth->depth.within_3_sigma, 0.98, 0.02);
 }
 
-// The thesis lost whole recordings to a ground plane from its first seconds in the sun.
+// The reference thesis (Lange 2016) lost whole recordings, because it took the ground plane from
+// the first, over-exposed seconds in the sun.
 TEST(RunSession, TheSunWarmUpDoesNotFoolTheAlignment) {
     Serial serial;
     sim::SceneOptions options;
@@ -105,7 +106,8 @@ TEST(RunSession, TheSunWarmUpDoesNotFoolTheAlignment) {
     const Pose T_world_first = truth[static_cast<std::size_t>(record.waited_frames)].T_world_body;
     const pipeline::Alignment& alignment = pipeline->alignment();
     ASSERT_TRUE(alignment.has_ground) << alignment.reason;
-    // Without the wait it was 21 mm and 0.95 deg off; of lit frames 3 mm and 0.15 deg are required.
+    // Without the wait the error is 21 mm and 0.95 deg. Well-exposed frames must reach 3 mm and
+    // 0.15 deg.
     EXPECT_NEAR(alignment.ground_height_m, T_world_first.translation_m.z(), 0.003);
     const Eigen::Vector3d up_by_odom =
         alignment.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
@@ -145,7 +147,7 @@ TEST(RunSession, FindsEveryRepeatedTornAndFrozenImage) {
     EXPECT_EQ(record.arrivals.repeated_frames, 5);
     EXPECT_EQ(record.arrivals.longest_freeze_frames, 3);
     EXPECT_EQ(record.arrivals.torn_frames, 1);
-    // The tracking goes on from the last good image: the whole way is as long as it was.
+    // Tracking continues from the last good image, so the whole path keeps its length.
     const auto& truth = (*floor)->truth().trajectory;
     const double way_m =
         (truth.back().T_world_body.translation_m - truth.front().T_world_body.translation_m).norm();

@@ -48,7 +48,7 @@ Result<std::vector<Vector3d>> chosen_stations(const SimOptions& options,
     return stations_m;
 }
 
-/// Points of one turn of the mirror, as the file holds them: x y z station mixed.
+/// Converts the points of one scan column to the layout of the file: x, y, z, station, mixed.
 void flatten(const sim::ScanColumn& column,
              const Pose& T_world_scanner,
              int station,
@@ -63,7 +63,7 @@ void flatten(const sim::ScanColumn& column,
     }
 }
 
-/// Where points go, block by block as `flatten` leaves them.
+/// Receives the points in the layout of flatten(), block by block.
 using TakePoints = std::function<Status(std::span<const float> values)>;
 
 void scan_all(const sim::LaserScanner& scanner,
@@ -91,8 +91,8 @@ void scan_all(const sim::LaserScanner& scanner,
     }
 }
 
-/// One file, or a folder of tiles. Fails where nothing can be begun; what happens later is kept in
-/// `scanned`.
+/// Writes the scan to one file or to a folder of tiles. Returns an error if the output cannot be
+/// opened; later errors go to `scanned`.
 Status write_scan(const SimOptions& options,
                   const sim::LaserScanner& scanner,
                   const std::vector<Vector3d>& stations_m,
@@ -128,7 +128,7 @@ Status write_scan(const SimOptions& options,
     return {};
 }
 
-/// What a beam leaves in the file: x y z station mixed, as floats.
+/// Bytes of one point in the file: x, y, z, station, mixed as floats.
 constexpr std::int64_t kBytesPerPoint = 5 * sizeof(float);
 
 }  // namespace
@@ -203,7 +203,7 @@ int scan(const SimOptions& options) {
                          size.points,
                          std::ceil(1e-6 * size.bytes)));
     const auto free_bytes = io::free_bytes(io::folder_of(options.scan_file));
-    if (free_bytes) {  // unknown on some file systems: then writing tells
+    if (free_bytes) {  // unknown on some file systems: a full disk then shows when writing
         if (auto status = check_room(options.scan_file, size, static_cast<double>(*free_bytes));
             !status)
             return report(status.error());

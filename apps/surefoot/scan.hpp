@@ -15,31 +15,32 @@
 
 namespace surefoot::app {
 
-/// Where the scanner stands: as the scene says, or over the start of its way.
+/// Positions of the scanner in the world [m]: those of the scene file, or one position above the
+/// start of the path.
 [[nodiscard]] std::vector<Eigen::Vector3d> stations_of(const sim::ScriptedScene& script);
 
-/// Points that all stations together will give: the share of beams that come back, looked at on a
-/// coarse fan from each.
+/// Expected number of points of all stations together. The share of beams that return is measured
+/// with a coarse scan from each station.
 [[nodiscard]] Result<double> expected_points(const sim::Scene& scene,
                                              const sim::LaserScannerConfig& config,
                                              std::span<const Eigen::Vector3d> stations_m,
                                              Executor& executor);
 
-/// What a scan is expected to write.
+/// Expected size of a scan.
 struct ScanSize {
     double points = 0.0;
     double bytes = 0.0;
 };
 
-/// Refuses a scan that the disk has no room for.
+/// Input error if the scan does not fit on the disk. `free_bytes` is the free space.
 [[nodiscard]] Status check_room(const std::string& file, const ScanSize& size, double free_bytes);
 
-/// How far scanning a scene got, and why it ended early.
+/// Progress of a scan, and the reason why it ended early.
 struct Scanned {
     std::string file;
-    int stations = 0;  ///< that were begun
+    int stations = 0;  ///< stations that were started
     std::int64_t points = 0;
-    int tiles = 0;  ///< files of it; 0 = one cloud
+    int tiles = 0;  ///< tile files; 0 = one cloud file
     std::optional<Error> error;
 };
 

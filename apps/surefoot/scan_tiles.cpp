@@ -16,7 +16,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kValuesPerPoint = 5;  // x y z station mixed
 constexpr std::size_t kBlockPoints = 1U << 15U;
-/// A scanner sees 120 m far; more tiles than this want more files open than systems allow.
+/// The range of a scanner is 120 m. More tiles would exceed the limit of open files on common
+/// systems.
 constexpr std::size_t kMostTiles = 500;
 
 io::PointCloud empty_block() {

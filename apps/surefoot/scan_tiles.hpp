@@ -14,25 +14,26 @@
 
 namespace surefoot::app {
 
-/// What a scan is of.
+/// Origin of a scan, for the index file.
 struct ScanOrigin {
     std::string scene;
     std::uint64_t seed = 0;
     std::vector<Eigen::Vector3d> stations_m;
-    bool complete = true;  ///< it was not interrupted
+    bool complete = true;  ///< false = the scan was interrupted
 };
 
-/// A scan as a folder of square tiles: "tile_X_Y.ply" holds what lies from X to X + 1 and from Y to
-/// Y + 1 sides, and index.json tells what there is. A point on a border belongs to the greater
-/// number. The index comes last; without it the folder is not whole.
+/// Writes a scan as a folder of square tiles. "tile_X_Y.ply" holds the points with x from X to X +
+/// 1 and y from Y to Y + 1, in units of the tile side. A point on a border belongs to the tile with
+/// the greater number. finish() writes index.json last; a folder without index.json is incomplete.
 class ScanTiles {
   public:
-    /// `format`: "ply" or "pcd", both binary. An index that is there is removed first.
+    /// `format`: "ply" or "pcd", both binary. Removes an existing index first.
     [[nodiscard]] static Result<ScanTiles> create(const std::string& folder,
                                                   const std::string& format,
                                                   double side_m);
 
-    /// Points as x y z station mixed, one behind the other.
+    /// Adds points: x, y, z [m, world], station and mixed flag of each point, one point after the
+    /// other.
     [[nodiscard]] Status add(std::span<const float> values);
     [[nodiscard]] Status finish(const ScanOrigin& origin);
 

@@ -18,7 +18,7 @@
 namespace surefoot::app {
 namespace {
 
-/// What stands around the paths of the scenes.
+/// Lattice of the ground and objects around the paths of the scenes.
 sim::Lattice surroundings() {
     return {{-1.0, -2.5}, 280, 200, 0.025};
 }
@@ -28,8 +28,8 @@ Status write_png(const std::string& path, const eval::Picture& picture) {
     return io::write_file(path, png);
 }
 
-/// When a scene shows what it is about: half-way; on a walk before the machine turns, for the first
-/// time, away from what it walks to.
+/// Time of a characteristic view: half-way along the path or, for a walk, before the machine first
+/// turns away from its target.
 double telling_time_s(const sim::ScriptedScene& script) {
     constexpr int kFirstTurn = 25;  // joystick codes 25 and 26
     for (const sim::StepEvent& step : script.steps) {
@@ -46,7 +46,7 @@ Status write_view(const std::string& path,
     sim::SceneOptions options;
     options.scene = info.name;
     options.seed = seed;
-    constexpr double kLongest_s = 10.0;  // between two frames of a source
+    constexpr double kLongest_s = 10.0;  // longest time between two frames of a source
     const double time_s = telling_time_s(script);
     const int frames = saturated_integer<int>(std::ceil(time_s / kLongest_s));
     options.rate_hz = frames / time_s;
@@ -62,7 +62,7 @@ Status write_view(const std::string& path,
     return write_png(path, eval::render_camera_image(last, {info.name, info.description}));
 }
 
-/// The colours span the ground, not the walls around it.
+/// The colour range covers the ground, not the walls around it.
 eval::ValueRange ground_range(const grid::Layer& heights_m, const Image<sim::Label>& labels) {
     eval::ValueRange range{-0.05, 0.05};
     for (std::size_t i = 0; i < heights_m.size(); ++i) {

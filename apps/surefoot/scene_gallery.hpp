@@ -9,9 +9,9 @@
 
 namespace surefoot::app {
 
-/// Writes for every scene NAME.png (what the left camera sees half-way along the path, of
-/// a walk before it turns) and NAME_height.png (the true ground from above, with the path), and
-/// index.html that shows them.
+/// Writes two pictures of every scene and index.html that shows them. NAME.png is the left image
+/// half-way along the path, or, for a walk, before the machine first turns. NAME_height.png is the
+/// true ground from above, with the path.
 [[nodiscard]] Status write_scene_gallery(const std::string& folder,
                                          std::uint64_t seed,
                                          Executor& executor);

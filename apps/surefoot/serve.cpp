@@ -42,10 +42,10 @@
 namespace surefoot::app {
 namespace {
 
-constexpr double kRemembered_s = 10.0;  ///< of a simulated walk: no frame shows what is older
+constexpr double kRemembered_s = 10.0;  ///< of a simulated walk; no frame shows an older motion
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
 
-/// The writer of the channel, whose file is gone when the program ends.
+/// Owns the writer of the snapshot channel and removes the channel file at the end of the program.
 class Channel {
   public:
     explicit Channel(wire::SnapshotWriter its_writer) : writer(std::move(its_writer)) {}
@@ -53,7 +53,7 @@ class Channel {
     Channel(const Channel&) = delete;
     Channel& operator=(const Channel&) = delete;
 
-    /// Mends the file a few times a second, and says what had happened to it.
+    /// Repairs the channel file if necessary, a few times a second, and logs the damage.
     void look_after(std::int64_t now_ns) {
         if (now_ns < next_ns_) return;
         next_ns_ = now_ns + kMendEvery_ns;
@@ -69,13 +69,14 @@ class Channel {
   private:
     static constexpr std::int64_t kMendEvery_ns = 250'000'000;
     std::int64_t next_ns_ = 0;
-    std::string told_;  ///< an error that was said already
+    std::string told_;  ///< last logged error, to log it only once
 };
 
-/// The gate's answers come first, then who looks after it: the first thread, which starts it again
-/// with the priority that it has itself. Linux knows the priority of threads alone: every other
-/// thread that there is, and what they start. An error says what the system said, of one thread at
-/// least; one that has ended is none.
+/// Sets the niceness of all threads except the first one. The answers of the gate have the highest
+/// priority, then the first thread, which restarts the gate with its own priority. Linux stores the
+/// priority per thread, so this function sets it for every existing thread; threads that those
+/// start inherit it. The error contains the errno text of one of the failed threads. A thread that
+/// has already ended is not an error.
 Status be_nice(int niceness) {
     int refusal = 0;
     std::error_code error;
@@ -100,7 +101,8 @@ std::string channel_begin() {
     return fmt::format("surefoot-{}-", ::getuid());
 }
 
-/// What a killed service of this user left: channels named after processes that are no more.
+/// Removes channel files that killed services of this user left behind: the process id in the name
+/// no longer exists.
 void remove_orphaned_channels() {
     const std::string begin = channel_begin();
     std::error_code error;
@@ -168,7 +170,7 @@ Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
     return open_source(request, executor);
 }
 
-/// The live page, on a thread of its own; without one where the user wants none.
+/// The live page on its own thread. Does nothing if the user disabled the page.
 class PageService {
   public:
     static Result<std::unique_ptr<PageService>> start(const ServeOptions& options,
@@ -182,7 +184,7 @@ class PageService {
         config.origins = options.origins;
         config.tls = {options.certificate_file, options.key_file};
         config.insecure = options.insecure;
-        // The page's socket knows one token; the gate's own knows the roles.
+        // The socket of the page accepts a single token; only the gate distinguishes roles.
         if (access.guest == wire::Role::none) config.token = access.operator_;
         auto server = page::PageServer::open(config, service->feed_, service->controls_);
         if (!server) return server.error();
@@ -199,7 +201,8 @@ class PageService {
         thread_.join();
     }
 
-    /// Whoever looks sees this from now on; again when the gate listens elsewhere.
+    /// Sends this introduction to all present and later viewers. Call again when the port of the
+    /// gate changes.
     void introduce(const page::PageHello& hello, const std::optional<io::MachineFile>& machine) {
         if (!server_) return;
         server_->introduce(hello,
@@ -230,9 +233,9 @@ void print_news(const std::vector<AskedStep>& news, std::FILE* out) {
     std::fflush(out);
 }
 
-/// Perception on a thread of its own, the gate process beside it, and perhaps somebody who walks.
-/// The first thread looks after the gate, whatever perception does: a frame that hangs shall not
-/// keep a gate that died from being started again.
+/// Runs perception on its own thread, beside the gate process and an optional steered walk. The
+/// first thread supervises the gate independently of perception, so that a hanging frame cannot
+/// delay the restart of the gate.
 class Service {
   public:
     Service(const ServeOptions& options,
@@ -275,24 +278,25 @@ class Service {
     void draw(const AskedStep& step, const grid::MapSnapshot& map);
 
     const ServeOptions& options_;
-    Settings settings_;  ///< fitted to the source once it is open
+    Settings settings_;  ///< adapted to the rig of the source
     const std::optional<io::MachineFile>& machine_;
     const std::optional<io::MachineModel>& model_;
     Executor& executor_;
-    std::optional<ServiceSettings> service_settings_;  ///< pages change it until they are gone
+    /// Destroyed after `page_`, because pages change it.
+    std::optional<ServiceSettings> service_settings_;
     std::atomic<int> niceness_{0};
     std::atomic<double> scene_speed_{0.0};
     std::unique_ptr<PageService> page_;
-    std::optional<FrameRecorder> recorder_;  ///< goes before the page that it tells
+    std::optional<FrameRecorder> recorder_;  ///< destroyed before `page_`, which it notifies
     page::PageHello hello_;
-    double speed_ = 1.0;  ///< times real time, 0 = as it comes
+    double speed_ = 1.0;  ///< playback speed relative to real time; 0 = unpaced
     std::unique_ptr<SteeredWalk> walk_;
     std::vector<AskedStep> steps_;
     gate::Vouching word_;
     bool word_given_ = false;
 };
 
-/// With --json the answer has stdout for itself.
+/// With --json stdout is reserved for the answer, so the address goes to stderr.
 void Service::tell_where(const GateChild& gate) {
     std::FILE* const out = options_.common.json ? stderr : stdout;
     fmt::print(out,
@@ -317,7 +321,7 @@ void Service::look_after(GateChild& gate, Channel& channel) {
     tell_where(gate);
 }
 
-/// The gate has the operator's word from the first map on; so have the pictures.
+/// Applies the operator attestation to the pictures as the gate does: from the first map on.
 void Service::remember_word(const LiveSession& session) {
     if (session.published() == 0) return;
     if (!word_given_) {
@@ -356,7 +360,8 @@ void Service::follow_walk(sim::SceneSource& scene, const LiveSession& session) {
     }
 }
 
-/// Waits while the pages want a recording to stand; false when somebody jumps.
+/// Waits while a page has paused the recording. Returns false if a page wants to jump to another
+/// frame.
 bool Service::follow_pages(LiveSession& session, const wire::SnapshotWriter& writer) {
     page::Playback& playback = page_->controls().playback;
     auto state = playback.state();
@@ -376,7 +381,7 @@ bool Service::follow_pages(LiveSession& session, const wire::SnapshotWriter& wri
     return !playback.jump_wanted();
 }
 
-/// One map and one odom, from the next frame of the source on.
+/// Processes the source with a new pipeline (one map, one odom frame), from its next frame on.
 Result<LiveSession::End> Service::perceive_anew(camera::FrameSource& source,
                                                 wire::SnapshotWriter& writer) {
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
@@ -407,7 +412,7 @@ Result<LiveSession::End> Service::perceive_anew(camera::FrameSource& source,
     return end;
 }
 
-/// The frame to go on from; at the end of a recording somebody may still jump back.
+/// The frame to continue from. At the end of a recording waits for a jump of a page.
 std::optional<int> Service::next_jump(LiveSession::End end) {
     page::Playback& playback = page_->controls().playback;
     if (end == LiveSession::End::source_ended && playback.state() && !options_.once) {
@@ -452,7 +457,7 @@ Status Service::perceive_beside(GateChild& gate,
     return perceived;
 }
 
-/// What pages are told of the source, and may do with it.
+/// Sends the description of the source and the available controls to the pages.
 Status Service::introduce(const camera::FrameSource& source,
                           const wire::Access& access,
                           std::uint16_t gate_port) {
@@ -476,7 +481,7 @@ Status Service::introduce(const camera::FrameSource& source,
     return {};
 }
 
-/// Pages see every setting of the run, and change those of the service.
+/// Pages see every setting of the run and can change the settings of the service.
 void Service::offer_settings(bool is_scene) {
     ServiceConfig first;
     first.speed = speed_;
@@ -519,7 +524,7 @@ Result<std::string> Service::change(const page::SettingWish& wish) {
     return changed;
 }
 
-/// Somebody steers, where the user wants it.
+/// Starts the steered walk if --walk or --joystick asks for it.
 Status Service::steer(camera::FrameSource& source,
                       const std::string& rider_token,
                       std::uint16_t gate_port) {
@@ -583,14 +588,15 @@ Status Service::run() {
     Status perceived = perceive_beside(*gate, std::move(source).value(), channel);
     walk_.reset();
     if (!perceived) return perceived;
-    while (!options_.once && !interrupted()) {  // whoever asks now hears that the frames are old
+    while (!options_.once && !interrupted()) {  // the gate keeps answering that the frames are old
         look_after(*gate, channel);
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     return {};
 }
 
-/// What pages show; a machine of whose looks nothing is known is shown as the space that it takes.
+/// Loads the model that pages show. Without a model, pages show only the space that the machine
+/// occupies.
 Result<std::optional<io::MachineModel>> load_model(const ServeOptions& options,
                                                    const std::optional<io::MachineFile>& machine) {
     if (options.model.empty())

@@ -14,7 +14,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Longer ends first: "_m_s2" ends in "_s2".
+/// Longer suffixes first, because "_m_s2" also ends with "_s2".
 constexpr std::array<std::pair<std::string_view, std::string_view>, 24> kUnits{
     {{"_m_s2", "m/s\u00b2"}, {"_deg_s", "deg/s"}, {"_rad_s", "rad/s"},   {"_sigmas", "sigma"},
      {"_sigma", "sigma"},    {"_percent", "%"},   {"_frames", "frames"}, {"_cells", "cells"},
@@ -87,7 +87,7 @@ ServiceSettings::ServiceSettings(const ServiceConfig& first, bool can_pace, Appl
 std::vector<page::PageSetting> ServiceSettings::for_pages(const Settings& run) const {
     std::vector<page::PageSetting> settings;
     for (const io::ConfigEntry& entry : io::list_config_of(now())) {
-        // A recording's speed is on its timeline, and a live camera has none.
+        // The speed of a recording is controlled on its timeline; a live camera has no speed.
         if (entry.key == kSpeed && !can_pace_) continue;
         settings.push_back(page_setting(entry, true));
     }
@@ -96,7 +96,8 @@ std::vector<page::PageSetting> ServiceSettings::for_pages(const Settings& run) c
     return settings;
 }
 
-/// The gate's answers come first: perception gets no more of the processor than it began with.
+/// Refuses a niceness below that of the start: perception must never get more processor time, so
+/// that the gate answers in time.
 Status ServiceSettings::check(const ServiceConfig& wanted) const {
     if (wanted.niceness < first_niceness_) {
         return usage_error(fmt::format(

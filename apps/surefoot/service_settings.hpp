@@ -13,35 +13,38 @@
 
 namespace surefoot::app {
 
-/// What may change while the service runs. None of it decides anything: every setting of the chain
-/// makes the map that the gate judges by, and stands in the hash of each verdict, so that a change
-/// needs a restart; limits of the gate and of the machine are in no list at all.
+/// Settings that may change while the service runs. No setting here affects a verdict. All pipeline
+/// settings need a restart, because they determine the map that the gate uses and are part of the
+/// configuration hash of each verdict. Limits of the gate and of the machine cannot be changed from
+/// a page.
 struct ServiceConfig {
     double map_hz = 10.0;
     double image_hz = 5.0;
     double layer_hz = 2.0;
-    double speed = 0.0;  ///< of a simulated scene; 0 = as it comes
+    double speed = 0.0;  ///< speed of a simulated scene relative to real time; 0 = unpaced
     int niceness = 10;
 
     void describe(ConfigVisitor& visitor);
 };
 
-/// Unit of a setting by the end of its name: "length_m" -> "m"; empty where it has none.
+/// Unit of a setting from the suffix of its name: "length_m" -> "m"; empty if the name has no unit.
 [[nodiscard]] std::string unit_of(const std::string& key);
 
-/// The settings of a service for its pages, those of the run included, and the one place where a
-/// change is checked. Any thread.
+/// The settings of a service and of its run, as pages see them. Every change of a setting is
+/// checked here. Thread-safe.
 class ServiceSettings {
   public:
-    /// Makes a change true, or says in words why it cannot.
+    /// Applies a change, or returns the reason why it cannot.
     using Apply = std::function<Status(const ServiceConfig& wanted)>;
 
-    /// `can_pace`: the source is a simulated scene. What niceness was at first is the least ever.
+    /// `can_pace`: the source is a simulated scene, so its speed can change. The niceness of
+    /// `first` is the lowest niceness that a later change may set.
     ServiceSettings(const ServiceConfig& first, bool can_pace, Apply apply);
 
-    /// Those that may change first, then all others as the run uses them.
+    /// All settings: first those that may change, then the settings of the run, which are
+    /// read-only.
     [[nodiscard]] std::vector<page::PageSetting> for_pages(const Settings& run) const;
-    /// The new value as it is written, or why it is refused.
+    /// Changes one setting. Returns the new value as text, or the reason of the refusal.
     [[nodiscard]] Result<std::string> change(const page::SettingWish& wish);
     [[nodiscard]] ServiceConfig now() const;
 

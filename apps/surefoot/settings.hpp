@@ -8,7 +8,7 @@
 
 namespace surefoot::app {
 
-/// What the options of the command line say of settings.
+/// The settings-related part of the command line.
 [[nodiscard]] inline SettingsRequest settings_request(const CommonOptions& options) {
     return {options.preset, options.config_file, options.settings};
 }

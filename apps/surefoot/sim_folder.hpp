@@ -9,14 +9,16 @@
 
 namespace surefoot::app {
 
-/// What decides every byte of a simulated recording, as `config.yaml` beside it says: the call,
-/// what the files that it names hold, all settings. Another version of the program is another line.
+/// Content of the `config.yaml` beside a simulated recording. It holds everything that determines
+/// the bytes of the recording: program version, call, hashes of the files that the call names, all
+/// settings.
 [[nodiscard]] Result<std::string> sim_config(const SimOptions& options, const Settings& settings);
 
-/// May a folder's recording be gone on with?
+/// Whether an existing recording in a folder may be continued.
 struct SimFolder {
     io::Recorder::Existing existing = io::Recorder::Existing::refuse;
-    std::string difference;  ///< of the folder's `config.yaml` from ours, a sentence; empty if none
+    /// Sentence with the first difference between the two configurations; empty = no difference.
+    std::string difference;
 };
 [[nodiscard]] SimFolder compare_folder(const std::string& folder, const std::string& config);
 

@@ -45,9 +45,9 @@ eval::CameraTrack camera_track(const pipeline::Pipeline& pipeline, const Traject
     return track;
 }
 
-/// The exact depth of a raw left image without distortion as the rectified camera sees it, which is
-/// turned a little when the rig is no longer the scene's: along its own axis, from the nearest raw
-/// pixel. Empty for another lens.
+/// Resamples the exact depth of a raw left image without distortion for the rectified camera, which
+/// is slightly rotated if the rig differs from that of the scene. Depth is along the optical axis
+/// of the rectified camera, taken from the nearest raw pixel. Empty for a lens with distortion.
 Image<float> seen_by(const camera::RectifiedRig& rig,
                      const camera::StereoRig& raw_rig,
                      const Image<float>& raw_m) {
@@ -73,8 +73,9 @@ Image<float> seen_by(const camera::RectifiedRig& rig,
     return seen_m;
 }
 
-/// Leaves out the poses before `first_ns`, which were waited out. False if the body moved
-/// meanwhile: odom then begins elsewhere than the world, and nothing is compared without alignment.
+/// Removes the poses before `first_ns`, the time of the first processed frame. Returns false if the
+/// body moved before: then odom starts elsewhere than the world, and a comparison without alignment
+/// is impossible.
 bool starts_at(std::vector<StampedPose>& trajectory, std::int64_t first_ns) {
     const Pose T_world_first = trajectory.front().T_world_body;
     std::erase_if(trajectory, [&](const StampedPose& pose) { return pose.time_ns < first_ns; });
@@ -91,7 +92,7 @@ void lift(grid::Layer& height_m, double by_m) {
         height_m.data()[i] += static_cast<float>(by_m);
 }
 
-/// How true heights are rated: the same chain with the same settings as the live map.
+/// Rates true heights with the filters and settings of the live map.
 grid::Layer rated(const pipeline::Pipeline& pipeline, const grid::Layer& height_m) {
     Serial serial;
     traversability::TraversabilityLayers layers;

@@ -13,44 +13,45 @@
 
 namespace surefoot::app {
 
-/// Reported depth against exact depth, over all pixels that the matcher does not itself call
-/// doubtful.
+/// Reported depth against exact depth. Counts only pixels with a low outlier probability.
 struct DepthFigures {
     std::int64_t pixels = 0;
     double within_3_sigma = 0.0;  ///< share of |error| <= 3 sigma_z
     double within_1_sigma = 0.0;
-    double median_abs_error_px = 0.0;  ///< of the disparity
+    double median_abs_error_px = 0.0;  ///< error of the disparity
     double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m
     double sigma_at_2_m_m = 0.0;       ///< at 1.9-2.1 m
     double doubtful_share = 0.0;       ///< pixels with an outlier probability above one half
 };
 
-/// A simulated run against the truth; nothing was aligned before the comparison.
+/// Errors of a simulated run. Nothing is aligned before the comparison.
 struct TruthFigures {
     eval::MapComparison maps;
-    double coverage_within_2_5_m =
-        0.0;  ///< share known of the cells that both eyes saw within 2.5 m
-    eval::TraversabilityErrors traversability;  ///< of these cells
-    eval::TrajectoryErrors trajectory;          ///< alignment none
+    /// Share of known cells among the cells that both cameras saw within 2.5 m.
+    double coverage_within_2_5_m = 0.0;
+    eval::TraversabilityErrors traversability;  ///< over the same cells
+    eval::TrajectoryErrors trajectory;          ///< without alignment
     DepthFigures depth;
     Trajectory truth_trajectory;
 };
 
-/// Height of odom's origin in the world. Odom begins on the ground, which is the world's z = 0, if
-/// the ground was found; else at the first body, and then the truth is told from there.
+/// Height of the origin of odom in the world [m]. If the ground was found, odom starts on the
+/// ground, which is z = 0 in the world. Otherwise odom starts at the first body pose, and the true
+/// height of that pose gives the offset.
 [[nodiscard]] double odom_height_m(const pipeline::Pipeline& pipeline,
                                    const sim::SceneTruth& truth,
                                    const std::vector<FrameReport>& frames);
 
-/// Collects the truth beside a run. Inert when the source is not simulated.
+/// Collects the ground truth during a run. Does nothing if the source is not simulated.
 class SimTruth {
   public:
     explicit SimTruth(camera::FrameSource& source);
 
-    /// Keeps the exact depth of a frame that was just rendered until it is compared.
+    /// Keeps the exact depth of the frame that was just rendered, until compare_depth().
     void remember_depth(const StereoFrame& frame);
+    /// Adds the depth errors of a frame that the pipeline has just processed.
     void compare_depth(const StereoFrame& frame, const pipeline::Pipeline& pipeline);
-    /// Nothing without a simulated source, or when the body moved before odom was placed.
+    /// Empty if the source is not simulated, or if the body moved before odom was placed.
     [[nodiscard]] std::optional<TruthFigures> figures(const pipeline::Pipeline& pipeline,
                                                       const std::vector<FrameReport>& frames,
                                                       const eval::EvalMapsConfig& config) const;
@@ -68,8 +69,8 @@ class SimTruth {
     std::int64_t within_1_sigma_ = 0;
     RangeMean near_;
     RangeMean far_;
-    std::vector<std::int64_t> error_histogram_ =
-        std::vector<std::int64_t>(400, 0);  ///< 0.01 px bins
+    /// 0.01 px bins.
+    std::vector<std::int64_t> error_histogram_ = std::vector<std::int64_t>(400, 0);
 };
 
 }  // namespace surefoot::app

@@ -27,7 +27,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Names and descriptions; with a folder also a picture of each scene.
+/// Prints names and descriptions of the scenes; with a folder also writes a picture of each scene.
 int list(const SimOptions& options) {
     const auto scenes = sim::list_scenes();
     if (options.common.json) {
@@ -41,7 +41,7 @@ int list(const SimOptions& options) {
     return status ? kExitOk : report(status.error());
 }
 
-/// Cells that hold the whole path and what can be seen from it.
+/// Grid that covers the whole path and the area visible from it.
 sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector2d high = -low;
@@ -61,8 +61,8 @@ sim::Lattice lattice_around(const Trajectory& trajectory, double resolution_m) {
     return lattice;
 }
 
-/// groundtruth.tum, elevation.asc (highest surface), labels.asc; beside RGB-D also groundtruth.txt,
-/// where users of that layout look for the poses of the camera.
+/// Writes groundtruth.tum, elevation.asc (highest surface) and labels.asc. For RGB-D also writes
+/// groundtruth.txt, where users of the TUM layout expect the poses of the camera.
 Status write_truth(const std::string& out,
                    const sim::SceneTruth& truth,
                    std::size_t frames,
@@ -94,7 +94,8 @@ Status write_truth(const std::string& out,
     return io::write_esri_grid(out + "/labels.asc", geometry, labels);
 }
 
-/// joystick.csv: what the user asks a walking machine for, and when (no line for other carriers).
+/// joystick.csv: the requests of the user of a walking machine, with their times. No lines for
+/// other motion models.
 Status write_joystick(const std::string& out,
                       const sim::SceneTruth& truth,
                       std::int64_t last_frame_ns) {
@@ -110,8 +111,8 @@ Status write_joystick(const std::string& out,
     return io::write_file(out + "/joystick.csv", joystick);
 }
 
-/// safety.csv: which of all movements would truly be safe where the machine stands before a step,
-/// or would stand where the trolley stops. A hand never stands: no line.
+/// safety.csv: which movements would truly be safe at each stance before a step or, for a trolley,
+/// at its stops. A hand-held camera has no stance, so it has no lines.
 Status write_safety(const std::string& out,
                     const sim::SceneTruth& truth,
                     std::int64_t last_frame_ns,
@@ -132,7 +133,7 @@ Status write_safety(const std::string& out,
     return io::write_file(out + "/safety.csv", sim::safety_csv(labels));
 }
 
-/// The truth of the frames that are there, also when the recording ended early.
+/// Writes the truth of the recorded frames, also if the recording ended early.
 Status write_all_truth(const std::string& out,
                        const sim::SceneTruth& truth,
                        int frames,
@@ -147,7 +148,7 @@ Status write_all_truth(const std::string& out,
     return writes.first();
 }
 
-/// Starts the recording, or goes on with one of the same call; beside it config.yaml.
+/// Starts the recording or continues one of the same call; writes config.yaml beside it.
 Result<io::Recorder> start_simulated(const SimOptions& options,
                                      const Settings& settings,
                                      const sim::SceneSource& source) {
@@ -168,7 +169,7 @@ Result<io::Recorder> start_simulated(const SimOptions& options,
     return recorder;
 }
 
-/// Renders and records what is not there already.
+/// Renders and records the frames that the folder lacks.
 Copied record_frames(const SimOptions& options, sim::SceneSource& source, io::Recorder& recorder) {
     const auto depth_file = [&](std::int64_t time_ns) {
         return fmt::format("{}/depth/{}.pfm", options.out_dir, time_ns);

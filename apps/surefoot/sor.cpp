@@ -15,9 +15,9 @@
 namespace surefoot::app {
 namespace {
 
-constexpr std::size_t kTaken = 2048;  ///< points that one thread takes
+constexpr std::size_t kTaken = 2048;  ///< points per task of a thread
 
-/// The points of a block for which `keep` holds a 1, with all that is known of them.
+/// The points of a block whose entry in `keep` is 1, with all their attributes.
 io::PointCloud kept_of(const io::PointCloud& block, const std::vector<char>& keep) {
     io::PointCloud kept;
     for (std::size_t i = 0; i < keep.size(); ++i) {
@@ -35,7 +35,7 @@ io::PointCloud kept_of(const io::PointCloud& block, const std::vector<char>& kee
     return kept;
 }
 
-/// What was written, and what the output does not hold of the input.
+/// Number of written points, and the properties of the input that the output lacks.
 struct Written {
     std::int64_t points = 0;
     std::vector<std::string> notes;

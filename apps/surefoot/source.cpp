@@ -41,8 +41,8 @@ class LimitedSource final : public camera::FrameSource {
     int left_;
 };
 
-/// What the readers of calibrations have to say. A recording hands on its rig alone, so that the
-/// file of --rig is read once more, for the images' size; it is small.
+/// Logs the notes of the calibration reader. A recording passes on only its rig, without notes, so
+/// the small file of --rig is read a second time, for the size of the images.
 void log_rig_notes(const SourceRequest& request, const camera::StereoRig& rig) {
     std::vector<std::string> notes;
     if (!request.rig_file.empty()) {

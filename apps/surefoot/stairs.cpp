@@ -20,7 +20,7 @@
 namespace surefoot::app {
 namespace {
 
-/// What there is on a map, and the class of each cell.
+/// Terrain features of a map, and the class of each cell.
 struct Found {
     stairs::TerrainFeatures features;
     stairs::GroundClasses classes;
@@ -33,7 +33,7 @@ eval::Overlays stance_of(const TerrainMap& map) {
     return drawn;
 }
 
-/// stairs.png, classes.png and a page with both and the table of what was found.
+/// Writes stairs.png, classes.png and a page with both pictures and the table of the features.
 Status write_pictures(const StairsOptions& options, const TerrainMap& map, const Found& found) {
     const eval::Overlays drawn = stance_of(map);
     const auto stairs_png = eval::encode_png(eval::render_features(

@@ -29,14 +29,14 @@ Json classes_json(const stairs::GroundClasses& classes, double resolution_m) {
 
 constexpr wire::JsonLimits kFileLimits{.max_bytes = 64U << 20U};
 
-/// Reads objects of a list, and keeps the first thing that is wrong.
+/// Reads the objects of a list and keeps the first error.
 class ListReader {
   public:
     explicit ListReader(std::string file) : file_(std::move(file)) {}
 
     [[nodiscard]] const std::optional<Error>& error() const { return error_; }
 
-    /// Calls `read(object)` for each object of the list; false without the list.
+    /// Calls `read(object)` for each object of the list. Returns false if the list is missing.
     template <typename Read>
     bool each(const Json& all, const std::string& list, const Read& read) {
         if (!all.contains(list)) return false;
@@ -49,7 +49,7 @@ class ListReader {
         return true;
     }
 
-    /// NaN where there is none.
+    /// NaN if the member is missing.
     double number(const Json& object, const char* name) {
         if (!object.contains(name) || object[name].is_null())
             return std::numeric_limits<double>::quiet_NaN();
@@ -96,8 +96,11 @@ class ListReader {
     void fail(const std::string& name, const std::string& what) {
         if (error_) return;
         const std::string where = at_.empty() || name.empty() ? at_ + name : at_ + "." + name;
-        error_ = input_error(fmt::format(
-            "{}: {} {}; the names are those of stairs.json (docs/reference/json.md)", file_, where, what));
+        error_ = input_error(
+            fmt::format("{}: {} {}; the names are those of stairs.json (docs/reference/json.md)",
+                        file_,
+                        where,
+                        what));
     }
 
     std::string file_;
@@ -158,7 +161,7 @@ Json poses_json(const std::vector<stairs::FeaturePose>& poses) {
     return list;
 }
 
-/// `height`: how the height of this kind is called.
+/// `height`: JSON name of the height of this kind.
 Json kind_json(const eval::KindErrors& errors, const char* height) {
     return {{"truth", errors.truth},
             {"found", errors.found},
@@ -230,7 +233,7 @@ Json log10_of(double log_ratio) {
     return number(log_ratio / std::numbers::ln10);
 }
 
-/// A flight is as sure as its least sure step.
+/// The ratio of a flight is that of its least certain step.
 double least_log_ratio(const stairs::Flight& flight) {
     double least = std::numeric_limits<double>::quiet_NaN();
     for (const stairs::Edge& edge : flight.edges)

@@ -14,43 +14,47 @@
 
 namespace surefoot::app {
 
-/// "imu", "plane" or "assumed", as JSON has it.
+/// Name of the gravity source in JSON: "imu", "plane" or "assumed".
 [[nodiscard]] const char* gravity_name(grid::GravitySource source);
 
-/// What is said beside the features of a map.
+/// Further content of stairs.json.
 struct StairsContext {
-    double resolution_m = 0.0;  ///< side of a cell
+    double resolution_m = 0.0;  ///< cell size
     grid::GravitySource gravity_source = grid::GravitySource::assumed;
     std::vector<std::string> assumed = {};
-    /// Of a run: what one observation or the final map alone found. Null = nothing was followed.
+    /// Features of a run that only one observation or only the final map contains. Null = the
+    /// features come from a single map, without tracking.
     const stairs::TerrainFeatures* unconfirmed = nullptr;
 };
 
-/// What the ground is, as `stairs` prints it and stairs.json has it. Poses are x, y, z [m] and yaw
-/// [rad] in the frame of the map; std = standard error, spread = scatter of the single ones; drops
-/// and kerbs have positive heights; `log10_step_ratio` is the decimal logarithm of the likelihood
-/// ratio, step over smooth ground. What was followed has `id`, `looks` and `last_seen_s`. What is
-/// no number is null. Where gravity was assumed each feature says so.
+/// Terrain features as JSON, as `surefoot stairs` prints them and stairs.json holds them. Poses are
+/// x, y, z [m] and yaw [rad] in the frame of the map. `std` is the standard error; `spread` is the
+/// scatter of the single values. Drops and kerbs have positive heights. `log10_step_ratio` is the
+/// decimal logarithm of the likelihood ratio of a step over smooth ground. Tracked features have
+/// `id`, `looks` (number of observations) and `last_seen_s`. NaN is written as null. If gravity was
+/// assumed, each feature says so.
 [[nodiscard]] std::string stairs_json(const stairs::TerrainFeatures& features,
                                       const stairs::GroundClasses& classes,
                                       const StairsContext& context);
 
-/// What has to be said where gravity was assumed; else empty.
+/// Note for the user if gravity was assumed; otherwise empty.
 [[nodiscard]] std::string gravity_note(grid::GravitySource source);
 
-/// What such a file holds of features, or a file of truth written by hand: places and measures.
+/// Terrain features read from stairs.json or from a hand-written file of true features: poses and
+/// measures only.
 struct ListedFeatures {
     stairs::TerrainFeatures features;
-    std::set<std::string>
-        lists;  ///< that are in the file; one that is not says nothing of its kind
+    /// Names of the lists in the file; a missing list makes no statement about its kind.
+    std::set<std::string> lists;
 };
 
-/// Wanted are the lists, in each object `pose` (edges: `from` and `to`), and `kind` and `steps`
-/// where they are part of it; other numbers may be missing or null and are then not known (NaN).
-/// Input errors name the file, where in it and what is wrong; so does a file without any list.
+/// Reads stairs.json or a hand-written file of true features. Each object needs `pose` (edges:
+/// `from` and `to`), and `kind` and `steps` for the kinds that have them. Other numbers may be
+/// missing or null and become NaN. Input errors name the file, the position and the problem. A file
+/// without any list is an input error.
 [[nodiscard]] Result<ListedFeatures> parse_stairs(std::string_view text, const std::string& file);
 
-/// Of `eval stairs`: `lists` are those that were compared, the others are null.
+/// Result of `surefoot eval stairs`. `lists` names the compared lists; the others become null.
 [[nodiscard]] std::string feature_errors_json(const eval::FeatureErrors& errors,
                                               const std::set<std::string>& lists);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Without blanks and line breaks.
+/// Removes blanks and line breaks.
 std::string packed(const std::string& json) {
     std::string text;
     for (const char c : json)
@@ -197,7 +197,7 @@ TEST(StairsJson, EachEdgeStatesHowMuchMoreLikelyAStepItIsThanSmoothGround) {
     features.drops = {stairs::line_feature(features.edges[0], true)};
     stairs::Flight flight;
     flight.edges = {edge(), features.edges[0], edge()};
-    flight.edges[0].log_step_ratio = 4.0 * std::log(10.0);  // the third one was not asked
+    flight.edges[0].log_step_ratio = 4.0 * std::log(10.0);  // the third edge has no ratio
     features.flights = {flight};
     const std::string json = packed(json_of(features, {}));
     int times = 0;

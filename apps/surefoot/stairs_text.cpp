@@ -14,7 +14,7 @@ namespace {
 
 using eval::length_text;
 
-/// A thing on the ground in the words of a table.
+/// One terrain feature as the cells of a table row.
 struct Row {
     std::string what;
     std::string height;

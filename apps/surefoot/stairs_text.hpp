@@ -11,10 +11,10 @@ namespace surefoot::app {
 /// "2 flights, 1 drop, no kerb, no sill, no door; 9 edges".
 [[nodiscard]] std::string features_count_text(const stairs::TerrainFeatures& features);
 
-/// One line for each flight, drop, kerb, sill and door, for the terminal.
+/// One line for each flight, drop, kerb, sill and door.
 [[nodiscard]] std::string features_text(const stairs::TerrainFeatures& features);
 
-/// The same as a table for a report; without rows when there is nothing.
+/// Same features as a table for a report; no rows if there are no features.
 [[nodiscard]] eval::ReportTable features_table(const stairs::TerrainFeatures& features);
 
 }  // namespace surefoot::app

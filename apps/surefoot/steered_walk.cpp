@@ -12,12 +12,14 @@
 namespace surefoot::app {
 namespace {
 
-constexpr std::int64_t kRest_ns = 400'000'000;   ///< between two movements
-constexpr std::int64_t kRetry_ns = 500'000'000;  ///< where the gate cannot judge
-/// A gate that is in FAULT waits for somebody to arm it, and a script cannot.
+constexpr std::int64_t kRest_ns = 400'000'000;  ///< pause between two movements
+/// Pause before asking again, if the gate could not judge.
+constexpr std::int64_t kRetry_ns = 500'000'000;
+/// Longest time without a decision. A gate in state FAULT needs an operator to re-arm it; a script
+/// cannot do that.
 constexpr std::int64_t kPatience_ns = 120'000'000'000;
-/// The machine has stood still for so long before the next movement is asked for: the simulator's
-/// frame rings after a step.
+/// The machine must stand still for this time before the next request, because the simulated body
+/// still vibrates after a step.
 constexpr double kSettled_s = 1.0;
 
 class ScriptedWalker final : public Walker {
@@ -50,7 +52,7 @@ class ScriptedWalker final : public Walker {
     std::optional<std::int64_t> unjudged_since_ns_;
 };
 
-/// Asking again is up to whoever holds the joystick.
+/// The user of the page decides whether to ask again.
 class PageWalker final : public Walker {
   public:
     explicit PageWalker(page::Steering& steering) : steering_(steering) {}
@@ -112,7 +114,8 @@ SteeredWalk::SteeredWalk(std::unique_ptr<Walker> walker,
     config.gate.address = "127.0.0.1";
     config.gate.port = gate_port;
     config.gate.show_token(rider_token);
-    // The simulator says when a step has ended: its time need not run as ours does.
+    // The simulator decides when a step has ended, because simulated time may run faster or slower
+    // than real time.
     config.link.step_duration_ns = kRest_ns;
     thread_ = std::thread([this, config] {
         rex_link::run_link(

@@ -16,38 +16,38 @@
 
 namespace surefoot::app {
 
-/// What became of one movement that the user asked for.
+/// Outcome of one requested movement.
 struct AskedStep {
     std::uint8_t command = 0;
     bool moved = false;
-    std::string verdict;  ///< of the last answer; "-" where none came
+    std::string verdict;  ///< verdict of the last answer; "-" = no answer came
     std::string text;
 };
 
-/// Who asks for movements. Called by the walk's thread alone.
+/// Source of movement requests. Only the thread of the walk calls it.
 class Walker {
   public:
     virtual ~Walker() = default;
-    /// What the joystick says, 0 = at rest; nothing when no more will be asked. Asked while the
-    /// machine stands. `elapsed_ns`: since the walk began.
+    /// Joystick code; 0 = at rest; empty = no more requests. Called while the machine stands.
+    /// `elapsed_ns`: time since the walk began.
     [[nodiscard]] virtual std::optional<std::uint8_t> joystick(std::int64_t elapsed_ns) = 0;
-    /// The movement was made or not; `judged`: the gate said yes or no to the ground. True where
-    /// that is news to tell.
+    /// Reports the outcome of a request. `judged`: the gate decided about the ground, with yes or
+    /// no. Returns true if SteeredWalk::news() shall contain this outcome.
     virtual bool answered(const AskedStep& step, bool judged, std::int64_t elapsed_ns) = 0;
 };
 
-/// One movement after the other: where the gate cannot judge (it warms up), waits and asks again;
-/// where it says no, goes on with the next. Where it could not judge for two minutes, gives up: the
-/// last answer is told, and no more is asked.
+/// Requests the movements in order. If the gate cannot judge, for example while it warms up, waits
+/// and asks again. After a refusal continues with the next movement. After two minutes without a
+/// decision reports the last answer and stops.
 [[nodiscard]] std::unique_ptr<Walker> scripted_walker(std::vector<std::uint8_t> codes);
-/// Whoever holds the joystick on a page.
+/// Takes the requests from the joystick of a web page.
 [[nodiscard]] std::unique_ptr<Walker> page_walker(page::Steering& steering);
 
-/// "9,9,17,25*12" -> joystick codes in turn, x*n = n times.
+/// Reads a list of joystick codes such as "9,9,17,25*12"; x*n repeats code x n times.
 [[nodiscard]] Result<std::vector<std::uint8_t>> parse_walk(const std::string& text);
 
-/// A user who asks for movements, a REX link that asks the gate, and the simulated REX that moves
-/// when the link says so. Runs on a thread of its own.
+/// Connects a walker, a REX link that asks the gate, and a simulated REX that moves when the link
+/// allows it. Runs on its own thread.
 class SteeredWalk {
   public:
     SteeredWalk(std::unique_ptr<Walker> walker,
@@ -56,14 +56,14 @@ class SteeredWalk {
                 std::shared_ptr<sim::CommandedMotion> motion);
     SteeredWalk(const SteeredWalk&) = delete;
     SteeredWalk& operator=(const SteeredWalk&) = delete;
-    /// Ends the thread.
+    /// Stops and joins the thread.
     ~SteeredWalk();
 
-    /// Before the next frame is exposed: a step may begin at `time_s` of the motion or later.
+    /// Call before the next frame is exposed. Movements start at `time_s` of the motion or later.
     void next_frame_begins(double time_s) noexcept { steer_from_s_ = time_s; }
-    /// All was asked, and the machine stands.
+    /// True after the last request, when the machine stands. Thread-safe.
     [[nodiscard]] bool is_over() const noexcept { return over_; }
-    /// What was asked and answered since the last call.
+    /// Returns and clears the outcomes since the last call. Thread-safe.
     [[nodiscard]] std::vector<AskedStep> news();
 
   private:
@@ -78,9 +78,9 @@ class SteeredWalk {
     std::atomic<bool> stopped_{false};
     std::atomic<bool> over_{false};
 
-    // Of the thread.
+    // Used by the thread only.
     std::int64_t elapsed_ns_ = 0;
-    AskedStep asked_;  ///< command 0: nothing is asked for
+    AskedStep asked_;  ///< command 0 = no request
 
     std::mutex mutex_;
     std::vector<AskedStep> news_;

@@ -17,14 +17,14 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOff_m = 0.015;
 constexpr double kOffShare = 0.5;
 constexpr double kGrazing_deg = 3.0;
-/// A scanner's beam is wider than this many of its steps only close by.
+/// Largest beam width that is considered, in angular steps. Only at close range a beam is wider.
 constexpr std::ptrdiff_t kMostApart = 4;
 constexpr std::ptrdiff_t kReach = 2 * kMostApart;
 
-/// Whether two beams on one side, `spacing_m` apart, foretell a range.
+/// True if two beams on one side, `spacing_m` apart, predict the range of a point.
 bool foretell(double range_m, double beside_m, double beyond_m, double spacing_m) {
     static const double steepest = 1.0 / std::tan(kGrazing_deg * kRadPerDeg);
-    const double change_m = std::abs(beside_m - beyond_m);  // NaN where one is missing
+    const double change_m = std::abs(beside_m - beyond_m);  // NaN if a beam has no range
     if (!(change_m <= steepest * spacing_m)) return false;
     const double inverse = 2.0 / beside_m - 1.0 / beyond_m;
     return inverse > 0.0 && std::abs(1.0 / inverse - range_m) <= kOff_m + kOffShare * change_m;
@@ -79,7 +79,7 @@ bool StrayFilter::hand_over(std::size_t at, const Take& take) {
 
 bool StrayFilter::add(const sim::ScanColumn& column, const Take& take) {
     Column added;
-    // What is farthest back is not asked for again.
+    // The oldest column is no longer needed; reuse its memory.
     if (std::ssize(columns_) > 2 * kReach) {
         added = std::move(columns_.front());
         columns_.pop_front();

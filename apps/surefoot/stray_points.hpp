@@ -11,26 +11,28 @@
 
 namespace surefoot::app {
 
-/// Leaves out what a scanner measures where no surface is: a beam that meets an edge and what lies
-/// behind it measures a range between both. Software of scanners does the same to the organised
-/// scan ("stray point filter" of Faro Scene, shadow filters of others), as nothing tells those
-/// points once the scan is a cloud.
+/// Removes stray points of a laser scan: ranges that do not belong to any surface. A beam that
+/// meets an edge and the background behind it measures a range between the two. Scanner software
+/// removes such points from the organised scan ("stray point filter" of Faro Scene, shadow filters
+/// of others), because they cannot be recognised in an unorganised cloud.
 ///
-/// On a plane the inverse range changes evenly from beam to beam. A point stays if along its column
-/// and across the columns the two beams on one side of it foretell its range, within 15 mm and half
-/// of what the range changes between those two (rough ground seen at a glance), and lie on a
-/// surface that the beams meet at 3 deg or more. The beams compared are as far apart as a beam is
-/// wide, as narrower ones meet the same edge. What is less than three such beams wide is lost.
+/// On a plane the inverse range changes linearly from beam to beam. Two beams on one side of a
+/// point predict its range by extrapolation. The point stays if, along its column and across the
+/// columns, such a prediction is right within 15 mm plus half of the range change between the two
+/// beams (rough ground at a grazing angle), and the two beams lie on a surface that they meet at 3
+/// deg or more. The compared beams are one beam width apart, because closer beams meet the same
+/// edge. Surfaces narrower than three beam widths are lost.
 class StrayFilter {
   public:
-    /// Points of a column in the scanner's frame, lowest first; NaN where nothing came back or a
-    /// stray was left out. Returns false to end.
+    /// Receives the points of a column in the frame of the scanner [m], lowest first. NaN = no
+    /// return, or a removed stray point. Returns false to stop.
     using Take = std::function<bool(std::span<const Eigen::Vector3d> points_scanner_m)>;
 
     explicit StrayFilter(const sim::LaserScannerConfig& config);
-    /// Columns in order of azimuth; hands over those whose neighbours are known.
+    /// Adds a column; columns come in order of azimuth. Passes on the columns whose neighbours are
+    /// complete. Returns false if `take` stopped.
     bool add(const sim::ScanColumn& column, const Take& take);
-    /// The last columns.
+    /// Passes on the remaining columns.
     bool finish(const Take& take);
 
   private:
@@ -46,8 +48,8 @@ class StrayFilter {
     double beam_exit_m_ = 0.0;
     double beam_divergence_rad_ = 0.0;
     double step_rad_ = 0.0;
-    std::deque<Column> columns_;  ///< before, judged next, after
-    std::size_t next_ = 0;        ///< of `columns_`
+    std::deque<Column> columns_;  ///< columns before and after the next column
+    std::size_t next_ = 0;        ///< index into `columns_` of the next column to pass on
     std::vector<Eigen::Vector3d> kept_m_;
 };
 

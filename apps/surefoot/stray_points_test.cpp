@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A quarter turn towards x at the report's resolution.
+/// A quarter turn towards x with the resolution of the report.
 sim::LaserScannerConfig quarter_turn() {
     sim::LaserScannerConfig config;
     config.azimuth_min_deg = -45.0;
@@ -26,7 +26,7 @@ sim::LaserScannerConfig quarter_turn() {
 }
 
 struct Scan {
-    std::vector<Vector3d> all_m;  ///< scanner's frame
+    std::vector<Vector3d> all_m;  ///< in the frame of the scanner
     std::vector<Vector3d> kept_m;
     int columns = 0;
 };
@@ -71,7 +71,7 @@ double kept_share(const Scan& scan) {
 TEST(StrayFilter, LeavesOutWhatHangsBetweenAnEdgeAndTheWallBehind) {
     const Scan scan =
         scan_of(sim::test::plate_before_wall(2.0, 4.0, 0.3), {0.0, 0.0, 1.6}, quarter_turn());
-    // In front of the wall, behind the plate (2 mm thick): nothing is there.
+    // Between the plate (2 mm thick) and the wall there is no surface.
     EXPECT_GT(between(scan.all_m, 2.03, 3.97), 50);
     EXPECT_EQ(between(scan.kept_m, 2.03, 3.97), 0);
     EXPECT_GT(between(scan.kept_m, 1.9, 2.03), between(scan.all_m, 1.9, 2.03) * 98 / 100);
@@ -87,7 +87,7 @@ TEST(StrayFilter, AlsoOfARailThatIsBarelyWiderThanTheBeam) {
 }
 
 TEST(StrayFilter, LevelGroundStaysAsFarAsItIsNotMetAtAGlance) {
-    // 1.6 m over 14 m are 6.5 deg.
+    // A scanner height of 1.6 m and a distance of 14 m give an angle of 6.5 deg.
     const Scan scan = scan_of(sim::test::floor_only(), {0.0, 0.0, 1.6}, quarter_turn());
     EXPECT_GT(kept_share(scan), 0.999);
 }

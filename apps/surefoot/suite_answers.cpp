@@ -12,11 +12,11 @@
 namespace surefoot::app {
 namespace {
 
-/// The wrong answers of cases that belong together.
+/// Wrong verdicts of a group of cases.
 struct Pool {
     int cases = 0;
-    double safe = 0.0;     ///< clearly safe movements that the gate was asked about ...
-    double allowed = 0.0;  ///< ... and allowed
+    double safe = 0.0;     ///< clear-cut safe movements
+    double allowed = 0.0;  ///< ... of these allowed
     VerdictTallies tallies;
 
     void add(const SuiteResult& result) {
@@ -44,7 +44,7 @@ std::string times(double noise) {
     return fmt::format("x {:g}", noise);
 }
 
-/// "left_supported" reads "left supported".
+/// Replaces underscores: "left_supported" becomes "left supported".
 std::string words_of(std::string name) {
     std::replace(name.begin(), name.end(), '_', ' ');
     return name;

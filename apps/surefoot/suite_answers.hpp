@@ -9,18 +9,19 @@
 
 namespace surefoot::app {
 
-/// Share of the clearly safe movements that the gate allowed, over all cases; NaN without any.
+/// Share of the clear-cut safe movements that the gate allowed, over all cases; NaN without such
+/// movements.
 [[nodiscard]] double allowed_share(std::span<const SuiteResult> results);
 
-/// For every noise level: why clearly safe movements were refused, what could not be proven about
-/// them, and which hazards were missed.
+/// Bar charts for every noise level: reasons for refusing clear-cut safe movements, proofs that
+/// failed for them, and missed hazards.
 [[nodiscard]] std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results);
-/// The reasons of the refusals scene by scene.
+/// Reasons of the refusals by scene.
 [[nodiscard]] eval::ReportTable refusal_table(std::span<const SuiteResult> results);
 
-/// Each step that a walking user asked for, beside the truth.
+/// Each step that a walking user requested, with the verdict and the truth.
 [[nodiscard]] eval::ReportTable step_table(std::span<const SuiteResult> results);
-/// What the gate said to the clearly safe ones of them.
+/// Verdicts about the clear-cut safe steps of walking users.
 [[nodiscard]] eval::ReportBars step_bars(std::span<const SuiteResult> results);
 
 }  // namespace surefoot::app

@@ -13,18 +13,18 @@
 
 namespace surefoot::app {
 
-/// By what the errors of a map are sorted.
+/// Key by which map errors are binned.
 enum class BinKey : std::uint8_t {
-    range,        ///< |height error| by the distance from the camera that saw the cell last [m]
-    column,       ///< |height error| by the image column where it was seen last [px]
-    jump_column,  ///< |jump between neighbours| on level floor, by image column [px]
+    range,   ///< |height error| by distance from the camera at the last observation of the cell [m]
+    column,  ///< |height error| by image column at the last observation of the cell [px]
+    jump_column,  ///< |height jump between neighbour cells| on level floor, by image column [px]
 };
 inline constexpr const char* kBinKeyNames[] = {"range", "column", "jump_column"};
 [[nodiscard]] constexpr const char* unit_of(BinKey key) noexcept {
     return key == BinKey::range ? "m" : "px";
 }
 
-/// The errors of one case whose key is in [from, to).
+/// Errors of one case whose key value is in [from, to).
 struct SuiteBin {
     BinKey key = BinKey::range;
     double from = 0.0;
@@ -34,15 +34,15 @@ struct SuiteBin {
     friend bool operator==(const SuiteBin&, const SuiteBin&) = default;
 };
 
-/// Every bin of a comparison in which there is an error.
+/// All bins of a comparison that contain an error.
 [[nodiscard]] std::vector<SuiteBin> bins_of(const eval::MapComparison& maps);
 
-/// Adds errors up over bins of the same key and ends; in the order of key and ends.
+/// Sums the errors of bins with the same key and limits; sorted by key and limits.
 [[nodiscard]] std::vector<SuiteBin> pooled(std::span<const SuiteBin> bins);
 
-/// Counts as they are written to a file: "12:3 15:1" is 3 errors in bin 12 and 1 in bin 15.
+/// Text of the counts for a file: "12:3 15:1" means 3 errors in bin 12 and 1 in bin 15.
 [[nodiscard]] std::string format_counts(const eval::ErrorHistogram& errors);
-/// Nothing for a text that is not whole.
+/// Reads the text of format_counts(); empty if the text is incomplete.
 [[nodiscard]] std::optional<eval::ErrorHistogram> parse_counts(std::string_view text);
 
 }  // namespace surefoot::app

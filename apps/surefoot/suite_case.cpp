@@ -23,7 +23,7 @@ double share(int part, int whole) {
     return whole > 0 ? static_cast<double>(part) / whole : std::nan("");
 }
 
-/// A count that says nothing without questions.
+/// A count that is NaN if no question was asked.
 double among(int part, std::size_t whole) {
     return whole > 0 ? static_cast<double>(part) : std::nan("");
 }
@@ -79,7 +79,7 @@ std::vector<std::uint8_t> thumbnail_of(const RunRecord& record,
         pipeline.map().geometry(), record.truth->maps.calls, overlays));
 }
 
-/// A simulated run of the chain, with the questions that are asked on the way.
+/// A simulated run of the pipeline, with the questions to the gate on the way.
 class CaseRun {
   public:
     CaseRun(const SuiteConditions& conditions,
@@ -117,7 +117,7 @@ class CaseRun {
     void after(const FrameReport& frame) {
         depth_.after_frame(frame, source_, pipeline_);
         while (steps_.due(frame.time_ns)) {
-            // A snapshot that cannot be made is not intact, and the gate refuses it.
+            // If the snapshot fails, it is not intact and the gate refuses it.
             [[maybe_unused]] const Status taken = take_snapshot();
             steps_.ask(*snapshot_);
         }

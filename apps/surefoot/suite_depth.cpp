@@ -11,7 +11,7 @@
 namespace surefoot::app {
 namespace {
 
-constexpr int kEvery = 5;  ///< neighbouring frames see the same
+constexpr int kEvery = 5;  ///< neighbouring frames show nearly the same view
 
 /// Estimate minus truth [px]; NaN where either is unknown.
 std::vector<float> disparity_errors(const Image<float>& truth_m,
@@ -38,7 +38,7 @@ void DepthOrder::after_frame(const FrameReport& frame,
     const bool wanted = straight && seen_ % kEvery == 0 && frame.work == Work::full;
     const Image<float>& truth_m = source.last_depth_m();
     const camera::DepthImage& depth = pipeline.depth();
-    // Of a raw image the truth lies at other pixels than the rectified disparity.
+    // In a raw image the true depth belongs to other pixels than the rectified disparity.
     if (!wanted || !source.rig().rectified || depth.disparity_px.size() != truth_m.size()) return;
     const auto errors_px = disparity_errors(truth_m, pipeline);
     const double auc =

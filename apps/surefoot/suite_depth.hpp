@@ -7,16 +7,16 @@
 
 namespace surefoot::app {
 
-/// Does the matcher's sigma know which disparities are wrong? Mean of the sparsification area
+/// Measures how well the matcher's sigma ranks the disparity errors: the mean sparsification area
 /// (eval::Sparsification::auc) of single frames.
 class DepthOrder {
   public:
-    /// Looks at every fifth of the frames that come straight from the source (the first ones are
-    /// buffered, their truth is gone by then).
+    /// Evaluates every fifth frame. Skips the frames that were buffered for the alignment, because
+    /// the source no longer has their true depth.
     void after_frame(const FrameReport& frame,
                      const sim::SceneSource& source,
                      const pipeline::Pipeline& pipeline);
-    /// NaN without a frame.
+    /// Mean area; NaN if no frame was evaluated.
     [[nodiscard]] double auc() const;
 
   private:

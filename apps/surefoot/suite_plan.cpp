@@ -16,13 +16,14 @@
 namespace surefoot::app {
 namespace {
 
-/// Few, short, and of every kind: for every change of the code.
+/// The quick suite has a few short cases of every kind, for every change of the code.
 constexpr double kQuickTime_s = 2.0;
-constexpr double kQuickWalk_s = 21.0;   ///< two steps, to the stance before the third
-constexpr double kQuickDrive_s = 10.0;  ///< of a trolley: to the end of its way
-/// What the trolley sees in the first seconds lies ahead, and the gate refuses each movement there
-/// for want of knowledge. A floor and a platform are driven to the end, so that there is something
-/// to allow, and an edge to refuse for a better reason; their files keep that way within the time.
+constexpr double kQuickWalk_s = 21.0;   ///< two steps, up to the stance before the third
+constexpr double kQuickDrive_s = 10.0;  ///< whole path of a trolley
+/// The scenes of the quick suite. In the first seconds the trolley sees only ground ahead of it,
+/// and the gate refuses every movement because the ground below is unknown. Therefore the floor and
+/// the platform run to the end of the path: there the gate can allow movements, and can refuse an
+/// edge for a better reason. The scene files keep these paths within the time.
 struct QuickScene {
     const char* name;
     double time_s;
@@ -37,11 +38,11 @@ constexpr QuickScene kQuickScenes[] = {{"floor", kQuickDrive_s},
                                        {"hole", kQuickTime_s}};
 constexpr double kWalkRate_hz = 4.0;
 
-/// A scene as the suite runs it.
+/// A scene with its motion model.
 struct SuiteScene {
     std::string name;
     sim::Carrier carrier = sim::Carrier::trolley;
-    double duration_s = 0.0;  ///< of its first seed; the ways of others are longer or shorter
+    double duration_s = 0.0;  ///< of the first seed; paths of other seeds differ
 };
 
 bool is_scene_file(const std::string& name) {
@@ -79,7 +80,8 @@ Status check_name(const std::string& name) {
                     likely.empty() ? ";" : likely));
 }
 
-/// The scene once for each carrier that can go its way; what its file says counts once.
+/// Adds the scene once for each motion model that can follow its path. Two names for the same
+/// motion model count once.
 Status add_carriers(const std::string& name,
                     const EvalSuiteOptions& options,
                     std::vector<SuiteScene>& scenes) {
@@ -122,7 +124,7 @@ Status check_noise(const std::vector<double>& factors) {
     return {};
 }
 
-/// How much of a scene the quick suite sees.
+/// Duration of a scene in the quick suite.
 double quick_time_s(const SuiteScene& scene) {
     for (const QuickScene& quick : kQuickScenes) {
         if (scene.name == quick.name) return std::min(quick.time_s, scene.duration_s);
@@ -148,7 +150,7 @@ PlannedCase planned(const SuiteScene& scene,
                                          : settings.sim.frames;
     if (limit > 0) {
         plan.which.max_frames = limit;
-        plan.frames = limit;  // a camera that stays when the path has ended is allowed
+        plan.frames = limit;  // the limit may exceed the path; the camera then stands still
     }
     return plan;
 }

@@ -10,18 +10,18 @@
 
 namespace surefoot::app {
 
-/// A case that is to be run, and about how many frames it has: the measure of how long it takes.
+/// A case to run, and its approximate number of frames as a measure of its run time.
 struct PlannedCase {
     SuiteCase which;
     int frames = 0;
 };
 
-/// Every case of the choice, in the order in which they are run: seed by seed, so that a suite that
-/// is stopped has seen every scene; within a seed the long ones first, so that no thread waits long
-/// for another at the end. Impossible choices are usage errors.
+/// Returns all selected cases in the order in which they run. The order is by seed, so that an
+/// interrupted suite has covered every scene. Within a seed long cases run first, so that threads
+/// finish at about the same time. Impossible selections are usage errors.
 ///
-/// A walking machine takes 10 s a step and hardly moves from frame to frame: its camera runs at
-/// 4 Hz at most, and in the quick suite it takes the first steps only.
+/// A walking machine takes 10 s a step and moves little from frame to frame. Its camera therefore
+/// runs at 4 Hz at most, and the quick suite covers only its first steps.
 [[nodiscard]] Result<std::vector<PlannedCase>> plan_suite(const EvalSuiteOptions& options,
                                                           const Settings& settings);
 

@@ -6,8 +6,8 @@
 
 namespace surefoot::app {
 
-/// How far a suite is and how long it will still take, on stderr: one line that is renewed on a
-/// terminal, else a line for every finished case. One thread at a time.
+/// Shows the progress and the remaining time of a suite on stderr: one updated line on a terminal,
+/// otherwise one line per finished case. Not thread-safe.
 class SuiteProgress {
   public:
     SuiteProgress(std::size_t cases, std::int64_t frames);
@@ -29,7 +29,8 @@ class SuiteProgress {
     std::int64_t done_frames_ = 0;
 };
 
-/// "about 2 h 5 min left"; empty before anything is done. Time goes by frames.
+/// Remaining time, such as "about 2 h 5 min left", estimated from the number of frames; empty
+/// before any frame is done.
 [[nodiscard]] std::string time_left(std::int64_t done_frames,
                                     std::int64_t frames,
                                     double elapsed_s);

@@ -53,7 +53,7 @@ std::string times(double noise) {
     return fmt::format("x {:g}", noise);
 }
 
-/// Median over the cases of a row, and the worst of them where there are several.
+/// Median over the cases of a row, and their worst case if there are several.
 std::string median_and_worst(const SuiteRow& row, std::size_t figure) {
     const FigureKind kind = suite_figures()[figure].kind;
     const std::string median = shown(kind, row.median[figure]);
@@ -162,7 +162,7 @@ struct BinView {
     BinKey key;
     const char* title;
     const char* x_label;
-    double tail;  ///< fraction shown beside the median
+    double tail;  ///< upper percentile shown beside the median, as a fraction
     const char* tail_label;
 };
 constexpr BinView kBinViews[] = {
@@ -190,10 +190,11 @@ std::vector<SuiteBin> of_key(const NoiseBins& level, BinKey key, std::int64_t fe
     }
     return bins;
 }
-/// A bin with less has no percentiles worth a mark in a plot; the tables have them all.
+/// Fewest errors of a bin in a plot, because percentiles of fewer errors mean little. The tables
+/// show all bins.
 constexpr std::int64_t kFewestCells = 100;
 
-/// Largest value of any noise level, so that their plots have one scale.
+/// Largest value over all noise levels, so that their plots share one scale.
 double tallest_mm(std::span<const NoiseBins> levels, const BinView& view) {
     double tallest = 0.0;
     for (const NoiseBins& level : levels) {

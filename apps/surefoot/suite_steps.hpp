@@ -15,17 +15,17 @@
 
 namespace surefoot::app {
 
-/// A step that the user of a walking machine asked for: what is true about it, and what the gate
-/// said with the map and the pose of that moment.
+/// A step that the user of a walking machine requested: the truth, and the verdict of the gate with
+/// the map and the pose of that moment.
 struct SuiteStep {
-    int number = 0;  ///< 1 = the first of the way
+    int number = 0;  ///< 1 = first step of the path
     double time_s = 0.0;
     int command = 0;
-    bool safe = false;       ///< truly
-    bool clear_cut = false;  ///< and by more than the margin (see sim::SafetyMargin)
+    bool safe = false;       ///< true answer
+    bool clear_cut = false;  ///< the answer holds by more than the margin, see sim::SafetyMargin
     std::string dangers;     ///< joined by '|'; empty when safe
     std::string decision;    ///< "OK", "NOT_TRAVERSABLE", "ERROR"
-    std::string reasons;     ///< of the gate, joined by '|'; empty for OK
+    std::string reasons;     ///< reasons of the gate, joined by '|'; empty for OK
 
     [[nodiscard]] bool allowed() const { return decision == "OK"; }
     friend bool operator==(const SuiteStep&, const SuiteStep&) = default;
@@ -33,18 +33,18 @@ struct SuiteStep {
 
 [[nodiscard]] VerdictCounts count_verdicts(std::span<const SuiteStep> steps);
 
-/// Asks the gate, and the oracle beside it, before each step of a walking machine. An operator
-/// answers for the start: for the largest area around it that is truly level (within 10 mm) and
-/// that the machine file allows. Outside of it the word is forgotten for good.
+/// Asks the gate and the safety oracle before each step of a walking machine. An operator
+/// attestation covers the start: the largest area around it that is truly level (within 10 mm) and
+/// that the machine file allows. When the machine leaves that area, the attestation ends for good.
 class StepQuestions {
   public:
-    /// Both must outlive this.
+    /// `truth` and `machine` must outlive this object.
     StepQuestions(const sim::SceneTruth& truth, const Machine& machine)
         : truth_(truth), machine_(machine) {}
 
-    /// Does the next step begin before another frame than that of `frame_ns` could be seen?
+    /// True if the next step begins before the frame after the one at `frame_ns`.
     [[nodiscard]] bool due(std::int64_t frame_ns) const;
-    /// Asks for that step with the map as of now.
+    /// Asks about the next step with the current map.
     void ask(const grid::MapSnapshot& map);
 
     [[nodiscard]] const std::vector<SuiteStep>& steps() const noexcept { return steps_; }

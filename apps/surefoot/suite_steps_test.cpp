@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRate_hz = 3.7;  // steps begin between frames
 
-/// The REX walks ahead on a scene's ground, seen by a slow camera.
+/// The REX walks straight ahead on the ground of a scene, with a slow camera.
 sim::SceneTruth walk_on(const std::string& scene, double distance_m) {
     sim::SceneTruth truth;
     truth.scene = sim::make_scene(scene, 1).value().scene;
@@ -32,7 +32,7 @@ sim::SceneTruth walk_on(const std::string& scene, double distance_m) {
     return truth;
 }
 
-/// A map that knows level ground for x >= `known_from_m`, with the machine at `x_m`.
+/// A map with known level ground for x >= `known_from_m`, and the machine at `x_m`.
 std::unique_ptr<grid::MapSnapshot> level_map(double x_m, double known_from_m) {
     constexpr int kSide = 240;
     grid::SnapshotInput input;
@@ -94,7 +94,8 @@ TEST_F(StepQuestionsTest, TheOperatorsWordHoldsAtTheStartOnly) {
     constexpr double kNothingKnown_m = 9.0;
     questions.ask(*level_map(0.0, kNothingKnown_m));
     EXPECT_TRUE(questions.steps().back().allowed()) << questions.steps().back().reasons;
-    questions.ask(*level_map(1.5, kNothingKnown_m));  // outside: the word is void ...
+    questions.ask(
+        *level_map(1.5, kNothingKnown_m));  // outside the attested area: the attestation ends ...
     EXPECT_FALSE(questions.steps().back().allowed());
     questions.ask(*level_map(0.0, kNothingKnown_m));  // ... for good
     EXPECT_FALSE(questions.steps().back().allowed());
@@ -103,7 +104,7 @@ TEST_F(StepQuestionsTest, TheOperatorsWordHoldsAtTheStartOnly) {
 }
 
 TEST_F(StepQuestionsTest, AHazardThatTheMapDoesNotShowIsCountedAsMissed) {
-    // The map believes in level ground; the platform ends under the way.
+    // The map shows level ground, but the true platform ends on the path.
     const double edge_m =
         sim::drawn_number(sim::make_scene("platform_edge", 1).value(), "edge_x_m");
     const sim::SceneTruth truth = walk_on("platform_edge", edge_m + 0.6);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kCaseHead = "scene,carrier,seed,noise,max_frames";
 constexpr std::size_t kKeyColumns = 5;
-constexpr std::size_t kCaseColumns = 6;  ///< before the figures
+constexpr std::size_t kCaseColumns = 6;  ///< columns before the figures
 constexpr std::size_t kBinColumns = kKeyColumns + 8;
 constexpr std::size_t kStepColumns = kKeyColumns + 8;
 constexpr std::size_t kTallyColumns = kKeyColumns + 4;
@@ -26,7 +26,7 @@ std::string key_of(const SuiteCase& c) {
     return fmt::format("{},{},{},{},{}", c.scene, c.carrier, c.seed, c.noise, c.max_frames);
 }
 
-/// No column may be empty: the reader joins separators.
+/// A column must not be empty, because the reader merges adjacent separators.
 const std::string& or_dash(const std::string& text) {
     static const std::string dash = "-";
     return text.empty() ? dash : text;
@@ -96,7 +96,7 @@ std::string verdict_lines(const SuiteResult& result) {
     return lines;
 }
 
-/// Nothing for a line that is not whole, as for all below.
+/// The following parsers return an empty optional for an incomplete line.
 std::optional<SuiteCase> parse_key(const Words& words) {
     const auto seed = io::parse_int64(words[2]);
     const auto noise = io::parse_double(words[3]);
@@ -166,13 +166,13 @@ std::optional<VerdictTally> parse_tally(const Words& words) {
                         static_cast<int>(*alone)};
 }
 
-/// A file that grows by lines, under two lines of head.
+/// An append-only file with a header of two lines.
 struct LineFile {
     std::string path;
     std::string head;
 
-    /// Calls `take` with the words of every whole line, which says whether the line stays; goes on
-    /// behind the lines that do.
+    /// Opens the file for appending. Calls `take` with the words of every complete line and keeps
+    /// the lines for which it returns true.
     template <typename Take>
     [[nodiscard]] Result<io::AppendFile> open(const Take& take) const {
         std::string text;
@@ -188,7 +188,7 @@ struct LineFile {
                 path));
         }
         std::string kept = head;
-        // A line counts when its end was written.
+        // A line is complete if its line end was written.
         const std::string_view lines =
             text.empty()
                 ? std::string_view()
@@ -230,7 +230,7 @@ Result<SuiteTable> SuiteTable::open(const std::string& folder, std::uint64_t con
         const auto which = words.size() > kKeyColumns ? parse_key(words) : std::nullopt;
         return which ? table.find(*which) : nullptr;
     };
-    /// Takes the lines of a file that belong to a case that is there.
+    /// Reads the lines that belong to a known case and drops the others.
     const auto open_details = [&](const LineFile& file, const auto& parse, const auto& keep) {
         return file.open([&](const Words& words) {
             SuiteResult* owner = owner_of(words);
@@ -269,7 +269,7 @@ SuiteResult* SuiteTable::find(const SuiteCase& which) {
     return place == places_.end() ? nullptr : &results_[place->second];
 }
 
-/// False for a case that is there already.
+/// Returns false if the case is already known.
 bool SuiteTable::remember(SuiteResult result) {
     if (!places_.emplace(key_of(result.which), results_.size()).second) return false;
     results_.push_back(std::move(result));
@@ -300,7 +300,7 @@ Status SuiteTable::keep_thumbnail(const SuiteResult& result) {
 }
 
 std::string thumbnail_file(const std::string& folder, const std::string& scene) {
-    std::string name = scene;  // of a scene file: its path
+    std::string name = scene;  // for a scene file this is a path
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c == '/' || c == '#'; }, '_');
     return fmt::format("{}/pictures/{}.png", folder, name);

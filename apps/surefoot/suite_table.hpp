@@ -11,21 +11,21 @@
 
 namespace surefoot::app {
 
-/// What a suite has measured, in its folder: cases.csv has a line for every finished case,
-/// bins.csv, steps.csv and verdicts.csv what belongs to it, pictures/ the worst case of each scene.
-/// All of it is written when the case is finished, the line of cases.csv last, so that a suite can
-/// be stopped at any time and goes on where it was: what has no line there is dropped. The first
-/// line binds the files to the conditions. One thread at a time.
+/// Results of a suite in its folder. cases.csv has one line for every finished case; bins.csv,
+/// steps.csv and verdicts.csv hold its details; pictures/ holds the worst case of each scene. add()
+/// writes the line of cases.csv last, so that an interrupted suite can continue. Details of a case
+/// without a line in cases.csv are dropped. The first line of each file contains the version and a
+/// hash of the conditions. Not thread-safe.
 class SuiteTable {
   public:
-    /// Reads what an earlier call has left; files of other conditions or of another version are a
-    /// usage error. `conditions`: hash of everything that the figures depend on.
+    /// Reads the results of an earlier call. Usage error if the files belong to other conditions or
+    /// another version. `conditions`: hash of everything that the figures depend on.
     [[nodiscard]] static Result<SuiteTable> open(const std::string& folder,
                                                  std::uint64_t conditions);
 
     [[nodiscard]] bool holds(const SuiteCase& which) const;
     [[nodiscard]] Status add(SuiteResult result);
-    /// In the order in which they were finished.
+    /// Results in the order in which the cases finished.
     [[nodiscard]] const std::vector<SuiteResult>& results() const noexcept { return results_; }
 
   private:
@@ -39,10 +39,10 @@ class SuiteTable {
     std::optional<io::AppendFile> steps_file_;
     std::optional<io::AppendFile> verdicts_file_;
     std::vector<SuiteResult> results_;
-    std::map<std::string, std::size_t> places_;  ///< in `results_`, by the key of the case
+    std::map<std::string, std::size_t> places_;  ///< index into `results_` by the key of the case
 };
 
-/// The picture of a scene's worst case, as `SuiteTable` keeps it in the folder.
+/// File name of the picture of a scene's worst case.
 [[nodiscard]] std::string thumbnail_file(const std::string& folder, const std::string& scene);
 
 }  // namespace surefoot::app

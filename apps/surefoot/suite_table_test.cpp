@@ -83,7 +83,7 @@ TEST_F(SuiteTableTest, GoesOnWhereItStopped) {
     EXPECT_EQ(read.steps, first.steps);
     EXPECT_EQ(read.tallies.all(), first.tallies.all());
     EXPECT_TRUE(std::isnan(again->results()[1].figures[2]));
-    // A third one goes behind the two.
+    // A third case is appended after the first two.
     ASSERT_TRUE(again->add(result_of("floor", 4, 2.0, 0.5)).ok());
     const auto third = SuiteTable::open(folder_, kConditions);
     ASSERT_EQ(third->results().size(), 3U);
@@ -122,7 +122,7 @@ TEST_F(SuiteTableTest, HalfWrittenDetailsOfAnUnfinishedCaseAreDropped) {
         ASSERT_TRUE(table->add(result_of("floor", 1, 1.0, 0.5)).ok());
         one_case = text_of("bins.csv");
     }
-    // Killed within the lines of the second case.
+    // The program was killed while it wrote the lines of the second case.
     std::ofstream(folder_ + "/bins.csv", std::ios::app) << "floor,2,1,0,range,0.5,1,2,0.0";
     const auto again = SuiteTable::open(folder_, kConditions);
     ASSERT_TRUE(again.ok());

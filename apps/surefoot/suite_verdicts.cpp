@@ -18,7 +18,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Same place, seen from the world frame and from odom, which start as one and drift apart.
+/// One stance in the world frame and in odom. The two frames coincide at the start and drift apart.
 struct Stance {
     Pose T_world_body;
     double x_odom_m = 0.0;
@@ -157,7 +157,7 @@ AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
             if (!machine.movements[static_cast<std::size_t>(command)].configured) continue;
             const sim::SafetyAnswer answer =
                 sim::judge(truth.scene, machine, stance.T_world_body, command);
-            // Where the machine cannot stand nobody asks.
+            // Skip poses at which the machine cannot stand.
             if (answer.has(sim::Danger::no_stance) || answer.has(sim::Danger::not_level_here))
                 continue;
             const gate::Verdict verdict = ask(machine, map, stance, command);

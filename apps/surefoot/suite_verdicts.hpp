@@ -14,46 +14,47 @@
 
 namespace surefoot::app {
 
-/// Verdicts of the gate beside what is true. Questions whose truth changes within the margin of a
-/// good map (see sim::SafetyMargin) are counted apart: there the gate may be more careful.
+/// Counts of the gate's verdicts against the truth. Questions whose truth changes within the margin
+/// of a good map (see sim::SafetyMargin) are borderline and counted separately, because the gate
+/// may be more careful there.
 struct VerdictCounts {
-    int safe = 0;               ///< clear-cut questions whose true answer is "safe" ...
-    int safe_ok = 0;            ///< ... and the gate said OK
-    int unsafe = 0;             ///< clear-cut and truly dangerous ...
-    int unsafe_ok = 0;          ///< ... and the gate said OK: a missed hazard
+    int safe = 0;               ///< clear-cut questions whose true answer is "safe"
+    int safe_ok = 0;            ///< ... of these OK
+    int unsafe = 0;             ///< clear-cut questions that are truly dangerous
+    int unsafe_ok = 0;          ///< ... of these OK: missed hazards
     int borderline = 0;         ///< not clear-cut
-    int borderline_ok = 0;      ///< of these OK
-    int borderline_missed = 0;  ///< OK although the exact truth says dangerous
+    int borderline_ok = 0;      ///< ... of these OK
+    int borderline_missed = 0;  ///< OK, but dangerous by the exact truth
 
     /// Counts one question.
     void add(bool truly_safe, bool clear_cut, bool allowed);
 };
 
-/// What the wrong answers of a case are counted by.
+/// Key by which wrong verdicts are counted.
 enum class TallyKey : std::uint8_t {
-    reason,  ///< clearly safe movements refused, by the gate's reasons
-    proof,   ///< the same, by the proofs that did not hold: where it looked in vain
-    danger,  ///< missed hazards, by what is truly dangerous
+    reason,  ///< refused clear-cut safe movements, by the gate's reasons
+    proof,   ///< refused clear-cut safe movements, by the proofs that failed
+    danger,  ///< missed hazards, by the true danger
 };
 inline constexpr const char* kTallyKeyNames[] = {"reason", "proof", "danger"};
 
-/// How often one word came up among the wrong answers of one key.
+/// How often one name occurs among the wrong verdicts of one key.
 struct VerdictTally {
     TallyKey by = TallyKey::reason;
     std::string name;
-    int named = 0;  ///< with or without others
-    int alone = 0;  ///< and no other word: the answer would have been right but for this one
+    int named = 0;  ///< verdicts with this name
+    int alone = 0;  ///< verdicts with this name only: without it the verdict would have been right
 
     friend bool operator==(const VerdictTally&, const VerdictTally&) = default;
 };
 
-/// Adds up by key and name; in the order of key and name.
+/// Sums tallies by key and name; sorted by key and name.
 class VerdictTallies {
   public:
-    /// Counts one answer by all its words.
+    /// Counts one wrong verdict under each of its names.
     void add(TallyKey by, std::span<const std::string_view> words);
     void add(const VerdictTally& tally);
-    /// Counts a refusal by its reasons and by what it could not prove.
+    /// Counts a refusal under its reasons and under the proofs that failed.
     void add_refusal(const gate::Verdict& verdict);
     [[nodiscard]] const std::vector<VerdictTally>& all() const noexcept { return all_; }
 
@@ -63,15 +64,16 @@ class VerdictTallies {
     std::vector<VerdictTally> all_;
 };
 
+/// Result of compare_verdicts().
 struct AroundAnswers {
     VerdictCounts counts;
     VerdictTallies tallies;
-    std::vector<std::string> missed;  ///< a sentence for each hazard that was clear and allowed
+    std::vector<std::string> missed;  ///< one sentence for each clear-cut missed hazard
 };
 
-/// Asks the gate for every movement of the machine at where it stands, and at places around it
-/// that it could have walked to: 0.2 m apart, within `reach_m`, with the yaw of the present pose.
-/// Ground under the standing feet is vouched for where nothing was measured, as offline.
+/// Asks the gate about every movement of the machine at its present pose, and at reachable poses
+/// around it: 0.2 m apart, within `reach_m`, with the present yaw. An operator attestation covers
+/// unmeasured ground under the standing feet, as in vouch_for_start().
 [[nodiscard]] AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
                                              const Pose& T_world_body_true,
                                              const Machine& machine,

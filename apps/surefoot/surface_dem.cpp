@@ -12,7 +12,7 @@ namespace surefoot::app {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-/// Points of a band of rows that are in memory at once, 12 bytes each and their copy by cell.
+/// Largest number of points of a band in memory: 12 bytes each, and a copy sorted by cell.
 constexpr std::int64_t kMostPoints = 1 << 25;
 
 struct CellPoint {
@@ -20,7 +20,7 @@ struct CellPoint {
     float z_m;
 };
 
-/// Rows [begin, end) that are worked on, and those beside them that are witnesses.
+/// Rows [begin, end) that are processed together. The neighbour rows supply witnesses.
 struct Band {
     int begin = 0;
     int end = 0;
@@ -68,7 +68,7 @@ class CellHeights {
 
 struct CellGround {
     float z_m = kNaN;
-    float points = 0.0F;  ///< of the group that holds the ground
+    float points = 0.0F;  ///< points of the group that contains the ground
     float clearance_m = kNaN;
 };
 
@@ -84,18 +84,20 @@ class CellReducer {
         const std::span<const float> z_m = heights.of(number(ix, iy));
         CellGround ground;
         if (z_m.empty()) return ground;
-        // The share of all points of the cell is asked of each group.
+        // Each group needs the support that follows from all points of the cell.
         const int wanted = elevation::support_of(rules_.reduction, static_cast<int>(z_m.size()));
         for (std::size_t begin = 0, end = 0; begin < z_m.size(); begin = end) {
             end = end_of_group(z_m, begin);
             const auto group = z_m.subspan(begin, end - begin);
             if (std::isnan(ground.z_m)) {
-                // Below what hangs, mirror images of it lie too: they are fewer.
+                // Mirror images lie below a surface with points above it; they have fewer points.
                 const int twice =
                     end < z_m.size() ? std::max(wanted, 2 * rules_.reduction.min_points) : wanted;
                 ground.z_m = surface_m(heights, group, twice, ix, iy);
                 ground.points = static_cast<float>(group.size());
-            } else if (static_cast<int>(group.size()) >= wanted) {  // a surface or not: it hangs
+            } else if (static_cast<int>(group.size()) >=
+                       wanted) {  // a group above the ground overhangs, even without a surface of
+                                  // its own
                 ground.clearance_m = group.front() - ground.z_m;
                 return ground;
             }
@@ -122,16 +124,17 @@ class CellReducer {
                                   int ix,
                                   int iy) const {
         if (static_cast<int>(group.size()) < wanted) {
-            // A sparse cloud: fewer points in the whole cell than a surface needs.
+            // Sparse cloud: the whole cell has fewer points than a surface needs.
             const bool sparse =
                 static_cast<int>(heights.of(number(ix, iy)).size()) < rules_.reduction.min_points;
             return sparse ? witnessed_m(heights, group, wanted, ix, iy) : kNaN;
         }
         return dense_surface_m(group, wanted);
     }
-    /// The highest surface that enough points share and that is denser than what is scattered over
-    /// the whole height of the group: pixels in flight fill that evenly. Where more than a third of
-    /// the points lie above, it is no ground: with many points the cell is a face, else unknown.
+    /// The highest surface that enough points share and that is denser than a uniform scatter over
+    /// the height of the group, which points in flight fill evenly. If more than a third of the
+    /// points lie above a surface, it is not the ground: with many points the cell is a vertical
+    /// face, otherwise it is unknown.
     [[nodiscard]] float dense_surface_m(std::span<const float> group, int wanted) const {
         constexpr float kDenser = 2.5F;
         elevation::ReductionConfig config = rules_.reduction;
@@ -146,7 +149,8 @@ class CellReducer {
             const auto found = elevation::reduce_cell(config, rest, var_m2);
             if (!found) break;
             if (height_m <= 2.0F * window_m) return found->z_m;
-            // Points of the others that an equal window would hold.
+            // Number of the other points that a uniform scatter would put into a window of equal
+            // height.
             const float scattered =
                 static_cast<float>(n - found->points) * window_m / (height_m - window_m);
             if (static_cast<float>(found->points) >= kDenser * scattered) return found->z_m;
@@ -156,8 +160,8 @@ class CellReducer {
         if (n < rules_.reduction.min_face_points) return kNaN;
         return group[group.size() - static_cast<std::size_t>(wanted)];
     }
-    /// The highest point of few that enough points of the cells around lie beside: no farther off
-    /// than the window, and what ground as steep as a cell is wide would rise by.
+    /// The highest point that has enough neighbours (witnesses) in the surrounding cells: their
+    /// height differs by at most the window plus the rise of a 45 deg slope over one cell.
     [[nodiscard]] float witnessed_m(const CellHeights& heights,
                                     std::span<const float> group,
                                     int wanted,
@@ -183,8 +187,9 @@ class CellReducer {
     float half_width_m_;
 };
 
-/// Takes away what is far thinner than the ground around: behind a nosing, where nothing is seen,
-/// lie the few points that are in flight from it. 1/5 of the upper quartile of 5 x 5 cells.
+/// Removes ground with far fewer points than its surroundings: less than 1/5 of the upper quartile
+/// of 5 x 5 cells. The hidden area behind a nosing contains only a few points in flight from the
+/// nosing.
 void remove_thin(const grid::Layer& points, SurfaceDem& dem) {
     constexpr int kReach = 2;
     constexpr float kShare = 0.2F;
@@ -241,7 +246,7 @@ Result<SurfaceDem> surface_dem(const eval::DemGrid& grid,
     grid::Layer points_of(geometry.nx, geometry.ny, 0.0F);  // of the ground, and of any kind
     grid::Layer held(geometry.nx, geometry.ny, 0.0F);
     for (const Band& band : bands_of(points_of_row)) {
-        // One row more on both sides: witnesses.
+        // One more row on both sides, for the witnesses.
         const std::uint32_t first = static_cast<std::uint32_t>(std::max(band.begin - 1, 0)) * nx;
         const std::uint32_t last =
             static_cast<std::uint32_t>(std::min(band.end + 1, geometry.ny)) * nx;

@@ -17,50 +17,55 @@
 
 namespace surefoot::app {
 
-/// How a cloud becomes ground: the rules of the live map (`elevation::reduce_cell`), for points
-/// whose variance nobody gave.
+/// Rules that turn a cloud into ground heights: those of the live map (`elevation::reduce_cell`),
+/// for points without a variance.
 struct SurfaceRules {
     elevation::ReductionConfig reduction;
-    double point_sigma_m = 0.005;  ///< of one point's height
-    double min_overhead_m = 0.3;   ///< what begins so far above a surface hangs over it
-    double lowest_z_m = -std::numeric_limits<double>::infinity();  ///< points below are left out
-    double highest_z_m = std::numeric_limits<double>::infinity();  ///< and above
+    double point_sigma_m = 0.005;  ///< standard deviation of one point's height
+    /// A gap of this height separates overhanging points from a surface.
+    double min_overhead_m = 0.3;
+    double lowest_z_m = -std::numeric_limits<double>::infinity();  ///< lower points are left out
+    double highest_z_m = std::numeric_limits<double>::infinity();  ///< higher points are left out
 };
 
-/// The ground of a cloud; NaN where none is supported.
+/// Ground heights of a cloud; NaN = no supported surface.
 struct SurfaceDem {
     grid::Layer height_m;
-    grid::Layer clearance_m;             ///< from the ground to what hangs over it
-    std::int64_t cut_points = 0;         ///< outside the heights
-    std::int64_t unsupported_cells = 0;  ///< hold points, but no surface
+    grid::Layer clearance_m;             ///< from the ground to the lowest overhanging points
+    std::int64_t cut_points = 0;         ///< points outside the height limits
+    std::int64_t unsupported_cells = 0;  ///< cells with points but without a supported surface
     std::int64_t overhung_cells = 0;
 };
 
-/// Calls the function with all points of a cloud, piece by piece; the same each time.
+/// Calls the function with all points of a cloud, block by block. Every call must deliver the same
+/// points.
 using EachBlock =
     std::function<Status(const std::function<Status(std::span<const Eigen::Vector3d>)>&)>;
 
-/// Highest supported surface of each cell that does not hang. The heights of a cell's points fall
-/// into groups with at least `min_overhead_m` between them; the ground is in the lowest group that
-/// has a surface, and twice the fewest points for it where something hangs above
-/// (what is below a floor are its mirror images), and there it is the highest surface that enough
-/// points share and that is denser than an even scatter of them, and than a fifth of the surfaces
-/// around: points in flight between two surfaces are scattered or few. A cell with fewer
-/// points than a surface needs takes the points of its neighbours as witnesses. Neither the order
-/// of the points nor the number of threads changes anything.
+/// Finds the ground of each cell: the highest supported surface that does not overhang.
 ///
-/// Reads the cloud once to count and once for each 2^25 points: memory grows with the cells and is
-/// 0.5 GB more at most, or what the fullest row of cells needs.
+/// Gaps of at least `min_overhead_m` split the heights of a cell into groups. The ground lies in
+/// the lowest group that has a surface. If other points lie above the group, a surface needs at
+/// least twice the minimum number of points, because mirror images lie below a floor. Within the
+/// group the ground is the highest surface that enough points share and that is denser than a
+/// uniform scatter of the group. Surfaces with less than a fifth of the points of the surrounding
+/// cells are removed: points in flight between two surfaces are scattered or few. A cell with fewer
+/// points than a surface needs also counts the points of its neighbour cells. The result does not
+/// depend on the order of the points or on the number of threads.
+///
+/// Reads the cloud once to count, and once more for each 2^25 points. Memory grows with the number
+/// of cells, plus at most 0.5 GB or the need of the fullest row of cells.
 [[nodiscard]] Result<SurfaceDem> surface_dem(const eval::DemGrid& grid,
                                              const SurfaceRules& rules,
                                              const EachBlock& each_block,
                                              Executor& executor = serial());
 
-/// Rules from --min-height and --max-height; an error names them if they are crossed.
+/// Rules from --min-height and --max-height. The error names both options if the limits are
+/// crossed.
 [[nodiscard]] Result<SurfaceRules> surface_rules(std::optional<double> lowest_z_m,
                                                  std::optional<double> highest_z_m);
 
-/// What was left out, in words; empty where nothing was.
+/// Describes the points and cells that were left out; empty if there are none.
 [[nodiscard]] std::string left_out_text(const SurfaceDem& dem);
 
 }  // namespace surefoot::app

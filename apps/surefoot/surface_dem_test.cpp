@@ -25,7 +25,7 @@ double stairs_z_m(double x_m) {
     return -0.17 * std::min(4.0, std::floor((x_m - kFirst_m) / 0.28) + 1.0);
 }
 
-/// Where a ray meets the stairs, by small steps.
+/// Range at which a ray meets the stairs, found in small steps.
 double range_m(const Vector3d& from_m, const Vector3d& direction) {
     constexpr double kStep_m = 0.002;
     for (double r_m = 0.3; r_m < 6.0; r_m += kStep_m) {
@@ -35,8 +35,8 @@ double range_m(const Vector3d& from_m, const Vector3d& direction) {
     return std::numeric_limits<double>::infinity();
 }
 
-/// An organised cloud as a depth camera 0.7 m above the floor makes it: noise along the ray, and
-/// between a nosing and what lies behind it pixels in flight, with a range that is neither.
+/// An organised cloud of a depth camera 0.7 m above the floor: noise along the ray, and points in
+/// flight between a nosing and the surface behind it, with a range between the two.
 Points depth_camera(std::uint64_t seed) {
     constexpr int kColumns = 180;
     constexpr int kRows = 260;
@@ -68,7 +68,7 @@ Points depth_camera(std::uint64_t seed) {
             points_m.push_back(eye_m + (r_m + 0.003 * rng.normal()) * rays[row]);
         }
     }
-    // Sparks high above everything, alone in their cells or not.
+    // Outliers high above all surfaces, some of them alone in their cells.
     for (int i = 0; i < 200; ++i)
         points_m.emplace_back(
             rng.uniform(0.0, 2.0), rng.uniform(-0.4, 0.4), rng.uniform(-0.5, 1.0));
@@ -139,7 +139,8 @@ TEST(SurfaceDem, WhatHangsIsClearanceAndNoGround) {
     const auto under = grid_of(points_m).geometry.cell_at(0.2, 0.0);
     ASSERT_TRUE(under);
     EXPECT_NEAR(dem.clearance_m.at(under->ix, under->iy), 1.9F, 0.03F);
-    // Where nothing was seen below it, only a height cut says that it is no ground.
+    // Without points below an overhang, only a height limit shows that the overhang is not the
+    // ground.
     Points beam_m;
     for (const Vector3d& p_m : points_m)
         if (p_m.z() > 1.8 || p_m.x() < 0.05 || p_m.x() > 0.35) beam_m.push_back(p_m);
@@ -152,7 +153,7 @@ TEST(SurfaceDem, WhatHangsIsClearanceAndNoGround) {
 }
 
 TEST(SurfaceDem, SparseCloudsTakeTheirNeighboursAsWitnesses) {
-    // One point a cell, as the cloud of a map has, on a ramp of 30 deg.
+    // One point per cell, as in the cloud of a map, on a ramp of 30 deg.
     Points points_m;
     for (int iy = 0; iy < 40; ++iy) {
         for (int ix = 0; ix < 40; ++ix) {

@@ -100,7 +100,7 @@ Result<grid::Layer> same_cells(const std::string& file, const grid::GridGeometry
     return std::move(dem->values);
 }
 
-/// How often each cell was looked at; unknown ones never.
+/// Number of observations of each cell; 0 for unknown cells.
 Image<std::uint32_t> looks_of(const grid::Layer& count) {
     constexpr float kMost = 1e9F;
     Image<std::uint32_t> looks(count.width(), count.height(), 0);
@@ -112,7 +112,7 @@ Image<std::uint32_t> looks_of(const grid::Layer& count) {
     return looks;
 }
 
-/// The layers that only `run --layers` writes.
+/// Reads the layers that only `run --layers` writes.
 Status read_optional_layers(const std::string& folder, TerrainMap& map) {
     const auto read = [&](const char* name, const char* without) -> Result<grid::Layer> {
         const std::string file = io::join_path(folder, name);
@@ -139,7 +139,7 @@ Status read_optional_layers(const std::string& folder, TerrainMap& map) {
 }
 
 Result<TerrainMap> from_folder(const std::string& folder) {
-    // What the map keeps of the ground; a run writes it beside what is to be shown.
+    // ground.asc holds the ground heights of the map; elevation.asc of a run is for display.
     const std::string ground_file = io::join_path(folder, "ground.asc");
     const std::string height_file =
         io::is_file(ground_file) ? ground_file : io::join_path(folder, "elevation.asc");
@@ -244,7 +244,7 @@ Status stand_as_told(const std::string& from, TerrainMap& map) {
         g.origin_m.y() + g.ny * g.resolution_m));
 }
 
-/// Where nobody said it: base_link of the run, the origin, or the near border.
+/// Default standing position: base_link of the run, else the origin, else the near border.
 void stand_somewhere(TerrainMap& map) {
     if (map.T_odom_body) {
         map.stance_m = map.T_odom_body->translation_m.head<2>();
@@ -286,7 +286,7 @@ stairs::Terrain TerrainMap::terrain() const {
 Result<TerrainMap> load_terrain(const StairsOptions& options) {
     auto map = load_map(options);
     if (!map) return map.error();
-    // Clouds have marks for "no data" too; readers of grids have taken theirs out.
+    // Clouds also have marks for "no data"; the readers of grids have already removed theirs.
     for (std::string& note : io::drop_impossible_heights(map->height_m))
         map->assumed.push_back(std::move(note));
     if (auto status = check_cells(options.map, *map); !status) return status.error();

@@ -15,19 +15,19 @@
 
 namespace surefoot::app {
 
-/// The heights of a file or folder with what else is known of the ground, where one stands on it,
-/// and what had to be assumed.
+/// The heights of a file or folder, the other known layers, the standing position, and the
+/// assumptions that were necessary.
 struct TerrainMap {
     grid::GridGeometry geometry;
     grid::Layer height_m;
-    grid::Layer height_var_m2;  ///< empty: not known, as the following
+    grid::Layer height_var_m2;  ///< empty = unknown, as for the following layers
     grid::Layer free_above_m;
     grid::Layer clearance_m;
     grid::Layer density_ratio;
     Image<std::uint32_t> looks;
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
-    std::optional<Pose> T_odom_body;  ///< where a machine stood
-    /// Of the run that made the map; grids, images and clouds do not say.
+    std::optional<Pose> T_odom_body;  ///< pose of the machine, if known
+    /// From the run that made the map; grids, images and clouds do not store it.
     grid::GravitySource gravity_source = grid::GravitySource::assumed;
     std::vector<std::string> assumed;
 
@@ -35,8 +35,8 @@ struct TerrainMap {
     [[nodiscard]] stairs::Terrain terrain() const;
 };
 
-/// An ESRI grid, a height image, a cloud with z up, or the folder of a run. Errors say what, where
-/// and what to do; a map without a known cell is one.
+/// Reads an ESRI grid, a height image, a cloud with z up, or the folder of a run. Errors name the
+/// problem, the file and the remedy. A map without a known cell is an error.
 [[nodiscard]] Result<TerrainMap> load_terrain(const StairsOptions& options);
 
 }  // namespace surefoot::app

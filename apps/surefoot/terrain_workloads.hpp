@@ -11,25 +11,25 @@
 
 namespace surefoot::app {
 
-/// A job of the terrain engine that can be timed: `surefoot bench terrain` and the Google Benchmark
-/// target call the same ones. What a job works on is set up by `prepare` and lives as long as the
-/// job.
+/// A job of the terrain engine for timing. `surefoot bench terrain` and the Google Benchmark target
+/// share these jobs. `prepare` sets up the data of a job, which live as long as the job.
 struct Workload {
     using Job = std::function<void()>;
     using Prepare = std::function<Result<Job>()>;
 
     std::string name;
-    int repeats = 1;  ///< that tell the time well within a second or two
+    int repeats = 1;  ///< repetitions for a stable time within a second or two
     Prepare prepare;
-    Prepare prepare_plain = {};  ///< the same by the plain way, where that is compared
-    int queries = 1;             ///< in one call: one alone is shorter than a clock resolves
+    /// Same job by the reference implementation (Way::plain); may be empty.
+    Prepare prepare_plain = {};
+    int queries = 1;  ///< queries per call; a single query is shorter than the clock resolution
 };
 
-/// Depth images into the map, moves, lines of sight, bounds; the larger ones also over windows of
-/// other sizes.
+/// Jobs of the elevation map: fusing depth images, moves, ray endpoints, bounds; the larger jobs
+/// also with other map sizes.
 [[nodiscard]] std::vector<Workload> elevation_workloads(Executor& executor);
-/// Ratings of maps of several sizes and settings, and what is made of them; one set is also timed
-/// on AVX2 if `one_thread`.
+/// Jobs of the traversability rating: maps of several sizes and settings, and queries on the
+/// rating. With `one_thread`, one set is also timed with AVX2.
 [[nodiscard]] std::vector<Workload> traversability_workloads(bool one_thread, Executor& executor);
 
 }  // namespace surefoot::app

@@ -25,7 +25,7 @@
 namespace surefoot::app {
 namespace {
 
-/// Widest view of a map around a scan's way: half a map, and what alignment may move.
+/// Scanned distance around the path: half a map length plus a margin for the alignment.
 constexpr double kAround_m = 3.2;
 
 Result<GroundBox> box_of(const BoxText& text, const sim::NamedNumbers& numbers) {
@@ -42,7 +42,8 @@ Result<sim::ScriptedScene> script_of(const ThesisRun& run, const ThesisCondition
     return sim::make_scene(run.scene, conditions.seed, sim::carrier_of(carried_by(run.carrier)));
 }
 
-/// What is read off a scan or a map by hand: `points_m` for upright faces, the map for the ground.
+/// Takes the measurements of the thesis from a scan or a map: `points_m` supply vertical faces,
+/// `map` supplies the ground.
 Status measure_by_hand(const ThesisRun& run,
                        const sim::NamedNumbers& numbers,
                        std::span<const Eigen::Vector3f> points_m,
@@ -78,7 +79,8 @@ eval::LayerStyle rating_style(const std::string& title, double safe_threshold) {
     return style;
 }
 
-/// A place's scan beside the live map: the part that the live map knows, in the same colours.
+/// Writes the scan and the live map side by side: the part that the live map knows, with the same
+/// colours.
 Status write_pictures(const std::string& folder,
                       const RatedMap& truth,
                       const ComparedMap& compared,
@@ -123,7 +125,7 @@ grid::Layer lifted(const Image<float>& height_m, double by_m) {
     return out;
 }
 
-/// The live map as it is, heights in the world.
+/// The live map, with heights in the world frame.
 RatedMap ground_surface(const pipeline::Pipeline& pipeline, double odom_z_m) {
     const grid::GridGeometry& geometry = pipeline.map().geometry();
     return {geometry,
@@ -131,8 +133,9 @@ RatedMap ground_surface(const pipeline::Pipeline& pipeline, double odom_z_m) {
             or_unknown(pipeline.rating().traversability, geometry)};
 }
 
-/// The live map as a scanner's heights show a place, and as the thesis' map had it: where something
-/// hangs over the ground, its underside instead of the ground, rated like all else.
+/// The live map as the scan and the map of the thesis represent the scene: under an overhang they
+/// contain the underside of the overhang instead of the ground. The heights are rated like all
+/// others.
 RatedMap highest_surfaces(const pipeline::Pipeline& pipeline, double odom_z_m) {
     grid::Layer height_m = lifted(pipeline.map().layers().height_m.copy(), odom_z_m);
     const grid::Layer clearance_m = pipeline.map().layers().clearance_m.copy();
@@ -142,7 +145,7 @@ RatedMap highest_surfaces(const pipeline::Pipeline& pipeline, double odom_z_m) {
     return rated_map(pipeline.map().geometry(), height_m, pipeline.config().traversability);
 }
 
-/// What the program itself knows of stairs and doors, as `stairs` tells it.
+/// Figures of the terrain features that the pipeline found, as `surefoot stairs` reports them.
 void add_found(const pipeline::Pipeline& pipeline,
                const ThesisRun& run,
                const sim::NamedNumbers& numbers,
@@ -169,18 +172,18 @@ void add_found(const pipeline::Pipeline& pipeline,
     for (const stairs::Flight& one : found.flights) steps += one.steps;
     figures.set("steps_found", steps);
     if (!run.stairs || !numbers.contains("stair_x_m")) return;
-    // Of the edge that leads down or up where the first one truly is.
+    // Distance of the nearest edge to the true position of the first one.
     double off_m = std::nan("");
     for (const stairs::Edge& edge : found.edges) {
         const Eigen::Vector2d middle_m = edge.middle_m();
-        if (std::abs(edge.along().x()) > 0.5) continue;  // across the way only
+        if (std::abs(edge.along().x()) > 0.5) continue;  // only edges across the path
         const double here_m = middle_m.x() - numbers.at("stair_x_m");
         if (std::isnan(off_m) || std::abs(here_m) < std::abs(off_m)) off_m = here_m;
     }
     figures.set("drop_off_m", std::abs(off_m));
 }
 
-/// A run of the chain over a recording that is made while it runs.
+/// A run of the pipeline on a recording that is simulated at the same time.
 class LiveRun {
   public:
     LiveRun(const ThesisRun& run,
@@ -247,7 +250,7 @@ class LiveRun {
     }
     void ask_steps(const FrameReport& frame, PolicySteps& steps) {
         while (steps.due(frame.time_ns)) {
-            // A snapshot that cannot be made is not intact, and the gate refuses it.
+            // If the snapshot fails, it is not intact and the gate refuses it.
             [[maybe_unused]] const Status taken = take_snapshot();
             steps.ask(*pipeline_, *snapshot_);
         }
@@ -364,9 +367,9 @@ Result<ThesisFigures> live_run(const ThesisRun& run,
 Result<ThesisFigures> scan_of_courtyard(const ThesisConditions& conditions, Executor& executor) {
     const auto script = sim::make_scene(kThesisCourtyard, conditions.seed);
     if (!script) return script.error();
-    // All of it.
+    // The whole courtyard.
     constexpr double kAll_m = 90.0;
-    constexpr double kHill_m = 3.0;  // the ground rises far off
+    constexpr double kHill_m = 3.0;  // the ground rises far from the path
     ScanArea area = area_around(*script, kAll_m);
     area.farthest_m = 2.0 * kAll_m;
     area.ceiling_m += kHill_m;

@@ -14,13 +14,13 @@
 
 namespace surefoot::app {
 
-/// What all parts of the report share.
+/// Conditions that all parts of the report on the reference thesis (Lange 2016) share.
 struct ThesisConditions {
-    Settings settings;  ///< ours; laser: of the scans of the report
+    Settings settings;  ///< our settings; `laser` is used for the scans of the report
     Machine machine;
     std::uint64_t seed = 1;
-    int max_frames = 0;  ///< of each recording; 0 = the whole way
-    std::string folder;  ///< of the report
+    int max_frames = 0;  ///< frames of each recording; 0 = the whole path
+    std::string folder;  ///< folder of the report
 
     [[nodiscard]] std::string scan_folder(const std::string& scene) const {
         return folder + "/scans/" + scene;
@@ -31,19 +31,21 @@ struct ThesisConditions {
     }
 };
 
-/// Scans the place of a run, measures it, and writes elevation.asc and pictures into its folder.
+/// Scans the scene of a run, measures the scan, and writes elevation.asc and pictures to
+/// scan_folder().
 [[nodiscard]] Result<ThesisFigures> scan_of_run(const ThesisRun& run,
                                                 const ThesisConditions& conditions,
                                                 Executor& executor);
 
-/// Makes the recording, maps it and compares it with the scan that lies in its folder; pictures go
-/// into the folder of the run. Thread-safe; the same figures whatever else is running, but for
-/// update_hz.
+/// Simulates the recording, maps it and compares the map with the scan in scan_folder(). Writes
+/// pictures to run_folder(). Thread-safe. All figures except update_hz are independent of other
+/// threads.
 [[nodiscard]] Result<ThesisFigures> live_run(const ThesisRun& run,
                                              ThesisColumn column,
                                              const ThesisConditions& conditions);
 
-/// The courtyard of Fig. 9.14: scanned as a whole and rated, without any recording.
+/// The courtyard of Fig. 9.14 of the reference thesis: one scan of the whole place, rated, without
+/// a recording.
 [[nodiscard]] Result<ThesisFigures> scan_of_courtyard(const ThesisConditions& conditions,
                                                       Executor& executor);
 

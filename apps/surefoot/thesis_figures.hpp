@@ -12,12 +12,11 @@
 
 namespace surefoot::app {
 
-/// Figures by name, in the order in which they were set. SI units, shares of 1; NaN = nothing to
-/// measure.
+/// Named figures in the order in which they were set. SI units, shares of 1; NaN = not measured.
 class ThesisFigures {
   public:
     void set(const std::string& name, double value) { all_.emplace_back(name, value); }
-    /// NaN for a name that is not there.
+    /// The figure with that name; NaN if there is none.
     [[nodiscard]] double get(std::string_view name) const;
     [[nodiscard]] const std::vector<std::pair<std::string, double>>& all() const noexcept {
         return all_;
@@ -28,13 +27,14 @@ class ThesisFigures {
     std::vector<std::pair<std::string, double>> all_;
 };
 
-/// The figures of a finished part of the report, in "figures.csv" of its folder: written last, so
-/// that a part which has them is whole. `conditions`: hash of everything that they depend on.
+/// Writes the figures of a finished part of the report to "figures.csv" in its folder. This file is
+/// written last, so a part with this file is complete. `conditions`: hash of everything that the
+/// figures depend on.
 [[nodiscard]] Status write_figures(const std::string& folder,
                                    std::uint64_t conditions,
                                    const ThesisFigures& figures);
-/// Nothing where the part is not finished, or was finished under other conditions. An error where
-/// the file is there and is none of ours.
+/// Reads figures.csv. Empty if the part is not finished or was made under other conditions. Error
+/// if the file is not a figures file.
 [[nodiscard]] Result<std::optional<ThesisFigures>> read_figures(const std::string& folder,
                                                                 std::uint64_t conditions);
 

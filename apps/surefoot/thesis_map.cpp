@@ -18,16 +18,17 @@ namespace surefoot::app {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-/// Differences of heights beyond this many times their median are of something else.
-constexpr double kOutlier = 4.5;  // three sigma
+/// Height differences beyond this many times their median belong to another surface.
+constexpr double kOutlier =
+    4.5;  // 4.5 median absolute deviations are 3 sigma of a normal distribution
 constexpr double kLeastSigma_m = 1e-4;
-/// Cells that are farther off are no uneven floor but something that was mapped there.
+/// Cells farther off belong to an object, not to an uneven floor.
 constexpr double kOtherThing_m = 0.15;
-/// A cylinder of M3C2 holds about a dozen cells: five are needed.
+/// Diameter of an M3C2 cylinder in cells: it then holds about a dozen cells; five are needed.
 constexpr double kCellsAcross = 4.0;
 
-/// Peaks as one who looks for steps takes them: no riser is lower than 80 mm, and the noise of a
-/// map wants bins of 10 mm.
+/// Peak detection for stairs: no riser is lower than 80 mm, and the noise of a map needs bins of 10
+/// mm.
 constexpr eval::LevelConfig kStepLevels{.bin_m = 0.01, .least_step_m = 0.08};
 
 std::vector<double> sorted_sizes(const std::vector<float>& values) {
@@ -43,13 +44,13 @@ double percentile(const std::vector<double>& sorted, double fraction) {
     return sorted.empty() ? std::nan("") : eval::percentile_of_sorted(sorted, fraction);
 }
 
-/// Height and tilt that lay the live heights onto those of the truth: the plane through the
-/// differences of their cells, without those that are farther from it than three times the usual
-/// (a wall's top that the camera never saw, a step that is off by a cell), until these stay.
+/// Height and tilt that align the live heights with the truth: the plane through the height
+/// differences of their cells. Each round drops the differences farther than three sigma from the
+/// plane (a wall top that the camera never saw, a step that is off by one cell).
 Pose height_and_tilt(const RatedMap& truth, const RatedMap& live) {
     struct Difference {
         Eigen::Vector3d at;  // x, y, 1
-        double rise_m;       // truth over live
+        double rise_m;       // truth minus live
     };
     const RatedMap there = laid_onto(truth, live, Pose{});
     std::vector<Difference> all;
@@ -78,7 +79,8 @@ Pose height_and_tilt(const RatedMap& truth, const RatedMap& live) {
             ++used;
         }
         if (used < kFewest) return {};
-        // The first round takes the median height alone: steps and walls must not tilt it.
+        // The first round uses only the median height, because steps and walls must not tilt the
+        // plane.
         off_m.clear();
         if (round == 0) {
             for (const Difference& d : all) off_m.push_back(d.rise_m);
@@ -177,7 +179,7 @@ std::vector<Eigen::Vector3f> inside(std::span<const Eigen::Vector3f> points_m,
     return kept_m;
 }
 
-/// Mean of the known heights of a box; NaN without any.
+/// Mean of the known heights in a box; NaN if there are none.
 double mean_height_m(const RatedMap& map, const GroundBox& box) {
     double sum_m = 0.0;
     int cells = 0;
@@ -303,7 +305,7 @@ void measure_door(std::span<const Eigen::Vector3f> points_m,
                   const RatedMap& map,
                   const Eigen::Vector2d& door_m,
                   ThesisFigures& figures) {
-    // Strips of floor as wide as a person, free of the wall and of what the leaf covers.
+    // Strips of floor as wide as a person, clear of the wall and of the door leaf.
     constexpr double kHalf_m = 0.3;
     constexpr double kFree_m = 0.25;
     constexpr double kLong_m = 1.0;

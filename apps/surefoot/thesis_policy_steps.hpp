@@ -9,31 +9,33 @@
 
 namespace surefoot::app {
 
-/// The step query of the thesis (surefoot/eval/maps/thesis_policy) for a movement of the machine
-/// that stands at a pose in the frame of the map.
+/// Step query of the reference thesis (Lange 2016; surefoot/eval/maps/thesis_policy) for a movement
+/// of a machine at a pose in the frame of the map.
 [[nodiscard]] bool thesis_allows(const Machine& machine,
                                  const grid::GridGeometry& geometry,
                                  ImageView<const float> rating,
                                  const Pose& T_odom_body,
                                  int command);
 
-/// What the gate, and the query of the thesis beside it, say to each step of a walk and to every
+/// Collects the verdicts of the gate and of the thesis query, for each step of a walk and for every
 /// movement at its end.
 class PolicySteps {
   public:
-    /// Both must outlive this.
+    /// `truth` and `machine` must outlive this object.
     PolicySteps(const sim::SceneTruth& truth, const Machine& machine)
         : truth_(truth), machine_(machine), steps_(truth, machine) {}
 
+    /// True if the next step begins before the frame after the one at `frame_ns`.
     [[nodiscard]] bool due(std::int64_t frame_ns) const { return steps_.due(frame_ns); }
-    /// Asks for the next step with the map as of now.
+    /// Asks about the next step with the current map.
     void ask(const pipeline::Pipeline& pipeline, const grid::MapSnapshot& map);
-    /// At the end of the way, for every movement; `frames`: how many there were.
+    /// Asks about every movement at the end of the path. `frames`: number of processed frames.
     void ask_all(std::size_t frames,
                  const pipeline::Pipeline& pipeline,
                  const grid::MapSnapshot& map);
-    /// steps, steps_allowed (share of the truly safe ones), dangers, dangers_allowed, by the gate
-    /// or by the query of the thesis. Questions near to the border of what is safe are left out.
+    /// Sets steps, steps_allowed (share of the truly safe steps), dangers, dangers_allowed. `gate`
+    /// selects the verdicts of the gate, otherwise those of the thesis query. Borderline questions
+    /// count only in `steps`.
     void add_to(bool gate, ThesisFigures& figures) const;
 
   private:

@@ -36,7 +36,7 @@ double figure_of(const ThesisResults& results,
     return at->second[static_cast<std::size_t>(column)].get(figure);
 }
 
-/// A figure of a column, divided by that of another run where the row says so.
+/// A figure of a column, divided by the figure of another run if the row says so.
 double value_of(const ThesisResults& results, const ThesisRow& row, ThesisColumn column) {
     double value = std::nan("");
     if (column == ThesisColumn::ours && row.ours_figure != nullptr)

@@ -23,7 +23,8 @@ namespace {
 constexpr double kVoxel_m = 0.001;
 constexpr std::size_t kNoCell = std::numeric_limits<std::size_t>::max();
 constexpr eval::OutlierConfig kOutliers{.others = 6, .sigmas = 4.0};
-/// Of the map's filter: what is higher over the ground is over everybody's head.
+/// Height limit above the ground, as in the filter of the map: higher surfaces are above head
+/// height.
 constexpr double kCeiling_m = 2.0;
 
 bool holds(const ScanArea& area, const Eigen::Vector3d& p_m) {
@@ -36,7 +37,7 @@ double distance_m(const ScanArea& area, const Eigen::Vector3d& station_m) {
     return (at_m - at_m.cwiseMax(area.low_m).cwiseMin(area.high_m)).norm();
 }
 
-/// Stations that are near enough, at least the nearest.
+/// Stations near enough to the area; the nearest one if none is near enough.
 std::vector<std::size_t> near_stations(const std::vector<Eigen::Vector3d>& all_m,
                                        const ScanArea& area) {
     std::vector<std::size_t> near;
@@ -49,7 +50,7 @@ std::vector<std::size_t> near_stations(const std::vector<Eigen::Vector3d>& all_m
     return near;
 }
 
-/// The cells of the area, on the lattice of all maps of that resolution.
+/// The cells of the area, on the lattice that all maps of this resolution share.
 grid::GridGeometry cells_of(const ScanArea& area, double resolution_m) {
     const Eigen::Vector2d first = (area.low_m / resolution_m).array().floor();
     const Eigen::Vector2d end = (area.high_m / resolution_m).array().ceil();
@@ -68,13 +69,13 @@ std::vector<Eigen::Vector3f> without_outliers(std::vector<Eigen::Vector3f> point
     return points_m;
 }
 
-/// Highest supported surface of a cell: the highest point with enough others closely below it.
-/// Fewer than three points, as far from a station, must agree among each other; NaN where none do.
-/// `z_m` is sorted here.
+/// Highest supported surface of a cell: the highest point with enough other points closely below
+/// it. Fewer than three points, which occur far from a station, must all agree. NaN if no points
+/// agree. Sorts `z_m`.
 float supported_height_m(std::span<float> z_m) {
     constexpr float kClose_m = 0.02F;
     constexpr std::size_t kFewest = 3;
-    constexpr std::size_t kShare = 50;  // one in so many
+    constexpr std::size_t kShare = 50;  // the surface needs one in 50 points of the cell
     if (z_m.empty()) return std::nanf("");
     std::sort(z_m.begin(), z_m.end(), std::greater<>());
     const std::size_t enough = std::min(std::max(kFewest, z_m.size() / kShare), z_m.size());

@@ -13,27 +13,28 @@
 
 namespace surefoot::app {
 
-/// What of a place is scanned.
+/// Part of a place that is scanned.
 struct ScanArea {
     Eigen::Vector2d low_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d high_m = Eigen::Vector2d::Zero();
-    double ceiling_m = 0.0;    ///< higher points are left out, as the map's own filter does
+    double ceiling_m = 0.0;    ///< higher points are left out, as by the filter of the map
     double farthest_m = 15.0;  ///< stations farther from the area are left out
 };
-/// What the map of a run may reach: everything within half a map around the way.
+/// Area that the map of a run may cover: everything within half a map length of the path.
 [[nodiscard]] ScanArea area_around(const sim::ScriptedScene& script, double half_map_m);
 
-/// The laser scan of a place as chapter 8 of the thesis makes it, stray points of each station left
-/// out first: stations registered, thinned to 1 mm, statistical outliers removed (7 points, the
-/// point among them, 4 sigma), heights on 25 mm.
+/// Laser scan of a place, processed as in chapter 8 of the reference thesis (Lange 2016), after
+/// removing the stray points of each station: stations registered, thinned to 1 mm, statistical
+/// outliers removed (7 points including the point itself, 4 sigma), heights on a grid.
 struct ScannedPlace {
-    std::vector<Eigen::Vector3f> points_m;  ///< cleaned, in the world
+    std::vector<Eigen::Vector3f> points_m;  ///< cleaned, in world coordinates
     grid::GridGeometry geometry;
-    grid::Layer height_m;  ///< highest surface of each cell that its points agree on
+    grid::Layer height_m;  ///< highest supported surface of each cell
     int stations = 0;
-    std::int64_t scanned = 0;  ///< points in the area, without strays
+    std::int64_t scanned = 0;  ///< points in the area before thinning, without stray points
 };
-/// Errors: a scanner that sees nothing; no point in the area.
+/// Scans the area. Errors: an invalid scanner configuration; no point in the area; interrupted by
+/// the user.
 [[nodiscard]] Result<ScannedPlace> scan_place(const sim::ScriptedScene& script,
                                               const sim::LaserScannerConfig& config,
                                               std::uint64_t seed,

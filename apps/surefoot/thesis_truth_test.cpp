@@ -13,7 +13,7 @@
 namespace surefoot::app {
 namespace {
 
-/// A floor with railings beside the way: bars of 4 cm, 0.9 m over the floor, on posts.
+/// A floor with railings beside the path: bars of 4 cm, 0.9 m above the floor, on posts.
 constexpr const char* kRailings =
     "name: test\n"
     "description: for a test\n"
@@ -30,7 +30,7 @@ constexpr const char* kRailings =
     "  - box: {x_m: 2.5, y_m: 1, length_m: 0.05, width_m: 0.05, top_m: 0.94, material: stone}\n"
     "scan: {stations: [{x_m: 0.5, y_m: -1.5}, {x_m: 3.0, y_m: -1.0}]}\n";
 
-/// Highest true surface of a cell and those around it [m], and the lowest.
+/// Highest and lowest true surface [m] of a cell and its neighbours.
 std::pair<double, double> true_heights_m(const sim::Scene& scene, const Eigen::Vector2d& at_m) {
     constexpr double kBeside_m = 0.025;
     double lowest_m = 1e9;
@@ -66,7 +66,7 @@ TEST(ScanPlace, HeightsBehindRailingsAreThoseOfTheFloor) {
             const auto [lowest_m, highest_m] =
                 true_heights_m(script->scene, place->geometry.center_m({ix, iy}));
             constexpr double kNoise_m = 0.01;
-            // A rail's cells may also hold the floor below it.
+            // The cells of a rail may also contain the floor below it.
             const bool right = std::abs(z_m - highest_m) < kNoise_m ||
                                std::abs(z_m - lowest_m) < kNoise_m ||
                                (highest_m > 0.5 && z_m < 0.95);

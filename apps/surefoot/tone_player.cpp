@@ -38,7 +38,7 @@ void TonePlayer::play(rex_link::Tone tone) {
     for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
         posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
     pid_t pid = 0;
-    // Without an aplay this fails, and the file's name in the list of events is all there is.
+    // Fails if `aplay` is not installed; the file name then still appears in the list of events.
     if (posix_spawnp(&pid, program.c_str(), &actions, nullptr, words.data(), environ) == 0)
         playing_.push_back(pid);
     posix_spawn_file_actions_destroy(&actions);

@@ -34,8 +34,8 @@ constexpr double kResolution_m = 0.025;
 constexpr int kSide = 240;
 constexpr int kRepeats = 41;
 
-/// Floor with four stairs, a ramp and a box, 2 mm of noise and 3 % of holes: what the ancestors
-/// were timed on (repeated every 6 m on larger maps).
+/// Floor with four stairs, a ramp and a box, 2 mm of noise and 3 % of holes: the map on which the
+/// reference implementations were timed (repeated every 6 m on larger maps).
 grid::Layer measured_ground(int side, double resolution_m) {
     constexpr std::uint64_t kSeed = 11;
     constexpr double kPeriod_m = 6.0;
@@ -58,7 +58,7 @@ grid::Layer measured_ground(int side, double resolution_m) {
     return height_m;
 }
 
-/// A map and what rates it.
+/// A map and its rating.
 struct Rated {
     grid::Layer height_m;
     Traversability rater;
@@ -84,13 +84,13 @@ Workload rating_of(const std::string& settings,
                    const TraversabilityConfig& config,
                    int side,
                    Executor& executor) {
-    // Fewer for large maps: a second or two, not minutes.
+    // Fewer repetitions for large maps, to stay within a second or two.
     return {fmt::format("terrain/rate_{0}_{1}x{1}", settings, side),
             std::clamp(kRepeats * kSide / side, 5, kRepeats),
             rating(config, side, kResolution_m, executor)};
 }
 
-/// With the instruction sets up to AVX2 alone, as long as the job lives.
+/// Limits the instruction sets to AVX2 while the job exists.
 Workload rating_on_avx2(const TraversabilityConfig& config, Executor& executor) {
     struct Avx2 {
         Avx2() { hwy::SetSupportedTargetsForTest(HWY_AVX2 | HWY_SSE4 | HWY_SSSE3 | HWY_SCALAR); }
@@ -107,7 +107,7 @@ Workload rating_on_avx2(const TraversabilityConfig& config, Executor& executor) 
     return {fmt::format("terrain/rate_rex_zed_avx2_{0}x{0}", kSide), kRepeats, prepare};
 }
 
-/// The cells that 60 x 60 changed ones can affect, in the middle of a rated map.
+/// Rates the cells that a change of 60 x 60 cells can affect, in the middle of a rated map.
 Workload rating_a_change(const TraversabilityConfig& config, Executor& executor) {
     const auto prepare = [config, &executor]() -> Result<Workload::Job> {
         const auto map = std::make_shared<Rated>(
@@ -121,7 +121,7 @@ Workload rating_a_change(const TraversabilityConfig& config, Executor& executor)
     return {"terrain/rate_rex_zed_changed_60x60", kRepeats, prepare};
 }
 
-/// From the floor beside the stairs, the box and the ramp, over every hole.
+/// Reachability from the floor beside the stairs, the box and the ramp, across the holes.
 Workload reaching(const TraversabilityConfig& config) {
     struct State {
         grid::Layer height_m = measured_ground(kSide, kResolution_m);
@@ -140,7 +140,7 @@ Workload reaching(const TraversabilityConfig& config) {
     return {fmt::format("terrain/reach_{0}x{0}", kSide), kRepeats, prepare};
 }
 
-/// On top of the ratings.
+/// Confidence of the ratings, without the time of the rating.
 Workload telling_confidence(const TraversabilityConfig& config, Executor& executor) {
     struct State {
         Rated map;
@@ -166,7 +166,7 @@ Workload telling_confidence(const TraversabilityConfig& config, Executor& execut
     return {fmt::format("terrain/confidence_{0}x{0}", kSide), kRepeats, prepare};
 }
 
-/// Where the whole foot may stand; every known cell counts as reachable.
+/// Finds footholds; every known cell counts as reachable.
 Workload finding_footholds(Executor& executor) {
     struct State {
         grid::Layer height_m = measured_ground(kSide, kResolution_m);
@@ -191,7 +191,7 @@ Workload finding_footholds(Executor& executor) {
     return {fmt::format("terrain/footholds_{0}x{0}", kSide), kRepeats, prepare};
 }
 
-/// Flat floor, known everywhere.
+/// Flat floor without unknown cells.
 struct Floor {
     grid::Layer height_m{kSide, kSide, 0.0F};
     grid::Layer rating{kSide, kSide, 0.95F};
@@ -205,7 +205,7 @@ FootprintPose place(int i) {
     return {0.0017 * (i % 1000) - 1.0, 0.0013 * (i % 700) - 0.5, 0.0063 * i};
 }
 
-/// `ask(footprint, i, layers)` at many places and yaws.
+/// Runs `ask(footprint, i, layers)` for many positions and yaws.
 template <typename Ask>
 Workload asking(std::string name,
                 const Result<traversability::Footprint>& footprint,
@@ -232,7 +232,7 @@ Workload asking(std::string name,
     return {std::move(name), kRepeats, prepare, {}, kQueries};
 }
 
-/// What lies under footprints that stand, and along a path of a metre.
+/// Queries of standing footprints and of a path of 1 m.
 std::vector<Workload> footprints() {
     using namespace traversability;
     const auto stand = [](const Footprint& footprint, int i, const FootprintLayers& layers) {

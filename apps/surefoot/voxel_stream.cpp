@@ -19,16 +19,16 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Voxels along x that stay together.
+/// Thickness of a slab along x, in voxels.
 constexpr std::int64_t kSlabVoxels = 64;
-constexpr std::int64_t kWritten = 1 << 16;  ///< points that are handed to the writer at once
+constexpr std::int64_t kWritten = 1 << 16;  ///< points per call of the writer
 
 std::int64_t slab_of(const Vector3f& p_m, double size_m) {
     const std::int64_t number = eval::voxel_number(p_m.x(), size_m);
     return number >= 0 ? number / kSlabVoxels : -((kSlabVoxels - 1 - number) / kSlabVoxels);
 }
 
-/// A cloud, its points as floats from one shift.
+/// Reads a cloud as float points relative to one shift.
 class Source {
   public:
     static Result<Source> open(const std::string& path) {
@@ -36,7 +36,7 @@ class Source {
         if (!stream) return stream.error();
         return Source(path, std::move(stream).value());
     }
-    /// Hands the points block by block to `use`, which returns a Status.
+    /// Calls `use` with the points, block by block; `use` returns a Status.
     template <typename Use>
     Status each_block(const Use& use) {
         io::ShiftedReader reader(path_, shift_m_);
@@ -59,7 +59,7 @@ class Source {
     [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   private:
-    /// A mean of places has no colour, no value and no viewpoint.
+    /// The mean of several points has no colour, no value and no viewpoint, so these are lost.
     void note_losses(const io::PointCloud& block) {
         std::string lost = block.colours.empty() ? "" : "colours";
         const auto add = [&](const std::string& name) {
@@ -78,7 +78,7 @@ class Source {
     std::vector<std::string> notes_;
 };
 
-/// How many points there are where.
+/// Number of points by slab, and their bounding box.
 struct Census {
     std::map<std::int64_t, std::int64_t> by_slab;
     std::int64_t points = 0;
@@ -105,8 +105,8 @@ Result<Census> count(Source& source, const std::string& cloud, double size_m) {
     return census;
 }
 
-/// Runs of slabs, each with at most so many points where a slab alone has no more: the first slab
-/// of each.
+/// Splits the slabs into runs of at most `most` points (a run of a single slab may have more).
+/// Returns the first slab of each run.
 std::vector<std::int64_t> runs_of(const Census& census, std::int64_t most) {
     std::vector<std::int64_t> first;
     std::int64_t in_run = 0;
@@ -120,7 +120,7 @@ std::vector<std::int64_t> runs_of(const Census& census, std::int64_t most) {
     return first;
 }
 
-/// Files of floats in a folder of their own, which is removed in the end.
+/// Temporary files of points in their own folder. The destructor removes the folder.
 class Scratch {
   public:
     Scratch(std::string folder, std::size_t files) : folder_(std::move(folder)), files_(files) {}
@@ -148,7 +148,7 @@ class Scratch {
         return output_error(fmt::format(
             "{}: cannot write {} bytes: is the disk full?", name(file), points_m.size_bytes()));
     }
-    /// All points of a file, which is then emptied.
+    /// Returns all points of a file and deletes the file.
     Result<std::vector<Vector3f>> take(std::size_t file) {
         std::fstream& from = files_[file];
         from.flush();

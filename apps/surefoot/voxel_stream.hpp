@@ -12,24 +12,24 @@
 
 namespace surefoot::app {
 
-/// What was made of a cloud.
+/// Result of thin_cloud().
 struct ThinnedCloud {
-    std::int64_t points = 0;   ///< that were finite
-    std::int64_t skipped = 0;  ///< that were not
-    std::int64_t voxels = 0;   ///< points that are left
+    std::int64_t points = 0;   ///< finite input points
+    std::int64_t skipped = 0;  ///< input points that were not finite
+    std::int64_t voxels = 0;   ///< output points
     Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-    std::vector<std::string> notes;  ///< what the output does not hold of the cloud
+    std::vector<std::string> notes;  ///< properties of the cloud that the output lacks
 };
 
-/// Refuses a box whose voxels cannot be numbered; `cloud` is for the error.
+/// Usage error if the box has more voxels than can be numbered. `cloud` is named in the error.
 [[nodiscard]] Status check_voxels(const geometry::PointBox& box,
                                   double size_m,
                                   const std::string& cloud);
 
-/// One point for each voxel, their mean, written as the cloud `out_file`. Clouds with more points
-/// than `most_in_memory` are dealt out into slabs along x in a folder beside the output, 12 bytes a
-/// point, which are then worked on one after the other; the output is the same. Memory: 40 bytes
-/// for each point in memory, or of the fullest run of 64 voxels along x where that is more.
+/// Writes the mean point of each voxel to `out_file`. A cloud with more than `most_in_memory`
+/// points is split into slabs along x in a temporary folder beside the output (12 bytes a point),
+/// which are processed one after the other; the output is the same. Memory: 40 bytes for each point
+/// in memory, or for each point of the fullest slab of 64 voxels along x if that is more.
 [[nodiscard]] Result<ThinnedCloud> thin_cloud(const std::string& cloud,
                                               double size_m,
                                               const std::string& out_file,

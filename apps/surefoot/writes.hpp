@@ -8,7 +8,7 @@
 
 namespace surefoot::app {
 
-/// Many writes, of which each is tried whatever became of those before.
+/// Collects the results of several writes. Each write is attempted, even if an earlier one failed.
 class Writes {
   public:
     void operator+=(Status status) {
@@ -16,7 +16,7 @@ class Writes {
         ++failed_;
         if (first_.ok()) first_ = std::move(status);
     }
-    /// The first failure; its message counts the others, so that none is lost silently.
+    /// The first failure. Its message also gives the number of further failures.
     [[nodiscard]] Status first() const {
         if (failed_ < 2) return first_;
         return Error{first_.error().code,
