@@ -449,7 +449,8 @@ std::string audit_replay_json(const wire::AuditSummary& summary, const AuditRepl
 
 double parse_report_tilt_sigma_rad(const std::string& report_json) {
     const Json report = Json::parse(report_json, nullptr, false);
-    if (!report.is_object() || !report.contains("tilt_sigma_deg")) return 0.0;
+    if (!report.is_object()) return std::numeric_limits<double>::quiet_NaN();
+    if (!report.contains("tilt_sigma_deg")) return 0.0;
     const Json& sigma_deg = report["tilt_sigma_deg"];
     if (!sigma_deg.is_number()) return std::numeric_limits<double>::quiet_NaN();
     return sigma_deg.get<double>() / kDegPerRad;

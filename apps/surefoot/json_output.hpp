@@ -51,8 +51,8 @@ struct ReportCamera {
     eval::PinholeView view;
     Pose T_body_camera;  ///< rectified left optical frame in base_link
 };
-/// Standard deviation of the vertical in a report.json: NaN if the run did not know it, 0 if the
-/// report has no such key (older versions) or is not valid JSON.
+/// Standard deviation of the vertical in a report.json: NaN if the run did not know it or if the
+/// report is not valid JSON, 0 if the report has no such key (older versions).
 [[nodiscard]] double parse_report_tilt_sigma_rad(const std::string& report_json);
 /// The camera of a report.json; nullopt if it is missing or incomplete (an older or damaged file).
 [[nodiscard]] std::optional<ReportCamera> parse_report_camera(const std::string& report_json);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 namespace surefoot::app {
@@ -17,6 +18,15 @@ std::string with(const std::string& old_part, const std::string& new_part) {
     const std::size_t at = text.find(old_part);
     EXPECT_NE(at, std::string::npos) << old_part;
     return text.replace(at, old_part.size(), new_part);
+}
+
+TEST(ReportTilt, WhatIsDamagedIsNotKnown) {
+    EXPECT_NEAR(
+        parse_report_tilt_sigma_rad(R"({"tilt_sigma_deg": 90.0})"), 1.5707963267948966, 1e-15);
+    EXPECT_EQ(parse_report_tilt_sigma_rad("{}"), 0.0) << "older versions";
+    for (const char* text :
+         {"", "{", "[]", R"({"tilt_sigma_deg": null})", R"({"tilt_sigma_deg": "1"})"})
+        EXPECT_TRUE(std::isnan(parse_report_tilt_sigma_rad(text))) << text;
 }
 
 TEST(ReportCamera, IsReadAsItWasWritten) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/surefoot/run_output.hpp"
+#include "surefoot/core/assert.hpp"
 #include "surefoot/elevation/fusion/height_bounds.hpp"
 #include "surefoot/grid/tilt_variance.hpp"
 #include "surefoot/traversability/rating_confidence.hpp"
@@ -102,7 +103,11 @@ std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline) {
                                    {"not_resolvable", std::move(ratings.not_resolvable)},
                                    {"reach_step", pipeline.reach_step_m()},
                                    {"traversability", rating.traversability}};
-    for (NamedLayer& layer : layers) layer.values = or_unknown(layer.values, geometry);
+    SUREFOOT_ASSERT(layers.size() == kLayerNames.size());
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        SUREFOOT_ASSERT(std::string_view(layers[i].name) == kLayerNames[i]);
+        layers[i].values = or_unknown(layers[i].values, geometry);
+    }
     return layers;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -9,14 +10,22 @@
 
 namespace surefoot::app {
 
+/// Names of all layers, in display order. `run --layers` writes NAME.asc for each.
+inline constexpr std::array kLayerNames{
+    "elevation",     "variance",       "drift",       "confidence",    "count",
+    "density_ratio", "highest",        "lowest",      "clearance",     "free_above",
+    "foothold",      "normal_x",       "normal_y",    "normal_z",      "slope",
+    "step",          "roughness",      "lower_bound", "upper_bound",   "rating_confidence",
+    "smallest_step", "not_resolvable", "reach_step",  "traversability"};
+
 /// A layer and its name in files.
 struct NamedLayer {
     const char* name;
     grid::Layer values;
 };
 
-/// All layers of the map and of its rating, with the height bounds, in display order. A layer that
-/// was never computed has only unknown cells.
+/// All layers of the map and of its rating, with the height bounds, in the order of kLayerNames. A
+/// layer that was never computed has only unknown cells.
 [[nodiscard]] std::vector<NamedLayer> all_layers(const pipeline::Pipeline& pipeline);
 
 /// PNG that shows all layers, `columns` side by side. All height layers use the value range of the

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <string>
+#include <vector>
+
 #include "apps/surefoot/json_output.hpp"
 #include "apps/surefoot/log.hpp"
+#include "apps/surefoot/map_layers.hpp"
 #include "apps/surefoot/place_session.hpp"
 #include "apps/surefoot/run_output.hpp"
 #include "apps/surefoot/run_session.hpp"
@@ -46,14 +50,10 @@ int run(const RunOptions& options) {
 
     // Remove results of an earlier run, so that nobody, above all the gate, takes them for results
     // of this run.
-    for (const char* name : {"map.snapshot",
-                             "elevation.asc",
-                             "ground.asc",
-                             "variance.asc",
-                             "traversability.asc",
-                             "stairs.json",
-                             "treads.asc",
-                             "report.json"}) {
+    std::vector<std::string> names{
+        "map.snapshot", "ground.asc", "stairs.json", "treads.asc", "report.json", "layers.png"};
+    for (const char* layer : kLayerNames) names.push_back(fmt::format("{}.asc", layer));
+    for (const std::string& name : names) {
         if (auto status = io::remove_file(io::join_path(options.out_dir, name)); !status) {
             return report(status.error());
         }

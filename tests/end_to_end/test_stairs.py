@@ -238,6 +238,17 @@ class Stairs(CliTest):
         self.assertNotIn("variance.asc", " ".join(answer["assumed"]))
         self.assertEqual(answer["flights"], [])
 
+    def test_layers_of_an_earlier_run_are_not_taken_for_those_of_this_one(self):
+        out = self.dir / "out"
+        walk = ("run", "sim:room", "--set", "sim.sensor=analytic", "--out", out)
+        self.run_ok(*walk, "--max-frames", 14, "--layers")
+        layers = {path.name for path in out.glob("*.asc")}
+        self.assertIn("free_above.asc", layers)
+        self.run_ok(*walk, "--max-frames", 12)
+        left = {path.name for path in out.glob("*.asc")}
+        self.assertEqual(left, {"elevation.asc", "ground.asc", "variance.asc", "traversability.asc", "treads.asc"})
+        self.assertIn("no free_above.asc", " ".join(self.json_of("stairs", out)["assumed"]))
+
     def test_the_folder_of_a_run_says_about_the_same_as_the_run(self):
         # Not quite: the run has followed what it found, and reads the last look beside the map.
         out = self.dir / "out"
