@@ -2,8 +2,8 @@
 // How accurate are disparities on locally flat surfaces, as a function of texture? The same
 // statistic of real and of simulated recordings shows how realistic the simulator is.
 // Usage: plane_residuals SOURCE OUT.csv [MAX_FRAMES [KEY=VALUE...]]
-//   MAX_FRAMES: default 0. KEY=VALUE: stereo.* = settings of the matcher; for sim:SCENE sources
-//   also seed and the settings of the simulated camera (sim::SceneOptions).
+//   MAX_FRAMES: 0 (default) = all. KEY=VALUE: stereo.* = settings of the matcher; for sim:SCENE
+//   sources also seed and the settings of the simulated camera (sim::SceneOptions).
 //
 // Writes OUT.csv, one line per window of 32 x 32 px of the rectified left image: frame, u, v,
 // texture_dn (horizontal gradient of the grey values), coarse_dn, grey_dn, density (share of
