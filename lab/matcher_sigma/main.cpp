@@ -8,9 +8,8 @@
 //   count, within_1 to within_3   trusted matches that are right within 1 px, and the share of them
 //                       within 1, 2 and 3 sigma [%]
 //   density             share of matched pixels [%]
-//   auc_sigma, auc_peak eval::sparsification over all matches, ordered by sigma, and by the ratio
-//   of
-//                       the best cost to the second-best; 0 = perfect order, 1 = random order
+//   auc_sigma, auc_peak eval::sparsification over all matches, ordered by sigma, and by the
+//                       ratio of the best cost to the second-best; 0 = perfect, 1 = random order
 #include <fmt/format.h>
 #include <fmt/os.h>
 
