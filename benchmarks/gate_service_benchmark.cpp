@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a client of the running gate process waits for an answer while many others ask and
-// listen: gate_service_benchmark PORT QUERIES RATE_HZ OTHERS. Prints one line of JSON.
+// How long does a client of the running gate process wait for an answer while other clients ask and
+// listen? Usage: gate_service_benchmark PORT QUERIES RATE_HZ OTHERS. RATE_HZ 0 = ask again as soon
+// as the answer is there; OTHERS: number of other clients. Prints one line of JSON.
 #include <algorithm>
 #include <array>
 #include <boost/asio/io_context.hpp>

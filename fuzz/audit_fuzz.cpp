@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a log: a summary, or damage with a sentence. Hashes keep a search out of the
-// payloads, so that the first byte chooses: the bytes as a file, or as the payload of a frame that
-// is sound. What can be read is decided again, whatever it asks.
+// Any bytes as an audit log give a summary, or damage with a message. The hashes would keep the
+// fuzzer out of the payloads, so the first byte chooses: the bytes are a file, or the payload of a
+// valid frame. Each readable record is decided again by the gate.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -8,7 +8,8 @@
 
 namespace surefoot::fuzz {
 
-/// Decisions read from the bytes of an input; zeros when they have run out.
+/// Reads decisions from the bytes of a fuzz input. Returns zeros after the last byte. `data` must
+/// outlive this object.
 class Choices {
   public:
     Choices(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -19,10 +20,11 @@ class Choices {
         --size_;
         return *data_++;
     }
-    /// 0 ... count - 1; `count` <= 256.
+    /// A number from 0 to count - 1; 1 <= `count` <= 256.
     int below(int count) noexcept { return byte() % count; }
     bool yes() noexcept { return (byte() & 1U) != 0U; }
-    /// A number within +-32 `unit`s; one in sixteen is one that nobody measures.
+    /// A number within +-32 times `unit`. For one first byte in 16 it is a special value instead:
+    /// NaN, infinity, a signed zero, a denormal, or a very small or very large number.
     float number(float unit) noexcept {
         const std::uint8_t kind = byte();
         if (kind % 16 == 15) return kNasty[static_cast<std::size_t>(below(kNasties))];

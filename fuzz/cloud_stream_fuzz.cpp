@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cloud that is read block by block has the points of the cloud that is read whole, from any
-// bytes. The first byte chooses the format.
+// For any bytes, reading a cloud block by block gives the same points as reading it at once. The
+// first byte chooses the format.
 #include <fcntl.h>
 #include <unistd.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any sequence of motions, clouds, depth images and remembered regions leaves the elevation map as
-// the plain map (plain_map.hpp) says, bit for bit in every layer and count; and a second map that
-// does its blocks backwards on another instruction set has the same bytes. No cell is ever half
-// known, and none that is known lacks a finite height and a positive variance. Where heights are
-// aligned, which the plain map does not, the two maps are held to each other alone. The last byte
-// of an input says what is done with the lines of sight.
+// After any sequence of motions, clouds, depth images and remembered regions, the elevation map
+// equals the reference implementation (plain_map.hpp) bit for bit in every layer and count. A
+// second map that processes its blocks backwards on another instruction set has the same bytes.
+// Every known cell has a finite height and a positive variance; no cell is partly known. With
+// height alignment, which the reference implementation lacks, only the two maps are compared. The
+// last byte of an input configures the visibility clean-up.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

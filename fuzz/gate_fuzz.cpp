@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gate on arbitrary bytes as machine, query, health and map: it must neither crash nor allow a
-// step on a map whose checksum is wrong.
+// The gate on arbitrary bytes as machine, query, health and map: it must not crash, and must not
+// allow a step on a map with a wrong checksum.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -6,15 +6,15 @@
 
 namespace surefoot {
 
-/// Ends a fuzz target with a finding where what it says at its head does not hold; `what` says
-/// which of its sentences that is.
+/// Reports a finding and aborts if `holds` is false. `what` names the violated property; the head
+/// comment of each target lists its properties.
 inline void must(bool holds, const char* what = "what the target says at its head does not hold") {
     if (holds) return;
     std::fprintf(stderr, "finding: %s\n", what);
     std::abort();
 }
 
-/// A result that failed says why.
+/// Requires that a failed result has an error message.
 template <typename Outcome>
 void must_explain(const Outcome& outcome) {
     must(outcome.ok() || !outcome.error().message.empty(), "an error without a sentence");

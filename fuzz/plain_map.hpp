@@ -15,11 +15,11 @@
 
 namespace surefoot::fuzz {
 
-/// The elevation map once more, as plainly as it can be said: a dictionary from lattice cells to
-/// what is known of them, no layers, no sliding, no blocks, no registers. Shares with the map the
-/// functions that have oracles of their own: points of a cloud or an image, the plain reduction of
-/// a cell, the height fusion, the noise of a row, the history of viewpoints, the ends of the lines
-/// of sight and the lowest of them over a place. Does not align heights.
+/// Reference implementation of elevation::ElevationMap, written for clarity: a dictionary from
+/// lattice cells to their state, without layers, a sliding window, blocks or SIMD. It shares with
+/// ElevationMap only functions that have their own reference tests: the points of a cloud or image,
+/// the plain reduction of a cell, the height fusion, the noise of an image row, the viewpoint
+/// history, the ray endpoints, and the lowest ray over a cell. It does not align heights.
 class PlainMap {
   public:
     explicit PlainMap(const elevation::ElevationConfig& config);
@@ -33,13 +33,14 @@ class PlainMap {
                             const Pose& T_body_sensor,
                             const Pose& T_odom_body,
                             std::int64_t time_ns);
-    /// How many cells it filled; nothing where the placement is refused.
+    /// Inserts a remembered region and returns the number of filled cells; 0 if the map refuses the
+    /// placement.
     std::int64_t insert(const grid::MapRegion& region,
                         const Pose& T_odom_body,
                         const Matrix6& placement_covariance);
     void clear() { cells_.clear(); }
 
-    /// What ElevationLayers say of the cell (ix, iy) of the window.
+    /// State of a cell, with the meaning and units of ElevationLayers.
     struct Known {
         float height_m = kNan;
         float height_var_m2 = kNan;
@@ -52,10 +53,11 @@ class PlainMap {
         float confidence = kNan;
         float density_ratio = kNan;
     };
+    /// `ix`, `iy`: cell of the window.
     [[nodiscard]] Known known(int ix, int iy) const;
-    /// All cells of the window; only the layers are filled in.
+    /// All cells of the window as a region; only its layers are set.
     [[nodiscard]] grid::MapRegion layers() const;
-    /// What a region does not hold.
+    /// The layer that a region does not contain.
     [[nodiscard]] Image<float> free_above_m() const;
     [[nodiscard]] const grid::GridGeometry& geometry() const { return geometry_; }
 
@@ -69,12 +71,12 @@ class PlainMap {
         float overhead_m = kNan;
         int overhead_trust = 0;
         bool overhead_hangs = false;
-        float bottom_m = kNan;      ///< of an unknown cell the lowest line of sight over it
-        float free_above_m = kNan;  ///< the second lowest
+        float bottom_m = kNan;      ///< lowest ray over an unknown cell
+        float free_above_m = kNan;  ///< second lowest ray over it
         int steady = 0;
         int seen_through = 0;
     };
-    /// What one look says about one cell.
+    /// Measurement of one cell in one frame.
     struct Seen {
         elevation::CellMeasurement measured;
         float density_ratio = kNan;
@@ -91,7 +93,7 @@ class PlainMap {
     }
     [[nodiscard]] Samples samples_of(std::span<const elevation::GridPoint> points,
                                      FusionCounts& counts) const;
-    /// Through the cloud filters that are on.
+    /// The same after the enabled cloud filters, which remove points from `points`.
     [[nodiscard]] Samples samples_of(std::vector<elevation::GridPoint>& points,
                                      FusionCounts& counts) const;
     void fuse(const Samples& samples,
@@ -103,14 +105,14 @@ class PlainMap {
     void update(Cell& cell, const Seen& seen, std::int64_t time_ns, FusionCounts& counts);
     void start(Cell& cell, const Seen& seen, std::int64_t time_ns);
     void agree(Cell& cell, const elevation::Height& fused, const Seen& seen, std::int64_t time_ns);
-    /// So low what was measured is at least, at the sigmas of the clean-up.
+    /// Upper bound of a measured height, at the sigmas of the visibility clean-up.
     [[nodiscard]] float not_above_m(const elevation::CellMeasurement& measured) const {
         return measured.z_m +
                static_cast<float>(config_.visibility.sigmas) * std::sqrt(measured.var_m2);
     }
     void look_overhead(const elevation::SightEnds& ends);
     void look_over_unknown(const elevation::LinesOfSight& lines);
-    /// Of the surfaces that lines of sight passed through: which are gone.
+    /// Cells whose surface is gone because rays passed through it (visibility clean-up).
     [[nodiscard]] std::vector<Index> find_gone(const elevation::SightEnds& ends,
                                                const elevation::LinesOfSight& lines,
                                                std::int64_t time_ns);
@@ -128,7 +130,7 @@ class PlainMap {
     std::int64_t first_ix_ = 0;
     std::int64_t first_iy_ = 0;
     elevation::ViewpointHistory views_;
-    elevation::ViewpointHistory::Id view_ = elevation::ViewpointHistory::kNever;  ///< of the look
+    elevation::ViewpointHistory::Id view_ = elevation::ViewpointHistory::kNever;  ///< of this frame
     std::map<Index, Cell> cells_;
 };
 

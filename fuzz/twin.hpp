@@ -8,10 +8,11 @@
 
 #include "surefoot/core/executors_testing.hpp"
 
-/// How a second computation differs from the first that must have the same bytes.
+/// Tools to run a computation a second time in another way; both runs must give the same bytes.
 namespace surefoot::fuzz {
 
-/// Holds the dispatch of Highway on one of the instruction sets while it lives.
+/// Restricts Highway's dispatch to one supported instruction set during its lifetime. Process-wide:
+/// not thread-safe. `which` selects the set, modulo their number.
 class OnTarget {
   public:
     explicit OnTarget(int which) {
@@ -25,7 +26,7 @@ class OnTarget {
     OnTarget& operator=(const OnTarget&) = delete;
 
   private:
-    /// Asked once: the processor takes its time to answer.
+    /// Cached, because the query of the processor is slow.
     static std::int64_t all() {
         static const std::int64_t targets = hwy::SupportedTargets();
         return targets;

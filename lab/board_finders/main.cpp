@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many boards does our finder find, and how many do OpenCV's? Chessboards through rendered wide
-// lenses, folders of real images, and images without a board.
+// How many boards does our board finder find, compared with OpenCV's finders? Inputs: rendered
+// chessboards through wide lenses, folders of real images, and images without a board.
 // Usage: board_finders OUT.csv rendered FIRST_SEED SEEDS [ours]
 //        board_finders OUT.csv images NAME FOLDER BOARD [ours]
+//   SEEDS   number of seeds; each seed renders one board per lens and condition
+//   NAME    name of the image set in the output
+//   FOLDER  folder of images
+//   BOARD   board description, for example chessboard:8x5:0.03
+//   ours    leave OpenCV's finders out
 //
-// A line an image and finder: set, image, finder, found (0 or 1), right (of rendered boards: every
-// corner given is the true one, within 1.5 px, and three quarters of them are given), median error
-// of the corners in px (rendered), time in ms, and what our finder says where it finds none.
-// `ours` leaves OpenCV's finders out. A rendered seed is one board a lens and look.
+// Writes OUT.csv, one line per image and finder: set, image, finder, found (0 or 1), right
+// (rendered only: every returned corner is within 1.5 px of a true one, and at least three quarters
+// of the corners are returned), median corner error in px (rendered only), time in ms, and our
+// finder's message (problem) if it finds no board.
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the body for machines/rex.yaml, from the simulated gait.
-// Usage: body_parts [FIRST_SEED [SEEDS]]     prints the lines of `body.parts`
+// Which volumes does the body sweep in the simulated gait? Prints the lines of `body.parts` for
+// machines/rex.yaml to stdout.
+// Usage: body_parts [FIRST_SEED [SEEDS]]     defaults: 21, 8
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a lens calibrated from pictures of a board lie within the uncertainty that it states, and
-// does a rig? Every kind of board and of lens, boards in ten random places with blur and noise.
+// Are the errors of calibrated lenses and stereo rigs consistent with their stated uncertainty? The
+// views are simulated: each board type and lens model, boards in ten random poses, blur and noise.
 // Usage: calibration_truth OUT_FOLDER [FIRST_SEED [SEEDS [LENS [BOARD]]]]
+//   FIRST_SEED  default 1; SEEDS: number of seeds, default 3
+//   LENS        only this lens model (pinhole4, pinhole5, rational or fisheye)
+//   BOARD       only boards whose description begins with this text; rigs are then left out
 //
-// lenses.csv, a line a calibration: seed, board, lens, noise of a coordinate, error of the mapping
-// (median and largest over the image), pixels of the mapping compared, of which beyond 3 sigma, of
-// which without an image in the estimate, mean square in standard deviations (2 is right) and the
-// largest error in them. rigs.csv: the same of two eyes and one chessboard, where the right eye is:
-// error of the baseline and its sigma, largest error of a turn and the sigma of that turn, squared
-// Mahalanobis distance of all six (6 is right, 20.06 are three sigma), row error.
+// lenses.csv, one line per calibration: seed, board, lens, noise_px (of a corner coordinate),
+//   median_px and largest_px (mapping error over the image), pixels (number of compared pixels),
+//   beyond (pixels with an error beyond 3 sigma), without (pixels that the estimate does not map),
+//   mean_square (of the error in standard deviations; 2 is expected), largest_sigmas (largest error
+//   in standard deviations).
+// rigs.csv, one line per stereo calibration with one chessboard: seed, lens, pairs (used),
+//   baseline_mm (error) and its sigma, turn_mrad (largest rotation error of the right camera) and
+//   the sigma of that rotation, mahalanobis_sq (all six degrees of freedom: 6 is expected, 20.06 is
+//   3 sigma), row_px (rms row error).
 #include <fmt/format.h>
 #include <fmt/os.h>
 

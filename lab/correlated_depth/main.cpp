@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far do the errors of semi-global matching hang together on flat floor, and how much of the
-// floor is matched at all?
-// Usage: correlated_depth OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]], KEY=VALUE: of the
-// matcher. Writes CSV files into OUT_DIR.
+// How strongly are the disparity errors of semi-global matching correlated on flat floor, and which
+// share of the floor is matched?
+// Usage: correlated_depth OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]]
+//   defaults 1, 4, 1.0; NOISE: factor on the image noise; KEY=VALUE: a setting of the matcher
+//
+// Writes into OUT_DIR, per floor pattern:
+//   correlation.csv  correlation of the errors by image axis and lag [px], and their sigma [px]
+//   cells.csv        by range [m]: pixels per map cell, number of independent ones among them,
+//                    sigma of a pixel and of a cell mean [px]
+//   floors.csv       share matched, share trusted, median stated sigma [px], correlation of the
+//                    errors of two frames from the same pose
 #include <fmt/format.h>
 #include <fmt/os.h>
 

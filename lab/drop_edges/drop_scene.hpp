@@ -7,34 +7,41 @@
 #include "lab/drop_edges/zed_bench.hpp"
 #include "surefoot/core/rng.hpp"
 
-/// Edges that the camera of the bench looks over, and who sees which ground behind them.
+/// Scenes with a drop edge in front of the bench's camera, and the true visibility of the ground
+/// behind the edge.
 namespace surefoot {
 
-/// What stands behind the edge.
+/// The drop behind the edge.
 struct Drop {
     const char* name;
-    double rise_m;
-    int steps;  ///< 1 = kerb; more = flight down, going 0.31 m
+    double rise_m;  ///< height of each step, positive
+    int steps;      ///< 1 = kerb; more = flight of stairs down with a going of 0.31 m
 };
 
-/// From the camera to the edge, along the ground.
+/// Horizontal distances from the camera to the edge.
 inline constexpr double kEdgeDistances_m[] = {0.67, 1.0, 1.5, 2.0};
 
-/// Upper level z = 0 that ends at x = edge_x, everything turned by `yaw_rad` about the edge's
-/// middle. Patterns are drawn, all but the white wall.
+/// Builds an upper level z = 0 that ends at x = `edge_x_m`, and the drop behind it. The scene is
+/// rotated by `yaw_rad` about (edge_x_m, 0). `rng` draws the patterns of both levels; it never
+/// draws the white wall.
 [[nodiscard]] sim::Scene drop_scene(const Drop& drop, double edge_x_m, double yaw_rad, Rng& rng);
 
+/// True visibility of a point or cell for the stereo pair.
+/// `hidden`: inside both images, but something occludes it in at least one camera.
+/// `partly`: only for cells, see `sight_of_cell`.
 enum class Sight { outside, hidden, partly, seen };
 
-/// How a point of the ground is seen from a pose: by both eyes, by one at most because something
-/// stands in the way, or not in both images at all.
+/// Visibility of a point of the world from one body pose. `seen`: both cameras see it. `outside`:
+/// it is within 8 px of an image border or outside an image, or farther than 2.8 m from a camera.
 [[nodiscard]] Sight sight_of(const sim::Scene& scene,
                              const camera::StereoRig& rig,
                              const Pose& T_world_body,
                              const Eigen::Vector3d& point_m);
 
-/// A cell is seen when all of 5 x 5 points on its true surface were, from some pose; hidden when
-/// none was and each stood behind something.
+/// Visibility of a map cell of side kCellSize_m from a set of poses, by 5 x 5 points on its true
+/// surface. `seen`: each point is seen from at least one pose. `hidden`: no point is seen, and each
+/// is hidden from at least one pose. `outside`: every point is outside from every pose. Otherwise
+/// `partly`.
 [[nodiscard]] Sight sight_of_cell(const sim::Scene& scene,
                                   const camera::StereoRig& rig,
                                   const std::vector<Pose>& T_world_body,

@@ -16,24 +16,27 @@
 
 namespace surefoot {
 
-inline constexpr double kCellSize_m = 0.025;
+inline constexpr double kCellSize_m = 0.025;  ///< side of a map cell in these experiments
 
-/// A pattern with the contrast that the fitted ZED sees.
+/// A material with this pattern, and with the contrast of the fitted ZED profile.
 [[nodiscard]] sim::Material zed_look(sim::Pattern pattern, std::uint64_t seed);
 
-/// The fitted ZED, 0.95 m over z = 0 and 32 deg down: renders, matches and knows the truth.
+/// Renders stereo pairs with the fitted ZED profile and matches them. The camera is 0.95 m above
+/// z = 0 and looks 32 deg down. The true depth is kept beside the matched one.
 class ZedBench {
   public:
-    /// `noise`: factor on the noise of the profile.
+    /// `noise`: factor on the image noise of the profile. `executor` must outlive the bench.
     ZedBench(double noise, const stereo::MatcherConfig& matcher, Executor& executor);
 
-    /// `frame` and `seed` choose the noise.
+    /// Renders and matches one pair; `depth` and `true_depth_m` then refer to it. `frame` and
+    /// `seed` determine the image noise.
     void see(const sim::Scene& scene, const Pose& T_world_body, int frame, std::uint64_t seed);
     [[nodiscard]] const camera::RectifiedRig& rectified() const { return rectifier_.rig(); }
     [[nodiscard]] const camera::StereoRig& rig() const { return rig_; }
     [[nodiscard]] const camera::DepthImage& depth() const { return depth_; }
     [[nodiscard]] const Image<float>& true_depth_m() const { return pair_.depth_m; }
-    /// The camera is camera_x_m() ahead of x_m.
+    /// T_world_body with the body at `x_m` on the x axis and the camera 0.95 m above z = 0. The
+    /// camera is `camera_x_m` ahead of the body.
     [[nodiscard]] Pose pose_over(double x_m) const;
     [[nodiscard]] double camera_x_m() const { return rig_.body_from_left().translation_m.x(); }
 
@@ -47,15 +50,16 @@ class ZedBench {
     camera::DepthImage depth_;
 };
 
-/// What both programs on this bench take: OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]] with
-/// the matcher's keys (algorithm=sgbm).
+/// Arguments of the programs on this bench: OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]].
+/// KEY=VALUE sets a key of stereo::MatcherConfig, for example algorithm=sgbm.
 struct BenchArguments {
     std::string out_dir;
     int first_seed = 1;
     int seeds = 4;
-    double noise = 1.0;
+    double noise = 1.0;  ///< factor on the image noise
     stereo::MatcherConfig matcher;
 };
+/// Parses the command line. Error: OUT_DIR is missing, or a key or value is not valid.
 [[nodiscard]] Result<BenchArguments> bench_arguments(int argc, char** argv);
 
 }  // namespace surefoot

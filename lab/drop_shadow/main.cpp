@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strip behind a kerb of 75 mm that no eye sees: how long is it, and what does a matcher put
-// there?
-// Usage: drop_shadow OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]], KEY=VALUE: of the
-// matcher.
+// How long is the occluded region behind a kerb of 75 mm, and which depth does a matcher report in
+// it?
+// Usage: drop_shadow OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]]
+//   defaults 1, 4, 1.0; NOISE: factor on the image noise; KEY=VALUE: a setting of the matcher
 //
-// A camera 0.95 m over the upper level looks straight over an edge, one frame a seed.
-// shadow.csv  one line a fifth of the strip: its length by similar triangles, by lines of sight of
-//             both eyes through the scene, to the first pixel of the rendered depth image that
-//             shows ground again; of the pieces 25 mm wide across, how many hold a point, and the
-//             median height of the points
-// cut.csv     points within 12 mm of the camera's axis, of the first seed: metres behind the edge,
-//             height
+// The camera is 0.95 m above the upper level and looks straight over the edge; one frame per seed.
+// Writes into OUT_DIR:
+//   shadow.csv  one line per fifth of the region. Length of the region by similar triangles
+//               (geometry_m), by rays of both cameras through the scene (rays_m), and to the first
+//               rendered pixel that shows ground again (rendered_m). Then pieces (each 25 mm wide
+//               across), filled (pieces that contain a point), height_m (median of the points).
+//   cut.csv     points of the first seed within 12 mm of the camera's axis: distance behind the
+//               edge and height [m]
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,33 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does the gate miss hazards, and what does it stop that is safe?
+// Which hazards does the gate miss, and which safe movements does it refuse?
 // Usage: gate_scenes TIER SCRATCH FIRST_SEED SCENES [KINDS [FROM]]
 //   gate_scenes maps out/scenes 73001 30000
-// TIER: maps    true heights with the errors that maps of whole runs have (map_noise), as clean as
-//               they are, at the measured noise and at twice that; and as wrong as measured but
-//               stating the least sigma everywhere
-//       depth   the map of a run with analytic depth and true poses
-//       images  the map of a run of the whole chain with images of the fitted ZED
-//       curve   maps again, with the noise and single limits of the gate scaled
-//       drift   maps again; the machine stands beside where it believes, by as much as the map says
-// gate_scenes again SCRATCH KIND SCENE_SEED: one hazard of `maps` again, by the seed in its line;
-// what the gate says, and again.csv with the cells of each map.
+// TIER: maps    true heights with the error distribution of maps of whole runs (map_noise.hpp):
+//               without errors, at the measured noise, at twice that noise, and overconfident
+//               (errors as measured, but the smallest sigma stated everywhere)
+//       depth   map of a run with analytic depth and true poses
+//       images  map of a run of the whole pipeline with images of the fitted ZED profile
+//       curve   as maps, with the noise and single limits of the gate scaled
+//       drift   as maps; the machine stands off its believed position by the stated drift
+// SCRATCH       folder for results and temporary files
+// SCENES        number of scenes with a hazard per kind. The number of safe scenes per kind is a
+//               tenth of it for maps, a fifth for depth and images, and equal for curve and drift.
+// KINDS         kinds of hazards with commas between them (kHazardNames); default: all
+// FROM          number of the first scene; default 0
 //
-// SCENES hazards and as many safe scenes (maps: a tenth, runs: a fifth) of each kind (KINDS: names
-// with commas between), from the number FROM on. Each has one movement that the oracle (sim::judge)
-// calls clearly dangerous or clearly safe; scenes that are neither are drawn again. Every hundredth
-// scene (of runs: every one) is asked all 26 movements too.
+// gate_scenes again SCRATCH KIND SCENE_SEED: repeats one hazard of `maps`, by the seed in its line.
+// Prints the gate's answers and writes SCRATCH/again.csv with the cells of each map.
 //
-// Results are files of SCRATCH/TIER: one a chunk of scenes, made whole or not at all, so that the
-// same call goes on where it was stopped.
+// Each scene has one movement that the oracle (sim::judge) rates as clearly dangerous or clearly
+// safe; scenes that are neither are drawn again. In every hundredth scene (runs: in every scene)
+// the gate is also asked for all 26 movements.
+//
+// Results are files in SCRATCH/TIER, one set per chunk of scenes. A file is written completely or
+// not at all, so that the same command continues an interrupted campaign.
 //   KIND_SEED_FROM.csv  kind,variant,what,count
-//     what: hazards, missed (dangerous and OK), hazards_unknown (refused for want of knowledge
-//     alone), safe, refused, safe_unknown (likewise), thesis_missed, thesis_refused, all_...: the
-//     same of all movements; reason:NAME and proof:NAME (not held) of refused safe ones, alone:NAME
-//     of a reason without others; beside:NAME the reasons of refused safe movements in scenes with
-//     a hazard; danger:NAME the first danger of each hazard; drawn (scenes, with those drawn again)
-//   KIND_SEED_FROM.misses.csv  each hazard that was allowed: how to make the scene again, the
-//     movement, what the oracle says
-//   KIND_SEED_FROM.refused.txt  of runs: what the gate says of each safe movement that it refused
+//     what: hazards, missed (dangerous but OK), hazards_unknown (refused only because of unknown
+//     ground), safe, refused, safe_unknown (as hazards_unknown), thesis_missed and thesis_refused
+//     (by the limits of the reference thesis, Lange 2016), all_...: the same for all movements.
+//     reason:NAME and proof:NAME (a proof that does not hold) of refused safe movements;
+//     alone:NAME: a reason without other reasons; beside:NAME: reasons of refused safe movements in
+//     scenes with a hazard; danger:NAME: the first danger of each hazard; drawn: scenes with the
+//     repeated draws.
+//   KIND_SEED_FROM.misses.csv   each hazard that the gate allowed: parameters to repeat the scene,
+//     the movement, the oracle's result
+//   KIND_SEED_FROM.refused.txt  runs only: the gate's answer to each safe movement that it refused
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is the ground found with a camera of which nobody says how it is mounted, and is what is found
-// the ground? Analytic depth of random rooms with the errors of a matcher (views_testing.hpp).
-// Usage: ground_search OUT.csv [FIRST_SEED [VIEWS]]
+// Does the ground search find the floor with a camera of unknown mounting, and is each accepted
+// plane really the floor? Input: analytic depth of random rooms with a matcher's errors
+// (views_testing.hpp).
+// Usage: ground_search OUT.csv [FIRST_SEED [VIEWS]]     defaults: 1, 1000; one seed per view
 //
-// One line a view:
-//   kind                 floor (0.3-2 m above it, 0-60 deg down, rolled by up to 8 deg), or a
-//   decoy:
-//                        table, bed (over and beside them, floor where it shows), wall (no floor),
-//                        full_table (a table that fills the view: cannot be told from a floor)
-//   pitch_deg, height_m, floor_share   of the truth
-//   reason               of the sighting
-//   tilt_deg, height_mm  errors of an accepted plane against the floor (against nothing: wrong)
-//   wrong                1 = accepted, and more than 3 deg or (5 % and 30 mm) from the floor
+// Writes OUT.csv, one line per view; the columns that need an explanation:
+//   kind                 floor (camera 0.3-2 m above it, 0-60 deg down, rolled by up to 8 deg), or
+//                        one of the decoys:
+//                        table, bed (camera over and beside them, some floor visible), wall (no
+//                        floor), full_table (a table fills the view; it cannot be distinguished
+//                        from a floor)
+//   pitch_deg, height_m, floor_share   true values
+//   reason               result of the search
+//   tilt_deg, height_mm  errors of an accepted plane against the floor; without a floor each
+//                        accepted plane is wrong
+//   wrong                1 = accepted, and more than 3 deg or (5 % and 30 mm) off the floor
 //   nees_tilt            squared tilt error in its stated covariance, two unknowns
-//   nees_height          the same of the height, one unknown
+//   nees_height          squared height error in its stated variance, one unknown
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// How true is the ground plane, that which places odom and those of the single frames?
+// How accurate is the ground plane that aligns odom at the start, and the plane of single frames?
 // Usage: ground_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [KEY=VALUE...]]]]]
 //   ground_truth out/ground.csv floor,demo_stairs 20001 3 ideal,zed
+//   SCENES to PROFILES: see scene_cases.hpp. FRAMES: 0 (default) = to the end of the path.
+//   KEY=VALUE: a setting of surefoot.
 //
-// Profiles: see scene_cases.hpp. One line a scene, seed and profile:
-//   source                                    what placed odom: plane, imu or assumed
-//   tilt_deg, height_mm                       error of odom's z axis, and of the height of
-//   base_link
-//                                             over the ground, from the first ten frames
-//   waited_s                                  before these, for light
-//   frames, accepted                          frames after them, with a plane that was accepted
-//   tilt_p50_deg, tilt_p90_deg, height_p50_mm, height_p90_mm  errors of these, about the ground
-//                                             under base_link
+// Writes OUT.csv, one line per scene, seed and profile:
+//   source                 source of odom's alignment: plane, imu or assumed
+//   tilt_deg, height_mm    errors of odom's z axis and of the height of base_link above the ground,
+//                          from the first ten frames
+//   waited_s               time spent waiting for light before these frames
+//   frames, accepted       later frames, and those with an accepted plane
+//   tilt_p50_deg, tilt_p90_deg, height_p50_mm, height_p90_mm   errors of the accepted planes
+//                          against the ground under base_link
 #include <fmt/format.h>
 #include <fmt/os.h>
 

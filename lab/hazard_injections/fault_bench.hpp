@@ -19,47 +19,50 @@ inline constexpr std::int64_t kMs = 1'000'000;
 inline constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 inline constexpr std::int64_t kFramePeriod_ns = 1'000'000'000 / 15;
 
-/// A gate that is ready after half a second: most faults come later, and the warm-up of 2 s would
-/// be most of a run. Faults of the warm-up itself get the real one.
+/// Limits of a gate that is ready after 0.5 s and 5 frames. The default warm-up of 2 s would take
+/// most of a run. Injections into the warm-up itself use the default limits.
 [[nodiscard]] gate::ReadinessLimits fast_warm_up();
 
-/// What one injection gave. All times are simulated.
+/// Result of one run. All times are simulated.
 struct Outcome {
-    std::string variant;     ///< what was drawn, in words
-    int asked_before = 0;    ///< while all was well
-    int allowed_before = 0;  ///< all of them, or the injection does not count
-    int asked_after = 0;     ///< while the fault lasted
-    int allowed_late = 0;    ///< of these OK after the deadline, or after the first inhibit
-    std::int64_t last_allowed_ns = -1;         ///< the last OK, since the fault; -1 = none
-    std::optional<std::int64_t> latency_ns;    ///< from the fault to the first inhibit
-    gate::Reason reason = gate::Reason::none;  ///< first one of that, but for NOT_READY
+    std::string variant;     ///< the drawn fault, as text
+    int asked_before = 0;    ///< queries before the fault
+    int allowed_before = 0;  ///< of these answered OK; the run counts only if all were
+    int asked_after = 0;     ///< queries since the fault began
+    int allowed_late = 0;    ///< of these OK after the deadline or after the first inhibit
+    std::int64_t last_allowed_ns = -1;         ///< fault to last OK; -1 = no OK
+    std::optional<std::int64_t> latency_ns;    ///< fault to first inhibit
+    gate::Reason reason = gate::Reason::none;  ///< of the first inhibit, if possible not NOT_READY
 };
 
-/// The gate process in simulated time: the gatekeeper, polled every 10 ms, and a client that asks
-/// as often. Snapshots come through the channel that perception uses. As soon as the gate is ready
-/// an operator vouches (if wanted), a movement that is allowed is chosen, and the moment of the
-/// fault is drawn; then every answer is counted.
+/// The gate process in simulated time: a gatekeeper that is polled every 10 ms, and a client that
+/// asks at the same rate. Snapshots pass through the same channel as perception's. When the gate is
+/// ready, the bench makes an operator attestation (if the plan wants one), chooses a movement that
+/// the gate allows, and draws the time of the fault. From then on it counts every answer.
+///
+/// Not thread-safe. The channel is a file in /dev/shm that the destructor removes; the program
+/// exits with a message if the file cannot be created.
 class GateBench {
   public:
     struct Plan {
-        /// ERROR must come so soon after the fault; 0 = at once.
+        /// Every answer from this long after the fault on must be an inhibit; 0 = at once.
         std::int64_t deadline_ns = 250 * kMs;
-        std::int64_t lasts_ns = 500 * kMs;  ///< the run ends so long after the fault
-        std::int64_t watched_on_ns = 0;     ///< or so long after the first inhibit; 0 = not sooner
-        bool faulty = true;                 ///< false: a control run, nothing happens
-        bool from_the_start = false;        ///< the fault is there before anything else
-        double vouch_radius_m = 0.0;        ///< 0 = nobody vouches
-        /// All movements of the machine are right, or only the short ones that stay on ground
-        /// that was vouched for, or only those ahead.
+        std::int64_t lasts_ns = 500 * kMs;  ///< from the fault to the end of the run
+        std::int64_t watched_on_ns = 0;     ///< from the first inhibit to an earlier end; 0 = none
+        bool faulty = true;                 ///< false: a control run without a fault
+        bool from_the_start = false;        ///< the fault exists before the gate starts
+        double vouch_radius_m = 0.0;        ///< attested area; 0 = no operator attestation
+        /// false: choose only among movements of at most 0.2 m, which stay on attested ground.
         bool any_movement = true;
-        bool forward_only = false;
-        std::int64_t fault_ns_since_start = 0;  ///< 0 = drawn when the gate is ready
+        bool forward_only = false;  ///< choose only among movements of more than 0.19 m ahead
+        std::int64_t fault_ns_since_start = 0;  ///< 0 = draw it when the gate is ready
     };
+    /// The gate's answer as the client receives it.
     struct Heard {
         bool allowed = false;
         gate::Reason reason = gate::Reason::internal;
     };
-    /// Asks the gate; `faulty` tells whether the fault is there.
+    /// Asks the gate at the gate's clock `now_ns`; `faulty`: the fault has begun.
     using Ask = std::function<Heard(std::int64_t now_ns, bool faulty)>;
 
     GateBench(const Machine& machine,
@@ -70,12 +73,13 @@ class GateBench {
     GateBench(const GateBench&) = delete;
     GateBench& operator=(const GateBench&) = delete;
 
-    /// Instead of asking for a step by `ask_step`.
+    /// Replaces the client's question, which is `ask_step` by default.
     void set_ask(Ask ask) { ask_ = std::move(ask); }
     /// Called once, at the first poll of the fault.
     void set_begin(std::function<void()> begin) { begin_ = std::move(begin); }
 
-    /// Lets time pass. Does nothing for a time that is over.
+    /// Advances simulated time to `time_ns`, or to the end of the run if that is earlier. Does
+    /// nothing if `time_ns` is in the past.
     void pass_until(std::int64_t time_ns);
     [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }
     [[nodiscard]] bool is_over() const noexcept { return now_ns_ >= end_ns_; }
@@ -84,9 +88,10 @@ class GateBench {
         return time_ns >= fault_ns_;
     }
 
-    /// The gate process is started anew; its client asks on.
+    /// Restarts the gate process; the client continues to ask.
     void restart_gate();
-    /// The clocks that the gate reads: steady time jumps, and the computer slept.
+    /// Shift the clocks that the gate reads: `step_clock` both the steady and the boot clock,
+    /// `sleep` only the boot clock, as when the computer was suspended.
     void step_clock(std::int64_t by_ns) noexcept { clock_step_ns_ += by_ns; }
     void sleep(std::int64_t by_ns) noexcept { slept_ns_ += by_ns; }
 
@@ -96,10 +101,10 @@ class GateBench {
     [[nodiscard]] wire::Gatekeeper& keeper() noexcept { return *keeper_; }
     [[nodiscard]] wire::SnapshotWriter& writer() noexcept { return *writer_; }
     [[nodiscard]] std::uint8_t command() const noexcept { return command_; }
-    /// Is told every verdict.
+    /// `audit` receives every verdict.
     void set_audit(wire::Gatekeeper::Audit audit) { audit_ = std::move(audit); }
 
-    /// Movements that are asked about; a bench that has no gate yet can be told.
+    /// Sets the movement that the client asks for; needed when the fault exists from the start.
     void set_command(std::uint8_t command) noexcept { command_ = command; }
     [[nodiscard]] Outcome& outcome() noexcept { return outcome_; }
 
@@ -132,23 +137,25 @@ class GateBench {
     Outcome outcome_;
 };
 
-/// What is injected, and where.
+/// One kind of fault and the function that runs it.
 struct Injection {
-    std::string hazard;    ///< number in the hazard table: "H1"
-    std::string cause;     ///< in words
-    std::string level;     ///< where it comes in
-    bool is_error = true;  ///< ERROR is due; else NOT_TRAVERSABLE
-    std::string drawn;     ///< what is drawn
-    /// One run; not `faulty`: its control. Errors are those of scenes and files.
+    std::string hazard;    ///< id, "H1" (docs/reference/hazards.md)
+    std::string cause;     ///< one line of text
+    std::string level;     ///< interface where the fault is injected
+    bool is_error = true;  ///< expected decision: ERROR; false: NOT_TRAVERSABLE
+    std::string drawn;     ///< quantities that the seed draws
+    /// Makes one run; `faulty` = false makes its control run. Error: a scene or file cannot be
+    /// read.
     std::function<Result<Outcome>(std::uint64_t seed, bool faulty)> run;
-    /// The fault is there before the gate starts: only the control runs show that it would say OK.
+    /// The fault exists before the gate starts. Only the control runs then show that the gate would
+    /// answer OK without it.
     bool from_the_start = false;
 };
 
-/// At the channel, the clock, the configuration and the client of the gate.
+/// Faults at the channel, the clock, the configuration and the client of the gate.
 [[nodiscard]] std::vector<Injection> gate_injections(const io::MachineFile& file);
-/// At the frames of a camera, through the whole of perception, as `surefoot serve` drives it.
-/// `scenes`: how many different recordings they are spread over.
+/// Faults in camera frames. They pass through the whole perception pipeline, driven as by
+/// `surefoot serve`. `scenes`: number of different recordings to use.
 [[nodiscard]] std::vector<Injection> frame_injections(const io::MachineFile& file, int scenes);
 
 }  // namespace surefoot::experiments

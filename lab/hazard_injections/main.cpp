@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long does it take from a fault to the first answer that is not OK, and is there an OK after
-// it? Every hazard of the hazard analysis that can be injected, where it really comes in, in
-// simulated time: frames at 15 Hz, a question every 10 ms. Usage:
-// hazard_injections OUT.csv FIRST_SEED COUNT [HAZARDS]
+// How long does it take from a fault to the first answer that is not OK, and does an OK follow it?
+// The program injects each hazard of docs/reference/hazards.md that can be injected, at the
+// interface where it occurs in reality. Time is simulated: frames at 15 Hz, a query every 10 ms.
+// Usage: hazard_injections OUT.csv FIRST_SEED COUNT [HAZARDS]
 //   hazard_injections out/injections.csv 21 10 H1,H2
+//   COUNT    injections of each kind; a tenth as many control runs without a fault, at least two
+//   HAZARDS  hazard ids with commas between them; default: all
 //
-// COUNT injections of each kind, and a control run without any fault for every tenth of them (two
-// at least), in which all must be OK. An injection counts when all answers before its fault were
-// OK. The exit status is 1 when an OK came too late, a first inhibit after 250 ms (of what must be
-// ERROR), a control was not OK, or fewer than nine of ten injections count.
-// One line a run:
-//   faulty                  0 = a control run
-//   asked_before, allowed_before   answers before the fault (all of a control run)
-//   asked_after, allowed_late      while it lasts; OK after the deadline or the first inhibit
-//   latency_ms              from the fault to the first answer that is not OK; empty = none
-//   last_allowed_ms         the last OK since the fault; -1 = none
+// An injection counts if every answer before its fault is OK. Every answer of a control run must be
+// OK. The exit status is 1 if an OK comes too late, if the first inhibit comes later than 250 ms
+// after a fault that must give ERROR, if a control run has an answer other than OK, or if fewer
+// than nine of ten injections count.
+//
+// Writes OUT.csv, one line per run; the columns that need an explanation:
+//   faulty                         0 = control run
+//   asked_before, allowed_before   queries before the fault, and those answered OK; all of a
+//                                  control
+//   asked_after, allowed_late      queries since the fault; OK after the deadline or the first
+//                                  inhibit
+//   latency_ms                     from the fault to the first answer that is not OK; empty = none
+//   last_allowed_ms                from the fault to the last OK; -1 = none
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// How true are depth and lengths of a real rig? Chessboards that it was not calibrated by are
-// measured by it: the pairs that belong together (as the calibration by all of them says) are
-// halved, every second one; the rig of one half measures the boards of the other.
+// How accurate are the depth and the lengths that a real calibrated rig measures? The chessboards
+// for the measurement are not used for the calibration: of the pairs that the calibration with all
+// images accepts, every second one calibrates a rig, which then measures the boards of the other
+// half; and the reverse.
 // Usage: held_out_boards OUT.csv FOLDER BOARD LENS
+//   FOLDER  stereo images of the board; BOARD: board description with the size of a square
+//   LENS    lens model to calibrate (pinhole4, pinhole5, rational or fisheye)
 //
-// A line a pair: half that calibrated, pair, points, distance, axial error, scatter of the depths
-// about their plane, mean error and scatter of the sides of squares; all in the board's unit.
+// Writes OUT.csv, one line per pair: calibrated half, pair, points, distance, axial (depth error),
+// axial_std (scatter of the depths about their plane), lateral and lateral_std (mean error and
+// scatter of the sides of squares), lengths (number of sides). Lengths are in the unit of BOARD.
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// What does an IMU add to stereo odometry, and how is it best added?
+// How much does an IMU improve stereo odometry, and which fusion is better?
 // Usage: imu_fusion OUT.csv corners|ROOM
 //   SUREFOOT_DATA_DIR=../shared/data imu_fusion out/corners.csv corners
-//   imu_fusion out/room.csv out/room       (a folder written by render_room.py)
+//   imu_fusion out/room.csv out/room
+//   corners: corner tracks of both gap-free parts of euroc_april, each part on its own, then the
+//   whole recording with the gap; no images. ROOM: a folder written by render_room.py.
 //
-// The same frames three times: vision alone; the loose fusion of the thesis (velocity_fusion.hpp)
-// of that very vision with the IMU; points and IMU in one problem (the library). `corners`: both
-// gap-free parts of euroc_april, each on its own, then all of it with the gap; without images.
+// Each recording runs through three methods: vision alone; that vision loosely fused with the IMU
+// (velocity_fusion.hpp, proposed in the reference thesis, Lange 2016); points and IMU in one
+// problem, which is the library's method.
 //
-// One line a recording and method:
-//   frames, path_m            with a true pose; way of the left camera
-//   ate_mm                    rms of the positions, aligned (SE3)
-//   rpe_mm, rpe_deg           rms of the motions over one second, from every frame
-//   nees                      mean of error^T covariance^-1 error of the motions over one second,
-//                             one after the other: 6 for a covariance that is true
+// Writes OUT.csv, one line per recording and method:
+//   frames, path_m            frames with a true pose; path length of the left camera
+//   ate_mm                    rms position error after SE3 alignment
+//   rpe_mm, rpe_deg           rms error of the motions over one second, starting at every frame
+//   nees                      mean of error^T covariance^-1 error of consecutive one-second
+//                             motions; 6 is expected for a correct covariance
 //   end_mm                    error of the motion from the first to the last frame
-//   ok, degraded, lost        frames
-//   truth_noise_mm            noise of the true positions: how far they scatter about a parabola
-//                             through five frames
+//   ok, degraded, lost        number of frames
+//   truth_noise_mm            noise of the true positions: scatter about a parabola through five
+//                             frames
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -10,21 +10,25 @@
 
 namespace surefoot::experiments {
 
-/// The fusion of vision and IMU that the thesis proposes and never built (4.4), as a baseline:
-/// differentiate the poses of visual odometry, average the velocities of both by their covariances,
-/// add the average up to a pose again. Loosely coupled: vision is finished before the IMU is heard.
+/// Loosely coupled fusion of visual odometry and IMU, as a baseline. The reference thesis (Lange
+/// 2016, section 4.4) proposes it without an implementation: differentiate the poses of visual
+/// odometry, average its velocity and the IMU's by their covariances, integrate the average to a
+/// pose. The visual motion is final before the IMU is used.
 ///
-/// What the thesis leaves open: the speed of the IMU comes from its readings since the last fused
-/// speed. Gravity, the gyroscope's bias and the first speed are found once from the first second of
-/// vision (`start_inertial`, as the library does) and stay; what the biases may be wrong by counts
-/// as noise. While vision is LOST its velocities count for nothing.
+/// The thesis leaves these points open; this class decides them as follows. The IMU's velocity is
+/// integrated from the last fused velocity. Gravity, gyroscope bias and first velocity are
+/// estimated once, from the first second of vision (`start_inertial`, as in the library), and then
+/// stay constant. The uncertainty of the biases counts as noise. While vision is LOST, its velocity
+/// has no weight.
 class VelocityFusion {
   public:
-    /// `imu` must be that of the odometry; its IMU is base_link (EuRoC's rigs).
+    /// `imu`: the configuration that the odometry uses. The IMU frame must be base_link, as in the
+    /// EuRoC rigs.
     explicit VelocityFusion(const odometry::InertialConfig& imu);
 
-    /// The frame with the fused pose and motion; that of vision before the start and where samples
-    /// are missing. The health stays that of vision.
+    /// Returns `vision` with the fused pose and motion. Before the start, and where IMU samples are
+    /// missing, returns `vision` unchanged. The health is always that of vision. `samples`: IMU
+    /// samples since the last call.
     [[nodiscard]] MotionEstimate update(const MotionEstimate& vision,
                                         std::span<const ImuSample> samples);
 
@@ -35,8 +39,8 @@ class VelocityFusion {
 
     odometry::InertialConfig config_;
     std::vector<ImuSample> samples_;
-    std::vector<odometry::SeenMotion> seen_;  ///< until the start
-    std::optional<odometry::ImuBias> bias_;   ///< since then
+    std::vector<odometry::SeenMotion> seen_;  ///< collected until the start
+    std::optional<odometry::ImuBias> bias_;   ///< set since the start
     Eigen::Vector3d gravity_odom_m_s2_ = Eigen::Vector3d::Zero();
     Pose T_odom_body_;
     Eigen::Vector3d velocity_odom_m_s_ = Eigen::Vector3d::Zero();  ///< at the last frame

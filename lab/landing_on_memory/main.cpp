@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The foot lands on remembered ground: how wrong is the memory when the step is decided?
+// How wrong is the map of remembered ground on which a foot will land, at the time of the step
+// query?
 // Usage: landing_on_memory OUT.csv [FIRST_SEED [SEEDS [NOISE [grid | mounts | conditions]]]]
-//   grid: every mount, on carpet, sharp images of a global shutter. mounts: the two that are
-//   recommended. conditions: the usual mount with poor texture, motion blur, a rolling shutter, and
-//   all of these.
+//   defaults 1, 1, 1.0, grid; NOISE: factor on the image noise
+//   grid: every camera mount, on carpet, sharp images of a global shutter. mounts: the two
+//   recommended mounts. conditions: the usual mount with poor texture, motion blur, a rolling
+//   shutter, and all three together.
 //
-// The machine walks over flat floor; its odometry sees rendered images, its map exact depth, so
-// that what is wrong comes from the motion alone. When a step is asked for, every point under the
-// feet where they will land is looked up in the map:
-//   height error      the map's height there, seen from the present estimate of the pose and put
-//                     into the world at the true one, minus the true ground
-//   horizontal error  how far the place that the foot will really meet lies from the place that was
-//                     really seen when the cell was last measured
-// One line a point: pitch_deg,height_m,cameras,script,condition,seed,step,lost,known,age_s,
-// height_error_m,horizontal_m; lost: frames so far whose motion the odometry did not know. As in
-// the pipeline, their depth is not taken.
+// The machine walks over flat floor. The odometry gets rendered images and the map gets exact
+// depth, so that only the estimated motion causes errors. At each step query, the map is read at
+// every point under the feet of the requested step:
+//   height error      height in the map, relative to the estimated pose and put into the world at
+//                     the true pose, minus the true height
+//   horizontal error  distance between the place where the foot will really land and the place that
+//                     was really measured when the cell was last updated
+//
+// Writes OUT.csv, one line per point: pitch_deg,height_m,cameras,script,condition,seed,step,lost,
+// known,age_s,height_error_m,horizontal_m. `lost` counts the frames so far without a known motion;
+// as in the pipeline, the map ignores the depth of these frames.
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an hour does to the odometry, the map and the memory.
+// How do errors of odometry and map, and the memory of the process, develop in an hour?
 // Usage: long_walk OUT.csv SCENE SEED MINUTES [KEY=VALUE...]
 //   long_walk out/hour.csv room 21 60 pipeline.level.enabled=false
+//   MINUTES: simulated time. KEY=VALUE: a setting of surefoot.
 //
-// A scene's way is rendered once (the fitted ZED) and gone forth and back again and again, as fast
-// as it can be computed; every frame gets new noise, so that no way is like the one before. There
-// is no IMU: its readings do not run backwards. Depth and map come every fifth frame. One line a
-// minute of the machine's time, about the frames since the line before:
-//   minute, tilt_deg, yaw_deg  angle between the true and the found vertical, and heading
-//   horizontal_mm, height_mm   of base_link from the truth
+// The path of a scene (at most 250 frames) is rendered once with the fitted ZED profile. The
+// machine walks it back and forth as fast as the computer allows. Every frame gets new noise, so
+// that no pass equals another. There is no IMU, because its readings cannot be played backwards.
+// Depth and map run on every fifth frame.
+//
+// Writes OUT.csv, one line per minute of simulated time, about the frames since the last line:
+//   minute, tilt_deg, yaw_deg  errors of the vertical and of the heading of odom
+//   horizontal_mm, height_mm   error of the position of base_link
 //   jump_mm                    largest error of the motion from one frame to the next
-//   lost                       frames
-//   known_cells, resident_mb   of the map; memory of the process
+//   lost                       number of LOST frames
+//   known_cells, resident_mb   known cells of the map; resident memory of the process
 #include <fmt/format.h>
 #include <fmt/os.h>
 

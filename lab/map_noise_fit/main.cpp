@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// How wrong are the maps of whole runs, cell by cell? What map_noise is fitted to.
+// How large are the errors of the maps of whole runs, cell by cell? The constants of map_noise.hpp
+// are fitted to this output.
 // Usage: map_noise_fit OUT.csv SCRATCH [FIRST_SEED [SEEDS [NOISE]]]
+//   SCRATCH: folder for scene files. Defaults 21, 20, 1.0. NOISE: factor on the image noise.
 //
-// Scenes of gate_scenes (every hazard but the unseen ones), looked at by the fitted ZED on a
-// trolley that goes the scene's way; the map at its end beside the scene's geometry. One line a
-// cell within 1.2 m of the machine that has ground:
-//   kind,seed,relief_mm,dx_m,dy_m   the cell, from base_link, along odom
-//   along_m,across_m                from the near border of the thing, into it and along it
-//   low_mm,high_mm,floor_mm         true heights: least and most in the cell (5 x 5 plumb lines),
-//   and
-//                                   the surface under what hangs over the middle
-//   looks,near_m                    poses that see the middle (scene_sight), the nearest of them
-//   map_mm,sigma_mm,clearance_mm,drift_mm,free_mm   what the map says; nan
+// Each scene of gate_scenes except the unseen hazards is run with the fitted ZED profile on a
+// trolley along the scene's path. The map at the end is compared with the true geometry. Writes
+// OUT.csv, one line per cell with ground within 1.2 m of the machine:
+//   kind,seed,relief_mm   scene
+//   dx_m,dy_m             cell relative to base_link, in the axes of odom
+//   along_m,across_m      from the near border of the hazard, into it and along the border
+//   low_mm,high_mm        lowest and highest true height in the cell (5 x 5 points)
+//   floor_mm              true height of the surface under hanging solids, in the cell's middle
+//   looks,near_m          poses that see the middle (scene_sight.hpp), distance of the nearest one
+//   map_mm,sigma_mm,clearance_mm,drift_mm,free_mm   content of the map; nan = unknown
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// How right is the matcher? Beside OpenCV's, on Middlebury pairs. (Does it know: matcher_sigma.)
+// How accurate is our matcher compared with OpenCV's matchers on Middlebury pairs? For the
+// calibration of its uncertainty see matcher_sigma.
 // Usage: matcher_accuracy STEREO_DATA_DIR OUT_DIR
 //
-// truth.csv    pair,matcher,count,q10,q25,q50,q75,q90,q50_far,q50_near: matched less true disparity
-//              [px] of the matches that are trusted (ours) and within 2 px; the median also of the
-//              smaller and of the larger half of the true disparities
-// pairs.csv    truth,pair,matcher,bad_1,bad_2,density,cpu_ms: every matcher as it comes; share
-//              of the pixels that both eyes see which are wrong by more than 1 or 2 px, unknown
-//              ones filled from the smaller horizontal neighbour, all rounded to 1/16 px
+// Writes into OUT_DIR:
+//   truth.csv  pair,matcher,count,q10,q25,q50,q75,q90,q50_far,q50_near: quantiles of matched minus
+//              true disparity [px], over matches within 2 px (ours: only trusted ones); medians of
+//              the halves with the smaller (far) and the larger (near) true disparities
+//   pairs.csv  truth,pair,matcher,bad_1,bad_2,density,cpu_ms: each matcher with its default
+//              settings. Share of the pixels seen by both cameras with an error above 1 or 2 px
+//              [%]; unknown pixels are filled from the smaller horizontal neighbour; all
+//              disparities are rounded to 1/16 px
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does the matcher know where it is wrong? On Middlebury pairs and on the simulated ZED. Its
-// coefficients: sigma_fit.
-// Usage: matcher_sigma STEREO_DATA_DIR OUT_DIR [FIRST_SEED]
+// Does the stated uncertainty of the matcher agree with its real errors? On Middlebury pairs and on
+// the simulated ZED. The coefficients come from sigma_fit.
+// Usage: matcher_sigma STEREO_DATA_DIR OUT_DIR [FIRST_SEED]     default seed: 1
 //
-// sigma.csv   kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak: trusted
-//             matches that are right within 1 px; the order of sigma and, instead, that of the cost
-//             of the second best over the best, judged by eval::sparsification over all matches;
-//             kinds: "image", and "pooled": all matches of one kind of images together
+// Writes OUT_DIR/sigma.csv: kind,source,count,within_1,within_2,within_3,density,auc_sigma,auc_peak
+//   kind                image, or pooled: all matches of one type of images together
+//   count, within_1 to within_3   trusted matches that are right within 1 px, and the share of them
+//                       within 1, 2 and 3 sigma [%]
+//   density             share of matched pixels [%]
+//   auc_sigma, auc_peak eval::sparsification over all matches, ordered by sigma, and by the
+//                       ratio of the best cost to the second-best; 0 = perfect, 1 = random order
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our matcher beside OpenCV's with the same budget of tuning: one setting of 36 is chosen for each
-// on half the Middlebury pairs and on simulated images, and shown on the other half, on fresh
-// simulated images, and on such that cameras have trouble with.
+// Is our matcher better than OpenCV's matchers if each gets the same tuning budget? For each
+// matcher one of 36 settings is chosen on half the Middlebury pairs and on simulated images. The
+// scores come from the other half, from new simulated images, and from images that are difficult
+// for cameras.
 // Usage: matcher_tuning STEREO_DATA_DIR OUT_DIR FIRST_SEED [FIRST_TUNING_SEED]
+//   FIRST_SEED: first seed of the images for the scores. FIRST_TUNING_SEED: of the images for the
+//   choice, default 21.
 //
-// chosen.csv     matcher,set,words,loss,loss_as_it_comes: the setting of least loss, the mean of
-//                bad-1 + 2 bad-2 over the pairs plus that over the simulated images; sets:
-//                "chosen", and "for pairs" and "for simulated", chosen by one of the two alone
-// held_out.csv   kind,truth,image,matcher,set,bad_1,bad_2,matched_bad_1,matched_bad_2,density [%]
-//                kinds: "tuned on", "pair", "simulated", and what a camera has trouble with; sets:
-//                those above, and "as it comes" of our whole matcher
+// Writes into OUT_DIR:
+//   chosen.csv    matcher,set,words,loss,loss_as_it_comes: the setting with the smallest loss.
+//                 Loss: mean of bad_1 + 2 bad_2 over the pairs, plus the same over the simulated
+//                 images. Sets: "chosen"; "for pairs" and "for simulated" are chosen by one of the
+//                 two alone.
+//   held_out.csv  kind,truth,image,matcher,set,bad_1,bad_2,matched_bad_1,matched_bad_2,density [%]
+//                 kinds: "tuned on", "pair", "simulated", and one per difficult condition. Sets:
+//                 those above, and "as it comes" for the default settings of our whole matcher.
 #include <fmt/format.h>
 #include <fmt/os.h>
 

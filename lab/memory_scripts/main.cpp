@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does the gate stop and allow what it only remembers?
+// Does the gate give correct answers about ground and obstacles that it only remembers?
 // Usage: memory_scripts OUT.csv FIRST_SEED SEEDS [SCRIPT... ]
-//   SCRIPT: table    ahead to a table, half a turn, back to it unseen
-//           door     ahead to a door, a quarter of a turn, sideways through it
-//           tread    ahead to a step down, half a turn, back to it; then a movement of class stair
-//                    onto the broad tread below. With the camera of the REX (32 deg down) and
-//                    with one that looks 65 deg down.
-//           quick    all of them at a seed each, analytic, without drift and with 10 %
-//           images   table and door with rendered images and the whole chain
+//   SCRIPT: table    walk to a table, turn by 180 deg, walk back to it with the camera facing away
+//           door     walk to a door, turn by 90 deg, walk sideways through it
+//           tread    walk to a step down, turn by 180 deg, walk back to it; then a movement of
+//                    class stair onto the broad tread below. With the camera of the REX (32 deg
+//                    down) and with a camera that looks 65 deg down.
+//           quick    all of them with one seed each, analytic depth, without drift and with 10 %
+//           images   table and door with rendered images and the whole pipeline
+//           default: table, door and tread
 //
-// A simulated REX is steered by joystick codes. Before each step the gate is asked from where the
-// machine believes to be, the oracle from where it is. The step is made where the oracle calls it
-// safe, or the script forces it; what the gate says steers nothing, so that every drift sees the
-// same way.
-// Drift: base_link's way is told too long or too short by a share, the sign by the seed. What is
-// stated beside it is what a sound odometry states (`own`), or grows with the way as the error does
-// (`told`).
-// Holes: what is asked about stairs is asked again of a map whose unknown and unsure cells were
-// filled from the nearest ones, as if a second camera had seen them.
-// A line for each step:
-// script,pitch_deg,seed,drift_percent,stated,look,holes,step,command,asked,forced,
-// safe,clear,danger,verdict,primary,reasons,forward_m,left_m (of the cell that decided, from
-// base_link),value_mm,limit_mm,stated_drift_mm,off_mm (believed place from the true one),relief_mm,
-// size_mm
+// Joystick codes steer a simulated REX. Before each step the gate is asked at the believed pose,
+// and the oracle at the true pose. The machine makes the step if the oracle rates it as safe or the
+// script forces it. The gate's answer does not steer, so that every drift leads along the same
+// path. Drift: the reported motion of base_link is too long or too short by a share; the seed
+// chooses the sign. The stated covariance is that of a correct odometry (`own`), or it grows with
+// the distance as the error does (`told`).
+// Holes: each question about stairs is asked again of a map whose unknown and uncertain cells are
+// filled from the nearest known ones, as if a second camera had seen them.
+//
+// Writes OUT.csv, one line per step:
+// script,pitch_deg,seed,drift_percent,stated,look,holes,step,command,asked,forced,safe,clear,
+// danger,verdict,primary,reasons,forward_m,left_m (position of the deciding cell relative to
+// base_link), value_mm,limit_mm,stated_drift_mm,off_mm (distance of the believed from the true
+// position), relief_mm,size_mm
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// What does the odometry make of a camera, a clock or an IMU that fails in the middle of a walk,
-// and of a rig that is not what its calibration says? Is it ever sure of what is wrong? Usage:
-// odometry_faults OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FAULTS [KEY=VALUE...]]]]]
+// How does the odometry react to a camera, clock or IMU that fails during a walk, and to a rig that
+// differs from its calibration? Does it ever state a small uncertainty for a wrong motion?
+// Usage: odometry_faults OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FAULTS [KEY=VALUE...]]]]]
 //   odometry_faults out/faults.csv walk_floor,room 71101 3 zed all
+//   SCENES to PROFILES: see scene_cases.hpp. FAULTS: names of `all_faults` below with commas
+//   between them, or all. KEY=VALUE: a setting of surefoot.
 //
-// Profiles: see scene_cases.hpp; FAULTS: names of `all_faults` below, or all. Images and odometry
-// alone, no map; each fault with and without IMU, beginning in frame 40 of 90 (faults of the rig
-// and of both eyes exchanged for good: from the start). One line a frame:
-//   faulty                        the fault is in this frame
-//   health, reason, camera, lit   as reported; `lit` and a health other than LOST: it would be
-//   mapped path_mm                       true motion since the frame before err_mm, err_deg, sig_*
-//   error of the motion since the frame before, and one sigma of it as
-//                                 stated (largest direction)
-//   s_*                           the same over the last second; s_health: the worst in that second
-//   since_*                       the same since the last frame before the fault; empty before it
+// Only images and odometry run, no map. Each fault runs with and without IMU. It begins in frame 40
+// of 90; faults of the rig and permanently swapped cameras exist from the start.
+//
+// Writes OUT.csv, one line per frame; the columns that need an explanation:
+//   faulty              the fault is in this frame
+//   health, reason, camera, lit   as reported; the map takes a frame with `lit` that is not LOST
+//   path_mm             true motion since the last frame
+//   err_mm, err_deg     error of the motion since the last frame
+//   sig_mm, sig_deg     its stated sigma in the direction of the largest one
+//   s_*                 the same over the last second; s_health: the worst health in it
+//   since_*             the same since the last frame before the fault; empty before the fault
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// How soon does the odometry see that a machine that stood begins to move? And does it see motion
-// where there is none?
+// How soon does the odometry report that a standing machine begins to move? Does it report motion
+// of a machine that stands?
 // Usage: odometry_onset OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [KEY=VALUE...]]]]
 //   odometry_onset out/onset.csv walk_floor,room 71101 3 ideal,zed
+//   SCENES to PROFILES: see scene_cases.hpp. KEY=VALUE: a setting of surefoot.
 //
-// Rendered pairs at 10 Hz from where the scene's way begins, odometry alone, no IMU. The machine
-// stands 3 s, moves ahead by some millimetres, within one frame or evenly over 0.5 s, and stands
-// again; or it stands for 10 s. One line a case:
-//   shift_mm, spread_frames   of the motion; 0: none
-//   seen_after                frames from the one in which all of the shift is there first until
-//                             T_odom_body has moved by half of it; 0 = that one, -1 = never
-//   begun_after               the same from the first frame that is not where it stood until
-//                             T_odom_body has moved at all
-//   end_mm                    what T_odom_body has moved by at the end, less the shift
+// Pairs are rendered at 10 Hz from the start of the scene's path; only the odometry runs, no IMU.
+// The machine stands for 3 s, moves ahead by some millimetres within one frame or evenly over 0.5
+// s, and stands again; or it stands for 10 s.
+//
+// Writes OUT.csv, one line per case:
+//   shift_mm, spread_frames   size and duration of the motion; 0 = no motion
+//   seen_after                frames from the first frame with the whole shift until T_odom_body
+//                             has moved by half of it; 0 = in that frame, -1 = never
+//   begun_after               frames from the first frame with a shift until T_odom_body has moved
+//   end_mm                    motion of T_odom_body at the end, minus the shift
 //   moved_before              standing frames (from the third on) whose T_previous_body is not the
 //                             identity
-//   crept_mm                  largest distance from where it stood while it stands
+//   crept_mm                  largest distance from the start while the machine stands
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// How true is the odometry, and does it know how true?
+// How accurate is the odometry, and is its stated covariance correct?
 // Usage: odometry_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [KEY=VALUE...]]]]]
 //   odometry_truth out/odometry.csv floor,walk_floor 20001 30 ideal,zed 100
-//   odometry.imu.enabled=false
+//   odometry.imu.enabled=false     (same command)
+//   SCENES to PROFILES: see scene_cases.hpp. A scene with a slash in its name is a recording with
+//   the true poses of its left camera in groundtruth.tum; the seed is appended to its name. FRAMES:
+//   0 (default) = to the end of the path. KEY=VALUE: a setting of surefoot.
 //
-// A scene with a slash in its name is a recording, with the poses of its left camera in
-// groundtruth.tum; a seed is added to its name. Profiles: see scene_cases.hpp; FRAMES 0 = to the
-// end of the way. Images and odometry alone, no map. Motions over one second, one after the other,
-// against the true ones. Where the machine stood (less than 5 mm and 0.5 deg in that second) the
-// odometry holds its pose, and says so with next to no covariance: those count apart. One line a
-// scene, seed and profile:
-//   path_m, end_mm, end_deg   length of the true way; error at its end, about the first pose
-//   moving, nees              motions, and the mean of error^T covariance^-1 error: 6 for a
-//                             covariance that is true
+// Only images and odometry run, no map. Consecutive motions of one second are compared with the
+// true ones. While the machine stands (less than 5 mm and 0.5 deg in that second) the odometry
+// holds its pose and states a covariance near zero; these motions are counted separately.
+//
+// Writes OUT.csv, one line per scene, seed and profile:
+//   path_m, end_mm, end_deg   length of the true path; error at its end relative to the first pose
+//   moving, nees              number of motions, and the mean of error^T covariance^-1 error: 6 is
+//                             expected for a correct covariance
 //   rpe_mm, rpe_deg           rms error of these motions
-//   standing, held_mm         motions of a machine that stood; largest error of one
+//   standing, held_mm         number of motions of a standing machine; largest error of one
 //   jump_mm                   largest error of the motion from one frame to the next
-//   ok, degraded, lost        frames
+//   ok, degraded, lost        number of frames
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// What do the odometry's own poses do to the map?
+// How do the errors of the odometry's poses affect the map?
 // Usage: own_poses OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [CARRIERS [RIGS
-// [KEY=VALUE...]]]]]]]
+//        [KEY=VALUE...]]]]]]]
 //   own_poses out/poses.csv demo_stairs,floor 20001 3 zed 160 trolley,rex,hand
-//   zed_vga,zed_vga_rolling odometry.imu.enabled=false
+//   zed_vga,zed_vga_rolling odometry.imu.enabled=false     (same command)
+//   SCENES to PROFILES: see scene_cases.hpp. FRAMES: 0 (default) = to the end of the path.
+//   CARRIERS: motion models, default: scene. RIGS: rig presets, default: zed_vga. KEY=VALUE: a
+//   setting of surefoot.
 //
-// Profiles: see scene_cases.hpp; FRAMES 0 = to the end of the way. Every case is seen through
-// rendered images by the whole pipeline, that starts where the machine truly stands. Beside its map
-// three others are made of the same frames: of its depth at the true poses, and of exact depth at
-// its own and at the true poses. A carrier that cannot go a scene's way is said and left out.
+// The whole pipeline runs on rendered images and starts at the true pose. Beside its map, three
+// other maps are made of the same frames: of its depth at the true poses, and of exact depth at the
+// pipeline's poses and at the true poses. If a motion model cannot follow a scene's path, the
+// program prints a message and skips the case.
 //
-// One line a scene, seed, profile, carrier, rig:
-//   path_m, end_mm, end_deg     length of the true way; error at its end
-//   ate_mm                      rms error of all positions, aligned (SE3)
-//   lost                        frames
-//   ..._jump_mm, ..._spread_mm  of each map's level floor: jumps between neighbouring cells, 99 %;
-//                               spread about its plane (surefoot/eval/maps/map_edges.hpp). exact:
-//                               of exact depth, matched: of the pipeline's; true, own: poses
+// Writes OUT.csv, one line per scene, seed, profile, motion model and rig:
+//   path_m, end_mm, end_deg     length of the true path; error at its end
+//   ate_mm                      rms error of all positions after SE3 alignment
+//   lost                        number of LOST frames
+//   ..._jump_mm, ..._spread_mm  of each map's level floor: 99 % quantile of the jumps between
+//                               neighbouring cells; spread about its plane
+//                               (surefoot/eval/maps/map_edges.hpp). Prefixes: exact or matched
+//                               depth; true or own poses
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a matcher prefer whole pixels? On slanted planes every fraction of a pixel is there alike.
-// Usage: pixel_locking OUT.csv FIRST_SEED [SEEDS]
+// Does a matcher prefer whole pixels? The input is slanted planes, on which every fraction of a
+// pixel is equally frequent.
+// Usage: pixel_locking OUT.csv FIRST_SEED [SEEDS]     SEEDS: number of seeds, default 6
 //
-// camera,matcher,tenth,count,mean_px,rms_px: matched less true disparity of matches within 1 px,
-// by the fraction of the true one: 0 = whole pixels to 0.05 px, 5 = halves, 9 = just below whole.
-// Cameras: "ideal", and "zed" with its noise and smear but without its error of calibration, which
-// shifts disparities. Every matcher as it comes.
+// Writes OUT.csv: camera,matcher,tenth,count,mean_px,rms_px: matched minus true disparity of
+// matches within 1 px, by the fraction of the true disparity: 0 = whole pixels within 0.05 px, 5 =
+// half pixels, 9 = just below a whole pixel. Cameras: "ideal", and "zed" with its noise and smear
+// but without its calibration error, which would shift disparities. All matchers have default
+// settings.
 #include <fmt/format.h>
 #include <fmt/os.h>
 

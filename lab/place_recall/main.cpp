@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Are places recognised when they are seen again, and only then?
+// Are places recognised when the machine sees them again, and are there false recognitions?
 // Usage: place_recall OUT.csv KINDS SCENES FIRST_SEED SEEDS [PROFILE]
 //   place_recall out/places.csv same_run,second_run room,corridor 30001 5 zed_calibrated
 //   place_recall out/alike.csv storey,bay lab/scenes/look_alike.yaml 30001 100
+//   SCENES to PROFILE: see scene_cases.hpp; default profile: zed_calibrated
 //
-// KINDS:
-//   same_run    forward, round, back, round and forward again, beside the first way
-//   second_run  a place is saved; another run begins elsewhere in it, with an odom of its own
-//   storey      the second run is in another corridor of the same house: doors, pillars, kind of
-//               floor and light are the same, the floor's and walls' own pattern is not
+// KINDS, with commas between them:
+//   same_run    forward, turn, back, turn and forward again, beside the first path
+//   second_run  the place database is saved; another run starts elsewhere in the scene with its own
+//               odom frame
+//   storey      the second run is in another corridor of the same house: doors, pillars, type of
+//               floor and light are equal, the patterns of floor and walls differ
 //   bay         the second run is some bays further down the same corridor
-//   house       one place of the corridors of all seeds, 500 keyframes at most; then a second run
-//   in
-//               every fifth of them
-// Rendered images, our matcher, poses of the true way with the drift of our odometry and an odom
-// that leans by 0.2 deg; the tracker of the library with its defaults. One line a keyframe that
-// could have been recognised (`revisit`: it shows what was seen before):
+//   house       one database of the corridors of all seeds, at most 500 keyframes; then a second
+//               run in every fifth corridor
+// Input: rendered images, our matcher, and the true path with the drift of our odometry and an odom
+// frame tilted by 0.2 deg. The library's place tracker has its default settings.
+//
+// Writes OUT.csv, one line per keyframe that could be recognised (`revisit`: it shows a scene part
+// seen before):
 //   refusal, inliers, agreeing...  see places/view_comparison.hpp
-//   accepted                       T_map_odom was believed
-//   error_m, error_deg             of base_link in the map, where accepted
-//   single_m                       of the best keyframe's answer, believed or not
-//   query_ms                       describing and looking for it, time of the processor
+//   accepted                       the tracker accepted T_map_odom
+//   error_m, error_deg             error of base_link in the map, if accepted
+//   single_m                       error of the best keyframe's answer, accepted or not
+//   query_ms                       CPU time of description and search
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How good are disparities on what is locally flat, as a function of the texture there? The same
-// question put to real recordings and to simulated ones closes the reality gap.
+// How accurate are disparities on locally flat surfaces, as a function of texture? The same
+// statistic of real and of simulated recordings shows how realistic the simulator is.
 // Usage: plane_residuals SOURCE OUT.csv [MAX_FRAMES [KEY=VALUE...]]
-//   KEY=VALUE: stereo.* = settings of the matcher; for sim:SCENE sources also seed and the settings
-//   of the simulated camera (see sim::SceneOptions).
+//   MAX_FRAMES: 0 (default) = all. KEY=VALUE: stereo.* = settings of the matcher; for sim:SCENE
+//   sources also seed and the settings of the simulated camera (sim::SceneOptions).
 //
-// Windows of 32 x 32 px of the rectified left image. For each: horizontal gradient of the grey
-// values (texture), share of matched pixels (density), scatter of the disparity about the robustly
-// fitted plane, and how much the eyes differ when they are laid over each other by that plane. A
-// line a window: frame, u, v, texture_dn, coarse_dn, grey_dn, density, residual_px, rms_px,
-// inliers, eyes_dn.
+// Writes OUT.csv, one line per window of 32 x 32 px of the rectified left image: frame, u, v,
+// texture_dn (horizontal gradient of the grey values), coarse_dn, grey_dn, density (share of
+// matched pixels), residual_px (scatter of the disparity about the robustly fitted plane), rms_px,
+// inliers, eyes_dn (difference of the two images after alignment by that plane).
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -11,7 +11,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/sim/scenes/scene.hpp"
 
-/// Scenes in which one movement leads into one hazard, and the same without it.
+/// Drawn scenes in which one movement leads into one hazard, and safe counterparts of them.
 namespace surefoot::experiments {
 
 enum class Hazard : std::uint8_t {
@@ -19,11 +19,11 @@ enum class Hazard : std::uint8_t {
     stairs_up,
     kerb,  ///< down or up
     hole,
-    platform,  ///< the lower level 0.3 to 1.2 m down, or a void
+    platform,  ///< its edge: the lower level is 0.3 to 1.2 m down, or a void
     wall,
     table,
     sill,
-    unseen,  ///< one of the others, where the machine has never looked
+    unseen,  ///< one of the others, in a region that the cameras never observed
     person,  ///< an upright column
 };
 inline constexpr int kHazards = 10;
@@ -49,43 +49,45 @@ struct Solid {
     double top_m = 0.0;
 
     [[nodiscard]] bool covers(const Eigen::Vector2d& p_m) const noexcept;
-    /// Does it stand in the way from one point to another?
+    /// Whether the solid intersects the line segment between two points.
     [[nodiscard]] bool blocks(const Eigen::Vector3d& from_m,
                               const Eigen::Vector3d& to_m) const noexcept;
 };
 
-/// A machine that walked `way_m` straight ahead, perhaps turned round, and now wants to make one
-/// movement. World: z = 0 is the ground under it.
+/// A scene and a query: the machine walked `way_m` straight ahead, perhaps turned by 180 deg, and
+/// now asks for one movement. World frame: z = 0 is the ground under the machine.
 struct HazardScene {
     std::uint64_t seed = 0;
     Hazard asked = Hazard::kerb;  ///< the kind of scene
-    Hazard thing = Hazard::kerb;  ///< what stands there: differs for `unseen`
-    bool relief_only = false;     ///< at most 10 mm of relief where the hazard would be
-    int command = 0;              ///< joystick code
-    double relief_m = 0.0;        ///< of the hazard, signed: negative goes down
-    double way_m = 0.0;           ///< walked ahead, looking ahead
-    bool turned = false;          ///< half a turn on the spot at the end of the way
-    std::vector<Solid> solids;    ///< world
-    Eigen::Vector2d edge_m = Eigen::Vector2d::Zero();   ///< a point on the near border of the thing
-    Eigen::Vector2d normal = Eigen::Vector2d::UnitX();  ///< into it
-    Pose T_world_body;                                  ///< base_link where it stands now
-    double yaw_rad = 0.0;                               ///< of that
+    Hazard thing =
+        Hazard::kerb;           ///< the hazard in the scene; differs from `asked` only for `unseen`
+    bool relief_only = false;   ///< safe scene: the thing's relief is at most 10 mm
+    int command = 0;            ///< joystick code
+    double relief_m = 0.0;      ///< signed height of the hazard; negative = down
+    double way_m = 0.0;         ///< distance walked forward
+    bool turned = false;        ///< turned by 180 deg on the spot at the end
+    std::vector<Solid> solids;  ///< in the world frame
+    Eigen::Vector2d edge_m = Eigen::Vector2d::Zero();  ///< a point on the near border of the hazard
+    Eigen::Vector2d normal =
+        Eigen::Vector2d::UnitX();  ///< points from the near border into the hazard
+    Pose T_world_body;             ///< base_link at the query
+    double yaw_rad = 0.0;          ///< yaw of T_world_body
 
-    /// The scene for the oracle and the simulator's sensors; every solid has a look of its own.
+    /// The scene for the oracle and the simulated sensors. Each solid has its own material.
     [[nodiscard]] sim::Scene scene() const;
-    /// The same as a file for the simulator, with a room around it and the machine's way on a
-    /// trolley. Only for scenes placed `on_way`.
+    /// Text of a scene file for the simulator: this scene with a room around it, and the machine's
+    /// path with the trolley motion model. Only for scenes placed `on_way`.
     [[nodiscard]] std::string yaml() const;
 };
 
-/// Where the machine's end of the way is put in the world.
+/// Placement of the machine in the world.
 enum class Placing : std::uint8_t {
-    anywhere,  ///< random yaw and shift: how the cells of a map lie to it
-    on_way,    ///< as a run of the chain has it: the way begins at the origin along x
+    anywhere,  ///< random yaw and shift, so that the map's cells lie at random to the scene
+    on_way,    ///< the path begins at the origin along x, as in a run of the pipeline
 };
 
-/// Draws a scene from its seed; the geometry does not depend on `placing`. It may turn out harmless
-/// or borderline: ask the oracle.
+/// Draws a scene from its seed. The geometry does not depend on `placing`. The movement is not
+/// guaranteed to be dangerous or safe: `sim::judge` decides.
 [[nodiscard]] HazardScene make_hazard_scene(
     Hazard kind, bool relief_only, std::uint64_t seed, const Machine& machine, Placing placing);
 

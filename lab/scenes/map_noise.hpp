@@ -9,17 +9,18 @@
 #include "surefoot/grid/grid_geometry.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
 
-/// Maps of a scene without a camera: its true heights with the errors that maps of whole runs have.
+/// Maps of a scene without images: true heights plus errors that are drawn from the distribution
+/// measured on maps of whole runs.
 namespace surefoot::experiments {
 
-/// What `map_noise_fit` measured on maps at the end of whole runs: the fitted ZED on a trolley that
-/// goes 1.3-2 m towards the thing, seeds 21-28 (72 runs, 192 348 cells of level ground that both
-/// eyes saw from three poses at least, within 0.9 m of the machine and 0.15 m from the thing).
-/// Where runs differ, what makes the gate's task harder is taken. docs/lab/gate_scenes.md
-/// shows the figures.
+/// Distribution of map errors. Source: `map_noise_fit` on maps at the end of whole runs, with the
+/// fitted ZED profile on a trolley that goes 1.3-2 m towards the hazard, seeds 21-28. Sample: 72
+/// runs, 192 348 cells of level ground that both cameras see from at least three poses, within 0.9
+/// m of the machine and 0.15 m from the hazard. Where runs differ, the constants take the value
+/// that is harder for the gate. docs/lab/gate_scenes.md lists the figures.
 struct MapNoise {
-    /// Share of cells whose stated sigma is at most this. Most stand at the map's floor of 3 mm;
-    /// the tail beyond 6 mm are cells that have just refused a measurement, which doubles it.
+    /// `share` of the cells state a sigma of at most `sigma_m`. Most cells are near the map's
+    /// minimum of 3 mm. Cells beyond 6 mm have just rejected a measurement, which doubles sigma.
     struct Quantile {
         double share;
         double sigma_m;
@@ -40,55 +41,55 @@ struct MapNoise {
                                                {0.9995, 9.96e-3},
                                                {0.9999, 11.90e-3},
                                                {1.0, 17.00e-3}}};
-    double error_share = 0.77;  ///< sd of the errors in stated sigma; their tails are normal
+    double error_share = 0.77;  ///< sd of (error / stated sigma); normal tails
     double smooth_share =
-        0.66;              ///< of the errors' variance: shared with neighbours, see smooth_field
-    double tilt = 1.5e-3;  ///< sd of a run's slope against the truth, both axes
-    double outlier_share = 9.4e-5;          ///< of cells: 18 of the 192 348 that were measured
-    double outlier_least_m = 0.020;         ///< they are off by this ...
-    double outlier_most_m = 0.042;          ///< ... to this, most of them less, either way,
-    double outlier_least_sigma_m = 4.5e-3;  ///< and state from this ...
-    double outlier_most_sigma_m = 17e-3;    ///< ... to this
-    double drift_m = 2.2e-3;                ///< stated horizontal drift: 90 % of cells have less
-    /// Stated sigma where the machine only stood and looked, beside that above (cells seen from one
-    /// pose against those seen from six).
+        0.66;  ///< share of the error variance in the spatially correlated part (smooth_field)
+    double tilt = 1.5e-3;                   ///< sd of a run's slope error [m/m], each axis
+    double outlier_share = 9.4e-5;          ///< outlier cells: 18 of 192 348 measured
+    double outlier_least_m = 0.020;         ///< smallest error of an outlier, either sign
+    double outlier_most_m = 0.042;          ///< largest; small errors are more frequent
+    double outlier_least_sigma_m = 4.5e-3;  ///< smallest stated sigma of an outlier
+    double outlier_most_sigma_m = 17e-3;    ///< largest
+    double drift_m = 2.2e-3;                ///< 90th percentile of the stated horizontal drift
+    /// Factor on stated sigma if the machine did not walk: cells seen from one pose, compared with
+    /// cells seen from six.
     double once_factor = 1.25;
 
-    /// The map states the least of these sigma everywhere, though it is as wrong as ever, and a
-    /// little more: nothing is refused for noise. Harder than any map that was measured.
+    /// true: the map states the smallest sigma everywhere although its errors are at least as
+    /// large, so that the gate never refuses because of noise. Harder than every measured map.
     bool overconfident = false;
 
-    /// Errors and stated sigma times `factor`.
+    /// A copy with errors and stated sigma multiplied by `factor`.
     [[nodiscard]] MapNoise times(double factor) const;
 };
 
-/// The same with the noise of the images doubled: 17 runs, seeds 31 and 32. Stated sigma is 2.4
-/// times as large, and too small in half of the runs (sd of the errors 0.8-1.4 sigma). One run
-/// whose odom was placed 0.94 m too low is left out.
+/// Distribution for doubled image noise; sample: 17 runs, seeds 31 and 32. The stated sigma is 2.4
+/// times as large, and too small in half of the runs (sd of the errors 0.8-1.4 sigma). One run with
+/// the odom frame 0.94 m too low is excluded.
 [[nodiscard]] MapNoise doubled_image_noise();
 
-/// What stands where, and who saw it: the part of a map that noise does not change. Cells within
-/// 1.1 m of the machine.
+/// True heights and visibility of the map cells within 1.1 m of the machine: the part of a map that
+/// noise does not change. Computed once a scene.
 class SceneCells {
   public:
     SceneCells(const HazardScene& scene, const Sight& sight);
 
-    /// A cell of the map and the half-cell samples (4 x 4, over twice its size) around it.
+    /// A map cell, described by 4 x 4 samples half a cell apart, over twice the cell's width.
     struct Cell {
-        float low_m = 0.0F;          ///< least of the samples, voids left out
-        float high_m = 0.0F;         ///< most, what hangs left out
-        float highest_m = 0.0F;      ///< most inside the cell itself
-        float under_m = 0.0F;        ///< where what hangs over the middle begins; NaN: nothing does
-        float top_m = 0.0F;          ///< and ends
-        float share_high = 0.0F;     ///< of the samples nearer to the most than to the least
-        bool ground = false;         ///< not all of it is a void
-        bool seen = false;           ///< its middle
-        bool beside_seen = false;    ///< one of the eight around it was seen
-        float beside_high_m = 0.0F;  ///< most of these
+        float low_m = 0.0F;       ///< lowest sample, without voids
+        float high_m = 0.0F;      ///< highest sample, without hanging things
+        float highest_m = 0.0F;   ///< highest sample inside the cell
+        float under_m = 0.0F;     ///< underside of the thing that hangs over the middle; NaN = none
+        float top_m = 0.0F;       ///< top of that thing
+        float share_high = 0.0F;  ///< samples nearer to high_m than to low_m
+        bool ground = false;      ///< at least one sample is not a void
+        bool seen = false;        ///< both cameras see its middle
+        bool beside_seen = false;    ///< at least one of its 8 neighbours is seen
+        float beside_high_m = 0.0F;  ///< highest of these neighbours
     };
     [[nodiscard]] const grid::GridGeometry& geometry() const noexcept { return geometry_; }
     [[nodiscard]] const Image<Cell>& cells() const noexcept { return cells_; }
-    /// The ground falls at the thing, as seen on the way.
+    /// The hazard goes down: its relief is negative.
     [[nodiscard]] bool falling() const noexcept { return falling_; }
 
   private:
@@ -97,7 +98,7 @@ class SceneCells {
     bool falling_ = false;
 };
 
-/// The layers of a map that the gate may know.
+/// The map layers that the gate reads.
 struct MadeMap {
     grid::GridGeometry geometry;
     Image<float> height_m;
@@ -106,16 +107,16 @@ struct MadeMap {
     Image<float> clearance_m;
 };
 
-/// Exact heights (the highest of each cell) of all that was seen, sigma 1 mm.
+/// A map without errors: the highest point of each seen cell, with sigma 1 mm.
 [[nodiscard]] MadeMap clean_map(const SceneCells& scene);
-/// `once`: the machine stood and looked, it did not walk.
+/// Draws a map with errors. `once`: the machine did not walk, all observations come from one pose.
 [[nodiscard]] MadeMap noisy_map(const SceneCells& scene,
                                 const MapNoise& noise,
                                 bool once,
                                 Rng& rng);
 
-/// What the pipeline's snapshot would hold of it, healthy and fresh. Without lines of sight over
-/// unknown cells: they only add evidence of drops.
+/// Fills `out` with the map as a healthy, fresh snapshot of the pipeline. The layer of free space
+/// over unknown cells stays empty; in a real snapshot it only adds evidence of drops.
 [[nodiscard]] Status snapshot_of(const MadeMap& map,
                                  const Pose& T_odom_body,
                                  grid::MapSnapshot& out);

@@ -12,17 +12,19 @@
 #include "surefoot/io/text.hpp"
 #include "surefoot/sim/scene_source.hpp"
 
-/// What the experiments over simulated scenes share: SCENES [FIRST_SEED [SEEDS [PROFILES]]].
+/// Shared arguments of the experiments on simulated scenes: SCENES [FIRST_SEED [SEEDS [PROFILES]]].
+/// SCENES and PROFILES are lists with commas. FIRST_SEED and SEEDS default to 1, PROFILES to
+/// ideal,zed. A profile is a camera profile of the simulator, or zed_calibrated: the zed without
+/// its calibration error.
 namespace surefoot::experiments {
 
-/// One scene as one camera sees it. Profiles: those of the simulator, and `zed_calibrated`: zed
-/// without its error of calibration.
+/// One scene, seed and camera profile.
 struct SceneCase {
     std::string scene;
     std::uint64_t seed = 1;
     std::string profile;
 
-    /// A usage error names a profile that is none.
+    /// Sets scene, seed and profile in `options`. A usage error names an unknown profile.
     [[nodiscard]] Status put_into(sim::SceneOptions& options) const {
         options.scene = scene;
         options.seed = seed;
@@ -42,7 +44,8 @@ struct SceneCase {
     }
 };
 
-/// Profile by profile, scene by scene, `words` as above, commas between several; not empty.
+/// Expands the arguments `words` (SCENES first; not empty) to all cases, ordered by profile, scene,
+/// seed.
 [[nodiscard]] inline std::vector<SceneCase> scene_cases(const std::vector<std::string>& words) {
     const auto number = [&](std::size_t i) {
         return words.size() > i ? std::strtoull(words[i].c_str(), nullptr, 10) : 1;
@@ -58,14 +61,16 @@ struct SceneCase {
     return cases;
 }
 
-/// The rig that takes the images: the nominal one with the errors of the profile and the settings.
+/// The rig that renders the images: the nominal rig with the calibration errors of the profile and
+/// of the settings.
 [[nodiscard]] inline camera::StereoRig true_rig(const camera::StereoRig& nominal,
                                                 const sim::SceneOptions& sim) {
     return sim::with_error(sim::with_error(nominal, sim::figures_of(sim.profile).calibration),
                            sim.calibration_error);
 }
 
-/// base_link at a frame's stamp; the last pose after the end. `trajectory`: the truth's, not empty.
+/// True pose of base_link at a frame's time: the first pose of `trajectory` that is not earlier, or
+/// the last pose. `trajectory`: sorted by time, not empty.
 [[nodiscard]] inline Pose true_pose(const std::vector<StampedPose>& trajectory,
                                     std::int64_t time_ns) {
     const auto found = std::lower_bound(

@@ -12,21 +12,21 @@
 
 namespace surefoot::experiments {
 
-/// What looks at the scene on the way.
+/// Input of the pipeline in a simulated run.
 enum class Look : std::uint8_t {
-    analytic,  ///< depth as a matcher would say it, true motion
-    images,    ///< rendered images of the fitted ZED, and the whole chain
+    analytic,  ///< true disparities with a matcher's errors, true motion
+    images,    ///< rendered images of the fitted ZED profile; matcher and odometry run
 };
 
-/// A run of the chain that has come to its end.
+/// State after the last frame of a run.
 struct ChainRun {
     std::unique_ptr<sim::SceneSource> source;
     std::unique_ptr<pipeline::Pipeline> pipeline;
-    Pose T_world_body;  ///< true, at the last frame
+    Pose T_world_body;  ///< true pose at the last frame
 };
 
-/// Walks the scene's way (it must be placed on it) with the chain. `scratch`: a folder for the
-/// scene's file. `noise`: factor on the noise of images and depths.
+/// Runs the pipeline along the scene's path. `scene` must be placed `on_way`. `scratch`: folder for
+/// the scene file. `noise`: factor on the noise of images and disparities.
 [[nodiscard]] Result<ChainRun> run_chain(const HazardScene& scene,
                                          Look look,
                                          double noise,

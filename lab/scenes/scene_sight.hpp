@@ -9,27 +9,29 @@
 
 namespace surefoot::experiments {
 
-/// What a plumb line meets in a scene.
+/// Surfaces of a scene on one vertical line, as heights in the world frame.
 struct Heights {
-    double top_m = 0.0;    ///< highest surface; NaN: a void
-    double floor_m = 0.0;  ///< the surface under what hangs there, else `top_m`
-    double under_m = 0.0;  ///< where the highest thing begins, infinity where nothing hangs
+    double top_m = 0.0;    ///< highest surface; NaN = void
+    double floor_m = 0.0;  ///< surface below a hanging solid, otherwise `top_m`
+    double under_m = 0.0;  ///< underside of a hanging solid; infinity = none
 };
 [[nodiscard]] Heights heights_at(const HazardScene& scene, const Eigen::Vector2d& p_m);
 
-/// Which places both eyes saw on the machine's way: in both images, within the range of the map,
-/// nothing in between. A pose every 0.15 m, and every 45 deg of a turn.
+/// True visibility of points from the machine's path. A pose sees a point if it is in both images
+/// (6 px from the border), within 2.8 m, and not occluded for either camera. Poses: every 0.15 m of
+/// the path and every 45 deg of a turn.
 class Sight {
   public:
+    /// `scene` must outlive this object.
     Sight(const HazardScene& scene, const camera::RectifiedRig& rig);
 
     struct Look {
-        int looks = 0;           ///< poses from which it was seen
-        double nearest_m = 0.0;  ///< of these, from the camera
+        int looks = 0;           ///< number of poses that see the point
+        double nearest_m = 0.0;  ///< smallest distance from their left cameras
     };
-    /// Stops counting at `most` looks; they begin with the last pose.
+    /// Counts the poses that see a point of the world, from the last pose backwards, up to `most`.
     [[nodiscard]] Look look(const Eigen::Vector3d& p_m, int most) const;
-    /// The left eye at each pose, the last one first.
+    /// Left camera at each pose, last pose first.
     [[nodiscard]] const std::vector<Pose>& T_world_camera() const noexcept {
         return T_world_camera_;
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The coefficients of match_sigma_px, fitted to Middlebury's cones and cloth3 and to four scenes
-// seen by the simulated ZED at one and two times its noise. How they do on others: matcher_sigma.
-// Usage: sigma_fit STEREO_DATA_DIR OUT_DIR [FIRST_SEED [SEEDS]]
+// Which coefficients make match_sigma_px agree best with the real errors? They are fitted to
+// Middlebury's cones and cloth3 and to four scenes of the simulated ZED at one and two times its
+// noise. matcher_sigma tests them on other images.
+// Usage: sigma_fit STEREO_DATA_DIR OUT_DIR [FIRST_SEED [SEEDS]]     defaults: 21, 4
 //
-// sigma_fit.csv    image,set,within_1,within_2,within_3: trusted matches that are right within 1
-// px,
-//                  share within so many sigma [%]; sets: "as it comes", and "fitted"
-// What is fitted goes to the standard output.
+// Writes OUT_DIR/sigma_fit.csv: image,set,within_1,within_2,within_3: share of the trusted matches
+// within 1, 2 and 3 sigma [%], of those that are right within 1 px. Sets: "as it comes" (the
+// library's coefficients) and "fitted". The fitted coefficients are printed to stdout.
 #include <fmt/format.h>
 #include <fmt/os.h>
 

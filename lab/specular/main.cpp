@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does the gate stop before mirrors and glass, and does it stop where there are none? Each case is
-// a simulated run of the whole chain with the images of the fitted ZED. Two pipelines see the same
-// frames, one with the search for mirrors and one without; the gate is asked for every movement at
-// the last pose, and at places up to 0.6 m around it, with the map of each.
+// Does the gate stop before mirrors and glass, and does it wrongly stop where there are none? Each
+// case is a simulated run of the whole pipeline with images of the fitted ZED profile. Two
+// pipelines process the same frames, one with and one without the search for mirrors. With the map
+// of each, the gate is asked for every movement at the last pose and at positions up to 0.6 m
+// around it.
 // Usage: specular OUT.csv SCENES FIRST_SEED SEEDS [FRAMES]
+//   SCENES: names with commas between them. FRAMES: 0 (default) = to the end of the path.
 //
-// A line a case: scene, seed; then, for the last pose (here_) and the places around it (around_):
-// unsafe = clearly dangerous movements, missed_before and missed_after = of these allowed without
-// and with the search, safe = clearly safe ones, allowed_before and allowed_after likewise; panes =
-// suspected planes; score, correlation, ahead_m = of the nearest one (0 = none); search_ms = mean
-// time that a frame takes longer with the search.
+// Writes OUT.csv, one line per case: scene, seed; then for the last pose (here_) and the positions
+// around it (around_):
+//   unsafe                          clearly dangerous movements
+//   missed_before, missed_after     of these allowed without and with the search
+//   safe                            clearly safe movements
+//   allowed_before, allowed_after   of these allowed without and with the search
+// and for the case:
+//   panes                           number of suspected panes
+//   score, correlation, ahead_m     of the nearest pane; 0 = none
+//   search_ms                       mean additional time per frame with the search
 #include <fmt/format.h>
 #include <fmt/os.h>
 

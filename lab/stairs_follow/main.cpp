@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Do features flicker from look to look, and does following them keep what is true?
+// Do detected stairs features flicker from frame to frame, and does tracking keep the correct ones?
 // Usage: stairs_follow OUT.csv MAPS [KEY=VALUE...]
 //   stairs_truth out/up.csv lab/scenes/stairs_up.yaml#up_common 82001 4 images_0.25 1 out/maps
 //   stairs_follow out/follow.csv out/maps
+//   MAPS: folder in which stairs_truth saved every frame (EVERY = 1). KEY=VALUE: a setting of
+//   surefoot.
 //
-// MAPS: what stairs_truth has kept of every frame (EVERY = 1). A line of CSV for each run and way:
-// `found`, by each look alone, and `followed`. Lengths in mm; empty or nan = not found:
+// Writes OUT.csv, one line per run and method: `found` = each frame on its own, `followed` =
+// tracked by stairs::FeatureFollower. Lengths in mm; empty or nan = not found:
 //   looks                  frames of the run
-//   edges, drops, kerbs, flights, doors   how many appeared or disappeared, summed over the frames
-//                          after the first: nothing of the kind within 0.1 m across, 20 deg, before
-//   new_ids                things whose id went while a new one came at their place; followed only
-//   drops_lost             drops that a look found and that were not reported of it, or farther
-//   away
-//                          than it says by more than its sigma
-//   found_looks            looks that found the true flight
-//   steps_changes          of its number of steps, from one of these to the next
-//   steps_exact            looks of these with the true number
-//   riser_mean, _sd, _step, _last   error: mean and sd over the looks, rms change from look to
-//   look,
-//                          at the last look; the same of going, of width_, and of
-//   across                 where the first edge of the flight, or the drop, lies
-//   riser_sure, across_sure   looks within 2 of the sigmas that they state
+//   edges, drops, kerbs, flights, doors   appearances and disappearances, summed over the frames
+//                          after the first: no feature of that class within 0.1 m across and 20 deg
+//                          before
+//   new_ids                features whose id changed at the same place; followed only
+//   drops_lost             drops that a frame detected, but that are missing in the result, or
+//                          farther away in it by more than their sigma
+//   found_looks            frames that found the true flight
+//   steps_changes          changes of its number of steps between consecutive frames of these
+//   steps_exact            frames of these with the true number of steps
+//   riser_mean, _sd, _step, _last   error: mean and sd over the frames, rms change between frames,
+//                          and value at the last frame; the same for going_ and width_, and for
+//                          across_: position of the first edge of the flight, or of the drop
+//   riser_sure, across_sure   frames with an error within 2 stated sigmas
 //   call_us, most_us       time of a call: median, longest
 #include <fmt/format.h>
 #include <fmt/os.h>

@@ -10,35 +10,36 @@
 #include "surefoot/grid/grid_geometry.hpp"
 #include "surefoot/stairs/terrain.hpp"
 
-/// What `stairs_truth` gives the finder, with what is true: kept in memory and in files.
+/// Input of the stairs detector at one frame together with the ground truth, in memory and in
+/// files. `stairs_truth` writes these files; `stairs_follow` reads them.
 namespace surefoot::experiments {
 
 enum class TrueKind : std::uint8_t { none, up, down, kerb, door };
 inline constexpr const char* kTrueKindNames[] = {"none", "up", "down", "kerb", "door"};
 
-/// What stands in a scene. Frame of the map.
+/// True stairs, kerb or door of a scene, in the map's frame (odom).
 struct TrueFeature {
     TrueKind kind = TrueKind::none;
     int steps = 0;
-    double riser_m = 0.0;  ///< of a kerb: its height
+    double riser_m = 0.0;  ///< kerb: its height
     double going_m = 0.0;
     double width_m = 0.0;
     double sill_m = 0.0;
-    /// Middle of the first edge or of the opening; of a kerb the point straight ahead.
+    /// Middle of the first edge or of the opening; kerb: its point straight ahead.
     Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
-    double yaw_rad = 0.0;  ///< leads over it
-    double ahead_m = 0.0;  ///< how far the left camera is from its line, across it
+    double yaw_rad = 0.0;  ///< direction of travel across the edge
+    double ahead_m = 0.0;  ///< distance from the left camera to the edge line, along yaw_rad
 };
 
-/// A map at one moment.
+/// Map, camera view and ground truth after one frame.
 struct Look {
     std::string scene;
     std::uint64_t seed = 0;
     std::string mode;
     int frame = 0;
-    double noise_px = 0.0;  ///< scatter of disparities on level floor, see stairs_scene.hpp
-    double bias_px = 0.0;   ///< their mean error
-    double said_px = 0.0;   ///< median sigma that the matcher states there
+    double noise_px = 0.0;  ///< scatter of disparity errors on level floor, see look_at
+    double bias_px = 0.0;   ///< mean of these errors
+    double said_px = 0.0;   ///< median sigma that the matcher states at the same pixels
     TrueFeature truth;
 
     grid::GridGeometry geometry;
@@ -47,25 +48,26 @@ struct Look {
     grid::Layer free_above_m;
     grid::Layer clearance_m;
     grid::Layer density_ratio;
-    Image<std::uint32_t> looks;
+    Image<std::uint32_t> looks;  ///< number of measurements of each cell
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
-    stairs::View view;  ///< of the last frame, as what follows
+    stairs::View view;  ///< camera view of this frame; disparities below likewise
     Image<float> disparity_px;
     Image<float> disparity_sigma_px;
 
-    /// Views of the layers.
+    /// Views of the layers; valid while this object lives.
     [[nodiscard]] stairs::Terrain terrain() const;
     [[nodiscard]] std::string folder_name() const;  ///< "up_common_21_f32"
 };
 
-/// A scene file is called by what stands behind its '#', or by its own name.
+/// Short name of a scene: the part behind the last '#' or '/', up to the first '.'.
 [[nodiscard]] std::string short_name(const std::string& scene);
 
-/// Writes a folder: height.asc, variance.asc, free_above.asc, clearance.asc, density.asc,
-/// looks.asc, cut to what is known, disparity.pfm and disparity_sigma.pfm, and last truth.txt with
-/// what is true and the size of the whole map.
+/// Writes a folder: height.asc, variance.asc, free_above.asc, clearance.asc, density.asc and
+/// looks.asc, cropped to the known cells; disparity.pfm and disparity_sigma.pfm; and truth.txt with
+/// the ground truth and the size of the whole map. truth.txt is written last and marks the folder
+/// as complete.
 [[nodiscard]] Status save_look(const Look& look, const std::string& folder);
-/// The whole map again.
+/// Reads a folder of `save_look` and restores the map in its full size.
 [[nodiscard]] Result<Look> read_look(const std::string& folder);
 
 }  // namespace surefoot::experiments

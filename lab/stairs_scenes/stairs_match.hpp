@@ -8,30 +8,33 @@
 #include "lab/stairs_scenes/stairs_look.hpp"
 #include "surefoot/stairs/features.hpp"
 
-/// Which of the features that were found is the one that stands in the scene?
+/// Association of detected features with the true feature of the scene.
 namespace surefoot::experiments {
 
-inline constexpr double kNear_m = 0.1;
-inline constexpr double kBeside_m = 1.0;
-inline constexpr double kTurn_rad = 10.0 / 180.0 * std::numbers::pi;
+inline constexpr double kNear_m = 0.1;    ///< largest distance across the edge
+inline constexpr double kBeside_m = 1.0;  ///< largest distance between the middles
+inline constexpr double kTurn_rad = 10.0 / 180.0 * std::numbers::pi;  ///< largest yaw error
 
+/// Yaw of the found feature minus the true yaw, in [-pi, pi].
 inline double turned_rad(const stairs::FeaturePose& found, const TrueFeature& truth) {
     return std::remainder(found.yaw_rad - truth.yaw_rad, 2.0 * std::numbers::pi);
 }
 
-/// How much farther than the truth's middle the line through a feature lies.
+/// Distance from the true middle to the found edge line, along the found yaw; positive = the found
+/// line is farther.
 inline double across_m(const stairs::FeaturePose& found, const TrueFeature& truth) {
     const Eigen::Vector2d way(std::cos(found.yaw_rad), std::sin(found.yaw_rad));
     return way.dot(found.p_m.head<2>() - truth.middle_m);
 }
 
+/// Whether the found edge is within all three limits of the true one.
 inline bool is_line_of(const stairs::FeaturePose& found, const TrueFeature& truth) {
     return (found.p_m.head<2>() - truth.middle_m).norm() < kBeside_m &&
            std::abs(across_m(found, truth)) < kNear_m &&
            std::abs(turned_rad(found, truth)) < kTurn_rad;
 }
 
-/// Of those that are the truth's the nearest.
+/// The feature with the smallest |across_m| among those that `matches` accepts; nullptr = none.
 template <typename Feature, typename Matches>
 const Feature* nearest(const std::vector<Feature>& features,
                        const TrueFeature& truth,

@@ -12,28 +12,30 @@
 
 namespace surefoot::experiments {
 
+/// One simulated run of `stairs_truth`.
 struct StairsCase {
     std::string scene;
     std::uint64_t seed = 1;
-    /// analytic_N: disparities with a matcher's errors of N px. images_N: rendered images of the
-    /// `zed` with as much noise that our matcher errs by about N px, see `put_into`; images_xF:
-    /// with its noise times F.
+    /// analytic_N: true disparities with a matcher's errors of sigma N px. images_0.25, images_0.5:
+    /// rendered images of the `zed` profile with the noise at which our matcher's errors on level
+    /// floor are about 0.25 or 0.5 px. images_xF: its image noise times F.
     std::string mode;
-    /// Looks at every n-th frame. 0: at every one until the end of the way, which alone is judged;
-    /// the noise of the others is not measured.
+    /// Keeps every n-th frame. 0: keeps every frame, but only the last one is judged and has its
+    /// disparity noise measured.
     int every = 0;
 
-    /// A usage error names a mode that is none.
+    /// Sets scene, seed, sensor and noise. A usage error names an unknown mode.
     [[nodiscard]] Status put_into(sim::SceneOptions& options) const;
 };
 
-/// The scene as the whole pipeline sees it with true poses (unless `settings` say
-/// sim.known_motion = false). What the seed draws beside the scene: height 0.95-1.05 m and pitch
-/// 28-36 deg of the camera; yaw and place of odom, so that cells lie anyhow on the things.
+/// Runs the whole pipeline on a scene and returns the kept frames. Poses are the true ones unless
+/// `settings` has sim.known_motion = false. Beside the scene, the seed draws the camera's height
+/// (0.95-1.05 m) and pitch (28-36 deg), and the yaw and position of odom, so that the map's cells
+/// lie at random to the scene.
 ///
-/// Where it looks is the end of the way, before a door that the way leads through 0.9 m.
-/// `Look::noise_px` is 1.4826 times the median distance of disparity errors from their median, at
-/// pixels that the map would take, whose surroundings of 17 x 17 pixels are level floor too.
+/// With `every` = 0 the run ends at the end of the path, or 0.9 m before a door in it.
+/// `Look::noise_px` is 1.4826 times the median absolute deviation of the disparity errors. It uses
+/// pixels that the map accepts and whose 17 x 17 px neighbourhood shows only level floor.
 [[nodiscard]] Result<std::vector<Look>> look_at(const StairsCase& now,
                                                 Settings settings,
                                                 Executor& executor);

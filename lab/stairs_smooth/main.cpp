@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often are steps found on ground that has none? Smooth ramps, planes, hills, dips and waves of
-// 0 to 35 deg, drawn by seeds (surefoot/stairs/smooth_ground_testing.hpp), with errors of the
-// heights. No settings are taken.
+// How often are steps detected on ground without steps? Ground: smooth ramps, planes, hills, dips
+// and waves of 0 to 35 deg, drawn by seeds (surefoot/stairs/smooth_ground_testing.hpp), with height
+// errors.
 // Usage: stairs_smooth OUT.csv FIRST_SEED SEEDS
 //
-// A line a map: seed, kind, slope_deg, sigma_mm (one sigma of the errors), correlation_mm (over
-// which they hang together, 0 = not), stated (1 = the map states their variance), flights, kerbs,
-// drops, edges: what is found, seen from the middle of the map; find_us: time of the call.
+// Writes OUT.csv, one line per map: seed, kind, slope_deg, sigma_mm (one sigma of the height
+// errors), correlation_mm (their correlation length, 0 = uncorrelated), stated (1 = the map states
+// their variance), flights, kerbs, drops, edges (number detected, seen from the middle of the map),
+// find_us (time of the call).
 #include <fmt/format.h>
 #include <fmt/os.h>
 

@@ -1,30 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-// Are stairs, drops, kerbs and doors found in the map, and how true is what is said of them?
+// Are stairs, drops, kerbs and doors detected in the map, and how accurate are their parameters?
 // Usage: stairs_truth OUT.csv SCENES [FIRST_SEED [SEEDS [MODES [EVERY [MAPS [KEY=VALUE...]]]]]]
 //        stairs_truth OUT.csv MAPS [KEY=VALUE...]
 //   stairs_truth out/up.csv lab/scenes/stairs_up.yaml#up_common 80001 200 analytic_0.25
 //   stairs_truth out/false.csv floor,room 80001 5 images_0.25,images_0.5 5
+//   MODES  sensor modes with commas between them, see stairs_scene.hpp; default: analytic_0.25
+//   EVERY  judge every n-th frame; 0 = only the last one, with a tracker that gets all frames
+//   MAPS   folder that keeps the input of the detector; saved cases are not simulated again.
+//          Default '-': keep nothing. If MAPS takes the place of SCENES, all saved cases in it are
+//          judged, each on its own.
+//   KEY=VALUE   a setting of surefoot; poses are true ones unless sim.known_motion=false
 //
-// Modes, and what the seed draws beside the scene: see stairs_scene.hpp. Poses are true ones unless
-// settings say sim.known_motion=false. EVERY: the map is looked at after so many frames; 0 = after
-// each, of which the last is judged. MAPS: a folder that keeps what the finder is given; what it
-// has is not simulated again ('-' = none). Given alone, all that is in it is judged, each by
-// itself.
-//
-// Two lines a look: what it finds alone, and what is told of it and those before it. Lengths in mm,
-// angles in deg; empty or nan = not found:
-//   way                look, or told: by FeatureFollower
+// Writes OUT.csv, two lines per judged frame: the detection in this frame alone, and the tracked
+// result. Lengths in mm, angles in deg; empty or nan = not found:
+//   way                look = this frame alone, told = tracked by FeatureFollower
 //   noise_px, bias_px, said_px   scatter and mean of disparity errors on level floor, stated sigma
-//   kind, steps, riser, going, width, sill, ahead   what is true; ahead: from the left camera
-//   found              the flight whose first edge lies within 0.1 m of the true one, within 10 deg
-//   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _cut  of it
-//   across, turn       of its first edge at the truth's middle, + = farther; of its yaw
-//   flights, of_2      all that are there but that one; those of them with two steps or more
-//   drop, drop_across, drop_height, drop_sigma, bottom_seen   the same of drops; height downward
-//   drops              all that are there but that one
-//   door, door_width, door_width_sigma, door_sill   of the opening within 0.3 m, within 15 deg
-//   sill_height        of the sill within 0.3 m
-//   find_us            time of a call, the shortest of four: cases run side by side
+//   kind, steps, riser, going, width, sill, ahead   true values; ahead: from the left camera
+//   found              flight whose first edge lies within 0.1 m and 10 deg of the true one
+//   ..._steps, _riser, _riser_sigma, _going, _going_sigma, _width, _cut   its parameters
+//   across, turn       error of its first edge at the true middle, + = farther; error of its yaw
+//   flights, of_2      other flights; those of them with two steps or more
+//   drop, drop_across, drop_height, drop_sigma, bottom_seen   the same for drops; height downward
+//   drops              other drops
+//   door, door_width, door_width_sigma, door_sill   the opening within 0.3 m and 15 deg of the true
+//                                                   one
+//   sill_height        height of the sill within 0.3 m
+//   find_us            time of a call: the shortest of four, because cases run in parallel
 #include <fmt/format.h>
 #include <fmt/os.h>
 

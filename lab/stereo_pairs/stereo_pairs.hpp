@@ -9,52 +9,52 @@
 #include "surefoot/core/views.hpp"
 #include "surefoot/sim/scene_source.hpp"
 
-/// Pairs of images whose disparities are known, and how far a matcher is from them.
+/// Rectified stereo pairs with true disparities, and scores of matchers on them.
 namespace surefoot::experiments {
 
-/// A rectified pair and its truth.
+/// A rectified pair and the true disparities of its left image.
 struct TruePair {
     std::string name;
     GreyImage left;
     GreyImage right;
-    Image<float> truth_px;  ///< as published; NaN = unknown, or not to be judged
-    int disparities = 64;   ///< to search, from 0 on
-    double step_px = 0.0;   ///< in which the truth is stored; 0 = exact
+    Image<float> truth_px;  ///< as published; NaN = unknown or excluded from scores
+    int disparities = 64;   ///< search range: 0 to disparities - 1
+    double step_px = 0.0;   ///< quantization of the stored truth; 0 = exact
     double truth_offset_px =
-        0.0;  ///< to add: adirondack's truth is cut to whole pixels, not rounded
+        0.0;  ///< added by Truth::centred; adirondack's truth is truncated to whole px
 };
 
-/// Middlebury's cones, teddy, cloth3, adirondack, and adirondack with a right eye that is exposed
-/// differently, in this order; the truth is that of pixels which both eyes see. An error names the
-/// pair whose images are missing in `folder`.
+/// Reads the Middlebury pairs cones, teddy, cloth3, adirondack, and adirondack with a different
+/// exposure of the right image, in this order. Only pixels that both cameras see keep their truth.
+/// An error names the pair whose images are missing in `folder`.
 [[nodiscard]] Result<std::vector<TruePair>> middlebury_pairs(const std::string& folder);
 
-/// The first frame of a scene, raw: the rig's error of calibration stays in it. All pixels on a
-/// surface have their truth; for glass and mirrors it is that of their own surface.
+/// Renders the first frame of a scene. It contains the calibration error of the profile. Every
+/// pixel on a surface has a truth; for glass and mirrors it is the disparity of the pane itself.
 [[nodiscard]] Result<TruePair> simulated_pair(const sim::SceneOptions& options);
 
-/// Takes away the truth of what the right eye does not see: outside its image, or behind a pixel
-/// further right.
+/// Sets the truth of pixels that the right camera does not see to NaN: pixels outside the right
+/// image, and pixels occluded by a surface farther right.
 void forget_hidden(TruePair& pair);
 
-/// Unknown pixels take the smaller one of their nearest known neighbours along the row.
+/// Fills each unknown pixel with the smaller of its nearest known neighbours in the row.
 [[nodiscard]] Image<float> filled(const Image<float>& disparity_px);
 
 /// Shares of the pixels with a truth [%].
 struct Score {
-    double bad_1 = 0.0;  ///< wrong by more than 1 px, after filling
-    double bad_2 = 0.0;
-    double matched_bad_1 = 0.0;  ///< share of the matched ones, nothing filled
-    double matched_bad_2 = 0.0;
-    double density = 0.0;  ///< matched
+    double bad_1 = 0.0;          ///< error above 1 px, after `filled`
+    double bad_2 = 0.0;          ///< error above 2 px, after `filled`
+    double matched_bad_1 = 0.0;  ///< error above 1 px, share of the matched pixels
+    double matched_bad_2 = 0.0;  ///< error above 2 px, share of the matched pixels
+    double density = 0.0;        ///< matched pixels
 };
 
-/// Against which truth.
+/// Truth to compare with: as published, or with TruePair::truth_offset_px added.
 enum class Truth : std::uint8_t { as_published, centred };
 inline constexpr const char* kTruthNames[] = {"as published", "centred"};
 
-/// Disparities are rounded to OpenCV's steps of 1/16 px first: against truth in whole pixels half a
-/// step decides.
+/// Scores disparities against a truth. The disparities are first rounded to OpenCV's steps of
+/// 1/16 px, because with a truth in whole pixels half a step changes the score.
 [[nodiscard]] Score score(const TruePair& pair, const Image<float>& disparity_px, Truth truth);
 
 }  // namespace surefoot::experiments

@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// How true is the map, and how often is it wrong about where a foot may stand?
+// How accurate is the map, and how often does it rate a foothold wrongly?
 // Usage: terrain_truth OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [NOISE]]]]
 //   terrain_truth out/terrain.csv floor,demo_stairs 20001 3 ideal,zed 2
+//   SCENES to PROFILES: see scene_cases.hpp. NOISE: factor on every noise amplitude of the images,
+//   default 1.
 //
-// The whole chain runs over rendered images with true poses (sim.known_motion). At the end of the
-// way the map is compared with the scene's geometry in the cells that were in view within 2.5 m.
-// A foothold holds for every yaw of the foot, so that a cell is truly safe if sim::cell_safety says
-// so at eight yaws, 22.5 deg apart (half a turn exchanges heel and toe), and truly unsafe if one of
-// them is not. The machine is the REX; the floor is reached from the first base_link.
-// Profiles: those of the simulator, and zed_calibrated: zed without its error of calibration.
-// NOISE: factor on every noise amplitude of the images.
-// One line a scene, seed and profile:
-//   median_mm, p90_mm, coverage               of all heights
-//   sigma_1, sigma_2, sigma_3                 share of errors within, farther than 2 cells from
-//                                             edges of any surface, in view at any range
-//   truly_unsafe, called_safe, cluster        cells; largest connected group of the second
-//   hazards, hazards_called_safe, hazard_cluster  the same where the foot itself could not stand
-//                                             (no drop is asked to be a band away), clear cut
-//   truly_safe, called_unsafe, unsure, unknown  cells; the last three are of the truly safe ones
-//   near_...                                  the same within 0.7 m of the body, in view or not
-// OUT.wrong.csv gets the truly unsafe cells that were called safe and the truly safe ones that were
-// called unsafe, one a line, in odom: what they truly are, and what they were called.
+// The whole pipeline runs on rendered images with true poses (sim.known_motion). At the end of the
+// path the map is compared with the true geometry in the cells that were in view within 2.5 m. A
+// foothold is rated for every yaw of the foot. So a cell is truly safe if sim::cell_safety accepts
+// it at eight yaws, 22.5 deg apart (a rotation by 180 deg swaps heel and toe), and truly unsafe if
+// it rejects one of them. The machine is the REX; reachability starts at the first base_link.
+//
+// Writes OUT.csv, one line per scene, seed and profile:
+//   median_mm, p90_mm, coverage        of all heights
+//   sigma_1, sigma_2, sigma_3          share of the errors within 1, 2 and 3 sigma, in cells more
+//                                      than 2 cells from any surface edge, in view at any range
+//   truly_unsafe, called_safe, cluster   cells; those of them that the map rates safe; the largest
+//                                      connected group of these
+//   hazards, hazards_called_safe, hazard_cluster   the same for cells on which the foot itself
+//                                      clearly cannot stand (the distance to drops is not
+//                                      considered)
+//   truly_safe, called_unsafe, unsure, unknown   cells; the last three are subsets of truly_safe
+//   near_...                           the same within 0.7 m of the body, in view or not
+// OUT.csv.wrong.csv contains each wrongly rated cell, one per line, in odom: truly unsafe cells
+// rated safe and truly safe cells rated unsafe, with the true and the given rating.
 #include <fmt/format.h>
 #include <fmt/os.h>
 

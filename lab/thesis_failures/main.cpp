@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// The system that this project descends from, put into the simulator: does it fail there as it did
-// in the world? Then the simulator does not flatter.
+// Does the system of the reference thesis (Lange 2016), from which this project descends, fail in
+// the simulator as it failed in reality? If so, the simulator is not too optimistic.
 // Usage: thesis_failures OUT_DIR [FIRST_SEED [SEEDS [NOISE [fixed | drawn]]]]
-//   fixed: delays that are always the same, on the floor and on the stairs. drawn: late now and
-//   then, beside some that are not, on the floor alone.
+//   defaults 1, 1, 1.0, fixed; NOISE: factor on the image noise
+//   fixed: constant delays, on the floor and on the stairs. drawn: occasional delays, compared with
+//   none, only on the floor.
 //
-// Its settings: the ZED's images at 15 Hz, one cloud a second into the map, points of 1 cm cubes,
-// the simplified stereo error model, the ancestor's fusion with a variance floor of (45 mm)^2, the
-// ground plane taken once at the start (RANSAC, 75 mm). Its faults: the cloud is put where the
-// machine was `late` images ago (the true pose of that moment: a tracker that is late and right),
-// always, or only for a drawn share of the clouds and then by drawn 50-500 ms; and disparities are
-// off by a constant, the camera never having been recalibrated. Trolley and walking machine go the
-// same way, 2.4 m ahead; both draw the same delays.
+// Settings of the thesis: the ZED's images at 15 Hz, one cloud a second into the map, points
+// reduced to 1 cm cubes, the simplified stereo error model, the fusion of the reference
+// implementation with a minimum variance of (45 mm)^2, the ground plane taken once at the start
+// (RANSAC, 75 mm). Faults of the thesis: a cloud is placed at the true pose of `late` images ago (a
+// correct but delayed tracker), either always, or for a drawn share of the clouds with a drawn
+// delay of 50-500 ms; and all disparities have a constant offset, because the camera was never
+// recalibrated. Trolley and walking machine follow the same path, 2.4 m ahead, and draw the same
+// delays.
 //
-// runs.csv     one line a map: spread of the level floor, jumps between its neighbouring cells
-// (all;
-//              seen in the middle of the image; at its sides), median height of the floor before
-//              the demonstration stairs and of their treads. Spread and jumps also for medians of
-//              4 x 4 cells ("coarse"): what is left without the noise of pixels
-// heights.csv  one line a cell of level floor ("floor") or of a tread ("tread0" is the floor
-// before) map_*.csv    the heights of the first seed's maps, row by row along x
+// Writes into OUT_DIR:
+//   runs.csv     one line per map: spread of the level floor; jumps between its neighbouring cells
+//                (all; seen in the middle of the image; at its sides); median height of the floor
+//                before the demonstration stairs and of their treads. Spread and jumps also for
+//                medians of 4 x 4 cells (coarse), which removes the pixel noise.
+//   heights.csv  one line per cell of level floor (floor) or of a tread; tread0 is the floor before
+//                it
+//   map_*.csv    heights of the maps of the first seed, row by row along x
 #include <fmt/format.h>
 #include <fmt/os.h>
 

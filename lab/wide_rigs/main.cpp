@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a stereo rig of wide lenses lie within the uncertainty that its calibration states, and is
-// the right lens model suggested where another one was chosen? Chessboards in rendered pictures of
-// six looks, found by our finder.
+// Are the errors of a calibrated stereo rig with wide lenses consistent with its stated
+// uncertainty, and does the calibration suggest the correct lens model if another one was chosen?
+// Input: rendered pictures of chessboards under six conditions, found by our finder.
 // Usage: wide_rigs OUT_FOLDER FIRST_SEED SEEDS
 //
-// rigs.csv, a line a rig: seed, lens, pairs used, pairs shown, noise of a coordinate [px], error of
-// the baseline and its sigma [mm], errors of the depth of a point 1 m ahead and its sigma [mm],
-// squared Mahalanobis distance of the right camera's pose (six degrees of freedom).
-// advice.csv, a line a chosen model: seed, lens, kind of the true lens, chosen kind, whether the
-// calibration succeeded, the suggested kind (empty: none), rms of both, the message.
+// Writes into OUT_FOLDER:
+// rigs.csv, one line per rig: seed, lens, pairs used, pairs shown, noise of a corner coordinate
+//   [px], error of the baseline and its sigma [mm], error of the depth of a point 1 m ahead and its
+//   sigma [mm], squared Mahalanobis distance of the right camera's pose (six degrees of freedom).
+// advice.csv, one line per chosen model: seed, lens, true model, chosen model, calibrated (1 =
+//   succeeded), suggested model (empty = none), rms [px] of the suggested and of the chosen model,
+//   message.
 #include <fmt/format.h>
 #include <fmt/os.h>
 
