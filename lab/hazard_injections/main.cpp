@@ -130,6 +130,11 @@ int inject_all(const std::vector<std::string>& words) {
         injections.push_back(std::move(injection));
     if (words.size() > 3) {
         const auto wanted = io::split(words[3], ",");
+        for (const auto& hazard : wanted) {
+            if (std::ranges::find(injections, hazard, &Injection::hazard) == injections.end())
+                return app::report(usage_error(
+                    fmt::format("HAZARDS: no injection belongs to hazard '{}'", hazard)));
+        }
         std::erase_if(injections, [&](const Injection& injection) {
             return std::ranges::find(wanted, injection.hazard) == wanted.end();
         });
