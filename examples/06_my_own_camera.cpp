@@ -11,11 +11,11 @@ namespace {
 class MyCamera final : public surefoot::camera::FrameSource {
   public:
     MyCamera() {
-        surefoot::camera::PinholeRadtan lens;
+        surefoot::camera::PinholeRadTan lens;
         lens.fx_px = lens.fy_px = 350.0;
         lens.cx_px = 0.5 * (kWidth - 1);
         lens.cy_px = 0.5 * (kHeight - 1);
-        rig_.left = {kWidth, kHeight, lens};
+        rig_.left = {lens, kWidth, kHeight};
         rig_.right = rig_.left;
         rig_.T_left_right.translation_m.x() = 0.12;  // the baseline
         info_.kind = "my camera";

@@ -70,7 +70,7 @@ Status measure(const SceneCase& now,
                const SettingsRequest& common,
                Executor& executor,
                fmt::ostream& out) {
-    auto settings = load_settings(common);
+    auto settings = surefoot::load_settings(common);
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
     if (Status seen = now.put_into(sim); !seen) return seen.error();
@@ -133,7 +133,7 @@ int measure_all(const std::vector<std::string>& words) {
     const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
     SettingsRequest common;
     if (words.size() > 6) common.overrides.assign(words.begin() + 6, words.end());
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,source,tilt_deg,height_mm,waited_s,frames,accepted,tilt_p50_deg,tilt_"

@@ -190,7 +190,7 @@ Result<Outcome> perceive(const io::MachineFile& file,
                          const GateBench::Plan& plan,
                          Fault fault,
                          std::uint64_t seed) {
-    auto settings = load_settings();
+    auto settings = surefoot::load_settings();
     if (!settings) return settings.error();
     settings->pipeline.elevation.length_m = 3.0;
     fit_settings(recording.rig, file, *settings);

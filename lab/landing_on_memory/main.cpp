@@ -311,7 +311,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     }
     const auto machine = app::load_machine("rex");
     if (!machine) return app::report(machine.error());
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(argv[1]);
     out.print(
         "pitch_deg,height_m,cameras,script,condition,seed,step,lost,known,age_s,"

@@ -174,11 +174,11 @@ int measure(const std::vector<std::string>& words) {
         return report(usage_error("long_walk OUT.csv SCENE SEED MINUTES [KEY=VALUE...]"));
     SettingsRequest common;
     common.overrides.assign(words.begin() + 4, words.end());
-    auto settings = load_settings(common);
+    auto settings = surefoot::load_settings(common);
     if (!settings) return report(settings.error());
     settings->sim.scene = words[1];
     settings->sim.seed = std::strtoull(words[2].c_str(), nullptr, 10);
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     const auto way = render(settings->sim, *executor);
     if (!way) return report(way.error());
     auto out = fmt::output_file(words[0]);
@@ -186,7 +186,7 @@ int measure(const std::vector<std::string>& words) {
         "minute,tilt_deg,yaw_deg,horizontal_mm,height_mm,jump_mm,lost,known_cells,resident_mb\n");
     const Status walked =
         walk(*way, std::atoi(words[3].c_str()), settings->pipeline, *executor, out);
-    return walked ? kExitOk : report(walked.error());
+    return walked ? 0 : report(walked.error());
 }
 
 }  // namespace

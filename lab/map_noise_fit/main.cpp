@@ -107,7 +107,7 @@ int measure(int argc, char** argv) {
     const auto machine = app::load_machine("rex");
     if (!machine) return app::report(machine.error());
     if (auto made = io::make_folder(argv[2]); !made) return app::report(made.error());
-    const auto executor = make_executor(1);
+    const auto executor = surefoot::make_executor(1);
     auto out = fmt::output_file(argv[1]);
     out.print(
         "kind,seed,relief_mm,dx_m,dy_m,along_m,across_m,low_mm,high_mm,floor_mm,looks,near_m,map_"

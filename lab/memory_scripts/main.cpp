@@ -489,7 +489,7 @@ Status run(const Setup& setup,
            const std::string& scratch,
            Executor& executor,
            fmt::ostream& out) {
-    auto settings = load_settings();
+    auto settings = surefoot::load_settings();
     if (!settings) return settings.error();
     Plan plan = plan_of(setup);
     const std::string file = fmt::format(
@@ -560,7 +560,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     if (names.empty()) names = {"table", "door", "tread"};
     const auto machine = app::load_machine("rex");
     if (!machine) return app::report(machine.error());
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     const std::string scratch = file + ".scenes";
     if (auto made = io::make_folder(scratch); !made) return app::report(made.error());
     auto out = fmt::output_file(file);

@@ -479,7 +479,7 @@ Status measure(const SceneCase& now,
                const SettingsRequest& common,
                Executor& executor,
                fmt::ostream& out) {
-    auto settings = load_settings(common);
+    auto settings = surefoot::load_settings(common);
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
     if (Status seen = now.put_into(sim); !seen) return seen.error();
@@ -537,7 +537,7 @@ int measure_all(const std::vector<std::string>& words) {
     }
     SettingsRequest common;
     if (words.size() > 6) common.overrides.assign(words.begin() + 6, words.end());
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,fault,severity,imu,frame,health,reason,faulty,camera,tracks,lit,"

@@ -127,7 +127,7 @@ Status measure_scene(const experiments::SceneCase& now,
                      const SettingsRequest& common,
                      Executor& executor,
                      fmt::ostream& out) {
-    auto settings = load_settings(common);
+    auto settings = surefoot::load_settings(common);
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
     if (Status seen = now.put_into(sim); !seen) return seen.error();
@@ -159,7 +159,7 @@ int measure_all(const std::vector<std::string>& words) {
             "odometry_onset OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [KEY=VALUE...]]]]"));
     SettingsRequest common;
     if (words.size() > 5) common.overrides.assign(words.begin() + 5, words.end());
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,shift_mm,spread_frames,seen_after,begun_after,end_mm,moved_before,"

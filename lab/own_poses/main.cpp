@@ -118,7 +118,7 @@ Result<std::optional<std::string>> measure(const Case& now,
                                            int frames,
                                            const SettingsRequest& common,
                                            Executor& executor) {
-    auto settings = load_settings(common);
+    auto settings = surefoot::load_settings(common);
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
     if (Status seen = now.seen.put_into(sim); !seen) return seen.error();
@@ -190,7 +190,7 @@ int measure_all(const std::vector<std::string>& words) {
     const std::string rigs = words.size() > 7 ? words[7] : "zed_vga";
     SettingsRequest common;
     if (words.size() > 8) common.overrides.assign(words.begin() + 8, words.end());
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "scene,seed,profile,carrier,rig,path_m,end_mm,end_deg,ate_mm,lost,"

@@ -369,7 +369,7 @@ int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 5)
         return report(usage_error("place_recall OUT.csv KINDS SCENES FIRST_SEED SEEDS [PROFILE]"));
     const std::string profile = words.size() > 5 ? words[5] : "zed_calibrated";
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(words[0]);
     out.print(
         "kind,scene,seed,profile,frame,revisit,refusal,matches,inliers,asked,agreeing,parts,tilt_"

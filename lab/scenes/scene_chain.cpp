@@ -45,7 +45,7 @@ Result<ChainRun> run_chain(const HazardScene& scene,
                            double noise,
                            const std::string& scratch,
                            Executor& executor) {
-    auto settings = load_settings();
+    auto settings = surefoot::load_settings();
     if (!settings) return settings.error();
     const std::string file = fmt::format("{}/{}_{}_{}.yaml",
                                          scratch,

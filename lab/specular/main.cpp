@@ -177,7 +177,7 @@ int measure(const std::vector<std::string>& words) {
         fmt::print(stderr, "usage: specular OUT.csv SCENES FIRST_SEED SEEDS [FRAMES]\n");
         return 2;
     }
-    const auto settings = load_settings();
+    const auto settings = surefoot::load_settings();
     const auto machine = app::load_machine("rex");
     if (!settings || !machine || !*machine) return 1;
     const std::uint64_t first = std::strtoull(words[2].c_str(), nullptr, 10);

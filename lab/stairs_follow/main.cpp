@@ -288,7 +288,7 @@ int measure_all(const std::vector<std::string>& words) {
     if (words.size() < 2) return report(usage_error("stairs_follow OUT.csv MAPS [KEY=VALUE...]"));
     SettingsRequest common;
     common.overrides.assign(words.begin() + 2, words.end());
-    const auto settings = load_settings(common);
+    const auto settings = surefoot::load_settings(common);
     if (!settings) return report(settings.error());
     auto out = fmt::output_file(words[0]);
     out.print("{}", kHeader);
@@ -298,7 +298,7 @@ int measure_all(const std::vector<std::string>& words) {
         out.print("{}", *rows);
         out.flush();
     }
-    return kExitOk;
+    return 0;
 }
 
 }  // namespace

@@ -313,7 +313,7 @@ std::vector<std::string> saved_looks(const std::string& maps) {
 
 /// Cases side by side, written in order.
 int write_all(int count, const std::string& path, const std::function<Done(int)>& make) {
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     auto out = fmt::output_file(path);
     out.print("{}", kHeader);
     const int block = 2 * executor->threads();
@@ -327,7 +327,7 @@ int write_all(int count, const std::string& path, const std::function<Done(int)>
         }
         out.flush();
     }
-    return kExitOk;
+    return 0;
 }
 
 int measure_all(const std::vector<std::string>& words) {
@@ -345,7 +345,7 @@ int measure_all(const std::vector<std::string>& words) {
     common.overrides.insert(common.overrides.end(),
                             words.begin() + static_cast<std::ptrdiff_t>(first_setting),
                             words.end());
-    const auto settings = load_settings(common);
+    const auto settings = surefoot::load_settings(common);
     if (!settings) return report(settings.error());
     if (is_saved) {
         const std::vector<std::string> folders = saved_looks(words[1]);

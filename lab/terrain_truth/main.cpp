@@ -309,7 +309,7 @@ Status measure(const SceneCase& now,
                const io::MachineFile& machine,
                Executor& executor,
                Results& out) {
-    auto settings = load_settings();
+    auto settings = surefoot::load_settings();
     if (!settings) return settings.error();
     sim::SceneOptions& sim = settings->sim;
     if (Status seen = now.put_into(sim); !seen) return seen.error();
@@ -372,7 +372,7 @@ int measure_all(const std::vector<std::string>& words) {
     if (!noise || *noise < 0.0) return report(usage_error("no noise: " + words[5]));
     const auto machine = load_machine("rex");
     if (!machine) return report(machine.error());
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     Results out{fmt::output_file(words[0]), fmt::output_file(words[0] + ".wrong.csv")};
     out.wrong.print("scene,seed,profile,x_m,y_m,truth,called\n");
     out.cases.print("scene,seed,profile,median_mm,p90_mm,coverage,sigma_1,sigma_2,sigma_3");

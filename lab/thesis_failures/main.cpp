@@ -413,7 +413,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
         return 2;
     }
     const bool drawn = faults == "drawn";
-    const auto executor = make_executor();
+    const auto executor = surefoot::make_executor();
     Tables out{fmt::output_file(folder + "/runs.csv"),
                fmt::output_file(folder + "/heights.csv"),
                folder,
