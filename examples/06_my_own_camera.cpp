@@ -45,8 +45,8 @@ class MyCamera final : public surefoot::camera::FrameSource {
     std::uint8_t grey(int u, int v) const {  // new noise in each frame, as a sensor has it
         const unsigned place =
             static_cast<unsigned>(u / 3) * 2654435761U ^ static_cast<unsigned>(v / 3) * 40503U;
-        return static_cast<std::uint8_t>(64U + place / 7U % 128U +
-                                         static_cast<unsigned>(index_ % 2));
+        const unsigned noise = static_cast<unsigned>(u * 31 + v * 17 + index_ * 101) / 5U % 4U;
+        return static_cast<std::uint8_t>(64U + place / 7U % 128U + noise);
     }
     surefoot::camera::StereoRig rig_;
     surefoot::camera::SourceInfo info_;
@@ -62,9 +62,13 @@ int main() {
         std::cerr << perception.error().message << '\n';
         return 1;
     }
-    for (auto frame = camera.next(); frame.ok() && frame->has_value(); frame = camera.next())
-        for (const surefoot::FrameReport& report : perception->process(**frame))
+    const auto print = [](std::span<const surefoot::FrameReport> reports) {
+        for (const surefoot::FrameReport& report : reports)
             std::cout << "frame " << report.index << ": " << report.depth_pixels
                       << " pixels with depth, " << surefoot::to_string(report.motion.health)
                       << '\n';
+    };
+    for (auto frame = camera.next(); frame.ok() && frame->has_value(); frame = camera.next())
+        print(perception->process(**frame));
+    print(perception->finish());  // the start-up still waits for ground, and no frame will come
 }

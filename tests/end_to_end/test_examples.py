@@ -24,7 +24,7 @@ class Examples(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
         folder = pathlib.Path(cls.folder.name)
         cls.recording, cls.run_folder = folder / "recording", folder / "run"
-        for call in (("sim", "demo_stairs", "--max-frames", 40, "--out", cls.recording),
+        for call in (("sim", "demo_stairs", "--frames", 40, "--out", cls.recording),
                      ("run", cls.recording, "--machine", "rex", "--out", cls.run_folder)):
             ended = surefoot_cli.surefoot(*call)
             assert ended.returncode == 0, ended.stderr
