@@ -42,7 +42,8 @@ class MyCamera final : public surefoot::camera::FrameSource {
     static constexpr int kWidth = 672;
     static constexpr int kHeight = 376;
     static constexpr int kFrames = 15;
-    std::uint8_t grey(int u, int v) const {  // new noise in each frame, as a sensor has it
+    [[nodiscard]] std::uint8_t grey(int u,
+                                    int v) const {  // new noise in each frame, as a sensor has it
         const unsigned place =
             static_cast<unsigned>(u / 3) * 2654435761U ^ static_cast<unsigned>(v / 3) * 40503U;
         const unsigned noise = static_cast<unsigned>(u * 31 + v * 17 + index_ * 101) / 5U % 4U;
