@@ -6,7 +6,7 @@
 #include "surefoot/grid/snapshot_fields.hpp"
 
 /// The fields of the audit log in the order of the file: one list each for writing, reading,
-/// comparing and naming. A change here is a new version of the format (docs/reference/audit_format.md).
+/// comparing and naming. A change here is a new format version (docs/reference/audit_format.md).
 namespace surefoot::wire {
 
 template <typename Box, typename Visit>

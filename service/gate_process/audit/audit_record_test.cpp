@@ -169,8 +169,8 @@ TEST(AuditRecord, every_single_bit_of_a_verdict_counts) {
     EXPECT_EQ(differences(other, changed).size(), 1U);
 }
 
-/// What docs/reference/audit_format.md says. Another size is another version of the format; and whoever adds
-/// a field to one of these values has to add it to audit_fields.hpp.
+/// What docs/reference/audit_format.md says. Another size is another version of the format; and
+/// whoever adds a field to one of these values has to add it to audit_fields.hpp.
 TEST(AuditRecord, holds_every_field_of_its_version) {
     Case c;
     c.map = std::make_unique<grid::MapSnapshot>();

@@ -65,7 +65,7 @@ struct Recording {
 /// Left and right images in a folder each: KITTI odometry (image_0 and image_1, image_l and
 /// image_r, image_2 and image_3; calib.txt, times.txt), KITTI raw (image_00 and image_01, image_02
 /// and image_03, with data/ and timestamps.txt), cam0 and cam1 without lists, left and right; or
-/// left* and right* in one folder. docs/get_started/own_camera.md says how images are paired and stamped.
+/// left* and right* in one folder. docs/get_started/own_camera.md explains pairs and stamps.
 [[nodiscard]] Result<Recording> index_pair_folders(const std::string& folder,
                                                    const OpenOptions& options);
 /// Whether a folder holds such a pair.

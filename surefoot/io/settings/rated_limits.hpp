@@ -8,8 +8,8 @@
 #include "surefoot/io/settings/yaml_group.hpp"
 #include "surefoot/io/settings/yaml_tree.hpp"
 
-/// Limits of the gate for which the evidence of docs/evidence/safety.md was taken. A machine file that
-/// allows more leaves that evidence, so that a person must sign for it, limit by limit
+/// Limits of the gate for which the evidence of docs/evidence/safety.md was taken. A machine file
+/// that allows more leaves that evidence, so that a person must sign for it, limit by limit
 /// (docs/reference/machine_file.md).
 namespace surefoot::io {
 
