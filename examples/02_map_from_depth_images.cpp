@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds an elevation map from depth images and poses that another program measured: no stereo, no
-// odometry of ours. Here a simulated wall-and-floor depth image stands for your camera.
+// odometry of ours. Here a computed view of a level floor stands for your camera.
 #include <Eigen/Geometry>
 #include <cmath>
 #include <iostream>
