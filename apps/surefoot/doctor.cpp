@@ -14,6 +14,7 @@
 #include "apps/surefoot/verbs.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/io/file.hpp"
+#include "surefoot/perception/fit_settings.hpp"
 #include "surefoot/sim/sensors/rigs.hpp"
 #include "surefoot/stereo/confidence.hpp"
 

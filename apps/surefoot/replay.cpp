@@ -16,6 +16,7 @@
 #include "apps/surefoot/source.hpp"
 #include "apps/surefoot/verbs.hpp"
 #include "surefoot/core/time.hpp"
+#include "surefoot/perception/fit_settings.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/pipeline/start.hpp"
 

@@ -162,11 +162,4 @@ Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_n
     return std::optional<io::MachineFile>(std::move(machine).value());
 }
 
-camera::StereoRig mounted_rig(const camera::StereoRig& rig,
-                              const std::optional<io::MachineFile>& machine) {
-    camera::StereoRig mounted = rig;
-    if (!mounted.T_body_left && machine) mounted.T_body_left = machine->T_body_left;
-    return mounted;
-}
-
 }  // namespace surefoot::app

@@ -54,8 +54,4 @@ inline constexpr std::string_view kLivePrefix = "v4l2:";
 /// Reads a machine file by path or built-in name; returns an empty optional for an empty name.
 [[nodiscard]] Result<std::optional<io::MachineFile>> load_machine(const std::string& path_or_name);
 
-/// Returns the rig of the source. If the rig has no mount, uses the mount of the machine file.
-[[nodiscard]] camera::StereoRig mounted_rig(const camera::StereoRig& rig,
-                                            const std::optional<io::MachineFile>& machine);
-
 }  // namespace surefoot::app

@@ -33,4 +33,11 @@ void fit_settings(const camera::StereoRig& rig,
     expect_machine(machine, settings);
 }
 
+camera::StereoRig mounted_rig(const camera::StereoRig& rig,
+                              const std::optional<io::MachineFile>& machine) {
+    camera::StereoRig mounted = rig;
+    if (!mounted.T_body_left && machine) mounted.T_body_left = machine->T_body_left;
+    return mounted;
+}
+
 }  // namespace surefoot

@@ -14,4 +14,8 @@ void fit_settings(const camera::StereoRig& rig,
                   const std::optional<io::MachineFile>& machine,
                   Settings& settings);
 
+/// The rig; where it does not say how the camera is mounted, with the mount of the machine.
+[[nodiscard]] camera::StereoRig mounted_rig(const camera::StereoRig& rig,
+                                            const std::optional<io::MachineFile>& machine);
+
 }  // namespace surefoot

@@ -25,8 +25,7 @@ Result<Perception> Perception::make(const camera::StereoRig& rig,
                                     std::optional<io::MachineFile> machine,
                                     Settings settings,
                                     int threads) {
-    camera::StereoRig mounted = rig;
-    if (!mounted.T_body_left && machine) mounted.T_body_left = machine->T_body_left;
+    const camera::StereoRig mounted = mounted_rig(rig, machine);
     fit_settings(mounted, machine, settings);
     auto executor = make_executor(threads);
     auto pipeline = pipeline::Pipeline::make(settings.pipeline, mounted, *executor, steady_now_ns);
@@ -44,7 +43,7 @@ Perception::Perception(Settings settings,
       machine_(std::move(machine)),
       executor_(std::move(executor)),
       pipeline_(std::make_unique<pipeline::Pipeline>(std::move(pipeline))),
-      start_(std::in_place, pipeline_->config(), pipeline_->is_mount_unknown()) {}
+      start_(std::in_place, *pipeline_) {}
 
 std::span<const FrameReport> Perception::process(const StereoFrame& frame, Work work) {
     reports_.clear();

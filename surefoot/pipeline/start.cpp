@@ -14,12 +14,10 @@ constexpr std::size_t kSlide = Pipeline::kAlignmentFrames / 2;
 
 }  // namespace
 
-StartUp::StartUp(const PipelineConfig& config,
-                 bool is_mount_unknown,
-                 const std::optional<Pose>& T_odom_first_body)
-    : config_(config.mount),
-      ground_is_there_(config.ground.expected_height_m > 0.0),
-      searches_(is_mount_unknown),
+StartUp::StartUp(const Pipeline& pipeline, const std::optional<Pose>& T_odom_first_body)
+    : config_(pipeline.config().mount),
+      ground_is_there_(pipeline.config().ground.expected_height_m > 0.0),
+      searches_(pipeline.is_mount_unknown()),
       T_odom_first_body_(T_odom_first_body) {}
 
 bool StartUp::add(Pipeline& pipeline, StereoFrame frame) {
@@ -90,7 +88,7 @@ void StartUp::drop() {
 Start align_when_ready(Pipeline& pipeline,
                        const NextFrame& next,
                        const std::optional<Pose>& T_odom_first_body) {
-    StartUp start(pipeline.config(), pipeline.is_mount_unknown(), T_odom_first_body);
+    StartUp start(pipeline, T_odom_first_body);
     for (auto frame = next(); frame; frame = next())
         if (start.add(pipeline, std::move(*frame))) return start.take();
     start.end(pipeline);

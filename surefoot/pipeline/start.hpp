@@ -41,10 +41,8 @@ struct Start {
 /// ends before; then `take`. One thread at a time.
 class StartUp {
   public:
-    /// `config`: of the pipeline. `T_odom_first_body`: see Pipeline::align.
-    StartUp(const PipelineConfig& config,
-            bool is_mount_unknown,
-            const std::optional<Pose>& T_odom_first_body = {});
+    /// `pipeline`: the one that `add` and `end` get. `T_odom_first_body`: see Pipeline::align.
+    explicit StartUp(const Pipeline& pipeline, const std::optional<Pose>& T_odom_first_body = {});
     /// True once the pipeline is aligned.
     [[nodiscard]] bool add(Pipeline& pipeline, StereoFrame frame);
     /// No further frame will come: aligns the pipeline by the frames so far, if there are any.
