@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/surefoot/terrain_workloads.hpp"
+#include "studies/benchmarks/terrain_workloads.hpp"
 #include "surefoot/core/executor.hpp"
 
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "apps/surefoot/joystick_script.hpp"
-#include "apps/surefoot/stairs_json.hpp"
 #include "fuzz/must.hpp"
+#include "service/live/joystick_script.hpp"
+#include "studies/runs/stairs_json.hpp"
 
 namespace {
 

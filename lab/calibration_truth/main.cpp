@@ -22,7 +22,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "apps/surefoot/rendered_calibration_testing.hpp"
+#include "studies/board_calibration/rendered_calibration_testing.hpp"
 
 namespace surefoot {
 namespace {

@@ -49,14 +49,14 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/offline_map.hpp"
-#include "apps/surefoot/source.hpp"
-#include "apps/surefoot/thesis_policy_steps.hpp"
 #include "lab/scenes/hazard_scene.hpp"
 #include "lab/scenes/map_noise.hpp"
 #include "lab/scenes/scene_chain.hpp"
 #include "lab/scenes/scene_sight.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
+#include "studies/lange2016/thesis_policy_steps.hpp"
+#include "studies/runs/offline_map.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/gate/gate.hpp"
 #include "surefoot/gate/verdict_text.hpp"

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/surefoot/live_session.hpp"
 #include "lab/hazard_injections/fault_bench.hpp"
+#include "service/live/live_session.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/perception/fit_settings.hpp"
 #include "surefoot/perception/settings.hpp"

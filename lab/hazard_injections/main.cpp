@@ -28,8 +28,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
 #include "lab/hazard_injections/fault_bench.hpp"
+#include "service/console/log.hpp"
 #include "surefoot/io/text.hpp"
 #include "surefoot/machines/built_in_machines.hpp"
 

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/board_images.hpp"
+#include "studies/board_calibration/board_images.hpp"
 #include "surefoot/calibration/boards/board_measures.hpp"
 #include "surefoot/calibration/boards/detect_board.hpp"
 #include "surefoot/calibration/stereo_calibration.hpp"

@@ -28,9 +28,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/source.hpp"
 #include "lab/scenes/exact_depth.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/elevation/elevation_map.hpp"

@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
+#include "service/console/log.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/perception/settings.hpp"

@@ -21,10 +21,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_chain.hpp"
 #include "lab/scenes/scene_sight.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/perception/settings.hpp"
 

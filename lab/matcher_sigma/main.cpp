@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
 #include "lab/stereo_pairs/rival_matchers.hpp"
 #include "lab/stereo_pairs/stereo_pairs.hpp"
+#include "service/console/log.hpp"
 #include "surefoot/eval/depth/sparsification.hpp"
 #include "surefoot/stereo/semi_global.hpp"
 

@@ -37,10 +37,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/offline_map.hpp"
-#include "apps/surefoot/run_session.hpp"
-#include "apps/surefoot/source.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
+#include "studies/runs/offline_map.hpp"
+#include "studies/runs/run_session.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/gate/gate.hpp"

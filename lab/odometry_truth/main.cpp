@@ -32,9 +32,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/io/recordings/trajectory_file.hpp"
 #include "surefoot/perception/settings.hpp"

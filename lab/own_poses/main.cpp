@@ -32,10 +32,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/source.hpp"
 #include "lab/scenes/exact_depth.hpp"
 #include "lab/scenes/scene_cases.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
 #include "surefoot/eval/maps/map_comparison.hpp"
 #include "surefoot/eval/trajectory/trajectory.hpp"
 #include "surefoot/io/text.hpp"

@@ -18,10 +18,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
 #include "lab/scenes/scene_cases.hpp"
 #include "lab/stereo_pairs/rival_matchers.hpp"
 #include "lab/stereo_pairs/stereo_pairs.hpp"
+#include "service/console/log.hpp"
 
 namespace surefoot::experiments {
 namespace {

@@ -35,9 +35,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/io/file.hpp"

@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
 #include "lab/stereo_pairs/rival_matchers.hpp"
 #include "lab/stereo_pairs/stereo_pairs.hpp"
+#include "service/console/log.hpp"
 #include "surefoot/stereo/confidence.hpp"
 #include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/refine.hpp"

@@ -27,9 +27,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/source.hpp"
-#include "apps/surefoot/suite_case.hpp"
-#include "apps/surefoot/suite_verdicts.hpp"
+#include "service/console/source.hpp"
+#include "studies/suite/suite_case.hpp"
+#include "studies/suite/suite_verdicts.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/io/text.hpp"
 #include "surefoot/perception/settings.hpp"

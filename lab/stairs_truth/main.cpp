@@ -42,10 +42,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
 #include "lab/stairs_scenes/stairs_look.hpp"
 #include "lab/stairs_scenes/stairs_match.hpp"
 #include "lab/stairs_scenes/stairs_scene.hpp"
+#include "service/console/log.hpp"
 #include "surefoot/io/text.hpp"
 #include "surefoot/perception/settings.hpp"
 #include "surefoot/stairs/feature_finder.hpp"

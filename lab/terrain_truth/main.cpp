@@ -35,10 +35,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
-#include "apps/surefoot/run_session.hpp"
-#include "apps/surefoot/source.hpp"
 #include "lab/scenes/scene_cases.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
+#include "studies/runs/run_session.hpp"
 #include "surefoot/eval/maps/maps.hpp"
 #include "surefoot/eval/report/error_bins.hpp"
 #include "surefoot/io/text.hpp"

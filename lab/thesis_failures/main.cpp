@@ -34,7 +34,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/surefoot/log.hpp"
+#include "service/console/log.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/elevation/fusion/ancestor.hpp"

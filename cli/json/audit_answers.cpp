@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/json/audit_answers.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "service/gate_process/protocol/json_text.hpp"
+#include "service/live/ground_box.hpp"
+
+namespace surefoot::app {
+namespace {
+
+// Keys keep the order in which they are written, so the same run gives the same bytes.
+using wire::Json;
+constexpr int kIndent = 2;
+
+Json summary_json(const wire::AuditSummary& summary) {
+    Json damage = nullptr;
+    if (summary.damage) {
+        damage = {
+            {"file", summary.damage->file},
+            {"offset", summary.damage->offset},
+            {"frame", summary.damage->sequence ? Json(*summary.damage->sequence) : Json(nullptr)},
+            {"what", summary.damage->what}};
+    }
+    return {{"files", summary.files},
+            {"bytes", summary.bytes},
+            {"runs", summary.runs},
+            {"verdicts", summary.verdicts},
+            {"gaps", summary.gaps},
+            {"lost", summary.lost},
+            {"acts", summary.acts},
+            {"unfinished", summary.unfinished},
+            {"damage", damage}};
+}
+
+}  // namespace
+
+std::string audit_json(const wire::AuditSummary& summary) {
+    return summary_json(summary).dump(kIndent);
+}
+
+std::string audit_acts_json(const wire::AuditSummary& summary, const std::vector<wire::Act>& acts) {
+    Json object = summary_json(summary);
+    Json list = Json::array();
+    for (const wire::Act& act : acts) {
+        list.push_back({{"time_ns", act.time_ns},
+                        {"act", to_string(act.kind)},
+                        {"outcome", to_string(act.outcome)},
+                        {"role", to_string(act.role)},
+                        {"connection", act.connection},
+                        {"radius_m", kTenthMm_m * act.radius_tenth_mm},
+                        {"left_out", act.left_out},
+                        {"text", act.text}});
+    }
+    object["list"] = list;
+    return object.dump(kIndent);
+}
+
+std::string audit_replay_json(const wire::AuditSummary& summary, const AuditReplay& replay) {
+    Json object = summary_json(summary);
+    object["equal"] = replay.equal;
+    object["different"] = replay.different;
+    Json first = nullptr;
+    if (replay.first) {
+        Json fields = Json::array();
+        for (const wire::FieldDifference& d : replay.first->fields)
+            fields.push_back(
+                {{"field", d.field}, {"recorded", d.recorded}, {"replayed", d.replayed}});
+        first = {{"file", replay.first->file},
+                 {"offset", replay.first->offset},
+                 {"frame", replay.first->sequence},
+                 {"fields", fields}};
+    }
+    object["first_difference"] = first;
+    return object.dump(kIndent);
+}
+
+}  // namespace surefoot::app

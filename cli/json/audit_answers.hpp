@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/audit_replay.hpp"
+#include "service/gate_process/audit/audit_reader.hpp"
+
+// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
+// written as null.
+namespace surefoot::app {
+
+[[nodiscard]] std::string audit_json(const wire::AuditSummary& summary);
+[[nodiscard]] std::string audit_acts_json(const wire::AuditSummary& summary,
+                                          const std::vector<wire::Act>& acts);
+[[nodiscard]] std::string audit_replay_json(const wire::AuditSummary& summary,
+                                            const AuditReplay& replay);
+
+}  // namespace surefoot::app

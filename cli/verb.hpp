@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a verb declares its options. This header hides CLI11, which adds ten seconds of compile time
+// to every file that includes it; only command_line.cpp does.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "service/console/options.hpp"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace surefoot::app {
+
+/// One declared option or positional argument. Each function adds a rule and returns the option, so
+/// that rules can be chained. A value that breaks a rule ends the call with kExitUsage.
+class Option {
+  public:
+    explicit Option(CLI::Option* option) : option_(option) {}
+
+    Option required() const;
+    /// Name of the value in --help, for example "M" or "FILE".
+    Option value(const char* name) const;
+    /// Accepts numbers from `least` to `most`, both included. NaN is refused.
+    Option in(double least, double most) const;
+    Option in(int least, int most) const;
+    /// Accepts finite numbers above 0.
+    Option positive() const;
+    /// Accepts finite numbers from 0 on.
+    Option not_negative() const;
+    Option one_of(std::vector<std::string> names) const;
+    /// One argument holds several values, separated by commas.
+    Option separated_by_commas() const;
+    /// Each use takes one value, so that a positional argument may follow.
+    Option one_value_each() const;
+    Option show_default() const;
+    Option needs(Option other) const;
+    Option excludes(Option other) const;
+
+  private:
+    CLI::Option* option_;
+};
+
+/// Adds options to one verb. The referenced variables must live until the verb has run.
+class Verb {
+  public:
+    explicit Verb(CLI::App* verb) : verb_(verb) {}
+
+    // The name of an option begins with "--"; a name without dashes is a positional argument.
+    Option option(const char* name, std::string& variable, const char* help) const;
+    Option option(const char* name, int& variable, const char* help) const;
+    Option option(const char* name, double& variable, const char* help) const;
+    Option option(const char* name, std::uint64_t& variable, const char* help) const;
+    Option option(const char* name, std::optional<int>& variable, const char* help) const;
+    Option option(const char* name, std::optional<double>& variable, const char* help) const;
+    Option option(const char* name, std::vector<std::string>& variable, const char* help) const;
+    Option option(const char* name, std::vector<double>& variable, const char* help) const;
+    Option flag(const char* name, bool& variable, const char* help) const;
+
+  private:
+    CLI::App* verb_;
+};
+
+/// Which settings a verb reads. A verb without settings still checks --config, --set and --preset,
+/// so that the same options work with every verb, and warns that they have no effect.
+enum class Reads { settings, own_settings, no_settings };
+
+/// Holds verbs: the program itself, or a verb with verbs of its own, such as `eval`.
+class VerbGroup {
+  public:
+    /// `exit_code` receives the exit code of the verb that the call names.
+    VerbGroup(CLI::App* app, int& exit_code) : app_(app), exit_code_(&exit_code) {}
+
+    /// Adds a verb that has verbs of its own, one of which every call must name.
+    VerbGroup group(const char* name, const char* what, const char* example);
+
+    /// Adds a verb that runs `handler`. Its options live as long as the command line. The tests run
+    /// every example; several examples are separated by "\n  ".
+    template <typename Options>
+    std::pair<Verb, Options&> add(const char* name,
+                                  const char* what,
+                                  const char* example,
+                                  int (*handler)(const Options&),
+                                  Reads reads = Reads::settings) {
+        auto options = std::make_shared<Options>();
+        const Verb verb = declare(name, what, example, options->common, reads, [options, handler] {
+            return handler(*options);
+        });
+        return {verb, *options};
+    }
+
+  private:
+    Verb declare(const char* name,
+                 const char* what,
+                 const char* example,
+                 CommonOptions& common,
+                 Reads reads,
+                 std::function<int()> run);
+
+    CLI::App* app_;
+    int* exit_code_;
+};
+
+/// Adds the options that control how recordings of other programs are read.
+void add_reading(Verb verb, ReadingOptions& reading);
+/// Adds the option that skips frames that cannot be read.
+void add_skip_broken(Verb verb, ReadingOptions& reading);
+
+}  // namespace surefoot::app

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <utility>
+#include <vector>
+
+#include "cli/audit_replay.hpp"
+#include "cli/json/audit_answers.hpp"
+#include "cli/verbs/verbs.hpp"
+#include "service/console/log.hpp"
+#include "service/gate_process/audit/audit_reader.hpp"
+#include "surefoot/core/time.hpp"
+
+namespace surefoot::app {
+namespace {
+
+struct AuditOptions {
+    CommonOptions common;
+    std::string path;  ///< folder of a log, or one of its files
+};
+
+void say_what_is_missing(const wire::AuditSummary& summary) {
+    for (const std::string& sentence : summary.unfinished) log_warning(sentence);
+    if (summary.gaps > 0)
+        log_warning(fmt::format(
+            "{} verdicts were lost in {} gaps: the disk took nothing", summary.lost, summary.gaps));
+    if (summary.damage) log_error(summary.damage->text());
+}
+
+std::string text_of(const wire::AuditSummary& summary) {
+    return fmt::format("{} verdicts and {} acts of {} runs in {} files ({} bytes)",
+                       summary.verdicts,
+                       summary.acts,
+                       summary.runs,
+                       summary.files,
+                       summary.bytes);
+}
+
+void print_difference(const AuditDifference& first) {
+    fmt::print(
+        "first difference: {}, byte {}, frame {}\n", first.file, first.offset, first.sequence);
+    for (const wire::FieldDifference& d : first.fields)
+        fmt::print("  {}: recorded {}, now {}\n", d.field, d.recorded, d.replayed);
+}
+
+void print_act(const wire::Act& act) {
+    fmt::print("{:.3f} s  {} {}: {}",
+               seconds_from_ns(act.time_ns),
+               to_string(act.role),
+               to_string(act.kind),
+               to_string(act.outcome));
+    if (act.connection != 0) fmt::print(", connection {}", act.connection);
+    if (act.kind == wire::ActKind::attest) fmt::print(", {:.4f} m", act.radius_tenth_mm * 1e-4);
+    if (!act.text.empty()) fmt::print(", {}", act.text);
+    if (act.left_out > 0) fmt::print(" ({} refused acts before it were left out)", act.left_out);
+    fmt::print("\n");
+}
+
+/// `surefoot audit acts`: lists the attestations, the re-arming and the refused requests of the
+/// log.
+int audit_acts(const AuditOptions& options) {
+    std::vector<wire::Act> acts;
+    const auto summary =
+        wire::read_audit(options.path, {}, [&](const wire::Act& act) { acts.push_back(act); });
+    if (!summary) return report(summary.error());
+    say_what_is_missing(*summary);
+    if (options.common.json) {
+        print_answer(audit_acts_json(*summary, acts));
+    } else {
+        for (const wire::Act& act : acts) print_act(act);
+    }
+    return summary->damage ? kExitFailed : kExitOk;
+}
+
+/// `surefoot audit verify`: checks the checksums, the chain and the gaps of an audit log.
+int audit_verify(const AuditOptions& options) {
+    const auto summary = wire::read_audit(options.path, {});
+    if (!summary) return report(summary.error());
+    say_what_is_missing(*summary);
+    if (options.common.json) {
+        print_answer(audit_json(*summary));
+    } else {
+        fmt::print("{}: {}\n", text_of(*summary), summary->damage ? "DAMAGED" : "whole");
+    }
+    return summary->damage ? kExitFailed : kExitOk;
+}
+
+/// `surefoot audit replay`: checks that the gate reproduces every verdict of the log.
+int audit_replay(const AuditOptions& options) {
+    AuditReplay replay;
+    const auto summary = wire::read_audit(options.path, [&](const wire::AuditedAt& at) {
+        auto fields = wire::differences(at.record.verdict, wire::replay(at.machine, at.record));
+        if (fields.empty()) {
+            ++replay.equal;
+            return;
+        }
+        ++replay.different;
+        if (!replay.first)
+            replay.first = AuditDifference{at.file, at.offset, at.sequence, std::move(fields)};
+    });
+    if (!summary) return report(summary.error());
+    say_what_is_missing(*summary);
+    if (options.common.json) {
+        print_answer(audit_replay_json(*summary, replay));
+    } else {
+        fmt::print("{}: {} equal, {} different{}\n",
+                   text_of(*summary),
+                   replay.equal,
+                   replay.different,
+                   summary->damage ? ", DAMAGED" : "");
+        if (replay.first) print_difference(*replay.first);
+    }
+    if (replay.different > 0) log_error("the gate decides otherwise than the log says");
+    return summary->damage || replay.different > 0 ? kExitFailed : kExitOk;
+}
+
+}  // namespace
+
+void add_audit(VerbGroup verbs) {
+    const auto add = [&](const char* name,
+                         const char* what,
+                         const char* example,
+                         int (*handler)(const AuditOptions&)) {
+        auto [verb, o] = verbs.add(name, what, example, handler, Reads::no_settings);
+        verb.option("path", o.path, "folder of a log, or one file of it").required().value("PATH");
+    };
+    add("verify",
+        "checksums, chain and gaps; exit 1 where a log is damaged",
+        "surefoot audit verify out/audit --json",
+        audit_verify);
+    add("acts",
+        "who attested the ground, re-armed, showed a token, or was refused; with the role",
+        "surefoot audit acts out/audit",
+        audit_acts);
+    add("replay",
+        "decides every verdict anew; exit 0 only when all are the same, bit for bit",
+        "surefoot audit replay out/audit",
+        audit_replay);
+}
+
+}  // namespace surefoot::app

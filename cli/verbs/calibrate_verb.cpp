@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/json/calibration_json.hpp"
+#include "cli/verbs/verbs.hpp"
+#include "service/console/interrupt.hpp"
+#include "service/console/log.hpp"
+#include "service/console/option_settings.hpp"
+#include "service/console/source.hpp"
+#include "service/console/writes.hpp"
+#include "studies/board_calibration/calibration_report.hpp"
+#include "studies/board_calibration/live_board_images.hpp"
+#include "surefoot/calibration/boards/detect_board.hpp"
+#include "surefoot/calibration/lenses/lens_advice.hpp"
+#include "surefoot/io/calibration/rig_file.hpp"
+#include "surefoot/io/file.hpp"
+
+namespace surefoot::app {
+namespace {
+
+struct CalibrateOptions {
+    CommonOptions common;
+    bool stereo = false;
+    std::string source;
+    std::string board;  ///< text for calibration::parse_board()
+    std::string model = "pinhole5";
+    std::string eye;  ///< left | right: which camera of a stereo source
+    std::string out_dir;
+};
+
+constexpr double kMillimetres = 1e3;
+/// If the standard deviation of a viewing direction exceeds this, the user gets an explanation.
+constexpr double kMostWorst_px = 1.0;
+
+std::string found_words(const calibration::BoardView& view, const std::string& problem) {
+    return problem.empty() ? fmt::format("{} points", view.ids.size()) : problem;
+}
+
+/// Detects the board in images taken at the same time and adds the view to `run`.
+void look(const BoardImages& images, bool stereo, CalibrationRun& run) {
+    FoundView found;
+    found.name = images.name;
+    auto left = calibration::detect_board(run.board, images.left.view());
+    found.left = std::move(left.view);
+    found.left_problem = std::move(left.problem);
+    if (stereo) {
+        auto right = calibration::detect_board(run.board, images.right.view());
+        found.right = std::move(right.view);
+        found.right_problem = std::move(right.problem);
+        if (found.left_problem.empty() && found.right_problem.empty())
+            found.right = calibration::turned_like(run.board, found.left, found.right);
+        log_info(fmt::format("{}: left {}; right {}",
+                             found.name,
+                             found_words(found.left, found.left_problem),
+                             found_words(found.right, found.right_problem)));
+    } else {
+        log_info(fmt::format("{}: {}", found.name, found_words(found.left, found.left_problem)));
+    }
+    const bool whole = found.left_problem.empty() && found.right_problem.empty();
+    if (whole && run.sample.left.empty()) run.sample = images;
+    run.views.push_back(std::move(found));
+}
+
+/// Why an image does not fit this calibration. The first image sets the size.
+std::string size_problem(const BoardImages& images, bool stereo, calibration::ImageSize& size) {
+    if (size.width == 0) size = {images.left.width(), images.left.height()};
+    const auto differs = [&](const GreyImage& image) {
+        return image.width() != size.width || image.height() != size.height;
+    };
+    const GreyImage& odd = differs(images.left) ? images.left : images.right;
+    if (!differs(images.left) && !(stereo && differs(images.right))) return {};
+    return fmt::format("{}: {} x {} px, but the first image has {} x {}; all must be alike",
+                       images.name,
+                       odd.width(),
+                       odd.height(),
+                       size.width,
+                       size.height);
+}
+
+/// Takes images of a live camera and logs after each of them which views are still missing.
+Result<BoardSource> show_live(const CalibrateOptions& options,
+                              const CalibrationRun& run,
+                              const std::function<void(BoardImages)>& use) {
+    auto settings = load_settings(options.common);
+    if (!settings) return settings.error();
+    watch_for_interrupts();
+    LiveBoards session{.address = options.source.substr(kLivePrefix.size()),
+                       .stereo = options.stereo,
+                       .eye = options.eye,
+                       .config = settings->live,
+                       .stop = [] { return interrupted(); }};
+    session.opened = [] {
+        log_info(
+            fmt::format("show the board, a new place or tilt every second; {} images, or Ctrl-C "
+                        "when nothing is missing",
+                        kMostVideoViews));
+    };
+    const Status status =
+        for_live_images(io::kernel_video_device(), session, [&](BoardImages images) {
+            use(std::move(images));
+            std::vector<calibration::BoardView> views;
+            for (const FoundView& view : run.views) views.push_back(view.left);
+            const auto coverage =
+                calibration::coverage_of(run.board, views, run.size.width, run.size.height);
+            log_info(coverage.advice.empty() ? "nothing is missing" : coverage.advice.front());
+        });
+    if (!status) return status.error();
+    return BoardSource{};
+}
+
+Status find_boards(const CalibrateOptions& options, CalibrationRun& run) {
+    std::string problem;
+    const auto use = [&](const BoardImages& images) {
+        if (problem.empty()) problem = size_problem(images, options.stereo, run.size);
+        if (problem.empty()) look(images, options.stereo, run);
+    };
+    const auto about = options.source.starts_with(kLivePrefix)
+                           ? show_live(options, run, use)
+                           : for_board_images(options.source, options.stereo, options.eye, use);
+    if (!about) return about.error();
+    if (!problem.empty()) return input_error(problem);
+    run.notes = about->notes;
+    for (const bool left : {true, false}) {
+        if (!left && !options.stereo) break;
+        std::vector<calibration::BoardView> views;
+        for (const FoundView& view : run.views) views.push_back(left ? view.left : view.right);
+        run.coverage.push_back(
+            calibration::coverage_of(run.board, views, run.size.width, run.size.height));
+    }
+    return {};
+}
+
+/// An error if no image shows the board. The most frequent cause is a wrong --board.
+Status check_found(const CalibrationRun& run) {
+    const bool found = std::any_of(run.views.begin(), run.views.end(), [](const FoundView& view) {
+        return !view.left.ids.empty() || !view.right.ids.empty();
+    });
+    if (found || run.views.empty()) return {};
+    return input_error(
+        fmt::format("calibration: none of {} images shows the board '{}' ({}); count it "
+                    "(COLUMNSxROWS are inner "
+                    "corners or circles; write COLUMNSxROWSsquares where you count squares), and "
+                    "show the board "
+                    "{}",
+                    run.views.size(),
+                    run.board_text,
+                    calibration::size_in_words(run.board),
+                    run.board.kind == calibration::BoardKind::charuco ? "in focus" : "whole"));
+}
+
+/// Advice to use another lens model, if one fits the views of a camera far better; else empty.
+std::string lens_advice(calibration::LensKind kind, const CalibrationRun& run) {
+    for (int camera = 0; camera < run.cameras(); ++camera) {
+        std::vector<calibration::BoardView> views;
+        for (const FoundView& view : run.views)
+            views.push_back(camera == 0 ? view.left : view.right);
+        const auto advice = calibration::advise_lens(run.board, views, run.size, kind);
+        if (advice) return camera_name(run, camera) + ": " + calibration::in_words(*advice);
+    }
+    return {};
+}
+
+/// The error of a failed calibration, replaced by lens advice if there is any.
+Status with_advice(const Error& error, calibration::LensKind kind, const CalibrationRun& run) {
+    if (error.message.find("--model") != std::string::npos) return error;
+    const std::string advice = lens_advice(kind, run);
+    return advice.empty() ? error : Error{error.code, "calibration: " + advice};
+}
+
+Status solve(calibration::LensKind kind, CalibrationRun& run) {
+    std::vector<calibration::BoardView> left;
+    std::vector<calibration::BoardView> right;
+    for (const FoundView& view : run.views) {
+        left.push_back(view.left);
+        right.push_back(view.right);
+    }
+    if (run.cameras() == 1) {
+        auto mono = calibration::calibrate_mono(run.board, left, run.size, kind);
+        if (!mono) return mono.error();  // contains the lens advice already
+        run.mono = std::move(*mono);
+    } else {
+        auto stereo = calibration::calibrate_stereo(run.board, left, right, run.size, kind);
+        if (!stereo) return with_advice(stereo.error(), kind, run);
+        run.stereo = std::move(*stereo);
+    }
+    if (const std::string advice = lens_advice(kind, run); !advice.empty()) log_warning(advice);
+    return {};
+}
+
+/// Logs notes and advice before solving, so that the user also sees them if the calibration fails.
+void advise(const CalibrationRun& run) {
+    for (const std::string& note : run.notes) log_warning(note);
+    for (int camera = 0; camera < run.cameras(); ++camera) {
+        for (const std::string& advice : run.coverage[static_cast<std::size_t>(camera)].advice)
+            log_warning(camera_name(run, camera) + ": " + advice);
+    }
+}
+
+Status write_results(const CalibrateOptions& options, const CalibrationRun& run) {
+    if (Status made = io::make_folder(options.out_dir); !made) return made;
+    const auto path = [&](const char* name) { return io::join_path(options.out_dir, name); };
+    Writes writes;
+    writes +=
+        io::write_rig_yaml(path(options.stereo ? "rig.yaml" : "camera.yaml"), calibrated_rig(run));
+    writes += io::write_file(path("report.html"), calibration_html(run));
+    writes += io::write_file(path("views.json"), views_json(run));
+    return writes.first();
+}
+
+std::string depth_words(const calibration::DepthError& error) {
+    if (std::isnan(error.sigma_m)) return fmt::format("not seen at {:g} m;", error.distance_m);
+    return fmt::format("{:.2f} mm at {:g} m;", kMillimetres * error.sigma_m, error.distance_m);
+}
+
+/// Explains a large uncertainty in a part of the image; empty if it is small everywhere.
+std::string worst_words(const calibration::MappingSigmas& mapping) {
+    if (!(mapping.largest_px > kMostWorst_px)) return "";
+    return ": a corner that no board came near; it matters only if you use the image there (then "
+           "show the board in that corner)";
+}
+
+void print_result(const CalibrationRun& run, const std::string& folder) {
+    for (const calibration::RejectedView& rejected : rejected_views(run)) {
+        fmt::print(
+            "left out {}: {}\n", run.views[rejected.index].name, why_left_out(run, rejected));
+    }
+    for (const CalibratedEye& eye : calibrated_eyes(run)) {
+        fmt::print(
+            "{}: f {:.2f} +- {:.2f}, {:.2f} +- {:.2f} px; centre {:.2f} +- {:.2f}, {:.2f} "
+            "+- {:.2f} px; "
+            "directions +- {:.3f} px in the image, {:.2f} where it is known worst{}\n",
+            eye.name,
+            eye.parameters[0],
+            eye.sigmas[0],
+            eye.parameters[1],
+            eye.sigmas[1],
+            eye.parameters[2],
+            eye.sigmas[2],
+            eye.parameters[3],
+            eye.sigmas[3],
+            eye.mapping.median_px,
+            eye.mapping.largest_px,
+            worst_words(eye.mapping));
+    }
+    const double radius_m = run.stereo ? run.stereo->disc_radius_m : run.mono->disc_radius_m;
+    if (radius_m > 0.0)
+        fmt::print("circles: diameter {:.2f} mm, as measured\n", 2.0 * kMillimetres * radius_m);
+    const std::size_t used = calibrated_eyes(run).front().views.size();
+    fmt::print("{} of {} views used, rms {:.3f} px",
+               used,
+               run.views.size(),
+               run.stereo ? run.stereo->rms_px : run.mono->rms_px);
+    if (run.stereo) {
+        const auto& stereo = *run.stereo;
+        fmt::print(
+            ", rows after rectification {:.3f} px at f {:.0f} px\nbaseline {:.2f} mm; depth error "
+            "of the "
+            "calibration, one sigma:",
+            stereo.row_rms_px,
+            stereo.row_focal_px,
+            kMillimetres * stereo.rig.T_left_right.translation_m.norm());
+        for (const calibration::DepthError& error : stereo.depth_errors)
+            fmt::print(" {}", depth_words(error));
+    }
+    fmt::print("\nreport: {}\n", io::join_path(folder, "report.html"));
+}
+
+/// `surefoot calibrate mono` and `surefoot calibrate stereo`.
+int calibrate(const CalibrateOptions& options) {
+    const auto board = calibration::parse_board(options.board);
+    if (!board) {
+        return report(usage_error(
+            fmt::format("--board '{}': expected KIND:COLUMNSxROWS:SPACING, for example "
+                        "chessboard:9x6:0.025, circles:6x6:0.02, asymmetric_circles:4x11:0.04 or "
+                        "charuco:8x5:0.03:0.022[:DICT_5X5_100] (inner corners), or "
+                        "charuco:9x6squares:0.03:0.022",
+                        options.board)));
+    }
+    if (const Status status = calibration::check_detectable(*board); !status)
+        return report(status.error());
+    // "pinhole" is the model with the fewest coefficients.
+    const std::string model = options.model == "pinhole" ? "pinhole4" : options.model;
+    const auto* const kind = std::find(
+        std::begin(calibration::kLensKindNames), std::end(calibration::kLensKindNames), model);
+    if (kind == std::end(calibration::kLensKindNames))
+        return report(usage_error(fmt::format("--model '{}': no such lens model", options.model)));
+    const auto chosen =
+        static_cast<calibration::LensKind>(kind - std::begin(calibration::kLensKindNames));
+    CalibrationRun run;
+    run.source = options.source;
+    run.board_text = options.board;
+    run.board = *board;
+    log_info("board: " + calibration::size_in_words(*board));
+    if (const Status status = find_boards(options, run); !status) return report(status.error());
+    if (const Status status = check_found(run); !status) return report(status.error());
+    advise(run);
+    if (const Status status = solve(chosen, run); !status) return report(status.error());
+    // Print the result even if it cannot be written.
+    const Status written = write_results(options, run);
+    if (options.common.json) {
+        print_answer(calibration_json(run));
+    } else {
+        print_result(run, options.out_dir);
+    }
+    return written ? kExitOk : report(written.error());
+}
+
+void add_calibration(Verb verb, CalibrateOptions& o) {
+    verb.option("--board",
+                o.board,
+                "KIND:COLUMNSxROWS:SPACING in metres: chessboard:9x6:0.025 (inner corners), "
+                "circles:6x6:0.02, asymmetric_circles:4x11:0.04 (their diameter is measured), "
+                "charuco:8x5:0.03:0.022[:DICT_5X5_100]; with counted squares: "
+                "charuco:9x6squares:0.03:0.022")
+        .required()
+        .value("TEXT");
+    verb.option("--model",
+                o.model,
+                "lens; pinhole = pinhole4 (k1 k2 p1 p2), pinhole5 adds k3, rational k4 k5 k6")
+        .one_of({"pinhole", "pinhole4", "pinhole5", "rational", "fisheye"});
+    verb.option("--out", o.out_dir, "folder for the rig, report.html, views.json")
+        .required()
+        .value("DIR");
+}
+
+}  // namespace
+
+void add_calibrate_mono(VerbGroup verbs) {
+    auto [verb, o] =
+        verbs.add<CalibrateOptions>("mono",
+                                    "one camera from images of a board",
+                                    "surefoot calibrate mono out/chess --eye left --board "
+                                    "chessboard:8x5:0.03 --out out/camera --json",
+                                    calibrate);
+    verb.option("source", o.source, "folder of images, a video, or v4l2:DEVICE@WIDTHxHEIGHT")
+        .required()
+        .value("SOURCE");
+    verb.option("--eye", o.eye, "where there are two eyes: which").one_of({"left", "right"});
+    add_calibration(verb, o);
+}
+
+void add_calibrate_stereo(VerbGroup verbs) {
+    auto [verb, o] = verbs.add<CalibrateOptions>("stereo",
+                                                 "two cameras and how they stand to each other",
+                                                 "surefoot calibrate stereo out/chess --board "
+                                                 "chessboard:8x5:0.03 --out out/rig",
+                                                 calibrate);
+    verb.option("source",
+                o.source,
+                "folder with left* and right*, with folders left and right, or side-by-side "
+                "images; a side-by-side video; or v4l2:DEVICE@WIDTHxHEIGHT of both eyes")
+        .required()
+        .value("SOURCE");
+    o.stereo = true;
+    add_calibration(verb, o);
+}
+
+}  // namespace surefoot::app

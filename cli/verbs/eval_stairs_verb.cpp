@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "cli/verbs/verbs.hpp"
+#include "service/console/log.hpp"
+#include "studies/runs/stairs_json.hpp"
+#include "surefoot/eval/stairs/feature_errors.hpp"
+#include "surefoot/io/file.hpp"
+
+namespace surefoot::app {
+namespace {
+
+struct EvalStairsOptions {
+    CommonOptions common;
+    std::string found;  ///< stairs.json, or the folder of a run
+    std::string truth;
+    eval::FeatureMatch match;
+};
+
+/// Reads stair features from a stairs.json, given by its path or by the folder of its run.
+Result<ListedFeatures> read_features(const std::string& path) {
+    const std::string inside = path + "/stairs.json";
+    const std::string& file = io::is_file(inside) ? inside : path;
+    const auto text = io::read_file(file);
+    if (!text) return text.error();
+    return parse_stairs(*text, file);
+}
+
+std::string in_mm(const eval::MatchErrors& figures) {
+    if (figures.count == 0) return "-";
+    return fmt::format("{:+.1f} / {:.1f} / {:.1f} ({})",
+                       1e3 * figures.mean_m,
+                       1e3 * figures.std_m,
+                       1e3 * figures.max_abs_m,
+                       figures.count);
+}
+
+void print_kind(const char* name, const eval::KindErrors& kind, const char* height) {
+    fmt::print("{:8} {:3} of {:3} found, {:3} more; place across {}, {} {}\n",
+               name,
+               kind.matched,
+               kind.truth,
+               kind.extra.size(),
+               in_mm(kind.across),
+               height,
+               in_mm(kind.height));
+}
+
+void print_errors(const eval::FeatureErrors& errors, const std::set<std::string>& lists) {
+    fmt::print("found minus true [mm]: mean / standard deviation / largest (pairs)\n");
+    if (lists.contains("flights")) {
+        print_kind("flights", errors.flights, "riser");
+        fmt::print("         steps right in {} of {}; going {}, width {}\n",
+                   errors.flights.steps_right,
+                   errors.flights.matched,
+                   in_mm(errors.flights.going),
+                   in_mm(errors.flights.width));
+    }
+    if (lists.contains("drops")) print_kind("drops", errors.drops, "height");
+    if (lists.contains("kerbs")) print_kind("kerbs", errors.kerbs, "height");
+    if (lists.contains("sills")) print_kind("sills", errors.sills, "height");
+    if (lists.contains("doors")) {
+        print_kind("doors", errors.doors, "sill");
+        fmt::print("         width {}\n", in_mm(errors.doors.width));
+    }
+    if (lists.contains("edges")) print_kind("edges", errors.edges, "height");
+}
+
+/// `surefoot eval stairs`: compares detected terrain features with the true ones.
+int eval_stairs(const EvalStairsOptions& options) {
+    const auto found = read_features(options.found);
+    if (!found) return report(found.error());
+    const auto truth = read_features(options.truth);
+    if (!truth) return report(truth.error());
+    std::set<std::string> lists;
+    for (const std::string& list : truth->lists) {
+        if (found->lists.contains(list)) {
+            lists.insert(list);
+        } else {
+            log_warning(fmt::format(
+                "{}: has no list {}, which the truth has: not compared", options.found, list));
+        }
+    }
+    const eval::FeatureErrors errors =
+        eval::feature_errors(found->features, truth->features, options.match);
+    if (options.common.json) {
+        print_answer(feature_errors_json(errors, lists));
+    } else {
+        print_errors(errors, lists);
+    }
+    return kExitOk;
+}
+
+}  // namespace
+
+void add_eval_stairs(VerbGroup verbs) {
+    auto [verb, o] = verbs.add<EvalStairsOptions>(
+        "stairs",
+        "flights, drops, kerbs, sills, doors and edges against the true ones",
+        "surefoot stairs out/floor_recording/elevation.asc --out out/floor_truth\n"
+        "  surefoot eval stairs out/floor out/floor_truth --json",
+        eval_stairs,
+        Reads::no_settings);
+    verb.option("found", o.found, "stairs.json, or the folder of a run that holds it")
+        .required()
+        .value("FOUND");
+    verb.option("truth",
+                o.truth,
+                "the same in the same frame: of true heights (stairs), or written by hand "
+                "with the lists that are known")
+        .required()
+        .value("TRUTH");
+    verb.option("--across", o.match.across_m, "how far a match may lie off along the way over it")
+        .value("M")
+        .positive()
+        .show_default();
+    verb.option("--along", o.match.along_m, "how far to its side")
+        .value("M")
+        .positive()
+        .show_default();
+    verb.option("--turn", o.match.turn_deg, "how far turned")
+        .value("DEG")
+        .positive()
+        .show_default();
+}
+
+}  // namespace surefoot::app

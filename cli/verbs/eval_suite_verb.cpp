@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
+
+#include "cli/verbs/verbs.hpp"
+#include "service/console/interrupt.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
+#include "service/console/writes.hpp"
+#include "studies/lange2016/eval_thesis.hpp"
+#include "studies/suite/suite_json.hpp"
+#include "studies/suite/suite_options.hpp"
+#include "studies/suite/suite_plan.hpp"
+#include "studies/suite/suite_progress.hpp"
+#include "studies/suite/suite_report.hpp"
+#include "studies/suite/suite_rows.hpp"
+#include "studies/suite/suite_table.hpp"
+#include "surefoot/core/fnv1a.hpp"
+#include "surefoot/io/file.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// Largest distance at which the quick suite queries the gate. Half of its run time goes into these
+/// queries.
+constexpr double kQuickReach_m = 0.6;
+
+sim::CameraProfile profile_of(const std::string& name) {
+    const auto at =
+        std::find(std::begin(sim::kCameraProfileNames), std::end(sim::kCameraProfileNames), name);
+    return static_cast<sim::CameraProfile>(at - std::begin(sim::kCameraProfileNames));
+}
+
+Result<SuiteConditions> conditions_of(const EvalSuiteOptions& options) {
+    auto settings = load_settings(options.common);
+    if (!settings) return settings.error();
+    settings->sim.profile = profile_of(options.camera);
+    const auto machine = load_machine(options.machine);
+    if (!machine) return machine.error();
+    if (!*machine) return usage_error("--machine: a machine file or name is needed");
+    const double reach_m =
+        options.quick ? std::min(options.reach_m, kQuickReach_m) : options.reach_m;
+    return SuiteConditions{std::move(*settings), machine->value().machine, reach_m};
+}
+
+/// Hash of all conditions, apart from the case itself, that the figures of a case depend on.
+std::uint64_t conditions_hash(const EvalSuiteOptions& options, const SuiteConditions& conditions) {
+    return fnv1a(fmt::format("{} {}", options.machine, conditions.reach_m),
+                 hash_of(conditions.settings));
+}
+
+/// Runs the cases that the table lacks, one case per thread of the executor. A case that fails is
+/// logged and left out, and the others go on. After a failed write or an interrupt by the user no
+/// further case starts.
+class SuiteRun {
+  public:
+    SuiteRun(const SuiteConditions& conditions, SuiteTable& table)
+        : conditions_(conditions), table_(table) {}
+
+    [[nodiscard]] Status run(const std::vector<PlannedCase>& all, Executor& executor) {
+        std::vector<PlannedCase> missing;
+        std::int64_t frames = 0;
+        for (const PlannedCase& planned : all) {
+            if (table_.holds(planned.which)) continue;
+            missing.push_back(planned);
+            frames += planned.frames;
+        }
+        progress_.emplace(missing.size(), frames);
+        executor.parallel_for(static_cast<int>(missing.size()), [&](int index) {
+            run_one(missing[static_cast<std::size_t>(index)]);
+        });
+        progress_.reset();
+        return first_error_ ? Status(*first_error_) : Status();
+    }
+
+  private:
+    void run_one(const PlannedCase& planned) {
+        if (stopped_ || interrupted()) return;
+        const std::string name = planned.which.name();
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            progress_->started(name);
+        }
+        auto result = run_suite_case(planned.which, conditions_);
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (!result) {
+            fail(name, result.error());
+            return;
+        }
+        if (auto status = table_.add(std::move(*result)); !status) {
+            stopped_ = true;
+            fail(name, status.error());
+            return;
+        }
+        progress_->finished(name, planned.frames);
+    }
+
+    void fail(const std::string& name, const Error& error) {
+        if (error.code == ErrorCode::interrupted) {
+            stopped_ = true;
+            first_error_ = Error{error.code,
+                                 "interrupted by the user; the same call goes on where it stopped"};
+            return;
+        }
+        const Error named{error.code, fmt::format("{}: {}", name, error.message)};
+        if (first_error_) log_error(first_error_->message);  // the caller logs the last error
+        first_error_ = named;
+    }
+
+    const SuiteConditions& conditions_;
+    SuiteTable& table_;
+    std::mutex mutex_;
+    std::optional<SuiteProgress> progress_;
+    std::optional<Error> first_error_;
+    std::atomic<bool> stopped_{false};
+};
+
+void print_summary(std::span<const SuiteRow> rows) {
+    fmt::print("{:<24}{:>8}{:>6}{:>6}{:>10}{:>11}{:>9}{:>12}{:>8}{:>9}\n",
+               "scene",
+               "carrier",
+               "noise",
+               "cases",
+               "ATE mm",
+               "median mm",
+               "90 % mm",
+               "false safe",
+               "missed",
+               "allowed");
+    const auto& all = suite_figures();
+    for (const SuiteRow& row : rows) {
+        const auto worst = [&](std::string_view name) {
+            const auto at = std::find_if(
+                all.begin(), all.end(), [&](const SuiteFigure& f) { return name == f.name; });
+            return row.worst[static_cast<std::size_t>(at - all.begin())];
+        };
+        fmt::print("{:<24}{:>8}{:>6g}{:>6}{:>10.2f}{:>11.2f}{:>9.2f}{:>12.4f}{:>8g}{:>8.0f}%\n",
+                   row.scene,
+                   row.carrier,
+                   row.noise,
+                   row.cases,
+                   1e3 * worst("ate_rmse_m"),
+                   1e3 * worst("height_median_m"),
+                   1e3 * worst("height_p90_m"),
+                   worst("false_safe"),
+                   worst("missed_hazards"),
+                   100.0 * worst("allowed"));
+    }
+    fmt::print("(worst case of each row)\n");
+}
+
+/// `surefoot eval suite`: runs scenes x motion models x seeds x noise levels through the pipeline
+/// and compares the results with the truth.
+int eval_suite(const EvalSuiteOptions& options) {
+    if (options.thesis) return eval_thesis(options);
+    const auto conditions = conditions_of(options);
+    if (!conditions) return report(conditions.error());
+    const auto cases = plan_suite(options, conditions->settings);
+    if (!cases) return report(cases.error());
+    if (auto status = io::make_folder(options.out_dir); !status) return report(status.error());
+    auto table = SuiteTable::open(options.out_dir, conditions_hash(options, *conditions));
+    if (!table) return report(table.error());
+
+    watch_for_interrupts();
+    const auto executor = make_executor(options.common);
+    const Status done = SuiteRun(*conditions, *table).run(*cases, *executor);
+    const std::vector<SuiteResult> results = sorted(table->results());
+    Writes writes;
+    writes += io::write_file(options.out_dir + "/suite.json", suite_json(results) + "\n");
+    writes += io::write_file(options.out_dir + "/suite.html", suite_html(results, options.out_dir));
+    if (options.common.json) {
+        print_answer(suite_json(results));
+    } else {
+        print_summary(summarise(results));
+        if (writes.first())
+            fmt::print("{} cases in {}/suite.html\n", results.size(), options.out_dir);
+    }
+    if (!writes.first()) log_error(writes.first().error().message);
+    if (!done) return report(done.error());
+    return writes.first() ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+void add_eval_suite(VerbGroup verbs) {
+    auto [suite, s] = verbs.add<EvalSuiteOptions>(
+        "suite",
+        "scenes x carriers x seeds x noise through the whole chain against the truth; "
+        "--threads cases at a time",
+        "surefoot eval suite --quick --scenes floor --noise 1 --out out/suite",
+        eval_suite);
+    suite
+        .option("--out",
+                s.out_dir,
+                "folder for suite.html, suite.json, cases.csv; a suite that was stopped goes "
+                "on where it was")
+        .required()
+        .value("DIR");
+    suite.flag("--quick", s.quick, "a few short scenes, for every change of the code");
+    const Option thesis = suite.flag(
+        "--thesis",
+        s.thesis,
+        "instead: the experiments of the reference thesis on its rebuilt places, with its values "
+        "beside ours: thesis.html, thesis.json, thesis.csv");
+    suite.option("--runs", s.runs, "of --thesis, separated by commas; default all")
+        .separated_by_commas()
+        .value("NAMES")
+        .needs(thesis);
+    suite.option("--scenes", s.scenes, "names or scene files, separated by commas; default all")
+        .separated_by_commas()
+        .value("NAMES");
+    suite
+        .option("--carriers",
+                s.carriers,
+                "who goes each scene's way: scene = as its file says; a way that a carrier "
+                "cannot go is named and left out")
+        .separated_by_commas()
+        .one_of({"scene", "trolley", "rex", "hand"})
+        .value("NAMES");
+    suite.option("--camera", s.camera, "whose noise: nominal is what the real ZED showed")
+        .one_of({"ideal", "zed", "euroc"});
+    suite.option("--seeds", s.seeds, "variants of each scene, from --seed on").in(1, 100000);
+    suite.option("--noise", s.noise, "factors on the noise amplitude, separated by commas")
+        .separated_by_commas()
+        .in(0.0, 10.0)
+        .value("FACTORS");
+    suite.option("--frames", s.frames, "stop each case after this many frames").positive();
+    suite
+        .option(
+            "--reach", s.reach_m, "how far around the last pose the gate is asked; 0 = only there")
+        .value("M")
+        .in(0.0, 2.0);
+    suite.option("--machine", s.machine, "machine file or built-in name").value("FILE|NAME");
+}
+
+}  // namespace surefoot::app

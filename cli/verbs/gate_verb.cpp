@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cli/json/verdict_answers.hpp"
+#include "cli/verbs/verbs.hpp"
+#include "service/console/log.hpp"
+#include "service/console/numbers.hpp"
+#include "service/console/source.hpp"
+#include "service/gate_process/audit/audit_log.hpp"
+#include "service/live/explain.hpp"
+#include "studies/runs/offline_map.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/gate/verdict_text.hpp"
+#include "surefoot/io/text.hpp"
+
+namespace surefoot::app {
+namespace {
+
+struct GateOptions {
+    CommonOptions common;
+    std::string map_dir;
+    std::string pose;     ///< base_link in odom: "x,y,yaw" [m, rad]
+    std::string command;  ///< a joystick code
+    std::string machine = "rex";
+    std::string explain_file;
+    /// Attested area around base_link; < 0 = as far as the standing feet reach.
+    double vouch_radius_m = -1.0;
+    std::string audit_dir;  ///< audit log to which the verdict is added; empty = no log
+};
+
+int exit_code_of(gate::Decision decision) {
+    switch (decision) {
+        case gate::Decision::ok: return kExitOk;
+        case gate::Decision::not_traversable: return kExitNotTraversable;
+        case gate::Decision::error: return kExitGateError;
+    }
+    return kExitGateError;
+}
+
+/// Answers a query without a usable map: the verdict is ERROR, with the reason in words.
+int refuse(const GateOptions& options, std::uint8_t command, const Error& error) {
+    log_error(error.message);
+    gate::Verdict verdict;
+    verdict.command = command;
+    if (options.common.json) print_answer(verdict_json(verdict, error.message, {}));
+    return kExitGateError;
+}
+
+/// Adds the verdict to an audit log, as the gate process does.
+Status write_audit(const std::string& folder,
+                   const Machine& machine,
+                   const gate::Query& query,
+                   const grid::MapSnapshot& map,
+                   const gate::Verdict& verdict) {
+    wire::AuditConfig config;
+    config.files.run_id = wire::new_run_id();
+    wire::AuditLog log(machine, wire::make_folder_disk(folder), config);
+    if (auto status = log.start(); !status) return status;
+    const OfflineMoment moment = moment_of(map);
+    log.push({query, moment.health, moment.now_ns, map, verdict});
+    log.stop();
+    const wire::AuditReport done = log.report();
+    if (done.written == 1 && !done.failing) return {};
+    return output_error("the verdict is not in the audit log: " + done.last_error);
+}
+
+/// The configured movements of a machine as text, for example "9 N, 25 left".
+std::string movements_of(const Machine& machine) {
+    std::string text;
+    for (std::size_t code = 0; code < machine.movements.size(); ++code) {
+        const Movement& movement = machine.movements[code];
+        if (!movement.configured) continue;
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", code, movement.name.data());
+    }
+    return text;
+}
+
+Result<std::uint8_t> parse_command(const std::string& text, const Machine& machine) {
+    const auto code = io::parse_int64(text);
+    if (code && *code >= 0 && *code <= 255) return static_cast<std::uint8_t>(*code);
+    return usage_error(
+        fmt::format("--command '{}': a whole number from 0 to 255 is needed, the code of a "
+                    "joystick sector (1-24) or turn; this machine has {}",
+                    text,
+                    movements_of(machine)));
+}
+
+/// `surefoot gate`: asks the gate about one movement on a saved map. The exit code is the verdict.
+int gate(const GateOptions& options) {
+    const auto pose = parse_three_numbers("--pose", options.pose, "x,y,yaw (m, m, rad)");
+    if (!pose) return report(pose.error());
+    const auto machine = load_machine(options.machine);
+    if (!machine) return report(machine.error());
+    if (!*machine) return report(usage_error("--machine: a machine file or name is needed"));
+    const auto command = parse_command(options.command, machine->value().machine);
+    if (!command) return report(command.error());
+    auto map = load_offline_map(options.map_dir);
+    if (!map) return refuse(options, *command, map.error());
+
+    gate::Query query = gate::make_query(
+        *command, (*pose)[0], (*pose)[1], std::cos((*pose)[2]), std::sin((*pose)[2]));
+    std::vector<std::string> assumed = map->assumed;
+    assumed.push_back("frame and pose are as fresh as when the map was written");
+    assumed.push_back("perception was ready");
+    for (const io::Deviation& deviation : machine->value().deviations)
+        assumed.push_back("the machine file goes beyond a rated limit: " + io::text_of(deviation));
+    if (options.vouch_radius_m != 0.0) {
+        const auto vouched = vouch_for_start(
+            machine->value().machine, query, *map->snapshot, options.vouch_radius_m, assumed);
+        if (!vouched) return report(vouched.error());
+        query.vouched = *vouched;
+    }
+    const Machine& m = machine->value().machine;
+    const gate::Verdict verdict = decide_offline(m, query, *map->snapshot);
+    const std::string text = gate::text_of(verdict, query, m);
+
+    if (options.common.json) {
+        print_answer(verdict_json(verdict, text, assumed));
+    } else {
+        fmt::print("{}: {}\n", to_string(verdict.decision), text);
+    }
+    if (!options.explain_file.empty()) {
+        const auto status =
+            write_explanation(options.explain_file, m, query, *map->snapshot, verdict, text);
+        if (!status)
+            log_error(status.error().message);  // a missing picture does not change the verdict
+    }
+    if (!options.audit_dir.empty()) {
+        const auto status = write_audit(options.audit_dir, m, query, *map->snapshot, verdict);
+        if (!status) log_error(status.error().message);  // nor does a failed log
+    }
+    return exit_code_of(verdict.decision);
+}
+
+}  // namespace
+
+void add_gate(VerbGroup verbs) {
+    auto [verb, o] = verbs.add<GateOptions>(
+        "gate",
+        "one verdict: may this step be taken? exit 0 OK, 3 NOT_TRAVERSABLE, 4 ERROR; 2 "
+        "wrong call, 1 internal error: no permission either",
+        "surefoot gate --map out/floor --pose 0,0,0 --command 9\n"
+        "  surefoot gate --map out/floor --pose 0,0,0 --command 25 --audit out/audit",
+        gate,
+        Reads::no_settings);
+    verb.option("--map", o.map_dir, "folder of a run").required().value("DIR");
+    verb.option("--pose", o.pose, "base_link in odom: metres and radians")
+        .required()
+        .value("X,Y,YAW");
+    verb.option("--command", o.command, "joystick sector 1-24, 25 turn left, 26 turn right")
+        .required()
+        .value("N");
+    verb.option("--machine", o.machine, "machine file or built-in name").value("FILE|NAME");
+    verb.option("--explain", o.explain_file, "picture of footprint, corridor and deciding cell")
+        .value("F.png");
+    verb.option(
+            "--vouch",
+            o.vouch_radius_m,
+            "radius around base_link that an operator answers for where nothing was measured; 0 = "
+            "none; without it a disc that reaches to the ends of the present feet is assumed, and "
+            "listed in 'assumed'")
+        .value("M")
+        .in(0.0, 2.0);
+    verb.option("--audit",
+                o.audit_dir,
+                "audit log that the verdict is added to, with all that it was made from")
+        .value("DIR");
+}
+
+}  // namespace surefoot::app

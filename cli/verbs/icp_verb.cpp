@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cli/json/cloud_json.hpp"
+#include "cli/verbs/verbs.hpp"
+#include "service/console/log.hpp"
+#include "service/console/option_settings.hpp"
+#include "surefoot/geometry/cloud_alignment.hpp"
+#include "surefoot/io/clouds/cloud_stream.hpp"
+#include "surefoot/io/clouds/cloud_writer.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/io/text.hpp"
+
+namespace surefoot::app {
+namespace {
+
+struct IcpOptions {
+    CommonOptions common;
+    std::string reference;
+    std::string moved;
+    std::string guess;        ///< file with a 4x4 matrix, or "x,y,z,yaw" [m, deg]; empty = identity
+    double kept_share = 1.0;  ///< share of the pairs that count, nearest first
+    double reach_m = 0.0;     ///< pairs farther apart do not count; 0 = all count
+    int most_points = 100000;     ///< points of the moved cloud that are used
+    bool surfaces_alone = false;  ///< keep the guess along directions that no surface constrains
+    std::string out_file;         ///< the aligned cloud; empty = not written
+    std::string transform_file;   ///< 4x4 matrix as text; empty = not written
+};
+
+std::vector<double> numbers_of(const std::string& text) {
+    std::vector<double> numbers;
+    for (const std::string_view word : io::split(text, " \t\r\n,;")) {
+        const auto value = io::parse_double(word);
+        if (!value || !std::isfinite(*value)) return {};
+        numbers.push_back(*value);
+    }
+    return numbers;
+}
+
+/// Initial pose of the moved cloud: a file with a 4x4 matrix, or x,y,z,yaw (metres, degrees).
+Result<Pose> parse_guess(const std::string& guess) {
+    if (guess.empty()) return Pose{};
+    if (!io::is_file(guess)) {
+        const std::vector<double> n = numbers_of(guess);
+        if (n.size() == 4) {
+            constexpr double kRadPerDeg = M_PI / 180.0;
+            return Pose{exp_so3({0.0, 0.0, kRadPerDeg * n[3]}), {n[0], n[1], n[2]}};
+        }
+        return usage_error(
+            fmt::format("--guess {}: neither a file nor x,y,z,yaw (metres and degrees)", guess));
+    }
+    const auto text = io::read_file(guess, io::limits::kSettingsBytes);
+    if (!text) return text.error();
+    const std::vector<double> n = numbers_of(*text);
+    if (n.size() != 16 && n.size() != 12) {
+        return usage_error(
+            fmt::format("{}: expected the 16 numbers of a 4x4 matrix, row by row", guess));
+    }
+    Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+    for (std::size_t i = 0; i < 12; ++i) {
+        T(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = n[i];
+    }
+    const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+    constexpr double kRigid = 1e-3;
+    if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > kRigid ||
+        R.determinant() < 0.0) {
+        return usage_error(fmt::format("{}: the matrix does not turn and move alone", guess));
+    }
+    return Pose::from_matrix(T);
+}
+
+/// Expresses the motion T in coordinates whose origin is `shift_m`; with -shift_m it converts back.
+Pose shifted(const Pose& T, const Eigen::Vector3d& shift_m) {
+    return {T.rotation, T.translation_m + T.rotation * shift_m - shift_m};
+}
+
+Status write_moved(const std::string& from, const std::string& to, const Pose& T, bool wide) {
+    auto stream = io::CloudStream::open(from);
+    if (!stream) return stream.error();
+    auto writer = io::CloudWriter::create(to, {true, wide});
+    if (!writer) return writer.error();
+    const auto status = stream->each_block([&](io::PointCloud& block) {
+        for (Eigen::Vector3d& p_m : block.points_m) p_m = T * p_m;
+        return writer->add(block);
+    });
+    return status ? writer->finish() : status;
+}
+
+std::string matrix_text(const Pose& T) {
+    const Eigen::Matrix4d m = T.matrix();
+    std::string text;
+    for (int row = 0; row < 4; ++row) {
+        text += fmt::format("{} {} {} {}\n", m(row, 0), m(row, 1), m(row, 2), m(row, 3));
+    }
+    return text;
+}
+
+/// Warns why the alignment did not converge, and what to do.
+void tell_outcome(const geometry::CloudAlignment& found) {
+    using geometry::AlignmentOutcome;
+    switch (found.outcome) {
+        case AlignmentOutcome::converged: return;
+        case AlignmentOutcome::no_pairs:
+            log_warning(
+                "no pair of points counts: is the guess near enough, and --reach large enough?");
+            return;
+        case AlignmentOutcome::too_few_points:
+            log_warning(
+                "too few points: an alignment needs at least 36 points of the reference that lie "
+                "on "
+                "surfaces and are paired, so that the others contradict a wrong one; give denser "
+                "clouds, or a larger --reach");
+            return;
+        case AlignmentOutcome::no_overlap:
+            log_warning(fmt::format(
+                "the clouds do not overlap: {:.1f} % of the moved points lie where the reference "
+                "has points, at least 5 % must; give --guess, and check the units of both files",
+                100.0 * found.overlap));
+            return;
+        case AlignmentOutcome::not_settled:
+            log_warning(fmt::format("not converged in {} iterations: give a better --guess",
+                                    found.steps.size()));
+            return;
+    }
+}
+
+/// Warns of directions that the surfaces do not determine.
+void warn(const geometry::CloudAlignment& found) {
+    tell_outcome(found);
+    if (found.free_directions > 0 && found.free_directions < 6) {
+        log_warning(fmt::format(
+            "{} of 6 directions are held by nothing in the clouds: there the guess stays as it was",
+            found.free_directions));
+    }
+    if (found.edge_directions > 0) {
+        log_info(fmt::format(
+            "{} of 6 directions are held by edges that end between two points: sigma is that of "
+            "the spacing of the points",
+            found.edge_directions));
+    }
+    if (found.border_directions > 0) {
+        log_info(
+            fmt::format("{} of 6 directions are held by no surface, but by where both clouds end",
+                        found.border_directions));
+    }
+}
+
+/// `surefoot icp`: aligns a cloud with a reference cloud. Exit code 1 if it does not converge.
+int icp(const IcpOptions& options) {
+    const auto guess = parse_guess(options.guess);
+    if (!guess) return report(guess.error());
+    auto reference = io::read_shifted(options.reference);
+    if (!reference) return report(reference.error());
+    const Eigen::Vector3d shift_m = reference->shift_m;
+    auto moved = io::read_shifted(options.moved, shift_m);
+    if (!moved) return report(moved.error());
+    const auto executor = make_executor(options.common);
+    geometry::AlignmentConfig config;
+    config.kept_share = options.kept_share;
+    config.reach_m = options.reach_m;
+    config.most_points = options.most_points;
+    config.borders = !options.surfaces_alone;
+    geometry::CloudAlignment found =
+        geometry::align_clouds(geometry::KdTree(std::move(reference->points_m), *executor),
+                               moved->points_m,
+                               shifted(*guess, shift_m),
+                               config,
+                               *executor);
+    found.T_reference_moved = shifted(found.T_reference_moved, -shift_m);
+    warn(found);
+    if (!options.transform_file.empty()) {
+        const auto status =
+            io::write_file(options.transform_file, matrix_text(found.T_reference_moved));
+        if (!status) return report(status.error());
+    }
+    if (!options.out_file.empty()) {
+        const auto status = write_moved(
+            options.moved, options.out_file, found.T_reference_moved, !shift_m.isZero());
+        if (!status) return report(status.error());
+    }
+    if (options.common.json) {
+        print_answer(icp_json(found, shift_m));
+    } else {
+        fmt::print("{}", matrix_text(found.T_reference_moved));
+        const geometry::AlignmentStep& last = found.steps.back();
+        fmt::print(
+            "after {} iterations: {} pairs, {:.2f} mm across the surface (rms), {:.2f} mm to the "
+            "nearest point; {}\n",
+            found.steps.size(),
+            last.pairs,
+            1e3 * last.rms_m,
+            1e3 * last.nearest_rms_m,
+            found.converged() ? fmt::format("place and turn to {:.2f} mm and {:.4f} deg",
+                                            1e3 * found.sigma_m,
+                                            found.sigma_rad * 180.0 / M_PI)
+                              : "this is no answer");
+        tell_shift(shift_m);
+    }
+    return found.converged() ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+void add_icp(VerbGroup verbs) {
+    auto [verb, o] =
+        verbs.add<IcpOptions>("icp",
+                              "lays a cloud onto another, to the reference's surfaces; exit 1 "
+                              "where it does not converge",
+                              "surefoot icp out/stairs.ply out/stairs_10mm.ply --guess "
+                              "0.02,0,0.01,0.5 --reach 0.2 --out out/stairs_aligned.ply",
+                              icp,
+                              Reads::no_settings);
+    verb.option("reference", o.reference, "stays where it is").required().value("REFERENCE");
+    verb.option("moved", o.moved, "is laid onto it").required().value("MOVED");
+    verb.option("--guess",
+                o.guess,
+                "where the moved cloud is by eye: a file with the 4x4 matrix to the "
+                "reference, or metres and degrees (default: where it is)")
+        .value("FILE|X,Y,Z,YAW");
+    verb.option("--trim",
+                o.kept_share,
+                "share of the pairs that counts, nearest first; below 1 where the clouds do "
+                "not cover each other (default 1)")
+        .value("SHARE")
+        .in(0.01, 1.0);
+    verb.option("--reach", o.reach_m, "pairs farther apart do not count (default: all do)")
+        .value("M")
+        .positive();
+    verb.option("--points",
+                o.most_points,
+                "of the moved cloud that are used, taken evenly (default 100000)")
+        .value("N")
+        .in(100, 100000000);
+    verb.flag("--surfaces-alone",
+              o.surfaces_alone,
+              "where no surface holds a direction, leave the guess: do not look at where both "
+              "clouds end");
+    verb.option("--out", o.out_file, "the moved cloud in its new place: PLY, PCD or XYZ")
+        .value("F.ply");
+    verb.option("--transform", o.transform_file, "the 4x4 matrix as text").value("F.txt");
+}
+
+}  // namespace surefoot::app

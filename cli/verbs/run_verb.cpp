@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/verbs/verbs.hpp"
+#include "service/console/log.hpp"
+#include "service/console/source.hpp"
+#include "service/console/writes.hpp"
+#include "studies/runs/map_layers.hpp"
+#include "studies/runs/place_session.hpp"
+#include "studies/runs/run_json.hpp"
+#include "studies/runs/run_options.hpp"
+#include "studies/runs/run_output.hpp"
+#include "studies/runs/run_session.hpp"
+#include "surefoot/io/file.hpp"
+#include "surefoot/perception/fit_settings.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// `surefoot run`: processes a recording, video, live camera or simulated scene with the whole
+/// pipeline and writes the results.
+int run(const RunOptions& options) {
+    auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
+    const auto machine = load_machine(options.machine);
+    if (!machine) return report(machine.error());
+    const auto executor = make_executor(options.common);
+    auto source = open_source({options.source,
+                               options.rig_file,
+                               options.rate_hz,
+                               options.max_frames,
+                               options.common.seed,
+                               settings->sim,
+                               settings->live,
+                               options.imu_file,
+                               0,
+                               options.reading},
+                              *executor);
+    if (!source) return report(source.error());
+    const camera::StereoRig rig = mounted_rig((*source)->rig(), *machine);
+    fit_settings(rig, *machine, *settings);
+    auto pipeline = pipeline::Pipeline::make(settings->pipeline, rig, *executor, steady_now_ns);
+    if (!pipeline) return report(pipeline.error());
+    std::optional<PlaceSession> place;
+    if (!options.place.empty()) {
+        auto opened = PlaceSession::open(options.place);
+        if (!opened) return report(opened.error());
+        place.emplace(std::move(opened).value());
+    }
+    if (const auto status = io::make_folder(options.out_dir); !status)
+        return report(status.error());
+
+    // Remove results of an earlier run, so that nobody, above all the gate, takes them for results
+    // of this run.
+    std::vector<std::string> names{
+        "map.snapshot", "ground.asc", "stairs.json", "treads.asc", "report.json", "layers.png"};
+    for (const char* layer : kLayerNames) names.push_back(fmt::format("{}.asc", layer));
+    for (const std::string& name : names) {
+        if (auto status = io::remove_file(io::join_path(options.out_dir, name)); !status) {
+            return report(status.error());
+        }
+    }
+    if (io::is_file(options.save_map)) {
+        if (auto status = io::remove_file(options.save_map); !status) return report(status.error());
+    }
+    RunSession session(*pipeline, **source, rig, options.depth_every, settings->maps);
+    session.drive("run", [&](const FrameReport& frame) {
+        if (place) place->after_frame(frame, *pipeline);
+    });
+    Writes writes;
+    if (place) {
+        writes += place->save();
+        session.record().place = place->record();
+    }
+    const RunRecord& record = session.record();
+
+    writes += write_results(options, *settings, *machine, *pipeline, record);
+    const Status written = writes.first();
+    if (options.common.json) {
+        print_answer(run_json(record, *pipeline, written));
+    } else {
+        fmt::print("{}", run_summary(record, *pipeline));
+        if (written) fmt::print("results in {0}/, start with {0}/report.html\n", options.out_dir);
+    }
+    // The run and the writing may both have failed. Each error is reported once; the error of the
+    // run decides the exit code.
+    if (!written) {
+        log_error(fmt::format("{}; {} holds only a part of the results: make room and run again",
+                              written.error().message,
+                              options.out_dir));
+    }
+    if (!record.complete()) return report(*record.error);
+    return written ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+void add_run(VerbGroup verbs) {
+    auto [verb, o] =
+        verbs.add<RunOptions>("run",
+                              "the whole chain over a recording, video or simulated scene",
+                              "surefoot run sim:floor --max-frames 8 --out out/floor\n"
+                              "  surefoot run sim:floor --max-frames 8 --set "
+                              "sim.sensor=analytic --out out/modelled --save-map "
+                              "out/modelled/floor.region",
+                              run);
+    verb.option("source",
+                o.source,
+                "EuRoC or KITTI folder, side-by-side folder or video, TUM RGB-D, sim:SCENE, "
+                "v4l2:DEVICE[@WIDTHxHEIGHT[@RATE]]")
+        .required()
+        .value("SOURCE");
+    verb.option("--out", o.out_dir, "folder for the results").required().value("DIR");
+    verb.option("--rig", o.rig_file, "calibration that replaces the recording's own").value("FILE");
+    verb.option("--imu",
+                o.imu_file,
+                "EuRoC imu csv, or a FIFO of such rows; stamps as those of the frames "
+                "(CLOCK_MONOTONIC of a live camera)")
+        .value("FILE");
+    verb.option("--machine", o.machine, "machine file or built-in name; sets the camera mount")
+        .value("FILE|NAME");
+    verb.option("--rate", o.rate_hz, "frame rate of a source without stamps")
+        .value("HZ")
+        .in(0.01, 1000.0);
+    verb.option("--max-frames", o.max_frames, "stop after this many frames").positive();
+    add_reading(verb, o.reading);
+    add_skip_broken(verb, o.reading);
+    verb.option("--depth-every",
+                o.depth_every,
+                "depth and map on every n-th frame; odometry runs on all")
+        .in(1, 1000);
+    verb.flag("--layers", o.all_layers, "write every layer of the map");
+    verb.option("--save-map",
+                o.save_map,
+                "file for the map as it is at the end, to merge and export with 'map'")
+        .value("F.region");
+    verb.option("--place",
+                o.place,
+                "file that remembers a place: recognised, extended and written again; begun "
+                "where there is none")
+        .value("F.place");
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace surefoot::app {
+
+/// Exit codes of every verb. `gate` returns kExitUsage for a wrong command line only.
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitUsage = 2;
+/// Verdicts of `gate` that do not allow the step. Each has a nonzero exit code, so that `surefoot
+/// gate ... && step` cannot fail open.
+inline constexpr int kExitNotTraversable = 3;
+inline constexpr int kExitGateError = 4;
+
+/// Options that every verb understands.
+struct CommonOptions {
+    std::string config_file;
+    std::vector<std::string> settings;  ///< key=value
+    std::string preset;
+    bool json = false;
+    int threads = 0;  ///< 0 = as many as the machine has cores
+    std::uint64_t seed = 1;
+};
+
+/// How to read recordings that Surefoot did not write. Empty = the default of the reader.
+struct ReadingOptions {
+    std::optional<double> pair_tolerance_s;   ///< largest time between the two images of a frame
+    std::optional<double> depth_codes_per_m;  ///< RGB-D: depth image value of 1 m
+    std::optional<int> image_bits;            ///< 16-bit images: bits of the largest value
+    bool skip_broken = false;                 ///< skip and count frames that cannot be read
+};
+
+}  // namespace surefoot::app

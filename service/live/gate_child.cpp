@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "service/live/gate_child.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <filesystem>
+#include <tuple>
+#include <utility>
+
+namespace surefoot::app {
+namespace {
+
+constexpr std::int64_t kRestartEvery_ns = 500'000'000;
+
+/// Path of surefoot-gate, which lies in the folder of this program.
+Result<std::string> find_program() {
+    std::error_code error;
+    const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+    const auto gate = self.parent_path() / "surefoot-gate";
+    if (::access(gate.c_str(), X_OK) == 0) return gate.string();
+    return input_error("the program surefoot-gate is not beside " + self.string());
+}
+
+/// Longest silence while the gate starts. If it writes nothing for this time, the start has failed.
+constexpr int kStart_ms = 20'000;
+
+/// First line that the gate writes. It may be incomplete if the gate closed the pipe or the wait
+/// ran out.
+std::string first_line(int file) {
+    std::string line;
+    char byte = 0;
+    while (line.size() < 4096) {
+        pollfd wait{file, POLLIN, 0};
+        const int ready = ::poll(&wait, 1, kStart_ms);
+        if (ready < 0 && errno == EINTR) continue;
+        if (ready <= 0) break;
+        const ssize_t got = ::read(file, &byte, 1);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0 || byte == '\n') break;
+        line += byte;
+    }
+    return line;
+}
+
+/// "listening on ws://127.0.0.1:9090" -> 9090; 0 for any other text.
+std::uint16_t port_of(const std::string& line) {
+    const auto colon = line.rfind(':');
+    std::uint16_t port = 0;
+    if (line.starts_with("listening on ") && colon != std::string::npos)
+        std::from_chars(line.data() + colon + 1, line.data() + line.size(), port);
+    return port;
+}
+
+/// Runs in the forked child until it executes the gate; uses only calls that are safe after a fork.
+[[noreturn]] void become_gate(
+    const char* program, char* const* words, int output, int line, pid_t parent) {
+    ::dup2(output, STDOUT_FILENO);
+    ::fcntl(line, F_SETFD, 0);  // keep it open across execv
+    // A session of its own: Linux shares the processor among sessions before it compares nice
+    // values, so load from perception must not delay the gate. Ctrl-C then reaches only serve.
+    ::setsid();
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() == parent) ::execv(program, words);
+    ::_exit(127);
+}
+
+}  // namespace
+
+Result<GateChild> GateChild::start(Start how) {
+    auto program = find_program();
+    if (!program) return program.error();
+    GateChild child;
+    child.program_ = std::move(program).value();
+    child.how_ = std::move(how);
+    std::vector<std::string> first = child.how_.arguments;
+    first.insert(first.end(), child.how_.first_arguments.begin(), child.how_.first_arguments.end());
+    if (auto launched = child.launch(std::move(first)); !launched) return launched.error();
+    return child;
+}
+
+GateChild::GateChild(GateChild&& other) noexcept
+    : program_(std::move(other.program_)),
+      how_(std::move(other.how_)),
+      process_(std::exchange(other.process_, -1)),
+      line_(std::exchange(other.line_, -1)),
+      port_(other.port_),
+      restarts_(other.restarts_),
+      next_start_ns_(other.next_start_ns_) {}
+
+GateChild::~GateChild() {
+    if (process_ > 0) {
+        ::kill(process_, SIGTERM);
+        ::waitpid(process_, nullptr, 0);
+    }
+    hang_up();
+}
+
+void GateChild::hang_up() noexcept {
+    if (line_ >= 0) ::close(line_);
+    line_ = -1;
+}
+
+Status GateChild::launch(std::vector<std::string> arguments) {
+    hang_up();
+    int output[2];
+    // A socket pair, because another process of this user could open a pipe in /proc and read the
+    // key.
+    int line[2];
+    if (::pipe2(output, O_CLOEXEC) != 0)
+        return input_error("the gate process cannot be started: no pipe");
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line) != 0) {
+        ::close(output[0]);
+        ::close(output[1]);
+        return input_error("the gate process cannot be started: no socket pair");
+    }
+    arguments.insert(arguments.end(), {"--parent-fd", std::to_string(line[1])});
+    std::vector<char*> words{program_.data()};
+    for (std::string& word : arguments) words.push_back(word.data());
+    words.push_back(nullptr);
+    const std::string key = wire::bytes_of(how_.key);
+    std::ignore = ::send(line[0], key.data(), key.size(), MSG_NOSIGNAL);
+    const pid_t parent = ::getpid();
+    process_ = ::fork();
+    if (process_ == 0) become_gate(program_.c_str(), words.data(), output[1], line[1], parent);
+    ::close(output[1]);
+    ::close(line[1]);
+    line_ = line[0];
+    const std::string said = process_ > 0 ? first_line(output[0]) : "";
+    ::close(output[0]);
+    port_ = port_of(said);
+    if (port_ != 0) return {};
+    if (process_ > 0) {
+        ::kill(process_, SIGKILL);  // it may hang
+        ::waitpid(process_, nullptr, 0);
+    }
+    process_ = -1;
+    hang_up();
+    return input_error("the gate process did not start (its reason is above): " + program_);
+}
+
+Result<bool> GateChild::watch(std::int64_t now_ns) {
+    if (process_ > 0) {
+        if (::waitpid(process_, nullptr, WNOHANG) != process_) return false;
+        process_ = -1;
+    }
+    if (now_ns < next_start_ns_) return false;
+    next_start_ns_ = now_ns + kRestartEvery_ns;
+    if (auto launched = launch(how_.arguments); !launched)
+        return launched.error();  // the next call retries
+    ++restarts_;
+    return true;
+}
+
+}  // namespace surefoot::app

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "service/console/option_settings.hpp"
+#include "service/gate_process/channel/snapshot_channel.hpp"
+#include "service/live/eyes_check.hpp"
+#include "surefoot/camera/frame_source.hpp"
+#include "surefoot/core/frame.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/pipeline/pipeline.hpp"
+
+namespace surefoot::app {
+
+/// Maps the stamps of the last 64 frames to the steady clock, with which the gate measures ages.
+/// A live camera stamps its frames with that clock. The stamps of a recording or a simulation come
+/// from another clock, so the arrival time is used for them.
+class Arrivals {
+  public:
+    void note(std::int64_t stamp_ns, std::int64_t steady_ns) noexcept;
+    /// Steady time of the frame with this stamp; 0 (older than every frame) if it is not among the
+    /// last ones.
+    [[nodiscard]] std::int64_t steady_ns(std::int64_t stamp_ns) const noexcept;
+
+  private:
+    struct Arrival {
+        std::int64_t stamp_ns = 0;
+        std::int64_t steady_ns = 0;
+    };
+    std::array<Arrival, 64> last_{};
+    std::size_t next_ = 0;
+};
+
+/// Runs a pipeline over a source and publishes a map snapshot after every frame.
+///
+/// It ends when the source ends, the user interrupts, or the gate requests a restart. Swapped
+/// cameras are an error. It keeps references to pipeline, source and writer, which must outlive it.
+/// Not thread-safe.
+class LiveSession {
+  public:
+    /// Called before each frame is fetched from the source; false ends the session.
+    using BeforeFrame = std::function<bool()>;
+    /// Called after the snapshot of a frame is published. `map_time_ns`: stamp of the last frame
+    /// that updated the map, on the clock of the source.
+    using AfterFrame = std::function<void(const FrameReport& report, std::int64_t map_time_ns)>;
+    /// Returns the steady time [ns]; tests and experiments pass their own clock.
+    using SteadyClock = std::function<std::int64_t()>;
+
+    LiveSession(pipeline::Pipeline& pipeline,
+                camera::FrameSource& source,
+                wire::SnapshotWriter& writer,
+                std::uint64_t config_hash,
+                SteadyClock clock = steady_now_ns);
+
+    enum class End : std::uint8_t { source_ended, stopped, restart_wanted };
+    /// `speed`: upper limit of the playback speed as a multiple of real time; 0 = no limit. Frames
+    /// of a live camera are never delayed.
+    [[nodiscard]] Result<End> run(double speed,
+                                  const BeforeFrame& before_frame,
+                                  const AfterFrame& after_frame = {});
+    /// Changes the playback speed from the next frame on.
+    void pace(double speed) noexcept;
+    /// The last published snapshot.
+    [[nodiscard]] const grid::MapSnapshot& last() const noexcept { return *snapshot_; }
+    [[nodiscard]] std::uint64_t published() const noexcept { return published_; }
+
+  private:
+    [[nodiscard]] std::optional<StereoFrame> next();
+    void wait_for(std::int64_t stamp_ns);
+    [[nodiscard]] std::int64_t exposed_ns(std::int64_t stamp_ns) const;
+    [[nodiscard]] Result<std::int64_t> publish();
+
+    pipeline::Pipeline& pipeline_;
+    camera::FrameSource& source_;
+    wire::SnapshotWriter& writer_;
+    std::uint64_t config_hash_;
+    SteadyClock clock_;
+    EyesCheck eyes_;
+    std::unique_ptr<grid::MapSnapshot> snapshot_;
+    Arrivals arrivals_;
+    double speed_ = 0.0;
+    std::int64_t first_stamp_ns_ = 0;
+    std::int64_t first_steady_ns_ = 0;
+    std::uint64_t published_ = 0;
+    BeforeFrame before_frame_;
+    std::optional<Error> error_;
+    std::optional<End> end_;
+};
+
+}  // namespace surefoot::app

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/console/options.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/result.hpp"
+
+namespace surefoot::app {
+
+/// Durations of repeated calls of the same work.
+struct Timing {
+    double median_ms = 0.0;  ///< wall clock
+    double p99_ms = 0.0;     ///< wall clock
+    /// Least processor time that the process used in one call. Other load on the machine changes
+    /// this figure least, so compare runs by it.
+    std::optional<double> least_cpu_ms = {};
+    /// Median processor time. Use it where calls do different work, as with frames.
+    std::optional<double> median_cpu_ms = {};
+};
+
+/// One line of `surefoot bench`.
+struct BenchResult {
+    std::string name;
+    Timing ours;
+    /// The same work in the same run, done by OpenCV or (terrain) by a plain implementation.
+    std::optional<Timing> peer = {};
+};
+
+/// Processor time that all threads of this process have used [ns].
+[[nodiscard]] std::int64_t cpu_now_ns();
+
+/// Calls `work` once to warm up, then times `repeats` calls. `before` runs before each timed call
+/// and is not timed.
+[[nodiscard]] Timing timed(int repeats,
+                           const std::function<void()>& work,
+                           const std::function<void()>& before = {});
+/// Times one call, without a warm-up.
+[[nodiscard]] Timing timed_once(const std::function<void()>& work);
+
+/// Times the gate's verdicts on level ground for all movements: the first verdict of the process,
+/// verdicts with warm caches, with cold caches, and on a map with the largest allowed drift. Also
+/// times the push of one verdict into the audit log.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_gate(const CommonOptions& common,
+                                                          Executor& executor);
+
+/// Times the odometry on frames of a moving camera of 752x480 pixels.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_odometry(const CommonOptions& common,
+                                                              Executor& executor);
+
+/// Times the recognition of one view, description included, in a place database that holds the
+/// largest allowed number of keyframes. The views come from corridors in the database and from
+/// similar corridors that are not in it.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_places(const CommonOptions& common,
+                                                            Executor& executor);
+
+/// Times stereo matching beside OpenCV's. With more than one thread it also times two matchers at
+/// once: this is the upper bound of the gain from two threads.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_stereo(const CommonOptions& common,
+                                                            Executor& executor);
+
+/// Times the workloads of the terrain engine (terrain_workloads.hpp), some of them beside a plain
+/// implementation.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_terrain(const CommonOptions& common,
+                                                             Executor& executor);
+
+/// Times the cloud tools on a synthetic staircase of a million points.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_clouds(const CommonOptions& common,
+                                                            Executor& executor);
+
+/// Times how long the simulator needs for one frame of two scenes: sharp, blurred, and without
+/// images (sim.sensor = analytic). Only frames during which the camera moves count. For comparison
+/// it times rectification, odometry and stereo matching on images of the same scenes.
+[[nodiscard]] Result<std::vector<BenchResult>> bench_sim(const CommonOptions& common,
+                                                         Executor& executor);
+
+}  // namespace surefoot::app

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "studies/board_calibration/calibration_run.hpp"
+
+namespace surefoot::app {
+
+/// One self-contained HTML page: board coverage, residuals, a rectified pair, the cameras with
+/// their uncertainty and its effect on depth, and every rejected view with the reason.
+[[nodiscard]] std::string calibration_html(const CalibrationRun& run);
+
+}  // namespace surefoot::app

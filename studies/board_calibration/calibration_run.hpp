@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/board_calibration/board_images.hpp"
+#include "surefoot/calibration/bundle/coverage.hpp"
+#include "surefoot/calibration/lenses/lens_mapping.hpp"
+#include "surefoot/calibration/stereo_calibration.hpp"
+
+namespace surefoot::app {
+
+/// Board points that were detected in the images of one moment.
+struct FoundView {
+    std::string name;
+    calibration::BoardView left;  ///< or the only camera's; empty if `left_problem` is set
+    calibration::BoardView right;
+    std::string left_problem;  ///< why the detection failed; empty if it succeeded
+    std::string right_problem;
+};
+
+/// All data that `calibrate` prints and writes. Once the calibration has succeeded, exactly one of
+/// `mono` and `stereo` is set.
+struct CalibrationRun {
+    std::string source;
+    std::string board_text;
+    calibration::Board board;
+    calibration::ImageSize size;
+    std::vector<FoundView> views;
+    std::vector<std::string> notes;
+    std::vector<calibration::Coverage> coverage;  ///< one per camera
+    BoardImages sample;  ///< first images in which all cameras see the board
+    std::optional<calibration::MonoCalibration> mono;
+    std::optional<calibration::StereoCalibration> stereo;
+
+    [[nodiscard]] int cameras() const { return static_cast<int>(coverage.size()); }
+};
+
+/// One camera of a mono or stereo calibration, in a common form.
+struct CalibratedEye {
+    const char* name = "";
+    camera::Camera camera;
+    Eigen::VectorXd parameters;          ///< in the order of calibration::parameter_names
+    Eigen::VectorXd sigmas;              ///< standard deviation of each parameter
+    calibration::MappingSigmas mapping;  ///< joint effect of all parameters on the pixels
+    struct View {
+        std::size_t index = 0;  ///< into CalibrationRun::views
+        calibration::EyeFit fit;
+    };
+    std::vector<View> views;
+};
+/// The cameras of the result: left and right, or the only one. Requires a result.
+[[nodiscard]] std::vector<CalibratedEye> calibrated_eyes(const CalibrationRun& run);
+[[nodiscard]] const std::vector<calibration::RejectedView>& rejected_views(
+    const CalibrationRun& run);
+[[nodiscard]] calibration::LensKind lens_kind(const CalibrationRun& run);
+[[nodiscard]] std::string camera_name(const CalibrationRun& run, int camera);
+/// Why a view was rejected: the problem of the board detection, or else of the calibration.
+[[nodiscard]] std::string why_left_out(const CalibrationRun& run,
+                                       const calibration::RejectedView& rejected);
+/// Pixel of the board point `id` in a view. Precondition: the view shows this point.
+[[nodiscard]] Eigen::Vector2d pixel_of(const calibration::BoardView& view, int id);
+/// The rig to write to a file. For one camera it has no right camera.
+[[nodiscard]] camera::StereoRig calibrated_rig(const CalibrationRun& run);
+
+}  // namespace surefoot::app

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "service/console/option_settings.hpp"
+#include "studies/suite/suite_case.hpp"
+#include "surefoot/core/result.hpp"
+
+/// The experiments of Lange 2016, "Viability of Commercial Depth Sensors for the REX Medical
+/// Exoskeleton", chapters 8 and 9, as data: the rebuilt scene, the motion model of the camera, the
+/// measured figures, and the values of the thesis.
+namespace surefoot::app {
+
+/// A data set of Table 8.2 and the scene that rebuilds it.
+struct ThesisDataset {
+    const char* label;
+    const char* project;
+    const char* size;
+    double million_points = 0.0;
+    const char* features;
+    const char* scene;
+};
+[[nodiscard]] std::span<const ThesisDataset> thesis_datasets();
+
+/// A part of the ground as expressions of the scene's parameters: smallest and largest x and y [m].
+using BoxText = std::array<const char*, 4>;
+
+/// An experiment of chapter 9: a camera is moved through a place, its recording is mapped, and the
+/// map is compared with a laser scan of the place.
+struct ThesisRun {
+    const char* name;
+    const char* figures;  ///< figure numbers in the thesis
+    const char* title;
+    const char* scene;
+    const char* carrier;
+    double rate_hz = 10.0;
+    const char* preset;         ///< traversability preset of the thesis for this run
+    double map_length_m = 0.0;  ///< 0 = from the settings
+    /// Rectangle with the stairs that are measured by the histogram of heights; empty = no stairs.
+    std::optional<BoxText> stairs = {};
+    bool door = false;  ///< the scene has the parameters door_x_m, door_y_m
+    bool walk = false;  ///< the gate is asked about each step, and about every movement at the end
+};
+[[nodiscard]] std::span<const ThesisRun> thesis_runs();
+
+/// Scene whose laser scan is rated without a recording (Fig. 9.14).
+inline constexpr const char* kThesisCourtyard = "thesis_d_courtyard";
+
+/// Settings with which a recording is mapped and rated.
+enum class ThesisColumn : std::uint8_t {
+    ours,
+    thesis,  ///< the same program with the settings of the thesis
+};
+inline constexpr const char* kThesisColumnNames[] = {"ours", "thesis_settings"};
+
+/// Applies the settings of the thesis to `settings`: error model, fusion, filters, traversability.
+/// Its camera driver, visual odometry and code are not rebuilt: both columns use the same depth and
+/// motion.
+[[nodiscard]] Status use_thesis_settings(const char* preset, Settings& settings);
+
+/// One row of the result table. Columns: value of the thesis, settings of the thesis in our
+/// program, our settings, laser scan, exact truth.
+struct ThesisRow {
+    const char* group;
+    const char* what;
+    const char* run;
+    const char* figure;
+    FigureKind kind = FigureKind::length_m;
+    const char* thesis;           ///< as printed in the thesis; "-" = not stated
+    const char* truth = "";       ///< expression of the scene's parameters; "" = no exact value
+    const char* divided_by = "";  ///< name of a run: the row shows the ratio to its figure
+    /// Other figure for our column, if it has a better measurement.
+    const char* ours_figure = nullptr;
+};
+[[nodiscard]] std::span<const ThesisRow> thesis_rows();
+
+}  // namespace surefoot::app

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/gate_process/protocol/json_text.hpp"
+#include "surefoot/camera/frame_source.hpp"
+#include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/report.hpp"
+#include "surefoot/eval/depth/depth_errors.hpp"
+#include "surefoot/eval/maps/map_comparison.hpp"
+#include "surefoot/eval/trajectory/trajectory.hpp"
+
+// JSON objects of the command line. Their names are a contract (docs/reference/json.md). NaN is
+// written as null.
+namespace surefoot::app {
+
+[[nodiscard]] wire::Json counts_json(const FusionCounts& f);
+[[nodiscard]] wire::Json traversability_json(const eval::TraversabilityErrors& t);
+[[nodiscard]] wire::Json errors_json(const eval::TrajectoryErrors& e);
+[[nodiscard]] wire::Json figures_json(const eval::ErrorFigures& e, const std::string& unit);
+/// Errors [m] per bin; the limits of the bins are in `key_unit`.
+[[nodiscard]] wire::Json bins_json(const std::vector<eval::ErrorBin>& bins,
+                                   const std::string& key_unit);
+[[nodiscard]] wire::Json sigma_json(const eval::SigmaCoverage& s);
+/// x y z qx qy qz qw
+[[nodiscard]] wire::Json pose_json(const Pose& T);
+[[nodiscard]] wire::Json camera_json(const camera::RectifiedRig& rig);
+[[nodiscard]] wire::Json maps_object(const eval::MapComparison& result);
+void add_broken(const camera::BrokenFrames& broken, wire::Json& object);
+[[nodiscard]] wire::Json source_json(const camera::SourceInfo& source);
+[[nodiscard]] wire::Json frame_json(const FrameReport& frame);
+
+}  // namespace surefoot::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "service/console/options.hpp"
+
+namespace surefoot::app {
+
+/// Options of `surefoot run`.
+struct RunOptions {
+    CommonOptions common;
+    ReadingOptions reading;
+    std::string source;
+    std::string out_dir;
+    std::string rig_file;
+    std::string imu_file;
+    std::string machine;
+    double rate_hz = 0.0;
+    int max_frames = 0;
+    int depth_every = 1;
+    bool all_layers = false;
+    std::string save_map;  ///< file for the whole map; empty = not saved
+    std::string place;     ///< place database; empty = no place recognition
+};
+
+}  // namespace surefoot::app

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "surefoot/core/pose.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/stairs/terrain.hpp"
+
+namespace surefoot::app {
+
+/// Which height map to load, and from where.
+struct TerrainRequest {
+    std::string map;  ///< .asc, .png, a cloud, or the folder of a run
+    /// Standing position "x,y" [m]; empty = chosen from the map, see load_terrain().
+    std::string from;
+    double scale_m_per_px = 0.0;       ///< PNG: metres per pixel
+    double height_m = 0.0;             ///< PNG: height of the brightest value
+    double resolution_m = 0.025;       ///< cell size for a cloud
+    std::optional<double> lowest_z_m;  ///< of a cloud's points
+    std::optional<double> highest_z_m;
+};
+
+/// The heights of a file or folder, the other known layers, the standing position, and the
+/// assumptions that were necessary.
+struct TerrainMap {
+    grid::GridGeometry geometry;
+    grid::Layer height_m;
+    grid::Layer height_var_m2;  ///< empty = unknown, as for the following layers
+    grid::Layer free_above_m;
+    grid::Layer clearance_m;
+    grid::Layer density_ratio;
+    Image<std::uint32_t> looks;
+    Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
+    std::optional<Pose> T_odom_body;  ///< pose of the machine, if known
+    /// From the run that made the map; grids, images and clouds do not store it.
+    grid::GravitySource gravity_source = grid::GravitySource::assumed;
+    std::vector<std::string> assumed;
+
+    /// Views of the layers; the map must outlive them.
+    [[nodiscard]] stairs::Terrain terrain() const;
+};
+
+/// Reads an ESRI grid, a height image, a cloud with z up, or the folder of a run. Errors name the
+/// problem, the file and the remedy. A map without a known cell is an error.
+[[nodiscard]] Result<TerrainMap> load_terrain(const TerrainRequest& request);
+
+}  // namespace surefoot::app

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/suite/suite_answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace surefoot::app {
+namespace {
+
+/// Wrong verdicts of a group of cases.
+struct Pool {
+    int cases = 0;
+    double safe = 0.0;     ///< clear-cut safe movements
+    double allowed = 0.0;  ///< ... of these allowed
+    VerdictTallies tallies;
+
+    void add(const SuiteResult& result) {
+        ++cases;
+        for (const VerdictTally& tally : result.tallies.all()) tallies.add(tally);
+        const double questions = result.figure("safe_questions");
+        if (!(questions > 0.0)) return;
+        safe += questions;
+        allowed += questions * result.figure("allowed");
+    }
+    [[nodiscard]] const VerdictTally* find(TallyKey by, const std::string& name) const {
+        const auto& all = tallies.all();
+        const auto at = std::find_if(all.begin(), all.end(), [&](const VerdictTally& tally) {
+            return tally.by == by && tally.name == name;
+        });
+        return at == all.end() ? nullptr : &*at;
+    }
+};
+
+std::string percent(double part, double whole) {
+    return whole > 0.0 ? fmt::format("{:.1f} %", 100.0 * part / whole) : "-";
+}
+
+std::string times(double noise) {
+    return fmt::format("x {:g}", noise);
+}
+
+/// Replaces underscores: "left_supported" becomes "left supported".
+std::string words_of(std::string name) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+eval::ReportBars bars_of(const Pool& pool, TallyKey by, std::string title) {
+    eval::ReportBars bars;
+    bars.title = std::move(title);
+    for (const VerdictTally& tally : pool.tallies.all()) {
+        if (tally.by != by) continue;
+        const std::string name = by == TallyKey::proof ? words_of(tally.name) : tally.name;
+        const std::string text = by == TallyKey::danger
+                                     ? fmt::format("{} ({} alone)", tally.named, tally.alone)
+                                     : fmt::format("{}, alone {}",
+                                                   percent(tally.named, pool.safe),
+                                                   percent(tally.alone, pool.safe));
+        bars.bars.push_back({name, static_cast<double>(tally.named), text});
+    }
+    std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const auto& a, const auto& b) {
+        return a.value > b.value;
+    });
+    return bars;
+}
+
+}  // namespace
+
+double allowed_share(std::span<const SuiteResult> results) {
+    Pool pool;
+    for (const SuiteResult& result : results) pool.add(result);
+    return pool.safe > 0.0 ? pool.allowed / pool.safe : std::nan("");
+}
+
+std::vector<eval::ReportBars> refusal_bars(std::span<const SuiteResult> results) {
+    std::map<double, Pool> by_noise;
+    for (const SuiteResult& result : results) by_noise[result.which.noise].add(result);
+    std::vector<eval::ReportBars> all;
+    for (const auto& [noise, pool] : by_noise) {
+        const std::string at = fmt::format("noise {}", times(noise));
+        all.push_back(
+            bars_of(pool, TallyKey::reason, "Why clearly safe movements were refused, " + at));
+        all.push_back(bars_of(pool, TallyKey::proof, "What could not be proven about them, " + at));
+        all.push_back(bars_of(pool, TallyKey::danger, "Hazards that were missed, " + at));
+    }
+    return all;
+}
+
+eval::ReportTable refusal_table(std::span<const SuiteResult> results) {
+    std::vector<std::string> reasons;
+    std::map<std::pair<std::string, double>, Pool> rows;
+    for (const SuiteResult& result : results) {
+        rows[{result.which.scene, result.which.noise}].add(result);
+        for (const VerdictTally& tally : result.tallies.all()) {
+            if (tally.by != TallyKey::reason) continue;
+            if (std::find(reasons.begin(), reasons.end(), tally.name) == reasons.end())
+                reasons.push_back(tally.name);
+        }
+    }
+    std::sort(reasons.begin(), reasons.end());
+    eval::ReportTable table;
+    table.title = "Why clearly safe movements were refused";
+    table.hint =
+        "Share of the clearly safe movements at the end of the way whose answer names the reason; "
+        "an answer may name several.";
+    table.wide = true;
+    table.header = {"scene", "noise", "cases", "safe", "allowed"};
+    for (const std::string& reason : reasons) table.header.push_back(words_of(reason));
+    for (const auto& [key, pool] : rows) {
+        const auto& [scene, noise] = key;
+        table.rows.push_back({scene,
+                              times(noise),
+                              std::to_string(pool.cases),
+                              fmt::format("{:.0f}", pool.safe),
+                              percent(pool.allowed, pool.safe)});
+        for (const std::string& reason : reasons) {
+            const VerdictTally* tally = pool.find(TallyKey::reason, reason);
+            table.rows.back().push_back(tally ? percent(tally->named, pool.safe) : "");
+        }
+    }
+    return table;
+}
+
+// ---- the steps of walking machines --------------------------------------------------------------
+
+namespace {
+
+std::string judgement(const SuiteStep& step) {
+    const std::string truth = step.safe ? "safe" : "dangerous";
+    return step.clear_cut ? truth : truth + ", within the margin";
+}
+
+std::string outcome(const SuiteStep& step) {
+    if (step.allowed()) return step.safe ? "allowed" : step.clear_cut ? "MISSED" : "allowed";
+    return step.safe ? "refused: too careful" : "refused";
+}
+
+}  // namespace
+
+eval::ReportTable step_table(std::span<const SuiteResult> results) {
+    eval::ReportTable table;
+    table.title = "Each step that a walking user asked for, and what the gate said just before it";
+    table.header = {"case", "step", "s", "command", "truth", "why not", "gate", "its reasons"};
+    table.hint =
+        "Asked with the map and the pose of that moment. An operator has answered for level ground "
+        "around the start.";
+    table.wide = true;
+    for (const SuiteResult& result : results) {
+        for (const SuiteStep& step : result.steps) {
+            table.rows.push_back({result.which.name(),
+                                  std::to_string(step.number),
+                                  fmt::format("{:.1f}", step.time_s),
+                                  std::to_string(step.command),
+                                  judgement(step),
+                                  step.dangers,
+                                  outcome(step),
+                                  step.reasons});
+        }
+    }
+    table.folded = true;
+    return table;
+}
+
+eval::ReportBars step_bars(std::span<const SuiteResult> results) {
+    std::map<std::string, int> counts;
+    int safe = 0;
+    for (const SuiteResult& result : results) {
+        for (const SuiteStep& step : result.steps) {
+            if (!step.safe || !step.clear_cut) continue;
+            ++safe;
+            ++counts[step.allowed() ? "allowed" : step.reasons.substr(0, step.reasons.find('|'))];
+        }
+    }
+    eval::ReportBars bars;
+    bars.title = "What the gate said to clearly safe steps (first reason)";
+    for (const auto& [reason, count] : counts) {
+        bars.bars.push_back({reason,
+                             static_cast<double>(count),
+                             fmt::format("{} ({:.0f} %)", count, 100.0 * count / safe)});
+    }
+    std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const auto& a, const auto& b) {
+        return a.value > b.value;
+    });
+    return bars;
+}
+
+}  // namespace surefoot::app

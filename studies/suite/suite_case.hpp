@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "service/console/option_settings.hpp"
+#include "studies/suite/suite_bins.hpp"
+#include "studies/suite/suite_steps.hpp"
+#include "surefoot/core/executor.hpp"
+#include "surefoot/core/result.hpp"
+#include "surefoot/io/settings/machine_file.hpp"
+#include "surefoot/sim/scene_source.hpp"
+
+namespace surefoot::app {
+
+/// One run of the suite: a scene, varied by its seed, with a multiple of the nominal camera noise.
+struct SuiteCase {
+    std::string scene;
+    std::uint64_t seed = 1;
+    double noise = 1.0;               ///< factor on the camera's noise amplitudes
+    int max_frames = 0;               ///< 0 = the whole path
+    double rate_hz = 10.0;            ///< frame rate of the camera
+    std::string carrier = "trolley";  ///< motion model, one of sim::kCarrierNames
+
+    /// Unique name of the case, such as "demo_stairs/trolley/seed 3/noise 2".
+    [[nodiscard]] std::string name() const;
+    friend bool operator==(const SuiteCase&, const SuiteCase&) = default;
+};
+
+/// Reads one of sim::kCarriedByNames.
+[[nodiscard]] sim::CarriedBy carried_by(const std::string& name);
+
+/// Pipeline settings for a scene. The height of base_link above its ground is taken from the truth,
+/// because it is fixed by the construction of each motion model (the trolley is 4 cm lower than the
+/// walking machine).
+[[nodiscard]] pipeline::PipelineConfig config_on(const sim::SceneTruth& truth,
+                                                 const Settings& settings);
+
+/// Unit in which reports show a figure. Files hold SI units and shares of 1.
+enum class FigureKind : std::uint8_t { count, share, length_m, percent, pixels, number };
+
+/// A figure that every case measures. `SuiteResult::figures` has the same order. `lower_is_better`
+/// defines the worst case of a figure.
+struct SuiteFigure {
+    const char* name;
+    const char* group;  ///< figures of one group share a table
+    FigureKind kind;
+    bool lower_is_better;
+    const char* meaning;
+};
+[[nodiscard]] const std::vector<SuiteFigure>& suite_figures();
+
+/// Result of one case.
+struct SuiteResult {
+    SuiteCase which;
+    std::vector<double> figures;   ///< one per suite_figures(); NaN = not measured
+    std::vector<SuiteBin> bins;    ///< map errors by range and image column
+    std::vector<SuiteStep> steps;  ///< requested steps; walking machines only
+    VerdictTallies tallies;        ///< wrong verdicts at the end of the path
+    /// Confusion map as PNG; empty if no cell is known or the case was read from a file.
+    std::vector<std::uint8_t> thumbnail;
+
+    /// The figure with that name.
+    [[nodiscard]] double figure(std::string_view name) const;
+};
+
+/// Total order of the cases, the worse first: by missed hazards, then unsafe cells rated safe, then
+/// height errors, then name.
+[[nodiscard]] bool is_worse(const SuiteResult& a, const SuiteResult& b);
+
+/// Conditions that all cases of a suite share.
+struct SuiteConditions {
+    Settings settings;
+    Machine machine;
+    double reach_m = 0.8;  ///< radius around the last pose in which the gate is asked
+};
+
+/// Simulates the case, runs the whole pipeline and compares the results with the truth, without
+/// alignment. Thread-safe. The result does not depend on other threads.
+[[nodiscard]] Result<SuiteResult> run_suite_case(const SuiteCase& which,
+                                                 const SuiteConditions& conditions);
+
+}  // namespace surefoot::app

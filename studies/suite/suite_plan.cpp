@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studies/suite/suite_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "service/console/log.hpp"
+#include "surefoot/core/checked_index.hpp"
+#include "surefoot/core/nearest_names.hpp"
+#include "surefoot/sim/scene_source.hpp"
+#include "surefoot/sim/scenes/scenes.hpp"
+
+namespace surefoot::app {
+namespace {
+
+/// The quick suite has a few short cases of every kind, for every change of the code.
+constexpr double kQuickTime_s = 2.0;
+constexpr double kQuickWalk_s = 21.0;   ///< two steps, up to the stance before the third
+constexpr double kQuickDrive_s = 10.0;  ///< whole path of a trolley
+/// The scenes of the quick suite. In the first seconds the trolley sees only ground ahead of it,
+/// and the gate refuses every movement because the ground below is unknown. Therefore the floor and
+/// the platform run to the end of the path: there the gate can allow movements, and can refuse an
+/// edge for a better reason. The scene files keep these paths within the time.
+struct QuickScene {
+    const char* name;
+    double time_s;
+};
+constexpr QuickScene kQuickScenes[] = {{"floor", kQuickDrive_s},
+                                       {"walk_floor", kQuickWalk_s},
+                                       {"platform_edge", kQuickDrive_s},
+                                       {"demo_stairs", kQuickTime_s},
+                                       {"table", kQuickTime_s},
+                                       {"kerb_down_100", kQuickTime_s},
+                                       {"kerb_up_75", kQuickTime_s},
+                                       {"hole", kQuickTime_s}};
+constexpr double kWalkRate_hz = 4.0;
+
+/// A scene with its motion model.
+struct SuiteScene {
+    std::string name;
+    sim::Carrier carrier = sim::Carrier::trolley;
+    double duration_s = 0.0;  ///< of the first seed; paths of other seeds differ
+};
+
+bool is_scene_file(const std::string& name) {
+    const std::string file = name.substr(0, name.find('#'));
+    return file.ends_with(".yaml");
+}
+
+std::vector<std::string> names_of(const std::vector<sim::SceneInfo>& scenes) {
+    std::vector<std::string> names;
+    names.reserve(scenes.size());
+    for (const sim::SceneInfo& scene : scenes) names.push_back(scene.name);
+    return names;
+}
+
+std::vector<std::string> chosen_names(const EvalSuiteOptions& options) {
+    if (!options.scenes.empty()) return options.scenes;
+    if (options.quick) {
+        std::vector<std::string> names;
+        for (const QuickScene& scene : kQuickScenes) names.emplace_back(scene.name);
+        return names;
+    }
+    return names_of(sim::list_scenes());
+}
+
+Status check_name(const std::string& name) {
+    const auto known = sim::list_scenes();
+    const bool listed = std::any_of(known.begin(), known.end(), [&](const sim::SceneInfo& scene) {
+        return scene.name == name;
+    });
+    if (listed || is_scene_file(name)) return {};
+    const std::string likely = did_you_mean(name, names_of(known));
+    return usage_error(
+        fmt::format("--scenes {}: there is no such scene{} 'surefoot sim --list' shows them",
+                    name,
+                    likely.empty() ? ";" : likely));
+}
+
+/// Adds the scene once for each motion model that can follow its path. Two names for the same
+/// motion model count once.
+Status add_carriers(const std::string& name,
+                    const EvalSuiteOptions& options,
+                    std::vector<SuiteScene>& scenes) {
+    std::set<sim::Carrier> carriers;
+    for (const std::string& word : options.carriers) {
+        const auto asked = sim::carrier_of(carried_by(word));
+        const auto scene = sim::make_scene(name, options.common.seed, asked);
+        if (!scene && asked && sim::make_scene(name, options.common.seed)) {
+            log_warning(
+                fmt::format("{} is left out for {}: {}", name, word, scene.error().message));
+            continue;
+        }
+        if (!scene) return usage_error(scene.error().message);
+        if (carriers.insert(scene->script.carrier).second)
+            scenes.push_back({name, scene->script.carrier, scene->motion->duration_s()});
+    }
+    return {};
+}
+
+Result<std::vector<SuiteScene>> open_scenes(const EvalSuiteOptions& options) {
+    std::vector<SuiteScene> scenes;
+    std::set<std::string> names;
+    for (const std::string& name : chosen_names(options)) {
+        if (auto status = check_name(name); !status) return status.error();
+        if (!names.insert(name).second)
+            return usage_error(fmt::format("--scenes: {} is named twice", name));
+        if (auto status = add_carriers(name, options, scenes); !status) return status.error();
+    }
+    if (scenes.empty()) return usage_error("--carriers: none of them can go any of these ways");
+    return scenes;
+}
+
+Status check_noise(const std::vector<double>& factors) {
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        if (std::find(factors.begin(),
+                      factors.begin() + static_cast<std::ptrdiff_t>(i),
+                      factors[i]) != factors.begin() + static_cast<std::ptrdiff_t>(i))
+            return usage_error(fmt::format("--noise: {:g} is given twice", factors[i]));
+    }
+    return {};
+}
+
+/// Duration of a scene in the quick suite.
+double quick_time_s(const SuiteScene& scene) {
+    for (const QuickScene& quick : kQuickScenes) {
+        if (scene.name == quick.name) return std::min(quick.time_s, scene.duration_s);
+    }
+    return scene.carrier == sim::Carrier::rex ? kQuickWalk_s : kQuickTime_s;
+}
+
+PlannedCase planned(const SuiteScene& scene,
+                    const EvalSuiteOptions& options,
+                    const Settings& settings) {
+    const bool walks = scene.carrier == sim::Carrier::rex;
+    PlannedCase plan;
+    plan.which.scene = scene.name;
+    plan.which.carrier = sim::kCarrierNames[static_cast<std::size_t>(scene.carrier)];
+    plan.which.rate_hz =
+        walks ? std::min(kWalkRate_hz, settings.sim.rate_hz) : settings.sim.rate_hz;
+    const auto frames_in = [&](double time_s) {
+        return saturated_integer<int>(std::floor(time_s * plan.which.rate_hz) + 1.0);
+    };
+    plan.frames = frames_in(scene.duration_s);
+    const int limit = options.frames > 0 ? options.frames
+                      : options.quick    ? frames_in(quick_time_s(scene))
+                                         : settings.sim.frames;
+    if (limit > 0) {
+        plan.which.max_frames = limit;
+        plan.frames = limit;  // the limit may exceed the path; the camera then stands still
+    }
+    return plan;
+}
+
+}  // namespace
+
+Result<std::vector<PlannedCase>> plan_suite(const EvalSuiteOptions& options,
+                                            const Settings& settings) {
+    if (auto status = check_noise(options.noise); !status) return status.error();
+    const auto scenes = open_scenes(options);
+    if (!scenes) return scenes.error();
+    std::vector<PlannedCase> cases;
+    for (int i = 0; i < options.seeds; ++i) {
+        std::vector<PlannedCase> of_seed;
+        for (const SuiteScene& scene : *scenes) {
+            for (const double noise : options.noise) {
+                PlannedCase plan = planned(scene, options, settings);
+                plan.which.seed = options.common.seed + static_cast<std::uint64_t>(i);
+                plan.which.noise = noise;
+                of_seed.push_back(std::move(plan));
+            }
+        }
+        std::stable_sort(of_seed.begin(), of_seed.end(), [](const auto& a, const auto& b) {
+            return a.frames > b.frames;
+        });
+        cases.insert(cases.end(), of_seed.begin(), of_seed.end());
+    }
+    return cases;
+}
+
+}  // namespace surefoot::app

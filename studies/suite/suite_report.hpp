@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "studies/suite/suite_case.hpp"
+
+namespace surefoot::app {
+
+/// One self-contained HTML page: totals, errors by distance and image column, the verdict for each
+/// step, a picture of the worst case of every scene (read from `folder`, see thumbnail_file()), and
+/// the figures of every scene and case. `results` must be in the order of `sorted`.
+[[nodiscard]] std::string suite_html(std::span<const SuiteResult> results,
+                                     const std::string& folder);
+
+}  // namespace surefoot::app

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "studies/suite/suite_verdicts.hpp"
+#include "surefoot/core/machine.hpp"
+#include "surefoot/gate/gate.hpp"
+#include "surefoot/grid/map_snapshot.hpp"
+#include "surefoot/sim/scenes/truth.hpp"
+
+namespace surefoot::app {
+
+/// A step that the user of a walking machine requested: the truth, and the verdict of the gate with
+/// the map and the pose of that moment.
+struct SuiteStep {
+    int number = 0;  ///< 1 = first step of the path
+    double time_s = 0.0;
+    int command = 0;
+    bool safe = false;       ///< true answer
+    bool clear_cut = false;  ///< the answer holds by more than the margin, see sim::SafetyMargin
+    std::string dangers;     ///< joined by '|'; empty when safe
+    std::string decision;    ///< "OK", "NOT_TRAVERSABLE", "ERROR"
+    std::string reasons;     ///< reasons of the gate, joined by '|'; empty for OK
+
+    [[nodiscard]] bool allowed() const { return decision == "OK"; }
+    friend bool operator==(const SuiteStep&, const SuiteStep&) = default;
+};
+
+[[nodiscard]] VerdictCounts count_verdicts(std::span<const SuiteStep> steps);
+
+/// Asks the gate and the safety oracle before each step of a walking machine. An operator
+/// attestation covers the start: the largest area around it that is truly level (within 10 mm) and
+/// that the machine file allows. When the machine leaves that area, the attestation ends for good.
+class StepQuestions {
+  public:
+    /// `truth` and `machine` must outlive this object.
+    StepQuestions(const sim::SceneTruth& truth, const Machine& machine)
+        : truth_(truth), machine_(machine) {}
+
+    /// True if the next step begins before the frame after the one at `frame_ns`.
+    [[nodiscard]] bool due(std::int64_t frame_ns) const;
+    /// Asks about the next step with the current map.
+    void ask(const grid::MapSnapshot& map);
+
+    [[nodiscard]] const std::vector<SuiteStep>& steps() const noexcept { return steps_; }
+
+  private:
+    [[nodiscard]] gate::Query query_of(const sim::StepEvent& step, const grid::MapSnapshot& map);
+
+    const sim::SceneTruth& truth_;
+    const Machine& machine_;
+    std::optional<gate::VouchedArea> vouched_;
+    std::vector<SuiteStep> steps_;
+};
+
+}  // namespace surefoot::app

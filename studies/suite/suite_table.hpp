@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/suite/suite_case.hpp"
+#include "surefoot/io/file.hpp"
+
+namespace surefoot::app {
+
+/// Results of a suite in its folder. cases.csv has one line for every finished case; bins.csv,
+/// steps.csv and verdicts.csv hold its details; pictures/ holds the worst case of each scene. add()
+/// writes the line of cases.csv last, so that an interrupted suite can continue. Details of a case
+/// without a line in cases.csv are dropped. The first line of each file contains the version and a
+/// hash of the conditions. Not thread-safe.
+class SuiteTable {
+  public:
+    /// Reads the results of an earlier call. Usage error if the files belong to other conditions or
+    /// another version. `conditions`: hash of everything that the figures depend on.
+    [[nodiscard]] static Result<SuiteTable> open(const std::string& folder,
+                                                 std::uint64_t conditions);
+
+    [[nodiscard]] bool holds(const SuiteCase& which) const;
+    [[nodiscard]] Status add(SuiteResult result);
+    /// Results in the order in which the cases finished.
+    [[nodiscard]] const std::vector<SuiteResult>& results() const noexcept { return results_; }
+
+  private:
+    [[nodiscard]] bool remember(SuiteResult result);
+    [[nodiscard]] SuiteResult* find(const SuiteCase& which);
+    [[nodiscard]] Status keep_thumbnail(const SuiteResult& result);
+
+    std::string folder_;
+    std::optional<io::AppendFile> cases_file_;
+    std::optional<io::AppendFile> bins_file_;
+    std::optional<io::AppendFile> steps_file_;
+    std::optional<io::AppendFile> verdicts_file_;
+    std::vector<SuiteResult> results_;
+    std::map<std::string, std::size_t> places_;  ///< index into `results_` by the key of the case
+};
+
+/// File name of the picture of a scene's worst case.
+[[nodiscard]] std::string thumbnail_file(const std::string& folder, const std::string& scene);
+
+}  // namespace surefoot::app
