@@ -196,7 +196,7 @@ int eval_trajectory(const EvalTrajectoryOptions& options) {
 void add_eval_trajectory(VerbGroup verbs) {
     auto [verb, o] = verbs.add<EvalTrajectoryOptions>("trajectory",
                                                       "ATE, RPE and drift of a trajectory",
-                                                      "surefoot eval trajectory out/floor/verb.tum "
+                                                      "surefoot eval trajectory out/floor/trajectory.tum "
                                                       "out/floor_recording/groundtruth.tum --json",
                                                       eval_trajectory,
                                                       Reads::no_settings);

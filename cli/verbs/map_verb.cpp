@@ -170,7 +170,7 @@ void add_map_merge(VerbGroup verbs) {
         verbs.add<MapMergeOptions>("merge",
                                    "two maps of one run, or of one frame, as one map",
                                    "surefoot map merge out/modelled/floor.region "
-                                   "out/modelled/floor.region --out out/modelled/verb.region",
+                                   "out/modelled/floor.region --out out/modelled/both.region",
                                    map_merge);
     verb.option("first", o.first, "a saved map").required().value("A");
     verb.option("second", o.second, "another; which comes first does not matter")
