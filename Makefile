@@ -44,10 +44,12 @@ asan: setup
 check:
 	@tools/check
 
-# The documentation site, in build/docs; a link that leads nowhere is an error.
+# The documentation site and the C++ reference, in build/docs. Broken links and errors in comments of headers stop the build.
 docs:
 	@tools/setup docs
 	@mkdocs build --strict --quiet
+	@rm -rf build/docs/api
+	@doxygen docs/Doxyfile
 	@echo "the documents are in build/docs/index.html"
 
 nightly: build

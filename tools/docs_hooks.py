@@ -8,6 +8,7 @@ import pathlib
 import re
 
 from mkdocs.exceptions import PluginError
+from mkdocs.structure.nav import Link
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SECTIONS = {"get_started": "Get started", "how_to": "How to", "concepts": "Concepts", "reference": "Reference",
@@ -30,6 +31,22 @@ def on_config(config):
     config["nav"][-2]["Evidence"].append("evidence/results/README.md")
     config["nav"].append({"Decisions": "decisions/index.md"})
     return config
+
+
+def on_files(files, config):
+    """What Doxygen reads is not part of the site."""
+    for file in [file for file in files if file.src_path in ("Doxyfile", "api_main_page.dox")]:
+        files.remove(file)
+    return files
+
+
+def on_nav(nav, config, files):
+    """Doxygen writes the C++ reference after MkDocs: `nav` of the configuration would report a missing page."""
+    reference = next(section for section in nav.items if section.title == SECTIONS["reference"])
+    link = Link("C++ API", "api/index.html")
+    link.parent = reference
+    reference.children.insert(len(FIRST["reference"]), link)
+    return nav
 
 
 def on_page_markdown(markdown, page, **_):

@@ -126,7 +126,7 @@ def required(folder):
         share(f"kerbs down of 75-150 mm, 0.67-1.5 m ahead, {px}: flagged as a drop", rows["kerbs", mode], lambda r: r["drop"] == "1", 99)
         if mine := rows["none", mode]:
             false = sum(r["flights"] != "0" for r in mine)
-            figures.append((f"frames without stairs in which a flight is told, {px}", wilson(false, len(mine)), "1 %", 100 * false <= len(mine)))
+            figures.append((f"frames without stairs in which a flight is reported, {px}", wilson(false, len(mine)), "1 %", 100 * false <= len(mine)))
     exact, first = "steps exact, the first found", "the first step found (the last lie above the camera)"
     for scene, what, steps in (("demo_stairs", "demonstration stairs", exact), ("flight_20_up", "flight of 20 steps", first),
                                ("up_glass", "carpet between glass", exact), ("up_open", "steep, boards without risers", exact)):

@@ -33,7 +33,7 @@ PAIRS = (
     Pair("cloth3", "cloth3", "right.png", "disp_left.png", 2, 96, right_truth="disp_right.png"),
     Pair("adirondack", "adirondack", "right.png", "gt.png", 1, 96, mask="mask.png",
          judges_sigma=False),
-    Pair("adirondack, right eye exposed differently", "adirondack", "rightE.png", "gt.png", 1, 96, mask="mask.png",
+    Pair("adirondack, right camera exposed differently", "adirondack", "rightE.png", "gt.png", 1, 96, mask="mask.png",
          judges_sigma=False),
 )
 

@@ -81,8 +81,8 @@ struct RegionLayer {
     const char* unit;  ///< empty = a pure number
 };
 
-/// Calls `visit(RegionLayer, member, value of unknown cells)` for every layer, `region.*member`
-/// being the layer: the one list of them.
+/// Calls visit(RegionLayer, member, value of unknown cells) for every layer: the one list of
+/// layers. A member is a pointer to one of the members of MapRegion.
 template <typename Visit>
 void for_each_layer(const Visit& visit) {
     using R = MapRegion;

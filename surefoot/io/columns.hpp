@@ -16,7 +16,7 @@ namespace surefoot::io {
 [[nodiscard]] char separator_of(std::string_view line) noexcept;
 
 /// The fields of a line, without white space and quotes around them. Fields between two ';', ',' or
-/// '\t' may be empty; with ' ' none is.
+/// a tab may be empty; with ' ' none is.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& out);
 
 /// Why no separator can be told: commas and blanks both stand between numbers, as with decimal

@@ -56,9 +56,12 @@ inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 27;
 
 [[nodiscard]] Result<std::string> format_png(const GreyImage& image);
 [[nodiscard]] Result<std::string> format_png(const RgbImage& image);
-[[nodiscard]] Result<std::string> format_png(const DepthCodes& image);
 [[nodiscard]] Status write_png(const std::string& path, const GreyImage& image);
 [[nodiscard]] Status write_png(const std::string& path, const RgbImage& image);
+// Doxygen 1.9 confuses the overloads for depth codes with those above.
+/// \cond
+[[nodiscard]] Result<std::string> format_png(const DepthCodes& image);
 [[nodiscard]] Status write_png(const std::string& path, const DepthCodes& image);
+/// \endcond
 
 }  // namespace surefoot::io

@@ -14,11 +14,11 @@
 namespace surefoot::io {
 
 /// Writes a recording. A stereo rig in the EuRoC ASL layout:
-///   mav0/cam0, mav0/cam1: sensor.yaml (T_BS, lens), data.csv, data/<stamp_ns>.png
+///   mav0/cam0, mav0/cam1: sensor.yaml (T_BS, lens), data.csv, data/STAMP_NS.png
 ///   mav0/imu0: sensor.yaml, data.csv        where the rig has an IMU
 /// an RGB-D rig in that of the TUM RGB-D benchmark, whose depths are steps of 0.2 mm below 13.1 m
 /// and which has no place for an IMU:
-///   rgb.txt, rgb/<stamp_s>.png, depth.txt, depth/<stamp_s>.png, rig.yaml
+///   rgb.txt, rgb/STAMP_S.png, depth.txt, depth/STAMP_S.png, rig.yaml
 /// and in both groundtruth.tum where truth is added.
 /// Images are there before the lines that name them, and every line is flushed: a recording that is
 /// interrupted at any time can be read. Raw images are stored as they came, without loss.
