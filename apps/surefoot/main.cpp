@@ -391,11 +391,12 @@ void add_gate(CLI::App& app, GateOptions& o, int& exit_code) {
     verb->add_option(
             "--vouch",
             o.vouch_radius_m,
-            "radius around base_link that an operator answers for where nothing was measured; 0 = "
-            "none; without it a disc that reaches to the ends of the present feet is assumed, and "
-            "listed in 'assumed'")
+            "operator attestation: radius around base_link within which ground that was not "
+            "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for rex); "
+            "0 = no attestation. Without this option the gate assumes a disc that reaches to the "
+            "ends of the present feet, and lists it in 'assumed'")
         ->type_name("M")
-        ->check(number_in(0.0, 2.0));
+        ->check(CLI::NonNegativeNumber & finite_number());
     verb->add_option("--audit",
                      o.audit_dir,
                      "audit log that the verdict is added to, with all that it was made from")
@@ -507,8 +508,9 @@ void add_serve(CLI::App& app, ServeOptions& o, int& exit_code) {
         ->type_name("HZ");
     verb->add_option("--vouch",
                      o.vouch_radius_m,
-                     "the operator's word for level ground so far around the machine where it "
-                     "stands; void once it has left")
+                     "operator attestation: radius around the machine within which ground that was "
+                     "not measured counts as level. At most vouch_radius_m of the machine file "
+                     "(1.0 m for rex). The attestation ends when the machine leaves the circle")
         ->check(CLI::NonNegativeNumber & finite_number())
         ->type_name("M");
     verb->add_option("--walk",
