@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { isCellAttested, type AttestedArea } from "./attestation.ts";
 import { kGround, kGroundMask, kVouched } from "./messages.ts";
 import type { GroundMap } from "./ground_map.ts";
 
@@ -113,12 +114,14 @@ export function paintUnknownTile(colors: GroundColors, pixels: Uint32Array): voi
       pixels[(kTile_px - 1 - y) * kTile_px + x] = patterned(kGround.unknown, x, y) ? pattern : main;
 }
 
-/// Paints the window into `pixels` ((cells * kCell_px)^2 values, RGBA in memory order).
+/// Paints the window into `pixels` ((cells * kCell_px)^2 values, RGBA in memory order). The map of perception knows no
+/// attestation: the attested area comes with the gate's health.
 export function paintGround(
   map: GroundMap,
   window: GroundWindow,
   colors: GroundColors,
   pixels: Uint32Array,
+  attested?: AttestedArea,
 ): void {
   const side_px = window.cells * kCell_px;
   const origin_ix = map.resolution_m > 0 ? Math.round(map.origin_x_m / map.resolution_m) : 0;
@@ -126,6 +129,12 @@ export function paintGround(
   const rim_color = packed(colors.vouched, 1);
   const stateAt = (ix: number, iy: number) =>
     ix >= 0 && iy >= 0 && ix < map.nx && iy < map.ny ? map.state[iy * map.nx + ix] : kGround.unknown;
+  const side_m = map.resolution_m;
+  const attestedAt = (ix: number, iy: number) =>
+    attested !== undefined &&
+    isCellAttested(attested, map.origin_x_m + ix * side_m, map.origin_y_m + iy * side_m, side_m);
+  const isAttested = (ix: number, iy: number) =>
+    (stateAt(ix, iy) & kVouched) !== 0 || attestedAt(ix, iy);
   for (let row = 0; row < window.cells; ++row) {
     const iy = window.first_iy + row;
     for (let column = 0; column < window.cells; ++column) {
@@ -136,9 +145,14 @@ export function paintGround(
       const [main_color, pattern_color] = pairOf(ground, colors);
       const main = packed(main_color, shade);
       const pattern = packed(pattern_color, shade);
-      const around =
-        stateAt(ix - 1, iy) & stateAt(ix + 1, iy) & stateAt(ix, iy - 1) & stateAt(ix, iy + 1) & kVouched;
-      const on_rim = (state & kVouched) !== 0 && around === 0;
+      const on_rim =
+        isAttested(ix, iy) &&
+        !(
+          isAttested(ix - 1, iy) &&
+          isAttested(ix + 1, iy) &&
+          isAttested(ix, iy - 1) &&
+          isAttested(ix, iy + 1)
+        );
       for (let j = 0; j < kCell_px; ++j) {
         const y = (origin_iy + iy) * kCell_px + j;
         const at = (side_px - 1 - (row * kCell_px + j)) * side_px + column * kCell_px;

@@ -149,6 +149,7 @@ export class GroundView {
       ...Object.values(window),
       isDark(),
       this.#store.freshness.ground,
+      ...Object.values(this.#store.attested ?? {}),
     ].join();
     if (key !== this.#painted) {
       this.#painted = key;
@@ -171,7 +172,8 @@ export class GroundView {
       this.#cells.width = this.#cells.height = side_px;
       this.#image = new ImageData(side_px, side_px);
     }
-    paintGround(this.#store.map, window, this.#colors(), new Uint32Array(this.#image.data.buffer));
+    const pixels = new Uint32Array(this.#image.data.buffer);
+    paintGround(this.#store.map, window, this.#colors(), pixels, this.#store.attested);
     this.#cells.getContext("2d", kByProcessor)!.putImageData(this.#image, 0, 0);
   }
 

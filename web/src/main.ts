@@ -4,6 +4,7 @@ import type { EngineerView } from "./engineer_view.ts";
 import { byId, isDark, setAttribute, setText } from "./dom.ts";
 import { GateLink } from "./gate_link.ts";
 import { Joystick } from "./joystick.ts";
+import { OperatorToken } from "./operator_token.ts";
 import { RecordButton } from "./record_button.ts";
 import { ServiceLink } from "./service_link.ts";
 import { Store } from "./store.ts";
@@ -22,12 +23,15 @@ const scheme = location.protocol === "https:" ? "wss:" : "ws:";
 const token = new URLSearchParams(location.search).get("token");
 const query = token ? `?token=${encodeURIComponent(token)}` : "";
 
-const gate = new GateLink(
+const gate = new GateLink({
   store,
-  () => store.hello && `${scheme}//${location.hostname}:${store.hello.gate_port}/${query}`,
-  ({ verdict }) =>
+  base: () => store.hello && `${scheme}//${location.hostname}:${store.hello.gate_port}/`,
+  url_token: token,
+  token: new OperatorToken(sessionStorage),
+  heard: ({ verdict }) =>
     tones.play(verdict === "OK" ? "allowed" : verdict === "NOT_TRAVERSABLE" ? "not" : "cannot"),
-);
+  refused: (message) => walk.askToken(message),
+});
 const service = new ServiceLink(store, `${scheme}//${location.host}/page${query}`, () => gate.open());
 
 let drawing = false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Outlook } from "./directions.ts";
+import type { AttestedArea } from "./attestation.ts";
 import { judgeFreshness, type Arrivals, type Freshness } from "./freshness.ts";
 import { GroundMap } from "./ground_map.ts";
 import type {
@@ -23,6 +24,7 @@ export interface GateHealth {
   frame_age_ms: number | null;
   pose_age_ms: number | null;
   vouching: boolean;
+  vouched?: AttestedArea | null; ///< gates of before version 0.2 do not send it
   asked: number;
   allowed: number;
 }
@@ -107,6 +109,16 @@ export class Store {
   addStageTimes(times: StageTimes): void {
     this.stage_times.push(times);
     if (this.stage_times.length > kMostStageTimes) this.stage_times.shift();
+  }
+
+  /// Whether an operator's attestation is in force, as far as the page has fresh data of the gate.
+  get attesting(): boolean {
+    return this.freshness.verdicts && this.health?.vouching === true;
+  }
+
+  /// The attested area, to be drawn; undefined if no attestation is in force.
+  get attested(): AttestedArea | undefined {
+    return this.attesting ? (this.health?.vouched ?? undefined) : undefined;
   }
 
   /// base_link on the ground; undefined without a pose.

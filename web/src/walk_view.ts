@@ -39,6 +39,11 @@ export class WalkView {
     new ResizeObserver(changed).observe(byId("ground"));
   }
 
+  /// Opens the field for the operator's token. `why`: what the gate said.
+  askToken(why: string): void {
+    this.#acts.askToken(why);
+  }
+
   /// The signs speak even while the other view is shown.
   draw(shown: boolean): void {
     const { direction, sign, words } = this.#pad.draw();

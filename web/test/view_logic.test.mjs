@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the signs, the banner and the colours say, without a browser.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import {
   kDirections,
@@ -33,6 +34,9 @@ import {
   spreadLabels,
   withoutRepeats,
 } from "../build/unit/feature_words.js";
+import { attestationWords, isCellAttested, radiusRange } from "../build/unit/attestation.js";
+import { GateLink } from "../build/unit/gate_link.js";
+import { gateAddress, needsOperator, OperatorToken } from "../build/unit/operator_token.js";
 import { decode } from "../build/unit/messages.js";
 import { countWords, recordingWords } from "../build/unit/recording_words.js";
 import { findSettings, foundWords, splitKey } from "../build/unit/setting_words.js";
@@ -420,4 +424,169 @@ test("the recording in words, whatever its state", () => {
   assert.equal(said({ state: "ready", text: "" }).state, "Nothing is recorded.");
   assert.equal(said({ state: "ready", text: "10 frames" }).state, "Recorded: 10 frames.");
   assert.equal(recordingWords(undefined).possible, false);
+});
+
+test("reasons of a state are worded as in docs/reference/gate_reasons.md", () => {
+  const page = readFileSync(new URL("../../docs/reference/gate_reasons.md", import.meta.url), "utf8");
+  const errors = page.slice(page.indexOf("## ERROR"), page.indexOf("## NOT_TRAVERSABLE"));
+  const rows = [...errors.matchAll(/^\| ([A-Z_]+) \| ([^|]+) \|/gm)];
+  assert.ok(rows.length > 20, String(rows.length));
+  for (const [, reason, text] of rows)
+    assert.equal(stateSentence("DEGRADED", reason), `The gate is not ready: ${text}`, reason);
+});
+
+/// Which cells of a square map show the colour of the border, as rows of "#" and ".".
+function bordersOf(map, attested) {
+  const side_px = map.nx * kCell_px;
+  const pixels = new Uint32Array(side_px ** 2);
+  paintGround(map, { first_ix: 0, first_iy: 0, cells: map.nx }, kDarkColors, pixels, attested);
+  const at = (ix, iy) => pixels[(side_px - 1 - iy * kCell_px) * side_px + ix * kCell_px];
+  const [r, g, b] = kDarkColors.vouched;
+  const border = ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
+  const row = (iy) => Array.from({ length: map.nx }, (_, ix) => (at(ix, iy) === border ? "#" : ".")).join("");
+  return Array.from({ length: map.ny }, (_, iy) => row(iy));
+}
+
+test("the attested area has a border, although no cell of the map is vouched", () => {
+  const map = new GroundMap();
+  const head = { resolution_tenth_mm: 250, nx: 7, ny: 7, whole: 1 };
+  assert.ok(map.apply(decode(arrayBuffer(encodeMap(head, [], [])))));
+  const none = Array(7).fill(".......");
+  assert.deepEqual(bordersOf(map, undefined), none);
+  const area = { x_m: 0.0875, y_m: 0.0875, z_m: 0, radius_m: 0.075 };
+  assert.deepEqual(bordersOf(map, area), [
+    ".......",
+    "..###..",
+    ".#...#.",
+    ".#...#.",
+    ".#...#.",
+    "..###..",
+    ".......",
+  ]);
+  assert.deepEqual(bordersOf(map, { ...area, x_m: 9 }), none, "an area outside the map");
+  assert.equal(isCellAttested(area, 0.0875, 0.0875, 0.025), true);
+  assert.equal(isCellAttested(area, 0.15, 0.0875, 0.025), false, "the cell reaches out of the circle");
+});
+
+test("an attestation in force has its radius, its place and its end in words", () => {
+  const area = { x_m: 1, y_m: 2, z_m: 0, radius_m: 0.6 };
+  assert.deepEqual(attestationWords(false, area, { x_m: 1, y_m: 2 }), { words: "", detail: "" });
+  const { words, detail } = attestationWords(true, area, { x_m: 1.3, y_m: 2.4 });
+  assert.match(words, /^Attestation in force: radius 0\.60 m around the attested place\. It ends when/);
+  assert.match(words, /leaves this circle.*position is lost.*fault.*perception restarts/);
+  assert.equal(detail, "Distance to the centre: 0.50 m.");
+  assert.match(attestationWords(true, undefined, undefined).words, /^Attestation in force\. The gate does not say/);
+});
+
+test("the slider offers radii that the gate accepts, and no other", () => {
+  // The soles of the REX reach 0.365 m: GatekeeperTest.an_attestation_too_small_for_the_soles_replaces_none.
+  assert.deepEqual(radiusRange(kMachine), { least_m: 0.4, most_m: 1, step_m: 0.05, first_m: 0.6 });
+  assert.deepEqual(radiusRange({ ...kMachine, vouch_radius_m: 0.365 }), {
+    least_m: 0.365,
+    most_m: 0.365,
+    step_m: 0.05,
+    first_m: 0.365,
+  });
+  assert.equal(radiusRange({ ...kMachine, vouch_radius_m: 0.3649 }), undefined, "no radius holds both soles");
+  assert.equal(radiusRange({ ...kMachine, vouch_radius_m: 0 }), undefined, "the machine file allows none");
+  const wide = { ...kMachine.feet.left, center_y_m: 0.9, width_m: 0.5 };
+  const { least_m, first_m } = radiusRange({
+    ...kMachine,
+    vouch_radius_m: 2,
+    feet: { ...kMachine.feet, left: wide },
+  });
+  assert.ok(least_m >= Math.hypot(0.24, 1.15) && least_m < Math.hypot(0.24, 1.15) + 0.05, String(least_m));
+  assert.equal(first_m, least_m, "0.6 m would be refused");
+  assert.equal(radiusRange(null), undefined);
+});
+
+class MemoryStorage {
+  kept = new Map();
+  getItem = (key) => this.kept.get(key) ?? null;
+  setItem = (key, value) => void this.kept.set(key, value);
+  removeItem = (key) => void this.kept.delete(key);
+}
+
+test("a wrong token in the page's address does not keep the page from the gate", () => {
+  const addresses = [0, 1, 2].map((failures) => gateAddress("ws://h:1/", "a b", failures));
+  assert.deepEqual(addresses, ["ws://h:1/?token=a%20b", "ws://h:1/", "ws://h:1/?token=a%20b"]);
+  assert.equal(gateAddress("ws://h:1/", null, 0), "ws://h:1/");
+});
+
+test("the gate's refusal of the role is told from other refusals", () => {
+  const session = readFileSync(
+    new URL("../../service/gate_process/protocol/rosbridge_session.cpp", import.meta.url),
+    "utf8",
+  );
+  assert.ok(session.includes("this needs the role "), "the words that the page looks for");
+  assert.ok(needsOperator("not done: this needs the role operator, and this client is rider. Connect with"));
+  assert.ok(!needsOperator("not done: this needs the role rider, and this client is observer"));
+  assert.ok(!needsOperator("the ground is not attested: the gate is in a fault"));
+});
+
+/// A socket that the test plays the gate on.
+class PlayedSocket {
+  static opened = [];
+  sent = [];
+  constructor(address) {
+    this.address = address;
+    PlayedSocket.opened.push(this);
+  }
+  send(text) {
+    this.sent.push(JSON.parse(text));
+  }
+  close() {}
+  get calls() {
+    return this.sent.filter(({ op }) => op === "call_service");
+  }
+  async answer(values) {
+    const { id } = this.calls.at(-1);
+    this.onmessage({ data: JSON.stringify({ op: "service_response", id, values, result: true }) });
+    await new Promise(setImmediate);
+  }
+}
+
+test("the operator's token goes to the gate, is kept for the tab, and is shown again after a reconnect", async () => {
+  const before = globalThis.WebSocket;
+  globalThis.WebSocket = PlayedSocket;
+  PlayedSocket.opened = [];
+  const storage = new MemoryStorage();
+  const refused = [];
+  const link = () =>
+    new GateLink({
+      store: { arrivals: { gate: "opening" }, changed() {} },
+      base: () => "ws://gate:9090/",
+      url_token: null,
+      token: new OperatorToken(storage),
+      heard() {},
+      refused: (message) => refused.push(message),
+    });
+  const connect = (one) => {
+    one.open();
+    const socket = PlayedSocket.opened.at(-1);
+    socket.onopen();
+    return socket;
+  };
+  try {
+    const first = link();
+    const socket = connect(first);
+    assert.deepEqual(socket.calls, [], "no token, no authentication");
+    const rider = first.authenticate("r");
+    await socket.answer({ success: true, message: "", role: "rider" });
+    assert.deepEqual(await rider, { success: false, message: "this token has the role rider, not operator" });
+    assert.equal(storage.kept.size, 0);
+    const right = first.authenticate("secret");
+    assert.deepEqual(socket.calls.at(-1).args, { token: "secret" });
+    await socket.answer({ success: true, message: "", role: "operator" });
+    assert.equal((await right).success, true);
+    assert.deepEqual([...storage.kept.values()], ["secret"]);
+    const again = connect(link());
+    assert.equal(again.address, "ws://gate:9090/", "the token is in no address");
+    assert.deepEqual(again.calls.at(-1).args, { token: "secret" });
+    await again.answer({ success: false, message: "this token is not known here", role: "rider" });
+    assert.deepEqual(refused, ["this token is not known here"]);
+    assert.equal(storage.kept.size, 0, "a refused token is not kept");
+  } finally {
+    globalThis.WebSocket = before;
+  }
 });
