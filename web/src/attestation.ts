@@ -74,6 +74,13 @@ export function attestationWords(
   };
 }
 
+/// "radius 0.60 m at x 1.00 m, y 2.00 m"
+export function attestedWords(area: AttestedArea | undefined): string {
+  if (!area) return "in force";
+  const { x_m, y_m, radius_m } = area;
+  return `in force: radius ${radius_m.toFixed(2)} m at x ${x_m.toFixed(2)} m, y ${y_m.toFixed(2)} m`;
+}
+
 /// Whether a cell lies wholly inside the area: `is_vouched` of surefoot/gate/ground.cpp. x and y: its corner.
 export function isCellAttested(area: AttestedArea, x_m: number, y_m: number, side_m: number): boolean {
   const far = (low_m: number) => Math.max(Math.abs(low_m), Math.abs(low_m + side_m));

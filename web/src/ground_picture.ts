@@ -3,7 +3,7 @@ import { isCellAttested, type AttestedArea } from "./attestation.ts";
 import { kGround, kGroundMask, kVouched } from "./messages.ts";
 import type { GroundMap } from "./ground_map.ts";
 
-/// Pixels along a cell: as many as a hatch needs.
+/// Pixels along a cell, enough for the patterns.
 export const kCell_px = 4;
 
 /// Colours after Okabe and Ito; each ground has a pattern as well, so that colour is never alone: free is plain,
@@ -37,7 +37,7 @@ export const kLightColors: GroundColors = {
   vouched: [0, 114, 178],
 };
 
-/// What is older than a second has no colours left, only its patterns.
+/// Old data keep their patterns and lose their colours.
 export function greyed(colors: GroundColors): GroundColors {
   const grey = ([r, g, b]: Rgb): Rgb => {
     const level = Math.round(0.35 * (0.3 * r + 0.59 * g + 0.11 * b) + 84);
@@ -51,8 +51,8 @@ export function greyed(colors: GroundColors): GroundColors {
   };
 }
 
-/// A square window of cells, as a picture with y up (first row = largest y). The phase of the patterns hangs on
-/// the ground, not on the window.
+/// A square window of cells, as a picture with y up (first row = largest y). The patterns are fixed to the ground, not
+/// to the window.
 export interface GroundWindow {
   first_ix: number;
   first_iy: number;
@@ -106,7 +106,7 @@ function patterned(ground: number, x: number, y: number): boolean {
 /// Side of a square of the pattern of unknown ground that repeats [px].
 export const kTile_px = 16;
 
-/// What lies outside of every map: unknown ground, without end.
+/// A tile of unknown ground, for the area outside the map.
 export function paintUnknownTile(colors: GroundColors, pixels: Uint32Array): void {
   const [main, pattern] = pairOf(kGround.unknown, colors).map((color) => packed(color, 1));
   for (let y = 0; y < kTile_px; ++y)
@@ -169,7 +169,7 @@ export function paintGround(
   }
 }
 
-/// Shares of the ground within `radius_m` of a place, of all cells there; what is outside of the map is unknown.
+/// Shares of the cells within `radius_m` of a position; outside the map they count as unknown.
 export function groundShares(map: GroundMap, x_m: number, y_m: number, radius_m: number) {
   const counts = [0, 0, 0, 0];
   let all = 0;

@@ -28,14 +28,14 @@ import type { Place, Store } from "./store.ts";
 
 /// Cells along the side of the mesh: 6 m of 25 mm; of a larger map the part around the machine is shown.
 const kMostCells = 240;
-/// A software renderer draws a few pictures a second: it is not asked for more than it must.
+/// Least time between two pictures: a software renderer draws only a few a second.
 const kPeriod_ms = 60;
 const kBorderPoints = 96;
 /// Over the attested ground, so that the ground does not hide the border.
 const kBorderHeight_m = 0.01;
 
-/// The ground as a lit mesh, and the machine on it. Coordinates are odom from `#zero` on; what is unknown is a
-/// hole. style.css makes the picture grey when it is old.
+/// The ground as a lit mesh with the machine on it. Coordinates are in odom relative to `#zero`. Unknown ground is a
+/// hole. style.css makes the picture grey when its data are old.
 export class Scene3d {
   readonly #store: Store;
   readonly #element: HTMLElement;
@@ -60,7 +60,7 @@ export class Scene3d {
   #drawn_at_ms = 0;
   #painted = "";
 
-  /// Throws where the browser has no WebGL.
+  /// Throws if the browser has no WebGL.
   constructor(element: HTMLElement, store: Store, changed: () => void) {
     this.#element = element;
     this.#store = store;
@@ -160,7 +160,7 @@ export class Scene3d {
     this.#view.elevation_rad = Math.max(0.08, Math.min(1.5, this.#view.elevation_rad + elevation_rad));
   }
 
-  /// From behind the machine and to its right, wherever it turns.
+  /// From behind the machine and to its right, also when it turns.
   #look(target: Vector3, yaw_rad: number): void {
     const { azimuth_rad, elevation_rad, distance_m } = this.#view;
     const across_m = distance_m * Math.cos(elevation_rad);
@@ -169,7 +169,7 @@ export class Scene3d {
       target.y + across_m * Math.sin(yaw_rad + azimuth_rad),
       target.z + distance_m * Math.sin(elevation_rad),
     );
-    // Some ground ahead is worth more than the machine in the middle.
+    // Shows more ground ahead of the machine than behind it.
     this.#camera.lookAt(target.x + 0.5 * Math.cos(yaw_rad), target.y + 0.5 * Math.sin(yaw_rad), target.z);
   }
 

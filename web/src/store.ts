@@ -28,7 +28,7 @@ export interface GateHealth {
   asked: number;
   allowed: number;
 }
-/// A verdict that the gate gave to some client, as /surefoot/verdict tells it.
+/// A verdict that the gate gave to any client, from /surefoot/verdict.
 export interface GateVerdict {
   verdict: "OK" | "NOT_TRAVERSABLE" | "ERROR";
   command: number;
@@ -54,7 +54,7 @@ const kMostVerdicts = 50;
 const kMostPlaces = 4000;
 const kMostStageTimes = 240; ///< two minutes of status messages
 
-/// All that the page knows. Views read it; links write it and say what changed.
+/// All data of the page. Links write them and report changes; views read them.
 export class Store {
   hello: Hello | undefined;
   status: Status | undefined;
@@ -62,7 +62,7 @@ export class Store {
   joystick_on = false;
   stairs: Stairs | undefined;
   settings: Settings | undefined;
-  setting_answers = new Map<string, SettingAnswer>(); ///< by key, to the last wish of this page
+  setting_answers = new Map<string, SettingAnswer>(); ///< by key, to the last change that this page asked for
   recording: Recording | undefined;
   pose: PoseMessage | undefined;
   map = new GroundMap();
@@ -73,9 +73,9 @@ export class Store {
   verdicts: GateVerdict[] = [];
   track: Place[] = [];
   stage_times: StageTimes[] = [];
-  problem = ""; ///< the last thing that could not be read
+  problem = ""; ///< the last message that could not be read, and why
   chosen: number | undefined; ///< code of the direction that the user chose
-  vouch_radius_m: number | undefined; ///< while an operator is about to vouch
+  vouch_radius_m: number | undefined; ///< radius in the open attestation dialog
   arrivals: Arrivals = { service: "opening", gate: "opening", has_machine: false };
   freshness: Freshness = judgeFreshness(this.arrivals, 0);
   #listeners: (() => void)[] = [];
@@ -101,7 +101,7 @@ export class Store {
     if (this.track.length > kMostPlaces) this.track.splice(0, kMostPlaces / 4);
   }
 
-  /// Odom began anew: what was drawn has no place in it any more.
+  /// Odom was restarted: the old track has no meaning in the new frame.
   forgetTrack(): void {
     this.track = [];
   }

@@ -44,7 +44,7 @@ export class WalkView {
     this.#acts.askToken(why);
   }
 
-  /// The signs speak even while the other view is shown.
+  /// Signs and tones are updated even while the other view is shown.
   draw(shown: boolean): void {
     const { direction, sign, words } = this.#pad.draw();
     this.#tones.follow(sign.kind);
@@ -73,7 +73,7 @@ export class WalkView {
       try {
         this.#scene ??= new Scene3d(byId("scene"), this.#store, this.#changed);
       } catch {
-        setText(byId("act-result"), "This browser cannot draw in three dimensions (no WebGL).");
+        setText(byId("act-result"), "The browser has no WebGL, so there is no 3D view. Switch WebGL on, or use the view from above.");
         return;
       }
     }

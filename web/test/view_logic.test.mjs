@@ -58,7 +58,7 @@ test("only a fresh OK is allowed", () => {
   assert.deepEqual(kinds(true), ["allowed", "not", "cannot", "cannot", "cannot"]);
   assert.deepEqual(kinds(false), ["stale", "stale", "stale", "stale", "stale"]);
   assert.equal(signOf(9, kMachine, undefined, true).kind, "cannot");
-  assert.equal(signOf(9, null, outlook, true).reason, "without a machine file no direction is judged");
+  assert.equal(signOf(9, null, outlook, true).reason, "there is no machine file, so no direction is judged");
   assert.equal(signOf(9, undefined, outlook, false).kind, "stale");
   assert.equal(signOf(9, { ...kMachine, movements: [] }, outlook, true).kind, "absent");
 });
@@ -69,10 +69,10 @@ test("the joystick in words", () => {
   assert.match(joystickWords(0, { ...steer, yours: false, taken: false, asked: 0 }), /^Hold a sign/);
   assert.equal(joystickWords(9, steer), "ahead: moved. Asking for ahead.");
   const refused = { ...steer, moved: false, asked: 17, text: "ground that was never seen" };
-  assert.match(joystickWords(0, refused), /^back: stands - ground that was never seen\. Hold a sign/);
+  assert.match(joystickWords(0, refused), /^back: no step - ground that was never seen\. Hold a sign/);
   assert.match(
     joystickWords(0, { ...refused, asked: 10, text: "" }),
-    /^movement 10: stands - the gate cannot/,
+    /^movement 10: no step - the gate cannot/,
   );
   for (const held of [0, 9])
     assert.equal(joystickWords(held, { ...steer, yours: false }), "Another page holds the joystick.");
@@ -122,7 +122,7 @@ test("the big line in words", () => {
   assert.equal(said(drop, false), "no fresh data");
   assert.equal(
     stateSentence("FAULT", "MOUNT_MOVED"),
-    "The gate has stopped after a fault: the camera has moved on its mount",
+    "The gate stopped after a fault: the camera has moved on its mount",
   );
   assert.equal(stateSentence("WARMUP", "WARMUP"), "The gate is warming up");
   assert.equal(stateSentence("READY", "NONE"), "The gate is ready");
@@ -158,19 +158,19 @@ test("nothing is fresh longer than a second, whatever stops coming", () => {
     assert.equal(isGround, ground, name);
     assert.equal(verdicts, false, name);
   };
-  stopped("service_word_at_ms", /silent/, false);
+  stopped("service_word_at_ms", /service sends nothing/, false);
   stopped("pose_at_ms", /Frames are late/, false);
   stopped("map_at_ms", /map is late/, false);
-  stopped("outlook_at_ms", /gate is silent/, true);
+  stopped("outlook_at_ms", /gate sends nothing/, true);
 });
 
 test("each way of being away has its sentence", () => {
   const said = (changes) => judgeFreshness({ ...kFresh, ...changes }, 1000);
   const away = said({ service: "away", retry_at_ms: 2000 });
-  assert.match(away.banner, /service is away/);
-  assert.equal(away.detail, "in 1.0 s");
+  assert.match(away.banner, /No connection to the service/);
+  assert.equal(away.detail, "next attempt in 1.0 s");
   assert.equal(away.ground, false);
-  assert.match(said({ gate: "away" }).banner, /gate is away/);
+  assert.match(said({ gate: "away" }).banner, /No connection to the gate/);
   assert.equal(said({ gate: "away" }).ground, true);
   assert.equal(said({ gate: "away" }).verdicts, false);
   assert.equal(
@@ -273,17 +273,17 @@ test("each thing on the ground is a row with its measures", () => {
     going: "310 ± 5 mm",
     width: "1.20 m",
     place: "-0.40, -1.15 m; -90°",
-    seen: "now, 12 looks",
+    seen: "now, 12 observations",
     remarks:
-      "landing 0.80 m; single ones scatter by 4 and 7 mm; left a wall; rail on the right, 0.95 m high; " +
-      "may go on beyond what is known",
+      "landing 0.80 m; risers scatter by 4 mm, goings by 7 mm; wall on the left; rail on the right, 0.95 m high; " +
+      "may continue beyond the known ground",
   });
   assert.equal(rows[1].height, "170 ± 6 mm or more");
-  assert.match(rows[1].remarks, /bottom was not seen/);
+  assert.match(rows[1].remarks, /lower ground was not seen/);
   assert.equal(rows[2].height, "80.0 ± 0.4 mm");
   assert.deepEqual([rows[3].height, rows[3].width], ["15 mm", "920 ± 12 mm"]);
   assert.match(rows[3].remarks, /sill; nothing seen above it/);
-  assert.equal(featureRows(stairs(), 7e9)[0].seen, "7 s ago, 12 looks");
+  assert.equal(featureRows(stairs(), 7e9)[0].seen, "7 s ago, 12 observations");
   const [flight] = stairs().flights;
   const once = {
     ...flight,
@@ -298,7 +298,7 @@ test("each thing on the ground is a row with its measures", () => {
   };
   const [row] = featureRows({ ...stairs(), flights: [once] });
   assert.deepEqual([row.what, row.going, row.seen], ["flight, one step up", "-", "-"]);
-  assert.match(row.remarks, /turns by 29°; boards without risers; left open; right level/);
+  assert.match(row.remarks, /turns by 29°; treads without risers; open on the left; level ground on the right/);
 });
 
 test("labels say riser by going, and lie on the thing", () => {
@@ -380,10 +380,10 @@ test("settings: group and name, and a search for all words", () => {
   assert.deepEqual(keys("  Reach   JUMP "), ["elevation.pixels.reach_px"]);
   assert.equal(keys("").length, kSettings.length);
   assert.deepEqual(keys("reach matcher"), []);
-  assert.equal(foundWords(0, 0), "The settings have not come yet.");
+  assert.equal(foundWords(0, 0), "Waiting for the settings.");
   assert.equal(foundWords(37, 37), "37 settings");
   assert.equal(foundWords(2, 37), "2 of 37 settings");
-  assert.equal(foundWords(0, 37), "None of 37 settings");
+  assert.equal(foundWords(0, 37), "No match among 37 settings");
 });
 
 test("the recording in words, whatever its state", () => {
@@ -399,7 +399,7 @@ test("the recording in words, whatever its state", () => {
   assert.equal(countWords(recording), "150 frames, 61.0 MB, 10.0 s");
   assert.equal(
     countWords({ ...recording, frames: 1, left_out: 2 }),
-    "1 frame, 61.0 MB, 10.0 s; 2 left out: the disk is too slow",
+    "1 frame, 61.0 MB, 10.0 s; 2 frames left out: the disk is too slow",
   );
   const said = (changes) => recordingWords({ ...recording, ...changes });
   assert.deepEqual(said({}), {
@@ -421,7 +421,7 @@ test("the recording in words, whatever its state", () => {
     [failed.possible, failed.button, failed.state],
     [true, "Start recording", "The recording failed: no space left."],
   );
-  assert.equal(said({ state: "ready", text: "" }).state, "Nothing is recorded.");
+  assert.equal(said({ state: "ready", text: "" }).state, "No recording is running.");
   assert.equal(said({ state: "ready", text: "10 frames" }).state, "Recorded: 10 frames.");
   assert.equal(recordingWords(undefined).possible, false);
 });
