@@ -56,7 +56,7 @@ export interface AttestationWords {
   detail: string; ///< changes while the machine moves: not read aloud
 }
 
-/// What the page says while an attestation is in force. `place`: base_link in odom.
+/// The text on the map while an attestation is in force. `place`: base_link in odom.
 export function attestationWords(
   in_force: boolean,
   area: AttestedArea | undefined,
@@ -66,7 +66,7 @@ export function attestationWords(
   const end =
     "It ends when the machine leaves this circle, when the position is lost, after a fault, " +
     "and when perception restarts.";
-  if (!area) return { words: `Attestation in force. The gate does not say its radius. ${end}`, detail: "" };
+  if (!area) return { words: `Attestation in force. The gate does not send its radius. ${end}`, detail: "" };
   const distance_m = place ? Math.hypot(place.x_m - area.x_m, place.y_m - area.y_m) : undefined;
   return {
     words: `Attestation in force: radius ${area.radius_m.toFixed(2)} m around the attested place. ${end}`,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Machine, Movement } from "./messages.ts";
 
-/// The outlook of the gate: the verdict on each movement if somebody asked now. Never a permission.
+/// The outlook of the gate: the verdict on each movement at this moment. Never a permission.
 export type Say = "OK" | "NOT_TRAVERSABLE" | "ERROR";
 export interface OutlookVerdict {
   command: number;

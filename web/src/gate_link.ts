@@ -18,7 +18,8 @@ export interface ActResult {
   role?: string; ///< of this client; only /surefoot/authenticate answers with it
 }
 
-/// What the gate link needs of the page. `heard`: a verdict came. `refused`: the gate refused a token that the page had.
+/// Parts of the page that the gate link needs. `heard`: called with each verdict. `refused`: called if the gate refuses
+/// a token that the page had.
 export interface GateLinkOptions {
   store: Store;
   base: () => string | undefined; ///< address of the gate; undefined = not yet known
@@ -73,7 +74,7 @@ export class GateLink {
     });
   }
 
-  /// Connects, or connects to another address, once the service has said where the gate is.
+  /// Connects, or connects to another address, once the service has sent the port of the gate.
   open(): void {
     if (this.#socket.state !== "open") this.#socket.open();
   }

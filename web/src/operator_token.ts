@@ -2,7 +2,7 @@
 
 const kKey = "surefoot-operator-token";
 
-/// What the page needs of `sessionStorage`.
+/// The part of `sessionStorage` that the page uses.
 export type TokenStorage = Pick<Storage, "getItem" | "setItem" | "removeItem">;
 
 /// The operator's token of this browser tab. The browser forgets it when the tab is closed.
@@ -44,7 +44,7 @@ export function needsOperator(message: string): boolean {
   return /\brole\b.*\boperator\b/i.test(message);
 }
 
-/// The gate's address. A browser does not say why a connection failed: after a failure with the token of the page's
+/// The gate's address. A browser hides why a connection failed. So after a failure with the token of the page's
 /// address, the next attempt leaves that token out, so that a wrong one does not keep the page from the gate.
 export function gateAddress(base: string, url_token: string | null, failures: number): string {
   const leaves_out = failures % 2 === 1;

@@ -24,7 +24,7 @@ export interface GateHealth {
   frame_age_ms: number | null;
   pose_age_ms: number | null;
   vouching: boolean;
-  vouched?: AttestedArea | null; ///< gates of before version 0.2 do not send it
+  vouched?: AttestedArea | null; ///< in odom; older gates do not send it
   asked: number;
   allowed: number;
 }

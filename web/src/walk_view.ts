@@ -39,7 +39,7 @@ export class WalkView {
     new ResizeObserver(changed).observe(byId("ground"));
   }
 
-  /// Opens the field for the operator's token. `why`: what the gate said.
+  /// Opens the field for the operator's token. `why`: the sentence of the gate.
   askToken(why: string): void {
     this.#acts.askToken(why);
   }

@@ -475,7 +475,7 @@ test("an attestation in force has its radius, its place and its end in words", (
   assert.match(words, /^Attestation in force: radius 0\.60 m around the attested place\. It ends when/);
   assert.match(words, /leaves this circle.*position is lost.*fault.*perception restarts/);
   assert.equal(detail, "Distance to the centre: 0.50 m.");
-  assert.match(attestationWords(true, undefined, undefined).words, /^Attestation in force\. The gate does not say/);
+  assert.match(attestationWords(true, undefined, undefined).words, /^Attestation in force\. The gate does not send/);
 });
 
 test("the slider offers radii that the gate accepts, and no other", () => {
