@@ -551,7 +551,7 @@ for (const [name, model] of [
     }));
 
 test("the engineer's view: pictures, layers, times, verdicts", () =>
-  withPage({}, async (page, service) => {
+  withPage({ fake: { stands: true } }, async (page, service) => {
     assert.ok(
       service.wants.every(({ layers, images }) => layers.length + images.length === 0),
       "asked for unseen",
@@ -569,8 +569,8 @@ test("the engineer's view: pictures, layers, times, verdicts", () =>
     await page.waitForSelector("#image-left:visible");
     assert.equal(await page.isVisible("#no-image-left"), false);
     await page.focus("#layer");
-    await page.keyboard.press("ArrowUp");
-    // Beside the machine, far from the drop, that evidence is nothing; drift grows with the distance.
+    for (let i = 0; i < 3; ++i) await page.keyboard.press("Shift+ArrowRight");
+    // On known ground 0.76 m ahead, far from the drop, the evidence is 0; drift grows with the distance.
     await page.waitForFunction(() =>
       document.getElementById("layer-value").textContent.startsWith("0.0000 at x "),
     );
@@ -580,7 +580,7 @@ test("the engineer's view: pictures, layers, times, verdicts", () =>
     await page.waitForFunction((old) => document.getElementById("layer").toDataURL() !== old, before);
     await page.waitForFunction(
       () =>
-        /^0\.00[0-9]+ at x /.test(document.getElementById("layer-value").textContent) &&
+        /^0\.0[0-9]+ at x /.test(document.getElementById("layer-value").textContent) &&
         !document.getElementById("layer-value").textContent.startsWith("0.0000"),
     );
     assert.deepEqual(service.wants.at(-1).layers, ["drift_m"]);
