@@ -286,7 +286,7 @@ test("an attestation in force is shown: its border, its radius and its end", () 
     await page.waitForSelector("#attestation", { state: "hidden" });
     await page.waitForTimeout(500);
     const without = await colorShare(page, kSkyBlue);
-    assert.ok(shown > without + 0.003, `${shown} of the picture with a border, ${without} without`);
+    assert.ok(shown > without + 0.001, `${shown} of the picture with a border, ${without} without`);
   }));
 
 test("an act without the operator's token asks for it, and the tab keeps it", () =>
