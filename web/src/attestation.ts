@@ -32,7 +32,7 @@ function leastRadius_tenth_mm({ left, right }: Machine["feet"]): number {
   return Math.ceil(Math.max(farthest(left), farthest(right)) - 1e-6);
 }
 
-/// Undefined if the machine file allows no attestation.
+/// Undefined if the machine file allows no attestation, or no radius that holds both soles.
 export function radiusRange(machine: Machine | null | undefined): RadiusRange | undefined {
   if (!machine) return undefined;
   const most = tenthMm(machine.vouch_radius_m);
