@@ -157,12 +157,13 @@ void add_gate(VerbGroup verbs) {
         .value("F.png");
     verb.option(
             "--vouch",
-            o.vouch_radius_m,
-            "radius around base_link that an operator answers for where nothing was measured; 0 = "
-            "none; without it a disc that reaches to the ends of the present feet is assumed, and "
-            "listed in 'assumed'")
+                o.vouch_radius_m,
+                "operator attestation: radius around base_link within which ground that was not "
+                "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "
+                "rex); 0 = no attestation. Without this option the gate assumes a disc that "
+                "reaches to the ends of the present feet, and lists it in 'assumed'")
         .value("M")
-        .in(0.0, 2.0);
+        .not_negative();
     verb.option("--audit",
                 o.audit_dir,
                 "audit log that the verdict is added to, with all that it was made from")

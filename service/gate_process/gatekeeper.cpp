@@ -220,6 +220,7 @@ GateReport Gatekeeper::report(std::int64_t now_ns) {
             report.why = gate::Reason::not_ready;
     }
     report.vouching = vouching_.area().active;
+    report.vouched = vouching_.area();
     report.asked = asked_;
     report.allowed = allowed_;
     if (has_map_) {

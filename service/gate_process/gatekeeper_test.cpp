@@ -247,6 +247,7 @@ TEST_F(GatekeeperTest, an_operators_word_lasts_until_the_machine_has_left_or_a_f
     EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
     ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
     EXPECT_TRUE(keeper_->report(now_ns_).vouching);
+    EXPECT_EQ(keeper_->report(now_ns_).vouched.radius_tenth_mm, 10'000);
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << gate::testing::words(ask().verdict);
     run(0.5);
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << "it lasts while the machine stands";
@@ -261,6 +262,7 @@ TEST_F(GatekeeperTest, an_operators_word_lasts_until_the_machine_has_left_or_a_f
         run(0.065);
     }
     EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "the machine has left";
+    EXPECT_FALSE(keeper_->report(now_ns_).vouched.active);
     while (map_->body_x_tenth_mm > 0) {
         map_->body_x_tenth_mm -= 325;
         run(0.065);

@@ -48,7 +48,8 @@ struct GateReport {
     std::uint64_t map_version = 0;
     std::int64_t frame_age_ns = -1;  ///< of the last snapshot; -1 = none came yet
     std::int64_t pose_age_ns = -1;
-    bool vouching = false;  ///< an operator's attestation is in force
+    bool vouching = false;      ///< an operator's attestation is in force
+    gate::VouchedArea vouched;  ///< its area, in odom; inactive if none is in force
     std::uint64_t asked = 0;
     std::uint64_t allowed = 0;
 };

@@ -310,8 +310,10 @@ int main_with_arguments(int argc, char** argv) {
         ->type_name("HZ");
     app.add_option("--vouch",
                    options.vouch_radius_m,
-                   "once, when the gate is ready: whoever starts it answers for level ground so "
-                   "far around the machine; void after leaving")
+                   "operator attestation, given once when the gate is ready: radius around the "
+                   "machine within which ground that was not measured counts as level. At most "
+                   "vouch_radius_m of the machine file (1.0 m for rex). The attestation ends when "
+                   "the machine leaves the circle")
         ->check(CLI::NonNegativeNumber)
         ->type_name("M");
     app.add_option("--channel-key",

@@ -118,7 +118,7 @@ const char* error_text(Reason reason) {
         case Reason::pose_lost: return "the position is lost";
         case Reason::plane_invalid: return "it is not known how the machine stands on the ground";
         case Reason::blind: return "the camera sees nothing";
-        case Reason::exposure: return "the image is too bright or too dark";
+        case Reason::exposure: return "the image is too bright";
         case Reason::frame_corrupt: return "the camera image is damaged";
         case Reason::frame_frozen: return "the camera image stands still";
         case Reason::time_skew: return "a measurement is stamped in the future";

@@ -42,6 +42,11 @@ class Verbs(CliTest):
                 if "--json" in words or verb == ["gate"]:
                     self.assertTrue(process.stdout.strip(), example)
 
+    def test_the_limit_of_an_attestation_is_that_of_the_machine_file(self):
+        words = " ".join(surefoot("gate", "--help").stdout.split())
+        self.assertIn("At most vouch_radius_m of the machine file", words)
+        self.assertNotIn("[0 - 2]", words)
+
     def test_wrong_calls_exit_with_2_and_say_why(self):
         for words in (["walk"], ["run"], ["run", "sim:floor"], ["sim", "nowhere", "--out", "x"],
                       ["rate", "a.asc", "--out", "x", "--preset", "nothing"],

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Machine, Movement } from "./messages.ts";
 
-/// What the gate would say; a picture, never a permission.
+/// The outlook of the gate: the verdict on each movement at this moment. Never a permission.
 export type Say = "OK" | "NOT_TRAVERSABLE" | "ERROR";
 export interface OutlookVerdict {
   command: number;
@@ -23,7 +23,7 @@ export interface Direction {
 }
 
 /// Outer ring of the joystick: 9 is ahead, then clockwise in steps of 22.5 degrees; 25 and 26 turn. The order
-/// is the one in which people look: ahead first.
+/// is the one in which people read them: ahead first.
 export const kDirections: readonly Direction[] = [
   { code: 9, words: "ahead", angle_deg: 0, turn: 0 },
   { code: 23, words: "ahead left", angle_deg: -45, turn: 0 },
@@ -56,32 +56,32 @@ function sign(kind: SignKind, reason: string): Sign {
   return { kind, word: kWords[kind], reason };
 }
 
-/// The sign of one direction. Only a fresh OK is green; everything that is not understood cannot be judged.
-/// `machine`: undefined = the service has not said yet, null = it has no machine file.
+/// The sign of one direction. Only a fresh OK is green. An answer that the page does not know is "cannot judge".
+/// `machine`: undefined = not yet known, null = the service has no machine file.
 export function signOf(
   code: number,
   machine: Machine | null | undefined,
   outlook: Outlook | undefined,
   fresh: boolean,
 ): Sign {
-  if (machine === null) return sign("cannot", "without a machine file no direction is judged");
+  if (machine === null) return sign("cannot", "there is no machine file, so no direction is judged");
   if (machine && !machine.movements.some((movement) => movement.code === code))
     return sign("absent", "the machine has no such movement");
   if (!fresh) return sign("stale", "no fresh data");
   const verdict = outlook?.verdicts.find((one) => one.command === code);
-  if (!verdict) return sign("cannot", "the gate has not said anything yet");
-  if (verdict.verdict === "OK") return sign("allowed", "the ground is known and level enough");
+  if (!verdict) return sign("cannot", "the gate has sent no answer yet");
+  if (verdict.verdict === "OK") return sign("allowed", "the way is clear and the ground carries");
   if (verdict.verdict === "NOT_TRAVERSABLE") return sign("not", verdict.text);
   return sign("cannot", verdict.text || "the gate cannot judge");
 }
 
-/// The outlook of the gate's present state; that of another state is taken away (docs/reference/rosbridge.md).
+/// The outlook, if it belongs to the present state of the gate (docs/reference/rosbridge.md).
 export function ofState(outlook: Outlook | undefined, state: string | undefined): Outlook | undefined {
   return outlook && (state === undefined || outlook.state === state) ? outlook : undefined;
 }
 
-/// The direction that the big line is about: the one that was chosen, else ahead when it is closed, else the
-/// first that is closed, else ahead.
+/// The direction of the large sentence: the chosen one; else ahead if ahead is not allowed; else the first that is
+/// not allowed; else ahead.
 export function spokenDirection(chosen: number | undefined, signs: ReadonlyMap<number, Sign>): Direction {
   const byCode = (code: number) => kDirections.find((direction) => direction.code === code);
   const wanted = chosen === undefined ? undefined : byCode(chosen);
@@ -109,15 +109,21 @@ const kStateWords: Record<string, string> = {
   INIT: "The gate is starting",
   WARMUP: "The gate is warming up",
   READY: "The gate is ready",
-  DEGRADED: "The gate holds back",
-  FAULT: "The gate has stopped after a fault",
+  DEGRADED: "The gate is not ready",
+  FAULT: "The gate stopped after a fault",
+  STOPPING: "The gate is stopping",
 };
 
-/// Reasons of a state, in words; those of single steps come with their own text.
+/// Reasons of a state, worded as in docs/reference/gate_reasons.md. A verdict brings its own text.
 const kWhyWords: Record<string, string> = {
-  INTERNAL: "an error within the gate",
+  INTERNAL: "internal error: the map or the gate is damaged",
   CONFIG: "the machine description is not valid",
   CLOCK: "the clock cannot be trusted",
+  BAD_MESSAGE: "the message could not be read",
+  BAD_NUMBER: "the query holds a number that is no number or out of range",
+  FRAME_ID: "the query is in a frame that the gate does not know",
+  SEQ: "the query is out of sequence",
+  UNKNOWN_COMMAND: "the machine has no such movement",
   NOT_READY: "the system is not ready",
   WARMUP: "the system is warming up",
   MOUNT_MOVED: "the camera has moved on its mount",
@@ -125,20 +131,23 @@ const kWhyWords: Record<string, string> = {
   POSE_LOST: "the position is lost",
   PLANE_INVALID: "it is not known how the machine stands on the ground",
   BLIND: "the camera sees nothing",
-  EXPOSURE: "the image is too bright or too dark",
+  EXPOSURE: "the image is too bright",
   FRAME_CORRUPT: "the camera image is damaged",
   FRAME_FROZEN: "the camera image stands still",
   TIME_SKEW: "a measurement is stamped in the future",
   FRAME_STALE: "the last camera image is too old",
   POSE_STALE: "the last position is too old",
   MAP_STALE: "the map is too old",
+  EXPIRED: "the answer has expired",
+  DEADLINE: "the answer took too long",
+  OVERLOAD: "too many questions at a time",
   AUDIT: "the log cannot be written",
 };
 
-/// "The gate is warming up"; "The gate holds back: the last camera image is too old".
+/// "The gate is warming up"; "The gate is not ready: the last camera image is too old".
 export function stateSentence(state: string | undefined, why: string | undefined): string {
-  if (state === undefined) return "The gate has not said anything yet";
-  const words = kStateWords[state] ?? `The gate says ${state}`;
+  if (state === undefined) return "The gate has sent no state yet";
+  const words = kStateWords[state] ?? `State of the gate: ${state}`;
   if (!why || why === "NONE" || state === "READY" || state === why) return words;
   return `${words}: ${kWhyWords[why] ?? why}`;
 }

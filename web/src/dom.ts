@@ -7,7 +7,7 @@ export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
   return element as T;
 }
 
-/// Writes only what is new: a screen reader must not read the same words ten times a second.
+/// Writes only changed text, so that a screen reader does not repeat it ten times a second.
 export function setText(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { attestedWords } from "./attestation.ts";
 import { byId, make, setText } from "./dom.ts";
 import { kDirections, stateSentence } from "./directions.ts";
 import { FeatureTable } from "./feature_table.ts";
@@ -12,7 +13,7 @@ import { TrackView } from "./track_view.ts";
 const kHealth = ["lost", "degraded", "ok"];
 const kShownVerdicts = 12;
 
-/// For the engineer: pictures, layers, stairs with their measures, way, times, verdicts and settings.
+/// For the engineer: images, layers, stairs with their measures, track, stage times, verdicts and settings.
 export class EngineerView {
   readonly #store: Store;
   readonly #layer: LayerView;
@@ -33,7 +34,7 @@ export class EngineerView {
     this.#plot = new StagePlot(byId("stage-plot"), store);
   }
 
-  /// What this view needs of the service, beyond the map.
+  /// The data that this view needs in addition to the map.
   get wanted(): { layers: string[]; images: string[]; settings: boolean } {
     const { hello } = this.#store;
     const layers = this.#layer.wanted ? [this.#layer.wanted] : [];
@@ -66,20 +67,21 @@ export class EngineerView {
   }
 
   #drawTables(): void {
-    const { status, health, pose, hello } = this.#store;
-    const key = JSON.stringify([status, health, pose?.health, hello?.program]);
+    const { status, health, pose, hello, attesting, attested } = this.#store;
+    const key = JSON.stringify([status, health, pose?.health, hello?.program, attesting]);
     if (key === this.#tables) return;
     this.#tables = key;
     const facts: [string, string][] = [
-      ["Source", status ? `${status.state}${status.text ? `: ${status.text}` : ""}` : "not heard of"],
-      ["Frames", status ? `${status.frames}, ${status.rate_hz.toFixed(1)} each second` : ""],
+      ["Source", status ? `${status.state}${status.text ? `: ${status.text}` : ""}` : "no message yet"],
+      ["Frames", status ? `${status.frames}, ${status.rate_hz.toFixed(1)} per second` : ""],
       ["Pose", pose ? (kHealth[pose.health] ?? "?") : ""],
       ["Health", status ? [status.health, ...status.reasons].join(", ") : ""],
       ["Gate", stateSentence(health?.state, health?.why)],
       ["Age of the frame", health?.frame_age_ms == null ? "" : `${health.frame_age_ms.toFixed(0)} ms`],
       ["Age of the pose", health?.pose_age_ms == null ? "" : `${health.pose_age_ms.toFixed(0)} ms`],
+      ["Attestation", attesting ? attestedWords(attested) : "none in force"],
       ["Questions", health ? `${health.asked} asked, ${health.allowed} allowed` : ""],
-      ["Pages", status ? String(status.viewers) : ""],
+      ["Connected pages", status ? String(status.viewers) : ""],
       ["Program", hello?.program ?? ""],
     ];
     byId("facts").replaceChildren(
@@ -107,7 +109,7 @@ export class EngineerView {
     );
     setText(
       byId("verdict-note"),
-      verdicts.length === 0 ? "Nobody has asked the gate since this page was opened." : "",
+      verdicts.length === 0 ? "The gate has answered no question since this page was opened." : "",
     );
   }
 

@@ -2,7 +2,7 @@
 import { featureLabels, spreadLabels } from "./feature_words.ts";
 import type { Stairs } from "./messages.ts";
 
-/// Where odom lies in a picture: x to the right, y up.
+/// Position of odom in a picture: x to the right, y up.
 export interface PictureFrame {
   origin_x_m: number;
   origin_y_m: number;
@@ -76,7 +76,7 @@ function drawLabels(
     const [x, y] = at(x_m, y_m);
     const width = Math.max(...lines.map((text) => context.measureText(text).width)) + 12 * unit_px;
     const height = lines.length * line + 5 * unit_px;
-    // Behind the thing, so that its lines stay in sight.
+    // Behind the feature, so that its lines stay visible.
     const [cos, sin] = [Math.cos(yaw_rad), Math.sin(yaw_rad)];
     const off = 8 * unit_px + Math.min(width / 2 / Math.abs(cos || 1e-9), height / 2 / Math.abs(sin || 1e-9));
     return { lines, x: x + off * cos, y: y - off * sin, width, height };

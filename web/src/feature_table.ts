@@ -23,7 +23,7 @@ export class FeatureTable {
     this.#rows.replaceChildren(...rows.flatMap((row) => this.#rowsOf(row)));
   }
 
-  /// Remarks have a line of their own.
+  /// Remarks are in a row of their own.
   #rowsOf({ what, remarks, ...cells }: FeatureRow): HTMLTableRowElement[] {
     const tds = Object.values(cells).map((text) => make("td", { text }));
     const row = make("tr", {}, make("th", { scope: "row", text: what }), ...tds);
@@ -33,8 +33,8 @@ export class FeatureTable {
   }
 
   #note(rows: number): string {
-    if (!this.#store.stairs) return "What the ground is has not come yet.";
+    if (!this.#store.stairs) return "Waiting for stairs and edges.";
     if (rows === 0) return "No flight, drop, kerb, sill or door has been found.";
-    return "One standard error behind ±. Places are those of odom; the angle is the way over the thing, from x.";
+    return "± is one standard error. Positions are in odom. The angle is the direction over the feature, from the x axis.";
   }
 }

@@ -2,9 +2,9 @@
 import type { Door, Feature, Flight, FlightSide, Kerb, LineFeature, Stairs } from "./messages.ts";
 import type { Place } from "./store.ts";
 
-/// What of the ground is told by its name, in the words of tables, labels and sentences. Knows no browser.
+/// Stairs, drops, kerbs, sills and doors as texts of tables, labels and sentences. Uses no browser.
 
-/// "180 ± 2 mm"; a sigma below 1 mm keeps a digit more.
+/// "180 ± 2 mm"; a sigma below 1 mm gets one more digit.
 export function millimetres(value_m: number | null, sigma_m?: number | null): string {
   if (value_m === null) return "-";
   const fine = sigma_m != null && sigma_m < 0.001;
@@ -46,16 +46,16 @@ function placeWords([x_m, y_m, , yaw_rad]: Feature["pose"]): string {
   return `${x_m.toFixed(2)}, ${y_m.toFixed(2)} m; ${((yaw_rad * 180) / Math.PI).toFixed(0)}°`;
 }
 
-/// `passed_s`: between the message and now.
+/// `passed_s`: seconds since the message.
 function seenWords({ looks, last_seen_s }: Feature, passed_s: number): string {
   if (looks === undefined || last_seen_s === undefined) return "-";
   const ago_s = Math.max(0, last_seen_s + passed_s);
   const when = ago_s < 1 ? "now" : `${ago_s.toFixed(0)} s ago`;
-  return `${when}, ${looks} look${looks === 1 ? "" : "s"}`;
+  return `${when}, ${looks} observation${looks === 1 ? "" : "s"}`;
 }
 
 function sideWords(name: string, { kind, rail_m }: FlightSide): string[] {
-  const words = kind === "unknown" ? [] : [`${name} ${kind === "wall" ? "a wall" : kind}`];
+  const words = kind === "unknown" ? [] : [`${kind === "level" ? "level ground" : kind} on the ${name}`];
   return rail_m === null ? words : [...words, `rail on the ${name}, ${metres(rail_m)} high`];
 }
 
@@ -64,13 +64,13 @@ function flightRemarks(flight: Flight): string {
   if (flight.landing_m !== null) said.push(`landing ${metres(flight.landing_m)}`);
   if (flight.steps > 2 && flight.riser_spread_m !== null && flight.going_spread_m !== null) {
     const spread = [flight.riser_spread_m, flight.going_spread_m].map((one_m) => (1e3 * one_m).toFixed(0));
-    said.push(`single ones scatter by ${spread[0]} and ${spread[1]} mm`);
+    said.push(`risers scatter by ${spread[0]} mm, goings by ${spread[1]} mm`);
   }
   if (flight.turn_rad !== null && Math.abs(flight.turn_rad) > 0.1)
     said.push(`turns by ${((flight.turn_rad * 180) / Math.PI).toFixed(0)}°`);
-  if (flight.open) said.push("boards without risers");
+  if (flight.open) said.push("treads without risers");
   said.push(...sideWords("left", flight.left), ...sideWords("right", flight.right));
-  if (flight.cut) said.push("may go on beyond what is known");
+  if (flight.cut) said.push("may continue beyond the known ground");
   return said.join("; ");
 }
 
@@ -82,7 +82,7 @@ function lineRow(what: string, line: LineFeature, passed_s: number): FeatureRow 
     width: metres(line.length_m),
     place: placeWords(line.pose),
     seen: seenWords(line, passed_s),
-    remarks: line.bottom_seen ? "" : "its bottom was not seen",
+    remarks: line.bottom_seen ? "" : "the lower ground was not seen",
   };
 }
 
@@ -95,7 +95,7 @@ function doorRow(door: Door, passed_s: number): FeatureRow {
     width: millimetres(door.width_m, door.width_std_m),
     place: placeWords(door.pose),
     seen: seenWords(door, passed_s),
-    remarks: `height is that of its sill; ${above}`,
+    remarks: `the height is that of the sill; ${above}`,
   };
 }
 
@@ -126,7 +126,7 @@ export interface FeatureLabel {
   yaw_rad: number;
 }
 
-/// What a picture writes beside a thing, flights first, and where it ends on the way over it: in odom.
+/// Labels of a picture, flights first, each at the last edge of its feature along its direction, in odom.
 export function featureLabels(stairs: Stairs): FeatureLabel[] {
   const at = ({ pose: [x_m, y_m, , yaw_rad] }: Feature, length_m: number, ...lines: string[]) =>
     x_m === null || y_m === null || yaw_rad === null
@@ -140,7 +140,7 @@ export function featureLabels(stairs: Stairs): FeatureLabel[] {
           },
         ];
   const line = (what: string, { height_m }: LineFeature, rest = "") => `${what} ${metres(height_m)}${rest}`;
-  // The table has them all.
+  // Labels leave out drops on a flight; the table has all drops.
   const drops = stairs.drops.filter(({ pose: [x_m, y_m] }) => !isOnSomeFlight(stairs.flights, x_m, y_m));
   return [
     ...stairs.flights.flatMap((flight) => at(flight, goingLength_m(flight), ...flightLines(flight))),
@@ -154,7 +154,7 @@ export function featureLabels(stairs: Stairs): FeatureLabel[] {
 /// From the first edge to the last.
 const goingLength_m = ({ steps, going_m }: Flight) => Math.max(0, steps - 1) * (going_m ?? 0);
 
-/// Whether a place lies on a flight, or within a foot of it: its edges need no words of their own there.
+/// Whether a position lies on a flight or within 0.3 m of it. Edges there get no label of their own.
 export function isOnFlight(flight: Flight, x_m: number, y_m: number): boolean {
   const [at_x_m, at_y_m, , yaw_rad] = flight.pose;
   if (at_x_m === null || at_y_m === null || yaw_rad === null) return false;
@@ -176,8 +176,8 @@ export function isOnSomeFlight(flights: Flight[], x_m: number | null, y_m: numbe
 const kFarthest_m = 3;
 const kWidest_rad = Math.PI / 4;
 
-/// How far the nearest point of a line is from a place, where it lies ahead of it; else nothing. A line goes across its
-/// pose's yaw.
+/// Distance from a position to the nearest point of a line; undefined if that point is not ahead. The line is
+/// perpendicular to the yaw of its pose.
 function distanceAhead_m(pose: Feature["pose"], length_m: number | null, place: Place): number | undefined {
   const [x_m, y_m, , yaw_rad] = pose;
   if (x_m === null || y_m === null || yaw_rad === null) return undefined;
@@ -193,7 +193,8 @@ function distanceAhead_m(pose: Feature["pose"], length_m: number | null, place: 
   return is_ahead && distance_m <= kFarthest_m ? distance_m : undefined;
 }
 
-/// The nearest stairs or drop ahead in words, for the user; empty without any. No permission, and no warning to rely on.
+/// The nearest stairs or drop ahead, for the user; empty if there is neither. Not a permission, and not a warning to
+/// rely on.
 export function aheadWords(stairs: Stairs | undefined, place: Place | undefined): string {
   if (!stairs || !place) return "";
   const of = (words: string, { pose }: Feature, length_m: number | null) => ({
@@ -231,7 +232,7 @@ export interface LabelBox {
   height: number;
 }
 
-/// Without those that repeat one before them within a label's width: the sides of a pit are one drop.
+/// Removes each label that repeats an earlier one within a label's width: the sides of a pit are one drop.
 export function withoutRepeats<T extends LabelBox & { text: string }>(boxes: T[]): T[] {
   const kept: T[] = [];
   for (const box of boxes) {
@@ -241,7 +242,7 @@ export function withoutRepeats<T extends LabelBox & { text: string }>(boxes: T[]
   return kept;
 }
 
-/// Labels that would lie on one that comes before are moved down, and all into the picture.
+/// Moves a label that would cover an earlier one down, and every label into the picture.
 export function spreadLabels<T extends LabelBox>(boxes: T[], width: number, height: number): T[] {
   const placed: T[] = [];
   for (const box of boxes) {

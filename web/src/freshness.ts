@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is fresh and what the banner says, from times of arrival alone: the source has a clock of its own.
+/// Freshness and the text of the banner, from times of arrival alone: the clock of the source differs from the page's.
 
 export type LinkState = "opening" | "open" | "away";
 
@@ -20,10 +20,10 @@ export interface Freshness {
   ground: boolean; ///< the map and the pose may be shown in colours
   verdicts: boolean; ///< the signs may be shown in colours
   banner: string; ///< empty = nothing to say
-  detail: string; ///< what changes all the time, for the eye alone
+  detail: string; ///< changes all the time: not read aloud
 }
 
-/// Below the second that is promised, by one period of the page's own clock.
+/// The promised limit is 1 s. One period of the page's clock (100 ms) is subtracted.
 export const kStale_ms = 900;
 
 function younger(at_ms: number | undefined, now_ms: number): boolean {
@@ -35,35 +35,37 @@ function seconds(from_ms: number, to_ms: number): string {
 }
 
 function again(retry_at_ms: number | undefined, now_ms: number): string {
-  return retry_at_ms !== undefined && retry_at_ms > now_ms ? `in ${seconds(now_ms, retry_at_ms)}` : "now";
+  const waits = retry_at_ms !== undefined && retry_at_ms > now_ms;
+  return `next attempt ${waits ? `in ${seconds(now_ms, retry_at_ms)}` : "now"}`;
 }
 
-/// [sentence, the seconds that belong to it]
+/// [sentence, its seconds and limit]
 function banner(arrivals: Arrivals, now_ms: number): [string, string?] {
   const { service, gate, retry_at_ms, service_word_at_ms, pose_at_ms, map_at_ms, outlook_at_ms } = arrivals;
-  const ago = (at_ms: number) => `last one ${seconds(at_ms, now_ms)} ago`;
+  const ago = (what: string, at_ms: number) =>
+    `last ${what} ${seconds(at_ms, now_ms)} ago, limit ${seconds(0, kStale_ms)}`;
   if (service === "opening" && service_word_at_ms === undefined) return ["Connecting to the service."];
   if (service !== "open")
-    return ["The service is away. The page tries again by itself.", again(retry_at_ms, now_ms)];
+    return ["No connection to the service. The page reconnects by itself.", again(retry_at_ms, now_ms)];
   if (service_word_at_ms !== undefined && !younger(service_word_at_ms, now_ms))
-    return ["The service is silent.", `last word ${seconds(service_word_at_ms, now_ms)} ago`];
+    return ["The service sends nothing.", ago("message", service_word_at_ms)];
   if (arrivals.source_state === "ended")
     return [`The source has ended. ${arrivals.source_text ?? ""}`.trim()];
   if (arrivals.source_state === "waiting")
     return [arrivals.source_text || "The service waits for its source."];
-  if (arrivals.source_state === "paused") return ["Paused: what you see is of this moment of the recording."];
+  if (arrivals.source_state === "paused") return ["Paused: the page shows this moment of the recording."];
   if (pose_at_ms === undefined || map_at_ms === undefined)
     return [arrivals.source_text || "There is no map yet."];
-  if (!younger(pose_at_ms, now_ms)) return ["Frames are late.", ago(pose_at_ms)];
-  if (!younger(map_at_ms, now_ms)) return ["The map is late.", ago(map_at_ms)];
-  if (gate !== "open") return ["The gate is away: no direction is judged."];
+  if (!younger(pose_at_ms, now_ms)) return ["Frames are late.", ago("frame", pose_at_ms)];
+  if (!younger(map_at_ms, now_ms)) return ["The map is late.", ago("map", map_at_ms)];
+  if (gate !== "open") return ["No connection to the gate: no direction is judged."];
   if (arrivals.has_machine && !younger(outlook_at_ms, now_ms))
-    return ["The gate is silent: no direction is judged."];
+    return ["The gate sends nothing: no direction is judged."];
   return [""];
 }
 
 export function judgeFreshness(arrivals: Arrivals, now_ms: number): Freshness {
-  // While a recording stands still, its last moment stays.
+  // While a recording is paused, its last moment stays visible.
   const paused = arrivals.source_state === "paused";
   const holds = (at_ms: number | undefined) => (paused ? at_ms !== undefined : younger(at_ms, now_ms));
   const ground =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Outlook } from "./directions.ts";
+import { gateAddress, OperatorToken } from "./operator_token.ts";
 import { ReconnectingSocket } from "./reconnecting_socket.ts";
 import type { GateHealth, GateVerdict, Store } from "./store.ts";
 
@@ -10,45 +11,70 @@ const kTopics = [
 ] as const;
 const kAnswerWithin_ms = 3000;
 
-/// What became of an act of the operator, in the gate's own words.
+/// The gate's answer to an act of the operator, in the gate's own words.
 export interface ActResult {
   success: boolean;
   message: string;
+  role?: string; ///< of this client; only /surefoot/authenticate answers with it
 }
 
-/// The gate's socket (rosbridge 2, docs/reference/rosbridge.md): what it would say, how it is, and the operator's acts.
+/// Parts of the page that the gate link needs. `heard`: called with each verdict. `refused`: called if the gate refuses
+/// a token that the page had.
+export interface GateLinkOptions {
+  store: Store;
+  base: () => string | undefined; ///< address of the gate; undefined = not yet known
+  url_token: string | null; ///< of the page's address
+  token: OperatorToken;
+  heard: (verdict: GateVerdict) => void;
+  refused: (message: string) => void;
+}
+
+/// The gate's socket (rosbridge 2, docs/reference/rosbridge.md): outlook, health, verdicts, and the operator's acts.
 export class GateLink {
   readonly #store: Store;
   readonly #socket: ReconnectingSocket;
   #pending = new Map<string, (result: ActResult) => void>();
   #next_id = 1;
-  #heard: (verdict: GateVerdict) => void;
+  #failures = 0; ///< attempts to connect that failed, one after the other
+  readonly #token: OperatorToken;
+  readonly #url_token: string | null;
+  readonly #heard: (verdict: GateVerdict) => void;
+  readonly #refused: (message: string) => void;
 
-  constructor(store: Store, address: () => string | undefined, heard: (verdict: GateVerdict) => void) {
+  constructor({ store, base, url_token, token, heard, refused }: GateLinkOptions) {
     this.#store = store;
+    this.#token = token;
+    this.#url_token = url_token;
     this.#heard = heard;
+    this.#refused = refused;
+    const address = () => {
+      const known = base();
+      return known && gateAddress(known, url_token, this.#failures);
+    };
     this.#socket = new ReconnectingSocket(address, {
       opened: () => {
         store.arrivals.gate = "open";
         for (const [topic, type] of kTopics) this.#socket.send({ op: "subscribe", topic, type });
+        void this.#showToken();
         store.changed();
       },
       message: (data) => {
         if (typeof data === "string") this.#take(data);
       },
       closed: () => {
+        this.#failures = store.arrivals.gate === "open" ? 0 : this.#failures + 1;
         store.arrivals.gate = "away";
         store.outlook = undefined;
         store.health = undefined;
         for (const answer of this.#pending.values())
-          answer({ success: false, message: "the gate went away" });
+          answer({ success: false, message: "the connection to the gate was lost" });
         this.#pending.clear();
         store.changed();
       },
     });
   }
 
-  /// Opens, or opens at another address, when the service said where the gate is.
+  /// Connects, or connects to another address, once the service has sent the port of the gate.
   open(): void {
     if (this.#socket.state !== "open") this.#socket.open();
   }
@@ -61,6 +87,30 @@ export class GateLink {
     return this.#call("/surefoot/rearm", "std_srvs/Trigger", {});
   }
 
+  /// Shows the operator's token to the gate and keeps it for this tab if the gate accepts it.
+  async authenticate(token: string): Promise<ActResult> {
+    const result = await this.#authenticate(token);
+    if (result.success) this.#token.keep(token);
+    return result;
+  }
+
+  /// Once connected: the token of this tab, or that of the page's address where the connection left it out.
+  async #showToken(): Promise<void> {
+    const kept = this.#token.value;
+    const token = kept || (this.#failures % 2 === 1 ? this.#url_token : null);
+    if (!token) return;
+    const result = await this.#call("/surefoot/authenticate", "surefoot/Authenticate", { token });
+    if (result.success || this.#store.arrivals.gate !== "open") return;
+    if (kept) this.#token.forget();
+    this.#refused(result.message);
+  }
+
+  async #authenticate(token: string): Promise<ActResult> {
+    const result = await this.#call("/surefoot/authenticate", "surefoot/Authenticate", { token });
+    if (!result.success || result.role === "operator") return result;
+    return { success: false, message: `this token has the role ${result.role ?? "unknown"}, not operator` };
+  }
+
   #call(service: string, type: string, args: object): Promise<ActResult> {
     const id = `page-${this.#next_id++}`;
     return new Promise((resolve) => {
@@ -70,12 +120,12 @@ export class GateLink {
         resolve(result);
       };
       const timer = setTimeout(
-        () => done({ success: false, message: "the gate did not answer" }),
+        () => done({ success: false, message: "the gate did not answer within 3 s" }),
         kAnswerWithin_ms,
       );
       this.#pending.set(id, done);
       if (!this.#socket.send({ op: "call_service", id, service, type, args }))
-        done({ success: false, message: "the gate is away" });
+        done({ success: false, message: "the page is not connected to the gate" });
     });
   }
 
@@ -103,7 +153,7 @@ export class GateLink {
     const store = this.#store;
     if (typeof msg !== "object" || msg === null) return;
     if (topic === "/surefoot/outlook" && Array.isArray((msg as Outlook).verdicts)) {
-      // Of a recording that stands still the gate can only say that its frames are old.
+      // While a recording is paused, the gate can only answer that its frames are old.
       if (store.arrivals.source_state === "paused" && store.outlook) return;
       store.outlook = msg as Outlook;
       store.arrivals.outlook_at_ms = performance.now();
@@ -119,10 +169,10 @@ export class GateLink {
   #answer(id: string, result: boolean, values: unknown): void {
     const done = this.#pending.get(id);
     if (typeof values === "object" && values !== null && "success" in values) {
-      const { success, message } = values as ActResult;
-      done?.({ success: result && success === true, message: String(message ?? "") });
+      const { success, message, role } = values as ActResult;
+      done?.({ success: result && success === true, message: String(message ?? ""), role });
     } else {
-      done?.({ success: false, message: typeof values === "string" ? values : "the gate refused" });
+      done?.({ success: false, message: typeof values === "string" ? values : "the gate gave no reason" });
     }
   }
 }

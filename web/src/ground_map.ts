@@ -23,8 +23,8 @@ export class GroundMap {
     return Number(this.origin_y_tenth_mm) * 1e-4;
   }
 
-  /// Takes what a message brings. False: it does not fit what is here, so everything must be asked for anew;
-  /// the map is then empty, because what is not known must not look known.
+  /// Applies a message. False if it does not fit the present map: the map is then empty, because unknown ground must
+  /// not look known, and the whole map must be requested again.
   apply(message: MapMessage): boolean {
     const fits = message.whole === 1 || this.#follows(message);
     if (!fits) {
@@ -44,7 +44,7 @@ export class GroundMap {
     return true;
   }
 
-  /// Index of the cell at a place in odom, -1 outside.
+  /// Index of the cell at a position in odom, -1 outside.
   cellAt(x_m: number, y_m: number): number {
     const ix = Math.floor((x_m - this.origin_x_m) / this.resolution_m);
     const iy = Math.floor((y_m - this.origin_y_m) / this.resolution_m);
@@ -81,7 +81,7 @@ export class GroundMap {
     this.edges = [];
   }
 
-  /// The window moved: cells keep their place on the ground, those that came in are unknown.
+  /// Moves the window: cells keep their position on the ground, new cells are unknown.
   #shift(message: MapMessage): void {
     const resolution = BigInt(message.resolution_tenth_mm);
     const dx = Number((message.origin_x_tenth_mm - this.origin_x_tenth_mm) / resolution);

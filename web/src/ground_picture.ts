@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+import { isCellAttested, type AttestedArea } from "./attestation.ts";
 import { kGround, kGroundMask, kVouched } from "./messages.ts";
 import type { GroundMap } from "./ground_map.ts";
 
-/// Pixels along a cell: as many as a hatch needs.
+/// Pixels along a cell, enough for the patterns.
 export const kCell_px = 4;
 
 /// Colours after Okabe and Ito; each ground has a pattern as well, so that colour is never alone: free is plain,
@@ -36,7 +37,7 @@ export const kLightColors: GroundColors = {
   vouched: [0, 114, 178],
 };
 
-/// What is older than a second has no colours left, only its patterns.
+/// Old data keep their patterns and lose their colours.
 export function greyed(colors: GroundColors): GroundColors {
   const grey = ([r, g, b]: Rgb): Rgb => {
     const level = Math.round(0.35 * (0.3 * r + 0.59 * g + 0.11 * b) + 84);
@@ -50,8 +51,8 @@ export function greyed(colors: GroundColors): GroundColors {
   };
 }
 
-/// A square window of cells, as a picture with y up (first row = largest y). The phase of the patterns hangs on
-/// the ground, not on the window.
+/// A square window of cells, as a picture with y up (first row = largest y). The patterns are fixed to the ground, not
+/// to the window.
 export interface GroundWindow {
   first_ix: number;
   first_iy: number;
@@ -105,7 +106,7 @@ function patterned(ground: number, x: number, y: number): boolean {
 /// Side of a square of the pattern of unknown ground that repeats [px].
 export const kTile_px = 16;
 
-/// What lies outside of every map: unknown ground, without end.
+/// A tile of unknown ground, for the area outside the map.
 export function paintUnknownTile(colors: GroundColors, pixels: Uint32Array): void {
   const [main, pattern] = pairOf(kGround.unknown, colors).map((color) => packed(color, 1));
   for (let y = 0; y < kTile_px; ++y)
@@ -113,12 +114,14 @@ export function paintUnknownTile(colors: GroundColors, pixels: Uint32Array): voi
       pixels[(kTile_px - 1 - y) * kTile_px + x] = patterned(kGround.unknown, x, y) ? pattern : main;
 }
 
-/// Paints the window into `pixels` ((cells * kCell_px)^2 values, RGBA in memory order).
+/// Paints the window into `pixels` ((cells * kCell_px)^2 values, RGBA in memory order). The map of perception knows no
+/// attestation: the attested area comes with the gate's health.
 export function paintGround(
   map: GroundMap,
   window: GroundWindow,
   colors: GroundColors,
   pixels: Uint32Array,
+  attested?: AttestedArea,
 ): void {
   const side_px = window.cells * kCell_px;
   const origin_ix = map.resolution_m > 0 ? Math.round(map.origin_x_m / map.resolution_m) : 0;
@@ -126,6 +129,12 @@ export function paintGround(
   const rim_color = packed(colors.vouched, 1);
   const stateAt = (ix: number, iy: number) =>
     ix >= 0 && iy >= 0 && ix < map.nx && iy < map.ny ? map.state[iy * map.nx + ix] : kGround.unknown;
+  const side_m = map.resolution_m;
+  const attestedAt = (ix: number, iy: number) =>
+    attested !== undefined &&
+    isCellAttested(attested, map.origin_x_m + ix * side_m, map.origin_y_m + iy * side_m, side_m);
+  const isAttested = (ix: number, iy: number) =>
+    (stateAt(ix, iy) & kVouched) !== 0 || attestedAt(ix, iy);
   for (let row = 0; row < window.cells; ++row) {
     const iy = window.first_iy + row;
     for (let column = 0; column < window.cells; ++column) {
@@ -136,9 +145,14 @@ export function paintGround(
       const [main_color, pattern_color] = pairOf(ground, colors);
       const main = packed(main_color, shade);
       const pattern = packed(pattern_color, shade);
-      const around =
-        stateAt(ix - 1, iy) & stateAt(ix + 1, iy) & stateAt(ix, iy - 1) & stateAt(ix, iy + 1) & kVouched;
-      const on_rim = (state & kVouched) !== 0 && around === 0;
+      const on_rim =
+        isAttested(ix, iy) &&
+        !(
+          isAttested(ix - 1, iy) &&
+          isAttested(ix + 1, iy) &&
+          isAttested(ix, iy - 1) &&
+          isAttested(ix, iy + 1)
+        );
       for (let j = 0; j < kCell_px; ++j) {
         const y = (origin_iy + iy) * kCell_px + j;
         const at = (side_px - 1 - (row * kCell_px + j)) * side_px + column * kCell_px;
@@ -155,7 +169,7 @@ export function paintGround(
   }
 }
 
-/// Shares of the ground within `radius_m` of a place, of all cells there; what is outside of the map is unknown.
+/// Shares of the cells within `radius_m` of a position; outside the map they count as unknown.
 export function groundShares(map: GroundMap, x_m: number, y_m: number, radius_m: number) {
   const counts = [0, 0, 0, 0];
   let all = 0;

@@ -16,7 +16,7 @@ import type { Box, Edge } from "./messages.ts";
 import type { Place, Store } from "./store.ts";
 
 const kRadii_m = [1.5, 2.25, 3.25, 4.5];
-/// The machine stands below the middle: more is shown ahead of it than behind.
+/// The machine is below the middle: the picture shows more ground ahead than behind.
 const kMachineAt = 0.62;
 const kSpoken: Record<SignKind, string> = {
   allowed: "#009e73",
@@ -26,11 +26,11 @@ const kSpoken: Record<SignKind, string> = {
   absent: "#8b919b",
 };
 
-/// Edges say how deep it goes by themselves.
+/// Labels of flights only: each edge is labelled with its depth.
 const kFlightsAlone = { drops: [], kerbs: [], sills: [], doors: [] };
 
-/// Cells are painted pixel by pixel, several times a second: moving them to a graphics card and back takes longer, and
-/// where there is none and the browser plays one, seconds.
+/// Cells are painted pixel by pixel several times a second. Copies to a graphics card and back would take longer, and
+/// seconds with a software renderer.
 const kByProcessor: CanvasRenderingContext2DSettings = { willReadFrequently: true };
 
 interface Label extends LabelBox {
@@ -49,7 +49,7 @@ export class GroundView {
   readonly #tile = Object.assign(document.createElement("canvas"), { width: kTile_px, height: kTile_px });
   #image: ImageData | undefined;
   #zoom = 1;
-  #painted = ""; ///< what the cells were painted from
+  #painted = ""; ///< key of the data that the cells were painted from
 
   constructor(canvas: HTMLCanvasElement, store: Store) {
     this.#canvas = canvas;
@@ -149,6 +149,7 @@ export class GroundView {
       ...Object.values(window),
       isDark(),
       this.#store.freshness.ground,
+      ...Object.values(this.#store.attested ?? {}),
     ].join();
     if (key !== this.#painted) {
       this.#painted = key;
@@ -171,11 +172,12 @@ export class GroundView {
       this.#cells.width = this.#cells.height = side_px;
       this.#image = new ImageData(side_px, side_px);
     }
-    paintGround(this.#store.map, window, this.#colors(), new Uint32Array(this.#image.data.buffer));
+    const pixels = new Uint32Array(this.#image.data.buffer);
+    paintGround(this.#store.map, window, this.#colors(), pixels, this.#store.attested);
     this.#cells.getContext("2d", kByProcessor)!.putImageData(this.#image, 0, 0);
   }
 
-  /// Lines with teeth to the lower side (on the right hand), as on a walker's map.
+  /// Lines with teeth towards the lower side (on the right hand), as on hiking maps.
   #drawEdges(scale: number, place: Place): void {
     const { map } = this.#store;
     const x0_m = map.origin_x_m;
@@ -240,7 +242,7 @@ export class GroundView {
     for (const box of spreadLabels(withoutRepeats(boxes), this.#canvas.width, this.#canvas.height)) this.#drawLabel(box);
   }
 
-  /// Words at a place of the present drawing units, upright: in pixels.
+  /// Box of an upright label at a position in the present drawing units, in pixels.
   #labelBox(text: string, x: number, y: number, size_px: number): Label {
     const context = this.#context;
     const ratio = Math.min(2, devicePixelRatio || 1);
@@ -335,7 +337,7 @@ export class GroundView {
       context.strokeStyle = "#14171c";
       context.stroke(this.#box(foot));
     }
-    // Which way is ahead.
+    // An arrow that points ahead.
     const size_m = 0.1;
     context.beginPath();
     context.moveTo(size_m * 1.3, 0);
@@ -351,7 +353,7 @@ export class GroundView {
     context.fill();
   }
 
-  /// Where the feet of the spoken direction would come to stand.
+  /// Footprints after a step in the direction of the large sentence.
   #drawSpoken(scale: number): void {
     const { spoken } = this;
     const machine = this.#store.hello?.machine;
@@ -378,7 +380,7 @@ export class GroundView {
   #describe(place: Place): void {
     const { map, freshness } = this.#store;
     const shares = groundShares(map, place.x_m, place.y_m, 1.5);
-    // In steps of five, so that a screen reader is not told of every cell.
+    // In steps of 5 %, so that a screen reader does not announce every cell.
     const percent = (share: number) => `${Math.round(share * 20) * 5} %`;
     const words = freshness.ground
       ? `The ground from above, within 1.5 m: ${percent(shares.free)} free, ${percent(shares.unsafe)} unsafe, ` +

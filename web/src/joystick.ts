@@ -4,24 +4,23 @@ import { byId, setAttribute, setText } from "./dom.ts";
 import type { Steer } from "./messages.ts";
 import type { Store } from "./store.ts";
 
-/// The service takes a second without a word for letting go.
+/// The service ends the movement after 1 s without a message.
 const kAgain_ms = 300;
 const kKeys: Readonly<Record<string, number>> = { ArrowUp: 9, ArrowDown: 17, ArrowLeft: 21, ArrowRight: 13 };
 
-/// What the page says of the joystick. `held`: command that the hand is at, 0 = none.
+/// The text below the joystick. `held`: command of the held sign or key, 0 = none.
 export function joystickWords(held: number, steer: Steer | undefined): string {
   if (steer?.taken && !steer.yours) return "Another page holds the joystick.";
   const words = (code: number) => kDirections.find((one) => one.code === code)?.words ?? `movement ${code}`;
   const outcome =
     steer && steer.asked !== 0
-      ? `${words(steer.asked)}: ${steer.moved ? "moved" : `stands - ${steer.text || "the gate cannot judge"}`}. `
+      ? `${words(steer.asked)}: ${steer.moved ? "moved" : `no step - ${steer.text || "the gate cannot judge"}`}. `
       : "";
   if (held !== 0) return `${outcome}Asking for ${words(held)}.`;
-  return `${outcome}Hold a sign or an arrow key to walk; every step is asked for.`;
+  return `${outcome}Hold a sign or an arrow key to walk. The gate judges every step.`;
 }
 
-/// A simulated machine's joystick: the signs while they are held, and the arrow keys. Off until somebody switches
-/// it on.
+/// Joystick of a simulated machine: held signs and arrow keys. Off until the user switches it on.
 export class Joystick {
   readonly #store: Store;
   readonly #send: (message: object) => boolean;
@@ -74,7 +73,7 @@ export class Joystick {
     this.#changed();
   }
 
-  /// Fields, lists and what turns with the arrow keys keep them.
+  /// False in elements that use the arrow keys themselves.
   #arrowsAreFree(target: EventTarget | null): boolean {
     return !(target as HTMLElement | null)?.closest?.("input, select, canvas, dialog, [role=tab]");
   }

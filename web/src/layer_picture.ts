@@ -22,7 +22,7 @@ const kCividis: readonly (readonly [number, number, number])[] = [
   [254, 232, 56],
 ];
 
-/// Colour of a share of the range, 0 to 1; beyond both ends it stays.
+/// Colour of a share of the range, clamped to 0..1.
 export function cividis(share: number): readonly [number, number, number] {
   const at = Math.max(0, Math.min(1, share)) * (kCividis.length - 1);
   const i = Math.min(kCividis.length - 2, Math.floor(at));
@@ -36,7 +36,7 @@ export interface Range {
   high: number;
 }
 
-/// Smallest and largest finite value; undefined when nothing is known.
+/// Smallest and largest finite value; undefined if there is none.
 export function rangeOf(values: Float32Array): Range | undefined {
   let low = Infinity;
   let high = -Infinity;
@@ -48,7 +48,7 @@ export function rangeOf(values: Float32Array): Range | undefined {
   return low <= high ? { low, high } : undefined;
 }
 
-/// One pixel per cell, first row = largest y; what is not known stays transparent.
+/// One pixel per cell, first row = largest y; unknown cells stay transparent.
 export function paintLayer(layer: LayerMessage, range: Range | undefined, pixels: Uint8ClampedArray): void {
   const { nx, ny, values } = layer;
   pixels.fill(0);
@@ -64,7 +64,7 @@ export function paintLayer(layer: LayerMessage, range: Range | undefined, pixels
     }
 }
 
-/// Four digits that matter: "0.1235", "12.3", "1.20e-6".
+/// Four significant digits: "0.1235", "12.3", "1.20e-6".
 export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return "unknown";
   const size = Math.abs(value);

@@ -5,8 +5,8 @@ import { cividis, paintLayer, rangeOf, shortNumber } from "./layer_picture.ts";
 import type { LayerMessage, Stairs } from "./messages.ts";
 import type { Store } from "./store.ts";
 
-/// One layer of the map to choose, its legend, the value under the cursor (mouse, finger or arrow keys), and over it
-/// the edges and stairs that were found.
+/// A selectable layer of the map with its legend, the value under the cursor (mouse, finger or arrow keys), and the
+/// edges and stairs over it.
 export class LayerView {
   readonly #store: Store;
   readonly #select = byId<HTMLSelectElement>("layer-name");
@@ -61,7 +61,7 @@ export class LayerView {
     this.#cells.width = layer.nx;
     this.#cells.height = layer.ny;
     this.#cells.getContext("2d")!.putImageData(image, 0, 0);
-    setText(byId("layer-low"), range ? shortNumber(range.low) : "nothing is known");
+    setText(byId("layer-low"), range ? shortNumber(range.low) : "no value");
     setText(byId("layer-high"), range ? shortNumber(range.high) : "");
     setAttribute(this.#canvas, "aria-label", `Layer ${this.wanted} from above; arrow keys move the cursor`);
   }
@@ -131,7 +131,7 @@ export class LayerView {
 
   #say(layer: LayerMessage | undefined): void {
     const { ix, iy } = this.#cursor ?? { ix: -1, iy: -1 };
-    if (!layer) return setText(byId("layer-value"), "This layer has not come yet.");
+    if (!layer) return setText(byId("layer-value"), "Waiting for this layer.");
     if (ix < 0 || iy < 0 || ix >= layer.nx || iy >= layer.ny)
       return setText(byId("layer-value"), "Point at a cell, or use the arrow keys.");
     const at_m = (origin_tenth_mm: bigint, i: number) =>

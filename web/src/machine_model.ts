@@ -15,19 +15,19 @@ import {
 import URDFLoader, { type URDFRobot } from "urdf-loader";
 import type { Machine } from "./messages.ts";
 
-/// The link whose frame is that of the left eye, x along the view; a model need not have it.
+/// The link whose frame is that of the left camera, x along the view. Optional in a model.
 const kCameraLink = "camera";
-/// A mark, as wide as a usual lens sees: not the field of view of this camera.
+/// A symbol as wide as the view of a common lens; not the field of view of this camera.
 const kView_m = 0.42;
 const kHalfWidth = 0.55;
 const kHalfHeight = 0.36;
 
-/// What a machine looks like: the boxes of its URDF, in the frame of base_link, moved by its joints.
+/// The shape of a machine: the boxes of its URDF in base_link, moved by its joints.
 export class MachineModel {
   readonly object = new Group();
   readonly #robot: URDFRobot;
 
-  /// Throws where the text is no URDF.
+  /// Throws if the text is not a URDF.
   constructor(urdf: string) {
     this.#robot = new URDFLoader().parse(urdf);
     const line = new LineBasicMaterial({ color: 0x14171c });
@@ -39,7 +39,7 @@ export class MachineModel {
       mesh.add(new LineSegments(new EdgesGeometry(mesh.geometry), line));
     }
     for (const material of seen) {
-      // The loader takes the colours of a file, which are as screens have them, for linear light: almost white.
+      // The file has sRGB colours, the loader takes them for linear light: they would look almost white.
       material.color.convertSRGBToLinear();
       material.specular = new Color(0x000000);
     }
@@ -47,7 +47,7 @@ export class MachineModel {
     this.object.add(this.#robot);
   }
 
-  /// As a pose has the angles, in the order of `machine.joints`; where it has none, as it stands.
+  /// Sets the angles of a pose, in the order of `machine.joints`; without angles, those of standing.
   move(machine: Machine, joints_rad: number[]): void {
     const known = joints_rad.length === machine.joints.length;
     machine.joints.forEach(({ name, stand_rad }, i) =>

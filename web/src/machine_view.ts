@@ -17,13 +17,13 @@ import { kGround, type Box, type Machine, type PoseMessage } from "./messages.ts
 import type { Place } from "./store.ts";
 
 const kFootHeight_m = 0.08;
-/// Over the highest ground under a foot: the mesh between the cells may lie higher than any of them.
+/// Above the highest ground under a foot: the mesh between cells may lie higher than the cells.
 const kPrintHeight_m = 0.008;
 
-/// The machine in the 3D scene: its model, or, where nobody knows what it looks like, the space that it takes;
-/// and on the ground the prints of its feet, where they belong when it stands here.
+/// The machine in the 3D scene: its model, or its body parts as boxes if there is no model. On the ground: its
+/// footprints for standing here.
 export class MachineView {
-  readonly object = new Group(); ///< in odom, from the scene's zero on
+  readonly object = new Group(); ///< in odom, relative to the zero of the scene
   readonly #element: HTMLElement;
   readonly #changed: () => void;
   readonly #body = new Group();
@@ -31,7 +31,7 @@ export class MachineView {
   #machine: Machine | null | undefined;
   #model: MachineModel | undefined;
 
-  /// What is shown stands in the element's data-machine: none, boxes or model.
+  /// The element's data-machine says what is shown: none, boxes or model.
   constructor(element: HTMLElement, changed: () => void) {
     this.#element = element;
     this.#changed = changed;
@@ -68,7 +68,7 @@ export class MachineView {
     if (machine.model) void this.#load(machine, machine.model);
   }
 
-  /// Until the model is here, or where it cannot be had, the boxes stay.
+  /// The boxes stay until the model is loaded, and if it cannot be loaded.
   async #load(machine: Machine, path: string): Promise<void> {
     let model: MachineModel;
     try {

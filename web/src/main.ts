@@ -4,6 +4,7 @@ import type { EngineerView } from "./engineer_view.ts";
 import { byId, isDark, setAttribute, setText } from "./dom.ts";
 import { GateLink } from "./gate_link.ts";
 import { Joystick } from "./joystick.ts";
+import { OperatorToken } from "./operator_token.ts";
 import { RecordButton } from "./record_button.ts";
 import { ServiceLink } from "./service_link.ts";
 import { Store } from "./store.ts";
@@ -11,9 +12,9 @@ import { Timeline } from "./timeline.ts";
 import { Tones } from "./tones.ts";
 import { WalkView } from "./walk_view.ts";
 
-/// How often the page looks at its own clock.
+/// Period of the page's own clock.
 const kTick_ms = 100;
-/// What is drawn is a machine that walks slowly; tablets without a graphics card draw it, too.
+/// The machine walks slowly, and tablets without a graphics card must keep up.
 const kDraw_ms = 66;
 
 const store = new Store();
@@ -22,17 +23,20 @@ const scheme = location.protocol === "https:" ? "wss:" : "ws:";
 const token = new URLSearchParams(location.search).get("token");
 const query = token ? `?token=${encodeURIComponent(token)}` : "";
 
-const gate = new GateLink(
+const gate = new GateLink({
   store,
-  () => store.hello && `${scheme}//${location.hostname}:${store.hello.gate_port}/${query}`,
-  ({ verdict }) =>
+  base: () => store.hello && `${scheme}//${location.hostname}:${store.hello.gate_port}/`,
+  url_token: token,
+  token: new OperatorToken(sessionStorage),
+  heard: ({ verdict }) =>
     tones.play(verdict === "OK" ? "allowed" : verdict === "NOT_TRAVERSABLE" ? "not" : "cannot"),
-);
+  refused: (message) => walk.askToken(message),
+});
 const service = new ServiceLink(store, `${scheme}//${location.host}/page${query}`, () => gate.open());
 
 let drawing = false;
 let drawn_at_ms = -kDraw_ms;
-/// Draws once, soon, however much changed.
+/// Draws once, soon, for any number of changes.
 function changed(): void {
   if (drawing) return;
   drawing = true;
@@ -51,7 +55,7 @@ const walk = new WalkView(store, gate, tones, changed);
 const joystick = new Joystick(store, (message) => service.say(message), changed);
 const timeline = new Timeline(store, (message) => service.say(message), changed);
 const record = new RecordButton(store, (message) => service.say(message));
-/// Loaded when it is first looked at: the walk view comes first.
+/// Loaded when it is first shown: the walk view comes first.
 let engineer: EngineerView | undefined;
 
 function want(): void {
@@ -88,7 +92,7 @@ function drawBar(): void {
   const { hello, health, arrivals, freshness, problem } = store;
   setText(byId("source"), hello ? hello.source : "");
   const there = arrivals.gate === "open" && arrivals.service === "open";
-  setText(byId("gate-state"), there ? stateSentence(health?.state, health?.why) : "The gate is away");
+  setText(byId("gate-state"), there ? stateSentence(health?.state, health?.why) : "No connection to the gate");
   setAttribute(byId("gate-state"), "data-state", there ? (health?.state ?? "INIT") : "AWAY");
   const banner = problem || freshness.banner;
   byId("banner").hidden = banner === "";

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the service says, as service/page/messages.json writes it down. The tables below are compared with
-/// that file by a test. Nothing here knows a socket, a clock or a picture.
+/// The messages of the service, as in service/page/messages.json. A test compares the tables below with that file.
+/// Uses no socket, no clock and no picture.
 
 export const kProtocol = 1;
 
 type FieldType = "u8" | "u16" | "u32" | "u64" | "i16" | "i32" | "i64" | "f32" | "f64";
 type Fields = readonly (readonly [string, FieldType])[];
-/// 64-bit whole numbers are bigint: a time in nanoseconds is larger than what a number holds exactly.
+/// 64-bit integers are bigint: a number cannot hold a time in nanoseconds exactly.
 type RecordOf<F extends Fields> = {
   [E in F[number] as E[0]]: E[1] extends "u64" | "i64" ? bigint : number;
 };
@@ -96,7 +96,7 @@ export const kUnknownHeight = -32768;
 const kMostCells = 4_000_000;
 
 export type Edge = RecordOf<typeof kEdgeFields>;
-/// Cells of a run lie one behind the other in `cells`, 4 bytes each, from byte `at` on.
+/// The cells of a run follow each other in `cells`, 4 bytes each, from byte `at`.
 export interface Run {
   first: number;
   count: number;
@@ -179,24 +179,24 @@ function unreadable(why: string): Unreadable {
 }
 
 function decodeMap(view: DataView, at: number): BinaryMessage {
-  if (view.byteLength < at + sizeOf(kMapFields)) return unreadable("map: it ends within its head");
+  if (view.byteLength < at + sizeOf(kMapFields)) return unreadable("map: the message ends inside its header");
   const head = read(view, at, kMapFields);
   at += sizeOf(kMapFields);
   const cell_count = head.nx * head.ny;
   if (cell_count === 0 || cell_count > kMostCells || head.resolution_tenth_mm === 0)
     return unreadable(`map: ${head.nx} x ${head.ny} cells of ${head.resolution_tenth_mm} tenths of a mm`);
   if (view.byteLength < at + head.edge_count * sizeOf(kEdgeFields))
-    return unreadable("map: it ends within its edges");
+    return unreadable("map: the message ends inside its edges");
   const edges: Edge[] = [];
   for (let i = 0; i < head.edge_count; ++i, at += sizeOf(kEdgeFields))
     edges.push(read(view, at, kEdgeFields));
   const runs: Run[] = [];
   for (let i = 0; i < head.run_count; ++i) {
-    if (view.byteLength < at + sizeOf(kRunFields)) return unreadable(`map: it ends before run ${i}`);
+    if (view.byteLength < at + sizeOf(kRunFields)) return unreadable(`map: the message ends before run ${i}`);
     const { first, count } = read(view, at, kRunFields);
     at += sizeOf(kRunFields);
-    if (first + count > cell_count) return unreadable(`map: run ${i} ends outside of the map`);
-    if (view.byteLength < at + count * sizeOf(kCellFields)) return unreadable(`map: it ends within run ${i}`);
+    if (first + count > cell_count) return unreadable(`map: run ${i} ends outside the map`);
+    if (view.byteLength < at + count * sizeOf(kCellFields)) return unreadable(`map: the message ends inside run ${i}`);
     runs.push({ first, count, at });
     at += count * sizeOf(kCellFields);
   }
@@ -205,7 +205,7 @@ function decodeMap(view: DataView, at: number): BinaryMessage {
 }
 
 function decodePose(view: DataView, at: number): BinaryMessage {
-  if (view.byteLength < at + sizeOf(kPoseFields)) return unreadable("pose: it ends within its head");
+  if (view.byteLength < at + sizeOf(kPoseFields)) return unreadable("pose: the message ends inside its header");
   const head = read(view, at, kPoseFields);
   at += sizeOf(kPoseFields);
   if (view.byteLength !== at + head.joint_count * sizeOf(kJointFields))
@@ -213,12 +213,12 @@ function decodePose(view: DataView, at: number): BinaryMessage {
   const joints_rad: number[] = [];
   for (let i = 0; i < head.joint_count; ++i) joints_rad.push(view.getFloat32(at + 4 * i, true));
   const numbers = [head.x_m, head.y_m, head.z_m, head.qx, head.qy, head.qz, head.qw];
-  if (!numbers.every(Number.isFinite)) return unreadable("pose: a number of it is none");
+  if (!numbers.every(Number.isFinite)) return unreadable("pose: a value is not finite");
   return { kind: "pose", ...head, joints_rad };
 }
 
 function decodeImage(view: DataView, at: number): BinaryMessage {
-  if (view.byteLength < at + sizeOf(kImageFields)) return unreadable("image: it ends within its head");
+  if (view.byteLength < at + sizeOf(kImageFields)) return unreadable("image: the message ends inside its header");
   const head = read(view, at, kImageFields);
   const start = view.byteOffset + at + sizeOf(kImageFields);
   const jpeg = new Uint8Array(view.buffer as ArrayBuffer, start, view.byteOffset + view.byteLength - start);
@@ -226,7 +226,7 @@ function decodeImage(view: DataView, at: number): BinaryMessage {
 }
 
 function decodeLayer(view: DataView, at: number): BinaryMessage {
-  if (view.byteLength < at + sizeOf(kLayerFields)) return unreadable("layer: it ends within its head");
+  if (view.byteLength < at + sizeOf(kLayerFields)) return unreadable("layer: the message ends inside its header");
   const head = read(view, at, kLayerFields);
   at += sizeOf(kLayerFields);
   const count = head.nx * head.ny;
@@ -237,13 +237,13 @@ function decodeLayer(view: DataView, at: number): BinaryMessage {
   return { kind: "layer", ...head, values };
 }
 
-/// One binary message. What cannot be read is said, never guessed.
+/// Decodes one binary message. Never guesses: an unreadable message is returned as `unreadable` with the cause.
 export function decode(data: ArrayBuffer): BinaryMessage {
   const view = new DataView(data);
-  if (view.byteLength < sizeOf(kHeaderFields)) return unreadable("a message without a head");
+  if (view.byteLength < sizeOf(kHeaderFields)) return unreadable("the message has no header");
   const header = read(view, 0, kHeaderFields);
   if (header.protocol !== kProtocol)
-    return unreadable(`protocol ${header.protocol}, this page speaks ${kProtocol}`);
+    return unreadable(`it has protocol ${header.protocol}, this page reads protocol ${kProtocol}`);
   const at = sizeOf(kHeaderFields);
   switch (header.kind) {
     case kKind.map:
@@ -255,7 +255,7 @@ export function decode(data: ArrayBuffer): BinaryMessage {
     case kKind.layer:
       return decodeLayer(view, at);
     default:
-      return unreadable(`a message of kind ${header.kind}`);
+      return unreadable(`the kind ${header.kind} is unknown`);
   }
 }
 
@@ -284,12 +284,12 @@ export interface Machine {
   feet: { left: Box; right: Box };
   movements: Movement[];
   body: BodyPart[];
-  joints: Joint[]; ///< of the model, those that move
+  joints: Joint[]; ///< movable joints of the model
   model: string | null; ///< path of its URDF
 }
 export interface Joint {
   name: string;
-  stand_rad: number; ///< shown where a pose brings no angles
+  stand_rad: number; ///< shown if a pose has no angles
 }
 export interface Hello {
   kind: "hello";
@@ -323,14 +323,14 @@ export interface Status {
   viewers: number;
   playback: Playback | null;
 }
-/// How a recording is played; frames 0 = nobody knows how many.
+/// How a recording is played; frames 0 = number not known.
 export interface Playback {
   frame: number;
   frames: number;
   paused: boolean;
   speed: number;
 }
-/// Who holds the joystick, and what became of the last movement that was asked for (asked 0: none yet).
+/// The holder of the joystick, and the result of the last requested movement (asked 0: none yet).
 export interface Steer {
   kind: "steer";
   yours: boolean;
@@ -343,14 +343,14 @@ export interface Steer {
 /// x [m], y [m], z [m], yaw [rad] in odom; null = no number.
 type PoseNumbers = [number | null, number | null, number | null, number | null];
 type Point = [number | null, number | null];
-/// What is known of a thing of the ground over several looks.
+/// A feature of the ground, followed over several observations.
 export interface Feature {
   pose: PoseNumbers;
   id?: number;
   looks?: number;
   last_seen_s?: number;
 }
-/// What lies beside the steps of a flight.
+/// The ground beside the steps of a flight.
 export interface FlightSide {
   kind: "unknown" | "wall" | "level" | "open";
   rail_m: number | null;
@@ -453,7 +453,7 @@ const kStairsKeys = ["time_ns", "flights", "drops", "kerbs", "sills", "doors", "
 const kSettingKeys = ["key", "accepted", "value", "text"];
 const kRecordingKeys = ["state", "folder", "frames", "left_out", "bytes", "duration_s", "text"];
 
-/// A text message; undefined for what this page has no use for or cannot read.
+/// Decodes a text message; undefined if its kind is unknown or keys are missing.
 export function decodeJson(text: string): JsonMessage | undefined {
   let message: unknown;
   try {

@@ -1,35 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
+import { attestationWords, radiusRange } from "./attestation.ts";
+import { stateSentence } from "./directions.ts";
 import { byId, setText } from "./dom.ts";
 import type { ActResult, GateLink } from "./gate_link.ts";
-import { stateSentence } from "./directions.ts";
+import { needsOperator } from "./operator_token.ts";
 import type { Store } from "./store.ts";
 
-const kFirstRadius_m = 0.6;
-
-/// Vouching and re-arming: acts of a person, each with a dialog of its own, never a single touch.
+/// Attestation and re-arming: acts of a person. Each has its own dialog, so that a single touch does nothing.
 export class OperatorActs {
   readonly #store: Store;
+  readonly #gate: GateLink;
   readonly #vouch = byId<HTMLButtonElement>("vouch");
   readonly #rearm = byId<HTMLButtonElement>("rearm");
   readonly #vouch_dialog = byId<HTMLDialogElement>("vouch-dialog");
   readonly #rearm_dialog = byId<HTMLDialogElement>("rearm-dialog");
+  readonly #token_dialog = byId<HTMLDialogElement>("token-dialog");
+  readonly #token = byId<HTMLInputElement>("token");
   readonly #radius = byId<HTMLInputElement>("vouch-radius");
   readonly #yes = byId<HTMLButtonElement>("vouch-yes");
   readonly #looked = byId<HTMLInputElement>("vouch-looked");
 
   constructor(store: Store, gate: GateLink, changed: () => void) {
     this.#store = store;
+    this.#gate = gate;
     this.#vouch.addEventListener("click", () => this.#openVouch(changed));
     this.#radius.addEventListener("input", () => this.#showRadius(changed));
     this.#looked.addEventListener("change", () => {
       this.#yes.disabled = !this.#looked.checked;
     });
-    // The act hangs on the press of the button: Chromium tells of a close late, and then once for each close.
+    // The click of the button decides: Chromium reports `close` late, and then once for each close.
     this.#yes.addEventListener("click", () => {
       const radius_m = Number(this.#radius.value);
       if (!this.#looked.checked) return;
       this.#looked.checked = false;
-      void gate.vouch(radius_m).then((result) => this.#tell(`Vouching for ${radius_m.toFixed(2)} m`, result));
+      const act = `Attestation, radius ${radius_m.toFixed(2)} m`;
+      void gate.vouch(radius_m).then((result) => this.#tell(act, result));
     });
     this.#vouch_dialog.addEventListener("close", () => {
       if (this.#vouch_dialog.open) return;
@@ -43,20 +48,53 @@ export class OperatorActs {
     byId("rearm-yes").addEventListener("click", () => {
       void gate.rearm().then((result) => this.#tell("Re-arming", result));
     });
+    byId("token-form").addEventListener("submit", (event) => {
+      event.preventDefault();
+      void this.#sendToken();
+    });
+    byId("token-cancel").addEventListener("click", () => this.#token_dialog.close());
+    this.#token_dialog.addEventListener("close", () => {
+      this.#token.value = "";
+    });
   }
 
   draw(): void {
-    const { arrivals, hello, health } = this.#store;
+    const { arrivals, hello, health, attesting, attested, place } = this.#store;
     const there = arrivals.service === "open" && arrivals.gate === "open";
-    this.#vouch.disabled = !there || !((hello?.machine?.vouch_radius_m ?? 0) > 0);
+    const off = hello !== undefined && radiusRange(hello.machine) === undefined;
+    this.#vouch.disabled = !there || !radiusRange(hello?.machine);
+    setText(this.#vouch, `I confirm the ground around me${off ? " (the machine file does not allow it)" : ""}`);
     this.#rearm.disabled = !there || health?.state !== "FAULT";
     setText(this.#rearm, this.#rearm.disabled ? "Re-arm (only after a fault)" : "Re-arm");
+    const { words, detail } = attestationWords(attesting, attested, place);
+    byId("attestation").hidden = words === "";
+    setText(byId("attestation-words"), words);
+    setText(byId("attestation-detail"), detail);
+  }
+
+  askToken(why: string): void {
+    setText(byId("token-why"), why);
+    if (!this.#token_dialog.open) this.#token_dialog.showModal();
+    this.#token.focus();
+  }
+
+  async #sendToken(): Promise<void> {
+    const token = this.#token.value.trim();
+    this.#token.value = "";
+    if (token === "") return this.askToken("The field is empty. Enter the operator token.");
+    const { success, message } = await this.#gate.authenticate(token);
+    if (!success) return this.askToken(`The gate refused the token: ${message}.`);
+    this.#token_dialog.close();
+    setText(byId("act-result"), "The gate accepted the operator token. Repeat the act.");
   }
 
   #openVouch(changed: () => void): void {
-    const most_m = this.#store.hello?.machine?.vouch_radius_m ?? kFirstRadius_m;
-    this.#radius.max = String(most_m);
-    this.#radius.value = String(Math.min(kFirstRadius_m, most_m));
+    const range = radiusRange(this.#store.hello?.machine);
+    if (!range) return;
+    this.#radius.min = String(range.least_m);
+    this.#radius.max = String(range.most_m);
+    this.#radius.step = String(range.step_m);
+    this.#radius.value = String(range.first_m);
     this.#looked.checked = false;
     this.#yes.disabled = true;
     this.#showRadius(changed);
@@ -64,13 +102,20 @@ export class OperatorActs {
   }
 
   #showRadius(changed: () => void): void {
-    this.#store.vouch_radius_m = Number(this.#radius.value);
-    setText(byId("vouch-shown"), `${this.#store.vouch_radius_m.toFixed(2)} m`);
+    const { min, max, value } = this.#radius;
+    this.#store.vouch_radius_m = Number(value);
+    const metres = (text: string) => Number(text).toFixed(2);
+    setText(byId("vouch-shown"), `${metres(value)} m (${metres(min)} to ${metres(max)} m)`);
     changed();
   }
 
   #tell(act: string, { success, message }: ActResult): void {
-    const words = success ? "done" : "refused";
+    if (!success && needsOperator(message)) {
+      setText(byId("act-result"), `${act}: refused - this page is not the operator`);
+      this.askToken(`${act}: the gate refused it, because this page is not the operator.`);
+      return;
+    }
+    const words = success ? "accepted" : "refused";
     setText(byId("act-result"), message ? `${act}: ${words} - ${message}` : `${act}: ${words}`);
   }
 }

@@ -4,7 +4,7 @@ import type { LinkState } from "./freshness.ts";
 const kFirstWait_ms = 250;
 const kLongestWait_ms = 4000;
 
-/// How long to wait before attempt number `attempt` (0 = the first again): doubled up to 4 s.
+/// Wait before retry number `attempt` (0 = first): doubled each time, up to 4 s.
 export function wait_ms(attempt: number): number {
   return Math.min(kLongestWait_ms, kFirstWait_ms * 2 ** attempt);
 }
@@ -12,12 +12,12 @@ export function wait_ms(attempt: number): number {
 export interface SocketEvents {
   opened(): void;
   message(data: ArrayBuffer | string): void;
-  /// Also called when nothing was ever open. `retry_in_ms`: until the next attempt; `reason`: what the other side
-  /// said, often nothing.
+  /// Also called if the connection was never open. `retry_in_ms`: until the next attempt; `reason`: from the other
+  /// side, often empty.
   closed(retry_in_ms: number, reason: string): void;
 }
 
-/// A WebSocket that opens again by itself. `address` is asked before each attempt; undefined = not yet known.
+/// A WebSocket that reconnects by itself. `address` is called before each attempt; undefined = not yet known.
 export class ReconnectingSocket {
   state: LinkState = "opening";
   #socket: WebSocket | undefined;
@@ -31,7 +31,7 @@ export class ReconnectingSocket {
     this.#events = events;
   }
 
-  /// Opens now, and leaves what was open.
+  /// Closes the present connection and opens a new one now.
   open(): void {
     clearTimeout(this.#timer);
     this.#leave();
@@ -52,13 +52,13 @@ export class ReconnectingSocket {
     socket.onclose = ({ reason }) => this.#again(reason);
   }
 
-  /// Closes a connection that says nothing, and begins anew.
+  /// Closes the connection and reconnects.
   restart(): void {
     this.#leave();
     this.#again("");
   }
 
-  /// False when nobody is there to take it.
+  /// False if there is no connection.
   send(message: unknown): boolean {
     if (this.state !== "open" || !this.#socket) return false;
     this.#socket.send(JSON.stringify(message));

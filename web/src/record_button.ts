@@ -3,8 +3,8 @@ import { byId, setAttribute, setText } from "./dom.ts";
 import { recordingWords } from "./recording_words.ts";
 import type { Store } from "./store.ts";
 
-/// Starts and stops the one recording of the service, and says how far it is; a mark in the bar tells every page that
-/// images are kept.
+/// Starts and stops the recording of the service and shows its progress. A mark in the bar of every page says that
+/// images are stored.
 export class RecordButton {
   readonly #store: Store;
   readonly #button = byId<HTMLButtonElement>("record");

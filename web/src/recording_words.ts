@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Recording } from "./messages.ts";
 
-/// "150 frames, 61.0 MB, 10.0 s; 2 left out: the disk is too slow"
+/// "150 frames, 61.0 MB, 10.0 s; 2 frames left out: the disk is too slow"
 export function countWords({ frames, bytes, duration_s, left_out }: Recording): string {
   const counts = `${frames} frame${frames === 1 ? "" : "s"}, ${(1e-6 * bytes).toFixed(1)} MB, ${duration_s.toFixed(1)} s`;
-  return left_out > 0 ? `${counts}; ${left_out} left out: the disk is too slow` : counts;
+  return left_out > 0 ? `${counts}; ${left_out} frame${left_out === 1 ? "" : "s"} left out: the disk is too slow` : counts;
 }
 
 export interface RecordingWords {
@@ -12,19 +12,19 @@ export interface RecordingWords {
   possible: boolean; ///< the button does something
   state: string; ///< changes seldom: read aloud
   counts: string; ///< changes all the time: not read aloud
-  mark: string; ///< on every page while it runs, else empty
+  mark: string; ///< in the bar of every page while a recording runs, else empty
 }
 
 export function recordingWords(recording: Recording | undefined): RecordingWords {
   const nothing = { button: "Start recording", possible: false, counts: "", mark: "" };
-  if (!recording) return { ...nothing, state: "The service has not said whether it can record." };
+  if (!recording) return { ...nothing, state: "Waiting for the state of the recording." };
   const { state, text, folder, duration_s } = recording;
   const mark = `Recording ${duration_s.toFixed(0)} s`;
   switch (state) {
     case "off":
       return { ...nothing, state: `Recording is off: ${text}.` };
     case "ready":
-      return { ...nothing, possible: true, state: text ? `Recorded: ${text}.` : "Nothing is recorded." };
+      return { ...nothing, possible: true, state: text ? `Recorded: ${text}.` : "No recording is running." };
     case "failed":
       return { ...nothing, possible: true, state: `The recording failed: ${text}.` };
     case "recording":
@@ -39,7 +39,7 @@ export function recordingWords(recording: Recording | undefined): RecordingWords
       return {
         button: "Stop recording",
         possible: false,
-        state: `Writing what is left to ${folder}`,
+        state: `Writing the last frames to ${folder}`,
         counts: countWords(recording),
         mark,
       };

@@ -8,6 +8,7 @@ import {
   DirectionalLight,
   DoubleSide,
   LineBasicMaterial,
+  LineLoop,
   LineSegments,
   Mesh,
   MeshBasicMaterial,
@@ -27,11 +28,14 @@ import type { Place, Store } from "./store.ts";
 
 /// Cells along the side of the mesh: 6 m of 25 mm; of a larger map the part around the machine is shown.
 const kMostCells = 240;
-/// A software renderer draws a few pictures a second: it is not asked for more than it must.
+/// Least time between two pictures: a software renderer draws only a few a second.
 const kPeriod_ms = 60;
+const kBorderPoints = 96;
+/// Over the attested ground, so that the ground does not hide the border.
+const kBorderHeight_m = 0.01;
 
-/// The ground as a lit mesh, and the machine on it. Coordinates are odom from `#zero` on; what is unknown is a
-/// hole. style.css makes the picture grey when it is old.
+/// The ground as a lit mesh with the machine on it. Coordinates are in odom relative to `#zero`. Unknown ground is a
+/// hole. style.css makes the picture grey when its data are old.
 export class Scene3d {
   readonly #store: Store;
   readonly #element: HTMLElement;
@@ -49,13 +53,14 @@ export class Scene3d {
     new MeshBasicMaterial({ color: 0xd55e00, side: DoubleSide, transparent: true, opacity: 0.75 }),
   );
   readonly #rims = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: 0x14171c }));
+  readonly #border = new LineLoop(new BufferGeometry(), new LineBasicMaterial());
   readonly #machine: MachineView;
   #zero: Place | undefined;
   #view = { azimuth_rad: Math.PI + 0.85, elevation_rad: 0.72, distance_m: 3.9 };
   #drawn_at_ms = 0;
   #painted = "";
 
-  /// Throws where the browser has no WebGL.
+  /// Throws if the browser has no WebGL.
   constructor(element: HTMLElement, store: Store, changed: () => void) {
     this.#element = element;
     this.#store = store;
@@ -81,9 +86,12 @@ export class Scene3d {
       this.#ground,
       this.#drops,
       this.#rims,
+      this.#border,
       this.#machine.object,
     );
     this.#ground.frustumCulled = this.#drops.frustumCulled = this.#rims.frustumCulled = false;
+    this.#border.frustumCulled = false;
+    this.#border.name = "attested";
     canvas.addEventListener("pointermove", (event) => {
       if (event.buttons !== 1) return;
       this.#turn(-event.movementX * 0.008, event.movementY * 0.006);
@@ -152,7 +160,7 @@ export class Scene3d {
     this.#view.elevation_rad = Math.max(0.08, Math.min(1.5, this.#view.elevation_rad + elevation_rad));
   }
 
-  /// From behind the machine and to its right, wherever it turns.
+  /// From behind the machine and to its right, also when it turns.
   #look(target: Vector3, yaw_rad: number): void {
     const { azimuth_rad, elevation_rad, distance_m } = this.#view;
     const across_m = distance_m * Math.cos(elevation_rad);
@@ -161,7 +169,7 @@ export class Scene3d {
       target.y + across_m * Math.sin(yaw_rad + azimuth_rad),
       target.z + distance_m * Math.sin(elevation_rad),
     );
-    // Some ground ahead is worth more than the machine in the middle.
+    // Shows more ground ahead of the machine than behind it.
     this.#camera.lookAt(target.x + 0.5 * Math.cos(yaw_rad), target.y + 0.5 * Math.sin(yaw_rad), target.z);
   }
 
@@ -174,7 +182,14 @@ export class Scene3d {
       first_iy: first(place.y_m, map.origin_y_m, map.ny),
       cells,
     };
-    const key = [map.version, map.frame_time_ns, ...Object.values(window), isDark()].join();
+    const { attested } = this.#store;
+    const key = [
+      map.version,
+      map.frame_time_ns,
+      ...Object.values(window),
+      isDark(),
+      ...Object.values(attested ?? {}),
+    ].join();
     if (key === this.#painted) return;
     this.#painted = key;
     const side_px = cells * kCell_px;
@@ -182,12 +197,34 @@ export class Scene3d {
     if (resized) this.#picture.width = this.#picture.height = side_px;
     if (resized) this.#texture.dispose();
     const image = new ImageData(side_px, side_px);
-    paintGround(map, window, isDark() ? kDarkColors : kLightColors, new Uint32Array(image.data.buffer));
+    const colors = isDark() ? kDarkColors : kLightColors;
+    paintGround(map, window, colors, new Uint32Array(image.data.buffer), attested);
     this.#picture.getContext("2d")!.putImageData(image, 0, 0);
     this.#texture.needsUpdate = true;
     this.#ground.geometry.dispose();
     this.#ground.geometry = groundMesh(map, window, zero);
     this.#drawEdges(map, zero);
+    this.#drawAttested(zero);
+  }
+
+  /// The border of the attested area, also over the holes of unknown ground.
+  #drawAttested(zero: Place): void {
+    const { attested } = this.#store;
+    const points: number[] = [];
+    for (let i = 0; attested && i < kBorderPoints; ++i) {
+      const angle_rad = (2 * Math.PI * i) / kBorderPoints;
+      points.push(
+        attested.x_m - zero.x_m + attested.radius_m * Math.cos(angle_rad),
+        attested.y_m - zero.y_m + attested.radius_m * Math.sin(angle_rad),
+        attested.z_m + kBorderHeight_m,
+      );
+    }
+    this.#border.material.color.set(isDark() ? 0x56b4e9 : 0x0072b2);
+    this.#border.geometry.dispose();
+    this.#border.geometry = new BufferGeometry().setAttribute(
+      "position",
+      new BufferAttribute(new Float32Array(points), 3),
+    );
   }
 
   /// A drop stands as a curtain from its upper to its lower ground.

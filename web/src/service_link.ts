@@ -3,7 +3,7 @@ import { decode, decodeJson, kProtocol, type BinaryMessage, type JsonMessage } f
 import { ReconnectingSocket } from "./reconnecting_socket.ts";
 import type { Store } from "./store.ts";
 
-/// What a page asks the service for.
+/// The data that a page requests from the service.
 export interface Want {
   layers: string[];
   images: string[];
@@ -13,7 +13,7 @@ export interface Want {
   image_hz: number;
 }
 
-/// A connection that says nothing for so long is closed and opened anew.
+/// A connection without a message for so long is closed and opened again.
 const kHopeless_ms = 5000;
 
 /// The page's own socket: hello, status, map, pose, pictures.
@@ -54,12 +54,12 @@ export class ServiceLink {
     this.#socket.send({ op: "want", ...want });
   }
 
-  /// False when nobody is there to take it.
+  /// False if there is no connection.
   say(message: object): boolean {
     return this.#socket.send(message);
   }
 
-  /// To be called now and then.
+  /// Call periodically: restarts a connection that sends nothing.
   watch(): void {
     const word = this.#arrivals.service_word_at_ms;
     if (this.#socket.state === "open" && word !== undefined && performance.now() - word > kHopeless_ms)
@@ -81,7 +81,7 @@ export class ServiceLink {
     const store = this.#store;
     if (message?.kind === "hello") {
       if (message.protocol !== kProtocol) {
-        store.problem = `The service speaks version ${message.protocol} and this page ${kProtocol}: load the page anew.`;
+        store.problem = `The service has protocol ${message.protocol}, this page protocol ${kProtocol}. Reload the page.`;
         return;
       }
       store.problem = "";
@@ -113,7 +113,7 @@ export class ServiceLink {
       case "map":
         this.#arrivals.map_at_ms = performance.now();
         if (message.map_version < store.map.version) store.forgetTrack();
-        // All that the service has comes anew after each `want`.
+        // After each `want` the service sends the whole map again.
         if (!store.map.apply(message)) this.#socket.send({ op: "want", ...this.#want });
         return;
       case "pose":
@@ -128,7 +128,7 @@ export class ServiceLink {
         store.layer = message;
         return;
       case "unreadable":
-        store.problem = `A message could not be read: ${message.why}`;
+        store.problem = `The page cannot read a message: ${message.why}. Reload the page.`;
     }
   }
 }

@@ -7,7 +7,7 @@ export function splitKey(key: string): { group: string; name: string } {
   return { group: key.slice(0, Math.max(0, at)), name: key.slice(at + 1) };
 }
 
-/// Those that hold every word that was typed, in their name or what is said of them.
+/// Settings whose key or comment contains every typed word.
 export function findSettings(settings: readonly Setting[], typed: string): Setting[] {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);
   return settings.filter(({ key, comment }) => {
@@ -17,7 +17,7 @@ export function findSettings(settings: readonly Setting[], typed: string): Setti
 }
 
 export function foundWords(found: number, all: number): string {
-  if (all === 0) return "The settings have not come yet.";
+  if (all === 0) return "Waiting for the settings.";
   if (found === all) return `${all} settings`;
-  return found === 0 ? `None of ${all} settings` : `${found} of ${all} settings`;
+  return found === 0 ? `No match among ${all} settings` : `${found} of ${all} settings`;
 }

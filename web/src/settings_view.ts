@@ -8,11 +8,11 @@ interface Knob {
   form: HTMLFormElement;
   input: HTMLInputElement;
   said: HTMLElement;
-  value: string; ///< that the service told last
-  answer: SettingAnswer | undefined; ///< that is shown
+  value: string; ///< last value from the service
+  answer: SettingAnswer | undefined; ///< the one shown
 }
 
-/// Every setting of the run: those of the service can be changed, the others can be looked up.
+/// All settings of the run. Settings of the service can be changed here; the others are listed.
 export class SettingsView {
   readonly #store: Store;
   readonly #send: (message: object) => boolean;
@@ -46,7 +46,7 @@ export class SettingsView {
     }
     for (const { key, value } of settings) {
       const knob = this.#knobs.get(key)!;
-      // What somebody is typing stays.
+      // Text that the user is typing stays.
       if (value !== knob.value && (knob.input.value === knob.value || document.activeElement !== knob.input))
         knob.input.value = value;
       knob.value = value;
@@ -72,7 +72,7 @@ export class SettingsView {
       event.preventDefault();
       const sent = this.#send({ op: "set", key, value: input.value.trim() });
       said.dataset.accepted = "";
-      setText(said, sent ? "Asked." : "The service is away: nothing was changed.");
+      setText(said, sent ? "Sent to the service." : "No connection to the service. Nothing was changed.");
     });
     return { form, input, said, value, answer: undefined };
   }

@@ -17,7 +17,7 @@ function picture(className: string, symbol: string, angle_deg = 0, mirrored = fa
   return svg;
 }
 
-/// Rows of the pad as they are read; the machine stands in the middle.
+/// Rows of the pad in reading order, with the machine in the middle.
 const kPlaces = [23, 9, 11, 21, 0, 13, 19, 17, 15, 25, 26];
 
 interface Button {
@@ -25,10 +25,10 @@ interface Button {
   element: HTMLButtonElement;
   shape: SVGUseElement;
   word: HTMLElement;
-  reason: HTMLElement; ///< for screen readers; the eye reads it in the big line
+  reason: HTMLElement; ///< for screen readers; on the screen it is in the large sentence
 }
 
-/// One sign per direction: shape, colour and word; pressing one makes the big line speak of it.
+/// One sign for each direction: shape, colour and word. A pressed sign selects its direction for the large sentence.
 export class SignPad {
   readonly #store: Store;
   readonly #buttons: Button[] = [];
@@ -54,7 +54,7 @@ export class SignPad {
         : picture("arrow", "#arrow-turn", 0, direction.turn < 0);
     const name = make("span", { class: "name" }, arrow, direction.words);
     const reason = make("span", { class: "heard" });
-    // Read as "ahead no: drop of 0.17 m"; the eye gets the word first.
+    // A screen reader reads "ahead no: drop of 0.17 m"; on the screen the word comes first.
     const element = make("button", {
       class: "sign",
       "data-code": String(direction.code),
@@ -76,7 +76,7 @@ export class SignPad {
     return element;
   }
 
-  /// Draws the signs and tells which direction the big line is about.
+  /// Draws the signs. Returns the direction of the large sentence.
   draw(): { direction: Direction; sign: Sign; words: string } {
     const { hello, health, freshness, chosen } = this.#store;
     const paused = this.#store.arrivals.source_state === "paused";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Outlook } from "./directions.ts";
+import type { AttestedArea } from "./attestation.ts";
 import { judgeFreshness, type Arrivals, type Freshness } from "./freshness.ts";
 import { GroundMap } from "./ground_map.ts";
 import type {
@@ -23,10 +24,11 @@ export interface GateHealth {
   frame_age_ms: number | null;
   pose_age_ms: number | null;
   vouching: boolean;
+  vouched?: AttestedArea | null; ///< in odom; older gates do not send it
   asked: number;
   allowed: number;
 }
-/// A verdict that the gate gave to some client, as /surefoot/verdict tells it.
+/// A verdict that the gate gave to any client, from /surefoot/verdict.
 export interface GateVerdict {
   verdict: "OK" | "NOT_TRAVERSABLE" | "ERROR";
   command: number;
@@ -52,7 +54,7 @@ const kMostVerdicts = 50;
 const kMostPlaces = 4000;
 const kMostStageTimes = 240; ///< two minutes of status messages
 
-/// All that the page knows. Views read it; links write it and say what changed.
+/// All data of the page. Links write them and report changes; views read them.
 export class Store {
   hello: Hello | undefined;
   status: Status | undefined;
@@ -60,7 +62,7 @@ export class Store {
   joystick_on = false;
   stairs: Stairs | undefined;
   settings: Settings | undefined;
-  setting_answers = new Map<string, SettingAnswer>(); ///< by key, to the last wish of this page
+  setting_answers = new Map<string, SettingAnswer>(); ///< by key, to the last change that this page asked for
   recording: Recording | undefined;
   pose: PoseMessage | undefined;
   map = new GroundMap();
@@ -71,9 +73,9 @@ export class Store {
   verdicts: GateVerdict[] = [];
   track: Place[] = [];
   stage_times: StageTimes[] = [];
-  problem = ""; ///< the last thing that could not be read
+  problem = ""; ///< the last message that could not be read, and why
   chosen: number | undefined; ///< code of the direction that the user chose
-  vouch_radius_m: number | undefined; ///< while an operator is about to vouch
+  vouch_radius_m: number | undefined; ///< radius in the open attestation dialog
   arrivals: Arrivals = { service: "opening", gate: "opening", has_machine: false };
   freshness: Freshness = judgeFreshness(this.arrivals, 0);
   #listeners: (() => void)[] = [];
@@ -99,7 +101,7 @@ export class Store {
     if (this.track.length > kMostPlaces) this.track.splice(0, kMostPlaces / 4);
   }
 
-  /// Odom began anew: what was drawn has no place in it any more.
+  /// Odom was restarted: the old track has no meaning in the new frame.
   forgetTrack(): void {
     this.track = [];
   }
@@ -107,6 +109,16 @@ export class Store {
   addStageTimes(times: StageTimes): void {
     this.stage_times.push(times);
     if (this.stage_times.length > kMostStageTimes) this.stage_times.shift();
+  }
+
+  /// Whether an operator's attestation is in force, as far as the page has fresh data of the gate.
+  get attesting(): boolean {
+    return this.freshness.verdicts && this.health?.vouching === true;
+  }
+
+  /// The attested area, to be drawn; undefined if no attestation is in force.
+  get attested(): AttestedArea | undefined {
+    return this.attesting ? (this.health?.vouched ?? undefined) : undefined;
   }
 
   /// base_link on the ground; undefined without a pose.

@@ -3,12 +3,12 @@ import { byId, setAttribute, setText } from "./dom.ts";
 import type { Playback } from "./messages.ts";
 import type { Store } from "./store.ts";
 
-/// "frame 186 of 600"; people count from one.
+/// "frame 186 of 600"; counted from one.
 export function frameWords({ frame, frames }: Pick<Playback, "frame" | "frames">): string {
   return frames > 0 ? `frame ${frame + 1} of ${frames}` : `frame ${frame + 1}`;
 }
 
-/// Of a recording: pause, jump, speed. All pages see what one of them does.
+/// Pause, jump and speed of a recording, for all pages together.
 export class Timeline {
   readonly #store: Store;
   readonly #bar = byId("timeline");
@@ -47,7 +47,7 @@ export class Timeline {
     this.#showSpeed(speed);
   }
 
-  /// A speed of the command line may be none of the list.
+  /// The command line may set a speed that is not in the list.
   #showSpeed(speed: number): void {
     if (document.activeElement === this.#speed) return;
     const value = String(speed);

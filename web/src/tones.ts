@@ -26,7 +26,7 @@ const kOvertones = [
 const kFade_s = 0.008;
 const kVolume = 0.5;
 
-/// Off until somebody switches them on: a browser lets no page sound unasked, and nobody likes it.
+/// Off until the user switches them on: browsers block sound before a user action.
 export class Tones {
   #context: AudioContext | undefined;
   #last: SignKind | undefined;
@@ -46,7 +46,7 @@ export class Tones {
     }
   }
 
-  /// Sounds when the sign is another one than before.
+  /// Plays a tone when the sign changes.
   follow(kind: SignKind): void {
     const heard = kind === "stale" ? "cannot" : kind;
     if (heard !== this.#last && this.#last !== undefined) this.play(heard);

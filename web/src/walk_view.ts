@@ -39,7 +39,12 @@ export class WalkView {
     new ResizeObserver(changed).observe(byId("ground"));
   }
 
-  /// The signs speak even while the other view is shown.
+  /// Opens the field for the operator's token. `why`: the sentence of the gate.
+  askToken(why: string): void {
+    this.#acts.askToken(why);
+  }
+
+  /// Signs and tones are updated even while the other view is shown.
   draw(shown: boolean): void {
     const { direction, sign, words } = this.#pad.draw();
     this.#tones.follow(sign.kind);
@@ -68,7 +73,7 @@ export class WalkView {
       try {
         this.#scene ??= new Scene3d(byId("scene"), this.#store, this.#changed);
       } catch {
-        setText(byId("act-result"), "This browser cannot draw in three dimensions (no WebGL).");
+        setText(byId("act-result"), "The browser has no WebGL, so there is no 3D view. Switch WebGL on, or use the view from above.");
         return;
       }
     }

@@ -13,6 +13,8 @@ const kFlags = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-
 const kBluishGreen = [0, 158, 115];
 const kVermilion = [213, 94, 0];
 const kReddishPurple = [204, 121, 167];
+const kYellow = [240, 228, 66];
+const kSkyBlue = [86, 180, 233];
 
 let browser;
 before(async () => {
@@ -200,7 +202,7 @@ test("a killed service is said, and its return too", () =>
   withPage({}, async (page, service) => {
     const { port, gate_port } = service;
     await service.stop();
-    await soon(page, "#banner:has-text('The service is away')");
+    await soon(page, "#banner:has-text('No connection to the service')");
     await assertNoFreshData(page);
     const next = new FakeService();
     next.gate_port = gate_port;
@@ -216,7 +218,7 @@ test("a killed service is said, and its return too", () =>
   }));
 
 for (const [name, stop, banner] of [
-  ["a service that hangs", (service) => (service.paused = true), "silent"],
+  ["a service that hangs", (service) => (service.paused = true), "The service sends nothing"],
   ["late frames", (service) => (service.frames_paused = true), "late"],
   [
     "the end of the source",
@@ -235,7 +237,7 @@ for (const [name, stop, banner] of [
 test("without the gate the ground stays, and no direction is judged", () =>
   withPage({}, async (page, service) => {
     service.stopGate();
-    await soon(page, "#banner:has-text('The gate is away')");
+    await soon(page, "#banner:has-text('No connection to the gate')");
     assert.ok(Object.values(await signs(page)).every((kind) => kind === "stale"));
     assert.ok((await colorShare(page, kBluishGreen)) > 0.06);
     assert.ok(await page.isDisabled("#vouch"));
@@ -252,7 +254,7 @@ async function tabTo(page, selector) {
   assert.fail(`no Tab leads to ${selector}`);
 }
 
-test("keyboard alone: choosing, vouching", () =>
+test("keyboard alone: choosing, attesting", () =>
   withPage({}, async (page, service) => {
     await tabTo(page, ".sign[data-code='13']");
     await page.keyboard.press("Enter");
@@ -260,7 +262,7 @@ test("keyboard alone: choosing, vouching", () =>
     await tabTo(page, "#vouch");
     await page.keyboard.press("Enter");
     await page.waitForSelector("#vouch-dialog[open]");
-    assert.ok(await page.isDisabled("#vouch-yes"), "nobody vouches by accident");
+    assert.ok(await page.isDisabled("#vouch-yes"), "nobody attests by accident");
     await page.keyboard.press("Escape");
     assert.deepEqual(service.calls, []);
     await page.keyboard.press("Enter");
@@ -271,8 +273,50 @@ test("keyboard alone: choosing, vouching", () =>
     await page.keyboard.press("Space");
     await tabTo(page, "#vouch-yes");
     await page.keyboard.press("Enter");
-    await page.waitForSelector("#act-result:has-text('Vouching for 0.65 m: done')");
+    await page.waitForSelector("#act-result:has-text('Attestation, radius 0.65 m: accepted')");
     assert.deepEqual(service.calls, [["/surefoot/vouch", { radius_m: 0.65 }]]);
+  }));
+
+test("an attestation in force is shown: its border, its radius and its end", () =>
+  withPage({ colorScheme: "dark" }, async (page, service) => {
+    await page.waitForSelector("#attestation-words:has-text('Attestation in force: radius 0.60 m')");
+    await page.waitForSelector("#attestation-detail:has-text('Distance to the centre: ')");
+    const shown = await colorShare(page, kSkyBlue);
+    service.vouched = null;
+    await page.waitForSelector("#attestation", { state: "hidden" });
+    await page.waitForTimeout(500);
+    const without = await colorShare(page, kSkyBlue);
+    assert.ok(shown > without + 0.001, `${shown} of the picture with a border, ${without} without`);
+  }));
+
+test("an act without the operator's token asks for it, and the tab keeps it", () =>
+  withPage({ fake: { operator_token: "secret" } }, async (page, service) => {
+    const attest = async () => {
+      await page.click("#vouch");
+      await page.check("#vouch-looked");
+      await page.click("#vouch-yes");
+    };
+    await attest();
+    await page.waitForSelector("#token-dialog[open]");
+    assert.match(await page.textContent("#token-why"), /this page is not the operator/);
+    assert.deepEqual(await violations(page), []);
+    await page.fill("#token", "wrong");
+    await page.keyboard.press("Enter");
+    await page.waitForSelector("#token-why:has-text('this token is not known here')");
+    assert.equal(await page.inputValue("#token"), "");
+    await page.fill("#token", "secret");
+    await page.keyboard.press("Enter");
+    await page.waitForSelector("#act-result:has-text('accepted the operator token')");
+    assert.equal(await page.isVisible("#token-dialog"), false);
+    await attest();
+    await page.waitForSelector("#act-result:has-text('Attestation, radius 0.60 m: accepted')");
+    assert.ok(!page.url().includes("secret"));
+    await page.reload();
+    await page.waitForSelector("html[data-verdicts=fresh]");
+    await attest();
+    await page.waitForSelector("#act-result:has-text('Attestation, radius 0.60 m: accepted')");
+    const radii = service.calls.filter(([name]) => name === "/surefoot/vouch").length;
+    assert.equal(radii, 3, "one refused, two accepted");
   }));
 
 const note = (page, words) => page.waitForSelector(`#joystick-note:has-text("${words}")`);
@@ -376,7 +420,7 @@ test("re-arming is possible after a fault alone", () =>
     assert.deepEqual(service.calls, []);
     await page.click("#rearm");
     await page.click("#rearm-yes");
-    await page.waitForSelector("#act-result:has-text('Re-arming: done - warming up')");
+    await page.waitForSelector("#act-result:has-text('Re-arming: accepted - warming up')");
     assert.deepEqual(service.calls, [["/surefoot/rearm", {}]]);
   }));
 
@@ -433,8 +477,6 @@ test("the ground and the machine in three dimensions", () =>
     await page.waitForSelector("#ground:not([hidden])");
   }));
 
-const kYellow = [240, 228, 66];
-const kSkyBlue = [86, 180, 233];
 
 async function in3d(page, machine) {
   await page.click("#mode-3d");
@@ -509,7 +551,7 @@ for (const [name, model] of [
     }));
 
 test("the engineer's view: pictures, layers, times, verdicts", () =>
-  withPage({}, async (page, service) => {
+  withPage({ fake: { stands: true } }, async (page, service) => {
     assert.ok(
       service.wants.every(({ layers, images }) => layers.length + images.length === 0),
       "asked for unseen",
@@ -527,8 +569,8 @@ test("the engineer's view: pictures, layers, times, verdicts", () =>
     await page.waitForSelector("#image-left:visible");
     assert.equal(await page.isVisible("#no-image-left"), false);
     await page.focus("#layer");
-    await page.keyboard.press("ArrowUp");
-    // Beside the machine, far from the drop, that evidence is nothing; drift grows with the distance.
+    for (let i = 0; i < 3; ++i) await page.keyboard.press("Shift+ArrowRight");
+    // On known ground 0.76 m ahead, far from the drop, the evidence is 0; drift grows with the distance.
     await page.waitForFunction(() =>
       document.getElementById("layer-value").textContent.startsWith("0.0000 at x "),
     );
@@ -538,13 +580,13 @@ test("the engineer's view: pictures, layers, times, verdicts", () =>
     await page.waitForFunction((old) => document.getElementById("layer").toDataURL() !== old, before);
     await page.waitForFunction(
       () =>
-        /^0\.00[0-9]+ at x /.test(document.getElementById("layer-value").textContent) &&
+        /^0\.0[0-9]+ at x /.test(document.getElementById("layer-value").textContent) &&
         !document.getElementById("layer-value").textContent.startsWith("0.0000"),
     );
     assert.deepEqual(service.wants.at(-1).layers, ["drift_m"]);
     service.frames_paused = true;
     await page.selectOption("#layer-name", "drop_evidence");
-    await page.waitForSelector("#layer-value:has-text('This layer has not come yet.')");
+    await page.waitForSelector("#layer-value:has-text('Waiting for this layer.')");
     service.frames_paused = false;
     service.verdict("NOT_TRAVERSABLE", 9, "drop of 0.17 m");
     await page.waitForSelector("#verdict-rows tr:has-text('drop of 0.17 m')");
@@ -567,7 +609,7 @@ test("stairs: their measures in the table, over the layer and in words", () =>
     await page.click("#tab-engineer");
     await page.waitForSelector("#feature-rows tr");
     const [flight, remark, drop] = await rowTexts(page, "feature-rows");
-    assert.match(remark[0], /^landing 0.80 m; .* may go on beyond what is known$/);
+    assert.match(remark[0], /^landing 0.80 m; .* may continue beyond the known ground$/);
     assert.deepEqual(flight.slice(0, 4), ["flight, 3 steps up", "180 ± 2 mm", "310 ± 5 mm", "1.20 m"]);
     assert.deepEqual(drop.slice(0, 2), ["drop", "170 ± 6 mm or more"]);
     service.tellStairs(stairs(0.175));
@@ -645,7 +687,7 @@ test("the record button: every state, and a mark on every page", () =>
     assert.ok(await page.isHidden("#recording-mark"));
     await tabTo(page, "#tab-walk");
     await page.keyboard.press("ArrowRight");
-    await page.waitForSelector("#record-state:has-text('Nothing is recorded.')");
+    await page.waitForSelector("#record-state:has-text('No recording is running.')");
     await tabTo(page, "#record");
     await page.keyboard.press("Space");
     await page.waitForFunction(() => document.activeElement.id === "record");
@@ -656,7 +698,7 @@ test("the record button: every state, and a mark on every page", () =>
     assert.equal(await page.textContent("#record-state"), `Recording to ${folder}`);
     assert.deepEqual(await violations(page), []);
     service.tellRecording({ left_out: 3 });
-    await page.waitForSelector("#record-counts:has-text('3 left out: the disk is too slow')");
+    await page.waitForSelector("#record-counts:has-text('3 frames left out: the disk is too slow')");
     await page.keyboard.press("Enter");
     service.tellRecording({ state: "finishing" });
     await page.waitForSelector("#record:disabled");

@@ -110,9 +110,8 @@ export function hello(gate_port, { can_steer = false, machine = kMachine } = {})
 function cellAt(x_m, y_m) {
   const range_m = Math.hypot(x_m, y_m);
   const bearing = Math.abs(Math.atan2(y_m, x_m));
-  const vouched = range_m < 0.6 ? 4 : 0;
   if (bearing > 1.05 && range_m > 0.55 + 0.25 * Math.sin(3 * bearing)) return kUnknown;
-  if (range_m < 0.55) return vouched ? { height_mm: 0, sigma_mm: 4, state: 1 | 4 } : kUnknown;
+  if (range_m < 0.55) return kUnknown;
   if (x_m > 2.5 + 0.12 * Math.sin(5 * y_m) || Math.abs(y_m) > 2.1) return kUnknown;
   if (x_m > kDrop_x_m + 0.06 && x_m < kDrop_x_m + 0.32) return kUnknown;
   if (x_m > kDrop_x_m + 0.32) return { height_mm: -170, sigma_mm: 14, state: 3 };
@@ -124,7 +123,7 @@ function cellAt(x_m, y_m) {
   return {
     height_mm: Math.round(3 * Math.sin(7 * x_m) * Math.cos(5 * y_m)),
     sigma_mm: 4,
-    state: 1 | vouched,
+    state: 1,
   };
 }
 
@@ -345,12 +344,21 @@ function serveFile(request, response) {
   }
 }
 
+/// Sentences of service/gate_process/protocol/rosbridge_session.cpp.
+const kNoRight =
+  "not done: this needs the role operator, and this client is rider. Connect with ?token=TOKEN, or send " +
+  '{"op":"auth","token":"TOKEN"}; the token stands in the service\'s token file';
+const kUnknownToken =
+  "this token is not known here, and nothing was changed. Take a token of the service's token file";
+
 export class FakeService {
   paused = false; ///< nothing is said any more, though every connection stays
   frames_paused = false; ///< status goes on, frames do not
   jpeg = kJpeg; ///< of every picture; nothing = the source has none
   gate_state = "READY";
   outlook_state; ///< of the outlook alone; undefined = that of the gate
+  vouched = { x_m: 0, y_m: 0, z_m: 0, radius_m: 0.6 }; ///< attested area; null = no attestation in force
+  operator_token = null; ///< acts need it; null = every client may act
   source_state = "running";
   calls = []; ///< what was asked of the gate: [service, args]
   wants = [];
@@ -380,6 +388,7 @@ export class FakeService {
   #timers = [];
   #pages = new Map(); ///< socket -> {want, whole}
   #gates = new Map(); ///< socket -> topics
+  #operators = new WeakSet(); ///< sockets that showed the operator's token
 
   async start(port = 0) {
     this.http = createServer(serveFile);
@@ -593,24 +602,33 @@ export class FakeService {
       map_version: this.#frame,
       frame_age_ms: 31.361906,
       pose_age_ms: 12.25,
-      vouching: true,
+      vouching: this.vouched !== null,
+      vouched: this.vouched,
       asked: 12,
       allowed: 7,
     });
+  }
+
+  #valuesOf(socket, { service, args }) {
+    if (service === "/surefoot/authenticate") {
+      if (args.token === this.operator_token) this.#operators.add(socket);
+      const success = this.#operators.has(socket);
+      const message = success ? "" : kUnknownToken;
+      return { success, message, role: success ? "operator" : "rider" };
+    }
+    if (this.operator_token && !this.#operators.has(socket)) return { success: false, message: kNoRight };
+    if (service === "/surefoot/rearm") {
+      this.gate_state = "READY";
+      return { success: true, message: "warming up" };
+    }
+    return { success: true, message: "" };
   }
 
   #gateMessage(socket, message) {
     if (message.op === "subscribe") this.#gates.get(socket).add(message.topic);
     if (message.op !== "call_service") return;
     this.calls.push([message.service, message.args]);
-    if (message.service === "/surefoot/rearm") this.gate_state = "READY";
-    const values = {
-      success: true,
-      message:
-        message.service === "/surefoot/vouch"
-          ? `until the machine has left ${message.args.radius_m} m`
-          : "warming up",
-    };
+    const values = this.#valuesOf(socket, message);
     socket.send(
       JSON.stringify({
         op: "service_response",

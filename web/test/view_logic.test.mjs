@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the signs, the banner and the colours say, without a browser.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import {
   kDirections,
@@ -33,6 +34,9 @@ import {
   spreadLabels,
   withoutRepeats,
 } from "../build/unit/feature_words.js";
+import { attestationWords, isCellAttested, radiusRange } from "../build/unit/attestation.js";
+import { GateLink } from "../build/unit/gate_link.js";
+import { gateAddress, needsOperator, OperatorToken } from "../build/unit/operator_token.js";
 import { decode } from "../build/unit/messages.js";
 import { countWords, recordingWords } from "../build/unit/recording_words.js";
 import { findSettings, foundWords, splitKey } from "../build/unit/setting_words.js";
@@ -54,7 +58,7 @@ test("only a fresh OK is allowed", () => {
   assert.deepEqual(kinds(true), ["allowed", "not", "cannot", "cannot", "cannot"]);
   assert.deepEqual(kinds(false), ["stale", "stale", "stale", "stale", "stale"]);
   assert.equal(signOf(9, kMachine, undefined, true).kind, "cannot");
-  assert.equal(signOf(9, null, outlook, true).reason, "without a machine file no direction is judged");
+  assert.equal(signOf(9, null, outlook, true).reason, "there is no machine file, so no direction is judged");
   assert.equal(signOf(9, undefined, outlook, false).kind, "stale");
   assert.equal(signOf(9, { ...kMachine, movements: [] }, outlook, true).kind, "absent");
 });
@@ -65,10 +69,10 @@ test("the joystick in words", () => {
   assert.match(joystickWords(0, { ...steer, yours: false, taken: false, asked: 0 }), /^Hold a sign/);
   assert.equal(joystickWords(9, steer), "ahead: moved. Asking for ahead.");
   const refused = { ...steer, moved: false, asked: 17, text: "ground that was never seen" };
-  assert.match(joystickWords(0, refused), /^back: stands - ground that was never seen\. Hold a sign/);
+  assert.match(joystickWords(0, refused), /^back: no step - ground that was never seen\. Hold a sign/);
   assert.match(
     joystickWords(0, { ...refused, asked: 10, text: "" }),
-    /^movement 10: stands - the gate cannot/,
+    /^movement 10: no step - the gate cannot/,
   );
   for (const held of [0, 9])
     assert.equal(joystickWords(held, { ...steer, yours: false }), "Another page holds the joystick.");
@@ -118,7 +122,7 @@ test("the big line in words", () => {
   assert.equal(said(drop, false), "no fresh data");
   assert.equal(
     stateSentence("FAULT", "MOUNT_MOVED"),
-    "The gate has stopped after a fault: the camera has moved on its mount",
+    "The gate stopped after a fault: the camera has moved on its mount",
   );
   assert.equal(stateSentence("WARMUP", "WARMUP"), "The gate is warming up");
   assert.equal(stateSentence("READY", "NONE"), "The gate is ready");
@@ -154,19 +158,19 @@ test("nothing is fresh longer than a second, whatever stops coming", () => {
     assert.equal(isGround, ground, name);
     assert.equal(verdicts, false, name);
   };
-  stopped("service_word_at_ms", /silent/, false);
+  stopped("service_word_at_ms", /service sends nothing/, false);
   stopped("pose_at_ms", /Frames are late/, false);
   stopped("map_at_ms", /map is late/, false);
-  stopped("outlook_at_ms", /gate is silent/, true);
+  stopped("outlook_at_ms", /gate sends nothing/, true);
 });
 
 test("each way of being away has its sentence", () => {
   const said = (changes) => judgeFreshness({ ...kFresh, ...changes }, 1000);
   const away = said({ service: "away", retry_at_ms: 2000 });
-  assert.match(away.banner, /service is away/);
-  assert.equal(away.detail, "in 1.0 s");
+  assert.match(away.banner, /No connection to the service/);
+  assert.equal(away.detail, "next attempt in 1.0 s");
   assert.equal(away.ground, false);
-  assert.match(said({ gate: "away" }).banner, /gate is away/);
+  assert.match(said({ gate: "away" }).banner, /No connection to the gate/);
   assert.equal(said({ gate: "away" }).ground, true);
   assert.equal(said({ gate: "away" }).verdicts, false);
   assert.equal(
@@ -269,17 +273,17 @@ test("each thing on the ground is a row with its measures", () => {
     going: "310 ± 5 mm",
     width: "1.20 m",
     place: "-0.40, -1.15 m; -90°",
-    seen: "now, 12 looks",
+    seen: "now, 12 observations",
     remarks:
-      "landing 0.80 m; single ones scatter by 4 and 7 mm; left a wall; rail on the right, 0.95 m high; " +
-      "may go on beyond what is known",
+      "landing 0.80 m; risers scatter by 4 mm, goings by 7 mm; wall on the left; rail on the right, 0.95 m high; " +
+      "may continue beyond the known ground",
   });
   assert.equal(rows[1].height, "170 ± 6 mm or more");
-  assert.match(rows[1].remarks, /bottom was not seen/);
+  assert.match(rows[1].remarks, /lower ground was not seen/);
   assert.equal(rows[2].height, "80.0 ± 0.4 mm");
   assert.deepEqual([rows[3].height, rows[3].width], ["15 mm", "920 ± 12 mm"]);
   assert.match(rows[3].remarks, /sill; nothing seen above it/);
-  assert.equal(featureRows(stairs(), 7e9)[0].seen, "7 s ago, 12 looks");
+  assert.equal(featureRows(stairs(), 7e9)[0].seen, "7 s ago, 12 observations");
   const [flight] = stairs().flights;
   const once = {
     ...flight,
@@ -294,7 +298,7 @@ test("each thing on the ground is a row with its measures", () => {
   };
   const [row] = featureRows({ ...stairs(), flights: [once] });
   assert.deepEqual([row.what, row.going, row.seen], ["flight, one step up", "-", "-"]);
-  assert.match(row.remarks, /turns by 29°; boards without risers; left open; right level/);
+  assert.match(row.remarks, /turns by 29°; treads without risers; open on the left; level ground on the right/);
 });
 
 test("labels say riser by going, and lie on the thing", () => {
@@ -376,10 +380,10 @@ test("settings: group and name, and a search for all words", () => {
   assert.deepEqual(keys("  Reach   JUMP "), ["elevation.pixels.reach_px"]);
   assert.equal(keys("").length, kSettings.length);
   assert.deepEqual(keys("reach matcher"), []);
-  assert.equal(foundWords(0, 0), "The settings have not come yet.");
+  assert.equal(foundWords(0, 0), "Waiting for the settings.");
   assert.equal(foundWords(37, 37), "37 settings");
   assert.equal(foundWords(2, 37), "2 of 37 settings");
-  assert.equal(foundWords(0, 37), "None of 37 settings");
+  assert.equal(foundWords(0, 37), "No match among 37 settings");
 });
 
 test("the recording in words, whatever its state", () => {
@@ -395,7 +399,7 @@ test("the recording in words, whatever its state", () => {
   assert.equal(countWords(recording), "150 frames, 61.0 MB, 10.0 s");
   assert.equal(
     countWords({ ...recording, frames: 1, left_out: 2 }),
-    "1 frame, 61.0 MB, 10.0 s; 2 left out: the disk is too slow",
+    "1 frame, 61.0 MB, 10.0 s; 2 frames left out: the disk is too slow",
   );
   const said = (changes) => recordingWords({ ...recording, ...changes });
   assert.deepEqual(said({}), {
@@ -417,7 +421,172 @@ test("the recording in words, whatever its state", () => {
     [failed.possible, failed.button, failed.state],
     [true, "Start recording", "The recording failed: no space left."],
   );
-  assert.equal(said({ state: "ready", text: "" }).state, "Nothing is recorded.");
+  assert.equal(said({ state: "ready", text: "" }).state, "No recording is running.");
   assert.equal(said({ state: "ready", text: "10 frames" }).state, "Recorded: 10 frames.");
   assert.equal(recordingWords(undefined).possible, false);
+});
+
+test("reasons of a state are worded as in docs/reference/gate_reasons.md", () => {
+  const page = readFileSync(new URL("../../docs/reference/gate_reasons.md", import.meta.url), "utf8");
+  const errors = page.slice(page.indexOf("## ERROR"), page.indexOf("## NOT_TRAVERSABLE"));
+  const rows = [...errors.matchAll(/^\| ([A-Z_]+) \| ([^|]+) \|/gm)];
+  assert.ok(rows.length > 20, String(rows.length));
+  for (const [, reason, text] of rows)
+    assert.equal(stateSentence("DEGRADED", reason), `The gate is not ready: ${text}`, reason);
+});
+
+/// Which cells of a square map show the colour of the border, as rows of "#" and ".".
+function bordersOf(map, attested) {
+  const side_px = map.nx * kCell_px;
+  const pixels = new Uint32Array(side_px ** 2);
+  paintGround(map, { first_ix: 0, first_iy: 0, cells: map.nx }, kDarkColors, pixels, attested);
+  const at = (ix, iy) => pixels[(side_px - 1 - iy * kCell_px) * side_px + ix * kCell_px];
+  const [r, g, b] = kDarkColors.vouched;
+  const border = ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
+  const row = (iy) => Array.from({ length: map.nx }, (_, ix) => (at(ix, iy) === border ? "#" : ".")).join("");
+  return Array.from({ length: map.ny }, (_, iy) => row(iy));
+}
+
+test("the attested area has a border, although no cell of the map is vouched", () => {
+  const map = new GroundMap();
+  const head = { resolution_tenth_mm: 250, nx: 7, ny: 7, whole: 1 };
+  assert.ok(map.apply(decode(arrayBuffer(encodeMap(head, [], [])))));
+  const none = Array(7).fill(".......");
+  assert.deepEqual(bordersOf(map, undefined), none);
+  const area = { x_m: 0.0875, y_m: 0.0875, z_m: 0, radius_m: 0.075 };
+  assert.deepEqual(bordersOf(map, area), [
+    ".......",
+    "..###..",
+    ".#...#.",
+    ".#...#.",
+    ".#...#.",
+    "..###..",
+    ".......",
+  ]);
+  assert.deepEqual(bordersOf(map, { ...area, x_m: 9 }), none, "an area outside the map");
+  assert.equal(isCellAttested(area, 0.0875, 0.0875, 0.025), true);
+  assert.equal(isCellAttested(area, 0.15, 0.0875, 0.025), false, "the cell reaches out of the circle");
+});
+
+test("an attestation in force has its radius, its place and its end in words", () => {
+  const area = { x_m: 1, y_m: 2, z_m: 0, radius_m: 0.6 };
+  assert.deepEqual(attestationWords(false, area, { x_m: 1, y_m: 2 }), { words: "", detail: "" });
+  const { words, detail } = attestationWords(true, area, { x_m: 1.3, y_m: 2.4 });
+  assert.match(words, /^Attestation in force: radius 0\.60 m around the attested place\. It ends when/);
+  assert.match(words, /leaves this circle.*position is lost.*fault.*perception restarts/);
+  assert.equal(detail, "Distance to the centre: 0.50 m.");
+  assert.match(attestationWords(true, undefined, undefined).words, /^Attestation in force\. The gate does not send/);
+});
+
+test("the slider offers radii that the gate accepts, and no other", () => {
+  // The soles of the REX reach 0.365 m: GatekeeperTest.an_attestation_too_small_for_the_soles_replaces_none.
+  assert.deepEqual(radiusRange(kMachine), { least_m: 0.4, most_m: 1, step_m: 0.05, first_m: 0.6 });
+  assert.deepEqual(radiusRange({ ...kMachine, vouch_radius_m: 0.365 }), {
+    least_m: 0.365,
+    most_m: 0.365,
+    step_m: 0.05,
+    first_m: 0.365,
+  });
+  assert.equal(radiusRange({ ...kMachine, vouch_radius_m: 0.3649 }), undefined, "no radius holds both soles");
+  assert.equal(radiusRange({ ...kMachine, vouch_radius_m: 0 }), undefined, "the machine file allows none");
+  const wide = { ...kMachine.feet.left, center_y_m: 0.9, width_m: 0.5 };
+  const { least_m, first_m } = radiusRange({
+    ...kMachine,
+    vouch_radius_m: 2,
+    feet: { ...kMachine.feet, left: wide },
+  });
+  assert.ok(least_m >= Math.hypot(0.24, 1.15) && least_m < Math.hypot(0.24, 1.15) + 0.05, String(least_m));
+  assert.equal(first_m, least_m, "0.6 m would be refused");
+  assert.equal(radiusRange(null), undefined);
+});
+
+class MemoryStorage {
+  kept = new Map();
+  getItem = (key) => this.kept.get(key) ?? null;
+  setItem = (key, value) => void this.kept.set(key, value);
+  removeItem = (key) => void this.kept.delete(key);
+}
+
+test("a wrong token in the page's address does not keep the page from the gate", () => {
+  const addresses = [0, 1, 2].map((failures) => gateAddress("ws://h:1/", "a b", failures));
+  assert.deepEqual(addresses, ["ws://h:1/?token=a%20b", "ws://h:1/", "ws://h:1/?token=a%20b"]);
+  assert.equal(gateAddress("ws://h:1/", null, 0), "ws://h:1/");
+});
+
+test("the gate's refusal of the role is told from other refusals", () => {
+  const session = readFileSync(
+    new URL("../../service/gate_process/protocol/rosbridge_session.cpp", import.meta.url),
+    "utf8",
+  );
+  assert.ok(session.includes("this needs the role "), "the words that the page looks for");
+  assert.ok(needsOperator("not done: this needs the role operator, and this client is rider. Connect with"));
+  assert.ok(!needsOperator("not done: this needs the role rider, and this client is observer"));
+  assert.ok(!needsOperator("the ground is not attested: the gate is in a fault"));
+});
+
+/// A socket that the test plays the gate on.
+class PlayedSocket {
+  static opened = [];
+  sent = [];
+  constructor(address) {
+    this.address = address;
+    PlayedSocket.opened.push(this);
+  }
+  send(text) {
+    this.sent.push(JSON.parse(text));
+  }
+  close() {}
+  get calls() {
+    return this.sent.filter(({ op }) => op === "call_service");
+  }
+  async answer(values) {
+    const { id } = this.calls.at(-1);
+    this.onmessage({ data: JSON.stringify({ op: "service_response", id, values, result: true }) });
+    await new Promise(setImmediate);
+  }
+}
+
+test("the operator's token goes to the gate, is kept for the tab, and is shown again after a reconnect", async () => {
+  const before = globalThis.WebSocket;
+  globalThis.WebSocket = PlayedSocket;
+  PlayedSocket.opened = [];
+  const storage = new MemoryStorage();
+  const refused = [];
+  const link = () =>
+    new GateLink({
+      store: { arrivals: { gate: "opening" }, changed() {} },
+      base: () => "ws://gate:9090/",
+      url_token: null,
+      token: new OperatorToken(storage),
+      heard() {},
+      refused: (message) => refused.push(message),
+    });
+  const connect = (one) => {
+    one.open();
+    const socket = PlayedSocket.opened.at(-1);
+    socket.onopen();
+    return socket;
+  };
+  try {
+    const first = link();
+    const socket = connect(first);
+    assert.deepEqual(socket.calls, [], "no token, no authentication");
+    const rider = first.authenticate("r");
+    await socket.answer({ success: true, message: "", role: "rider" });
+    assert.deepEqual(await rider, { success: false, message: "this token has the role rider, not operator" });
+    assert.equal(storage.kept.size, 0);
+    const right = first.authenticate("secret");
+    assert.deepEqual(socket.calls.at(-1).args, { token: "secret" });
+    await socket.answer({ success: true, message: "", role: "operator" });
+    assert.equal((await right).success, true);
+    assert.deepEqual([...storage.kept.values()], ["secret"]);
+    const again = connect(link());
+    assert.equal(again.address, "ws://gate:9090/", "the token is in no address");
+    assert.deepEqual(again.calls.at(-1).args, { token: "secret" });
+    await again.answer({ success: false, message: "this token is not known here", role: "rider" });
+    assert.deepEqual(refused, ["this token is not known here"]);
+    assert.equal(storage.kept.size, 0, "a refused token is not kept");
+  } finally {
+    globalThis.WebSocket = before;
+  }
 });

@@ -13,9 +13,15 @@ constexpr std::int64_t kHealthNs = 400 * kNsPerMs;
 constexpr std::int64_t kChangedHealthNs = 20 * kNsPerMs;  // a state that flickers is no flood
 constexpr std::int64_t kDiagnosticsNs = 1000 * kNsPerMs;
 
+bool same_area(const gate::VouchedArea& a, const gate::VouchedArea& b) {
+    return a.active == b.active && a.center_x_tenth_mm == b.center_x_tenth_mm &&
+           a.center_y_tenth_mm == b.center_y_tenth_mm && a.radius_tenth_mm == b.radius_tenth_mm &&
+           a.height_tenth_mm == b.height_tenth_mm;
+}
+
 bool same_state(const GateReport& a, const GateReport& b) {
     return a.health.state == b.health.state && a.health.faults == b.health.faults &&
-           a.why == b.why && a.vouching == b.vouching;
+           a.why == b.why && a.vouching == b.vouching && same_area(a.vouched, b.vouched);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/gate_process/protocol/json_text.hpp"
+#include "service/gate_process/protocol/topic_json.hpp"
 #include "service/gate_process/wire_testing.hpp"
 
 namespace surefoot::wire {
@@ -62,6 +63,28 @@ TEST(PeriodicTopics, EachOfTheFourPartsOfAStateCounts) {
         change(gate.report_);
         EXPECT_EQ(topics.due(gate, 20 * kMs).size(), 1U);
     }
+}
+
+TEST(PeriodicTopics, HealthHasTheAttestedArea) {
+    ScriptedGate gate;
+    EXPECT_TRUE(health_object(gate.report_)["vouched"].is_null());
+    gate.report_.vouching = true;
+    gate.report_.vouched = {true, 12'340, -5'000, 6'000, -9'900};
+    const Json area = health_object(gate.report_)["vouched"];
+    EXPECT_NEAR(area["x_m"].get<double>(), 1.234, 1e-9);
+    EXPECT_NEAR(area["y_m"].get<double>(), -0.5, 1e-9);
+    EXPECT_NEAR(area["z_m"].get<double>(), -0.99, 1e-9);
+    EXPECT_NEAR(area["radius_m"].get<double>(), 0.6, 1e-9);
+}
+
+TEST(PeriodicTopics, ANewAttestationOverAnOldOneIsSaidAtOnce) {
+    ScriptedGate gate;
+    PeriodicTopics topics;
+    gate.report_.vouching = true;
+    gate.report_.vouched = {true, 0, 0, 6'000, 0};
+    (void)topics.due(gate, 0);
+    gate.report_.vouched.radius_tenth_mm = 8'000;
+    EXPECT_EQ(topics.due(gate, 20 * kMs).size(), 1U);
 }
 
 TEST(PeriodicTopics, AFlickeringStateIsNoFlood) {

@@ -46,6 +46,16 @@ Json age_ms(std::int64_t age_ns) {
     return age_ns < 0 ? Json(nullptr) : Json(static_cast<double>(age_ns) / kNsPerMs);
 }
 
+/// The attested area in odom; null if no attestation is in force.
+Json vouched_object(const gate::VouchedArea& area) {
+    if (!area.active) return nullptr;
+    constexpr double kTenthMm_m = 1e-4;
+    return {{"x_m", static_cast<double>(area.center_x_tenth_mm) * kTenthMm_m},
+            {"y_m", static_cast<double>(area.center_y_tenth_mm) * kTenthMm_m},
+            {"z_m", static_cast<double>(area.height_tenth_mm) * kTenthMm_m},
+            {"radius_m", static_cast<double>(area.radius_tenth_mm) * kTenthMm_m}};
+}
+
 Json stamp_object(std::int64_t time_ns) {
     return {{"secs", time_ns / kNanosecondsPerSecond}, {"nsecs", time_ns % kNanosecondsPerSecond}};
 }
@@ -108,6 +118,7 @@ Json health_object(const GateReport& report) {
             {"frame_age_ms", age_ms(report.frame_age_ns)},
             {"pose_age_ms", age_ms(report.pose_age_ns)},
             {"vouching", report.vouching},
+            {"vouched", vouched_object(report.vouched)},
             {"asked", report.asked},
             {"allowed", report.allowed}};
 }

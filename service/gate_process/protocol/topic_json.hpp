@@ -11,8 +11,9 @@
 /// The messages of all topics but the verdicts.
 namespace surefoot::wire {
 
-/// {state, why, faults, map_version, frame_age_ms, pose_age_ms, vouching, asked, allowed}; an age
-/// is null before the first snapshot came.
+/// {state, why, faults, map_version, frame_age_ms, pose_age_ms, vouching, vouched, asked, allowed}.
+/// An age is null before the first snapshot came. `vouched` is the attested area in odom {x_m, y_m,
+/// z_m, radius_m}, or null.
 [[nodiscard]] Json health_object(const GateReport& report);
 /// The same on one line, for those who do not read JSON themselves.
 [[nodiscard]] std::string health_text(const GateReport& report);

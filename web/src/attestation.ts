@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Box, Machine } from "./messages.ts";
+
+/// The area that an operator attested, in odom, as /surefoot/health has it (docs/reference/rosbridge.md).
+export interface AttestedArea {
+  x_m: number;
+  y_m: number;
+  z_m: number; ///< height of the attested ground
+  radius_m: number;
+}
+
+/// The radii that the gate accepts, for the slider.
+export interface RadiusRange {
+  least_m: number;
+  most_m: number;
+  step_m: number;
+  first_m: number; ///< shown first
+}
+
+const kFirstRadius_m = 0.6;
+const kStep_m = 0.05;
+const kTenthMm_m = 1e-4;
+
+const tenthMm = (value_m: number) => Math.round(value_m / kTenthMm_m);
+
+/// The least radius [0.1 mm] that holds both soles: `least_vouched_radius_sq` of surefoot/gate/vouching.cpp.
+function leastRadius_tenth_mm({ left, right }: Machine["feet"]): number {
+  const reach = (center_m: number, size_m: number) =>
+    Math.abs(tenthMm(center_m)) + Math.floor((tenthMm(size_m) + 1) / 2);
+  const farthest = (foot: Box) =>
+    Math.hypot(reach(foot.center_x_m, foot.length_m), reach(foot.center_y_m, foot.width_m));
+  return Math.ceil(Math.max(farthest(left), farthest(right)) - 1e-6);
+}
+
+/// Undefined if the machine file allows no attestation, or no radius that holds both soles.
+export function radiusRange(machine: Machine | null | undefined): RadiusRange | undefined {
+  if (!machine) return undefined;
+  const most = tenthMm(machine.vouch_radius_m);
+  const least = leastRadius_tenth_mm(machine.feet);
+  if (most <= 0 || least > most) return undefined;
+  const step = tenthMm(kStep_m);
+  // The slider stops at multiples of 50 mm, the largest radius included.
+  const first_stop = most - Math.floor((most - least) / step) * step;
+  const stops = Math.max(0, Math.round((tenthMm(kFirstRadius_m) - first_stop) / step));
+  const metres = (value: number) => Number((value * kTenthMm_m).toFixed(4));
+  return {
+    least_m: metres(first_stop),
+    most_m: metres(most),
+    step_m: kStep_m,
+    first_m: metres(Math.min(most, first_stop + stops * step)),
+  };
+}
+
+export interface AttestationWords {
+  words: string; ///< changes seldom: read aloud; empty if no attestation is in force
+  detail: string; ///< changes while the machine moves: not read aloud
+}
+
+/// The text on the map while an attestation is in force. `place`: base_link in odom.
+export function attestationWords(
+  in_force: boolean,
+  area: AttestedArea | undefined,
+  place: { x_m: number; y_m: number } | undefined,
+): AttestationWords {
+  if (!in_force) return { words: "", detail: "" };
+  const end =
+    "It ends when the machine leaves this circle, when the position is lost, after a fault, " +
+    "and when perception restarts.";
+  if (!area) return { words: `Attestation in force. The gate does not send its radius. ${end}`, detail: "" };
+  const distance_m = place ? Math.hypot(place.x_m - area.x_m, place.y_m - area.y_m) : undefined;
+  return {
+    words: `Attestation in force: radius ${area.radius_m.toFixed(2)} m around the attested place. ${end}`,
+    detail: distance_m === undefined ? "" : `Distance to the centre: ${distance_m.toFixed(2)} m.`,
+  };
+}
+
+/// "radius 0.60 m at x 1.00 m, y 2.00 m"
+export function attestedWords(area: AttestedArea | undefined): string {
+  if (!area) return "in force";
+  const { x_m, y_m, radius_m } = area;
+  return `in force: radius ${radius_m.toFixed(2)} m at x ${x_m.toFixed(2)} m, y ${y_m.toFixed(2)} m`;
+}
+
+/// Whether a cell lies wholly inside the area: `is_vouched` of surefoot/gate/ground.cpp. x and y: its corner.
+export function isCellAttested(area: AttestedArea, x_m: number, y_m: number, side_m: number): boolean {
+  const far = (low_m: number) => Math.max(Math.abs(low_m), Math.abs(low_m + side_m));
+  const far_x_m = far(x_m - area.x_m);
+  const far_y_m = far(y_m - area.y_m);
+  return far_x_m * far_x_m + far_y_m * far_y_m <= area.radius_m * area.radius_m;
+}
