@@ -2,6 +2,8 @@
 import collections
 import statistics
 
+from lab_figures import fill, read, table
+
 FINDER_SEEDS = (9_001,)  # nothing was chosen by them
 RIG_SEEDS = (9_004, 9_005, 9_006)
 IMAGE_SETS = (("chess_fisheye", "calibration/chess_fisheye", "chessboard:9x6:0.02423"),
@@ -12,28 +14,28 @@ EMPTY_SETS = (("garden_walk", "real/garden_walk", "chessboard:9x6:0.03"),
               ("bumblebee_pairs", "real/bumblebee_pairs", "chessboard:9x6:0.03"))
 
 
-def measure(place, read):
+def measure(lab):
     """Runs what is not there yet; gives the rows of all finders, of images without a board, of rigs and of suggestions."""
-    folder = place.folder("boards")
+    folder = lab.folder("boards")
 
     def kept(name, *words):
         path = folder / f"{name}.csv"
-        if not path.exists() and not place.redraw:
+        if not path.exists() and not lab.redraw:
             part = path.with_suffix(".part")
-            place.run("board_finders", part, *words)
+            lab.run("board_finders", part, *words)
             part.rename(path)
         return read(path) if path.exists() else []
 
     found = [row for seed in FINDER_SEEDS for row in kept(f"rendered_{seed}", "rendered", seed, 1)]
     for name, where, board in IMAGE_SETS:
-        found += kept(name, "images", name, place.data / where, board)
+        found += kept(name, "images", name, lab.data / where, board)
     empty = [row for name, where, board in EMPTY_SETS
-             for row in kept(name, "images", name, place.data / where, board, "ours")]
+             for row in kept(name, "images", name, lab.data / where, board, "ours")]
     rigs, advice = [], []
     for seed in RIG_SEEDS:
         own = folder / f"rigs_{seed}"
-        if not (own / "done").exists() and not place.redraw:
-            place.run("wide_rigs", own, seed, 1)
+        if not (own / "done").exists() and not lab.redraw:
+            lab.run("wide_rigs", own, seed, 1)
             (own / "done").touch()
         if (own / "done").exists():
             rigs += read(own / "rigs.csv")
@@ -113,11 +115,15 @@ def advice_rows(rows):
             "calibrated with the chosen model"], body
 
 
-def lines(place, read, table):
-    found, empty, rigs, advice = measure(place, read)
+def boards(lab):
+    """Chessboards through wide lenses: finders, stated sigma, suggested lens models."""
+    found, empty, rigs, advice = measure(lab)
     text = []
     for title, rows, make in (("Boards found", found, finder_rows), ("Images without a board", empty, empty_rows),
                               ("Rigs of wide lenses", rigs, rig_rows), ("Suggested lens models", advice, advice_rows)):
         text += ["", f"### {title}", ""]
         text += table(*make(rows)) if rows else ["Not measured yet."]
-    return text[1:]
+    fill("boards", text[1:])
+
+
+EXPERIMENTS = {"boards": boards}
