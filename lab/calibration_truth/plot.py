@@ -6,7 +6,7 @@ import subprocess
 
 from lab_figures import fill, read, table
 
-CALIBRATION_SEEDS = (70_001, 3)  # nothing was chosen by them
+CALIBRATION_SEEDS = (70_001, 3)  # no setting was chosen with these
 CALIBRATION_LENSES = ("pinhole4", "pinhole5", "rational", "fisheye")
 CALIBRATION_REAL = (("chess_pinhole", "chessboard:9x6:1", "pinhole5", 13, 0.215, 0.165),
                     ("chess_pinhole", "chessboard:9x6:1", "rational", 13, 0.215, 0.165),
@@ -14,11 +14,11 @@ CALIBRATION_REAL = (("chess_pinhole", "chessboard:9x6:1", "pinhole5", 13, 0.215,
 
 
 def calibration(lab):
-    """Lenses and rigs from pictures of boards, beside the truth; and from the real sets, beside what is asked."""
+    """Lenses and rigs from pictures of boards against the truth, and real sets against the required limits."""
     lenses, rigs = [], []
     for lens in CALIBRATION_LENSES:
         folder = lab.folder(f"calibration/{lens}")
-        if not (folder / "done").exists():  # long: kept once it is there
+        if not (folder / "done").exists():  # a long run: its result is kept
             if lab.redraw:
                 continue
             lab.run("calibration_truth", folder, *CALIBRATION_SEEDS, lens)
@@ -29,7 +29,7 @@ def calibration(lab):
     unmeasured = ["Not measured yet: " + ", ".join(missing) + ".", ""] if missing else []
     fill("calibration", ["### Lenses", ""] + unmeasured + calibration_lenses(lenses) + ["", "### Rigs", ""] + calibration_rigs(rigs) +
          ["", "### Real pairs", ""] + calibration_real(lab) +
-         ["", "### Boards that the rig was not calibrated by", ""] + calibration_held_out(lab))
+         ["", "### Boards that the calibration did not use", ""] + calibration_held_out(lab))
 
 
 def calibration_lenses(rows):
@@ -43,8 +43,8 @@ def calibration_lenses(rows):
                 body.append([lens, board, f"{len(mine)} of {CALIBRATION_SEEDS[1]}", each("noise_px", 3),
                              f"{100 * total('beyond') / total('pixels'):.2f} %", each("largest_sigmas", 1), total("without"),
                              each("median_px", 2), each("mean_square", 1)])
-    return table(["lens", "board", "calibrated", "noise [px]", "beyond 3 sigma", "largest [sigma]", "pixels without an image",
-                  "median error [px]", "mean square (2)"], body)
+    return table(["lens", "board", "calibrated", "noise of each seed [px]", "pixels beyond 3 sigma", "largest error of each seed [sigma]", "pixels without an image",
+                  "median error of each seed [px]", "mean squared error of each seed (2 expected)"], body)
 
 
 def calibration_rigs(rows):
@@ -55,7 +55,7 @@ def calibration_rigs(rows):
         within = abs(baseline) < 3 * sigma and turn < 3 * turn_sigma and square < 20.06
         body.append([r["lens"], r["seed"], f"{baseline:+.3f} ({sigma:.3f})", f"{turn:.3f} ({turn_sigma:.3f})", f"{square:.1f}",
                      "yes" if within else "**no**"])
-    return table(["lens", "seed", "baseline off (sigma) [mm]", "largest turn off (sigma) [mrad]", "squared distance (6)",
+    return table(["lens", "seed", "baseline error (stated sigma) [mm]", "largest rotation error (stated sigma) [mrad]", "squared distance (6 expected)",
                   "within 3 sigma"], body)
 
 
@@ -78,11 +78,11 @@ def calibration_real(lab):
         body.append([name, model, f"{found['used']} of {found['views']} ({pairs})", f"{found['rms_px']:.4f} ({rms})",
                      f"{found['row_rms_px']:.4f} ({rows}) at f {found['row_focal_px']:.0f}", ", ".join(map(str, left_out)) or "none",
                      "yes" if met else "**no**"])
-    return table(["set", "model", "pairs kept (at least)", "joint rms (at most) [px]", "rows (at most) [px]", "left out", "met"], body)
+    return table(["set", "model", "pairs used (at least)", "joint rms (at most) [px]", "row rms (at most) [px]", "views left out", "met"], body)
 
 
 def calibration_held_out(lab):
-    """Depth and lengths of real boards, nearest third first. A length of 50 mm is what the thesis measured on its board."""
+    """Depth and lengths of real boards, nearest third first. The reference thesis (Lange 2016) measured a length of 50 mm."""
     body = []
     for name, board, model, *_ in CALIBRATION_REAL:
         if model == "rational":
@@ -99,12 +99,12 @@ def calibration_held_out(lab):
         square = float(board.split(":")[2])
         ends = [round(len(rows) * k / 3) for k in range(4)]
         body += [held_out_row(name, rows[first:last], square, square != 1.0) for first, last in zip(ends, ends[1:])]
-    return table(["set", "distance", "pairs", "axial, mean", "rms", "std of depths about the plane",
-                  "lateral, of 50 mm: mean [mm]", "rms [mm]", "std of single lengths [mm]"], body)
+    return table(["set", "distance", "pairs", "depth error, mean", "depth error, rms", "scatter of depths about the plane",
+                  "error of a length of 50 mm: mean [mm]", "error of a length of 50 mm: rms [mm]", "scatter of single lengths [mm]"], body)
 
 
 def held_out_row(name, rows, square, in_metres):
-    """`in_metres`: of a board whose squares nobody measured only shares are known."""
+    """`in_metres`: false for a board whose squares were not measured; its errors are relative only."""
     of = lambda key: [float(r[key]) for r in rows]  # noqa: E731
     rms = lambda values: math.sqrt(statistics.mean(v * v for v in values))  # noqa: E731
     distances = of("distance")

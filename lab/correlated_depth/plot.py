@@ -8,7 +8,7 @@ from lab_figures import COLOURS, fill, read, save, table
 
 
 def shares(rows, key):
-    """(hidden, invented, wrong, visible, known, invented and sure) summed over the rows of each key."""
+    """Sums over the rows of each key: hidden, invented, wrong, visible, known, invented with a small sigma."""
     sums = collections.defaultdict(lambda: [0] * 6)
     for row in rows:
         for i, name in enumerate(("hidden", "invented", "invented_wrong", "visible", "visible_known",
@@ -18,8 +18,8 @@ def shares(rows, key):
 
 
 DEFAULT_RULE = "default"
-CUT_TOP_MM = 80  # of the picture of a kerb; what is higher is an arrow
-SEEDS = (10_001, 3)  # first, how many; no tuning has seen them
+CUT_TOP_MM = 80  # upper end of the picture of a kerb; an arrow marks each higher point
+SEEDS = (10_001, 3)  # first seed, number of seeds; no tuning used them
 
 
 def correlated_depth(lab):
@@ -51,10 +51,10 @@ def invented_part(folders, noise):
             points[matcher][rule] = (100 * invented / hidden, 100 * known / visible)  # of the approach
             body.append(row)
     body.sort(key=lambda row: rules.index(row[0].strip("*")))
-    lines = ["Cells hidden behind a drop edge, and cells that both eyes saw whole (all drops and "
-             "distances):", ""]
-    lines += table(["pixels that are fused", "matcher", "one frame: invented", "of it > 20 mm wrong", "visible floor kept",
-                    "10 frames: invented", "of it > 20 mm wrong", "visible floor kept"], body)
+    lines = ["Shares of the cells that are hidden behind a drop edge, and of the cells that both cameras see completely "
+             "(all drops and distances):", ""]
+    lines += table(["pixels that the map uses", "matcher", "one frame: invented", "invented and more than 20 mm wrong", "visible floor known",
+                    "10 frames: invented", "invented and more than 20 mm wrong", "visible floor known"], body)
     return lines + ["", invented_picture(points, rules, noise), ""]
 
 
@@ -75,20 +75,20 @@ def invented_picture(points, rules, noise):
             axis.annotate(label, points["census"][rule], xytext=(-2, -13), textcoords="offset points", fontsize=7.5,
                           ha="right" if rule == "every match" else "left")
     lowest = min(known for found in points.values() for _, known in found.values())
-    axis.set(xlabel="invented: known cells of those hidden behind an edge [%]", xscale="log", xlim=(0.9, 110),
-             ylabel="kept: known cells of those seen [%]", ylim=(lowest - 3, 101),
-             title=f"Ten frames toward a drop, noise x {noise}: the dark green corner is wanted")
+    axis.set(xlabel="invented: share of the hidden cells that are known [%]", xscale="log", xlim=(0.9, 110),
+             ylabel="kept: share of the visible cells that are known [%]", ylim=(lowest - 3, 101),
+             title=f"Ten frames toward a drop, noise x {noise}: the dark green corner is the aim")
     axis.set_xticks([1, 2, 5, 10, 20, 50, 100], ["1", "2", "5", "10", "20", "50", "100"])
     axis.legend(fontsize=8, loc="lower right")
     return save(figure, f"invented_noise{noise}")
 
 
 def kerbs_part(folder):
-    """What the defaults leave unknown, by height and distance."""
+    """Cells that stay unknown with the default settings, by height and distance."""
     rows = [r for r in read(folder / "invented.csv") if r["rule"] == DEFAULT_RULE]
     drops = list(dict.fromkeys(r["drop"] for r in rows))
     distances = list(dict.fromkeys(r["distance_m"] for r in rows))
-    lines = ["Truly hidden cells that stay unknown / seen cells that are known, by drop and distance, census with the defaults:",
+    lines = ["Shares by drop and distance, census with the default settings: hidden cells that stay unknown / visible cells that are known.",
              ""]
     body = []
     for motion, name in (("one frame", "one frame"), ("approach", "10 frames")):
@@ -97,20 +97,19 @@ def kerbs_part(folder):
     near = shares([r for r in rows if r["drop"].startswith("kerb") and float(r["distance_m"]) < 1.6],
                   lambda r: (r["drop"], r["motion"]))
     body.sort(key=lambda row: drops.index(row[0]))
-    lines += table(["drop", "seen in"] + [f"{d} m" for d in distances], body)
-    kept = "; ".join(f"{drop} {unknown_share(near[drop, 'one frame']):.1f} % in one frame, "
-                     f"{unknown_share(near[drop, 'approach']):.1f} % over ten" for drop in drops if drop.startswith("kerb"))
-    doubted = "; ".join(f"{drop} {doubted_share(near[drop, 'one frame']):.1f} %, {doubted_share(near[drop, 'approach']):.1f} %"
-                        for drop in drops if drop.startswith("kerb"))
-    return lines + ["", f"Kerbs at 0.67-1.5 m together, hidden cells that stay unknown: {kept}. That stay unknown or have a "
-                    f"sigma above 10 mm: {doubted}.", ""]
+    lines += table(["drop", "frames"] + [f"{d} m" for d in distances], body)
+    together = [[drop, *(f"{share(near[drop, motion]):.1f} %" for share in (unknown_share, unsure_share) for motion in ("one frame", "approach"))]
+                for drop in drops if drop.startswith("kerb")]
+    lines += ["", "Hidden cells behind kerbs at 0.67-1.5 m together:", ""]
+    return lines + table(["drop", "unknown, one frame", "unknown, 10 frames", "unknown or sigma above 10 mm, one frame",
+                          "unknown or sigma above 10 mm, 10 frames"], together) + [""]
 
 
 def unknown_share(sums):
     return 100 - 100 * sums[1] / max(sums[0], 1)
 
 
-def doubted_share(sums):
+def unsure_share(sums):
     return 100 - 100 * sums[5] / max(sums[0], 1)
 
 
@@ -123,7 +122,7 @@ def cut_part(folder, noise):
     profile = read(folder / "profile.csv")
     figure, axis = plt.subplots(figsize=(7.5, 3.6))
     for rule, label, style in (("every match", "every match", {"color": "#999999", "markersize": 4}),
-                               (DEFAULT_RULE, "what the defaults let in", {"color": COLOURS[0], "markersize": 7})):
+                               (DEFAULT_RULE, "matches that the defaults accept", {"color": COLOURS[0], "markersize": 7})):
         points = sorted((float(r["x_m"]), float(r["height_m"])) for r in profile
                         if r["rule"] == rule and r["height_m"] != "nan")
         axis.plot([p[0] for p in points], [1e3 * p[1] for p in points], ".", label=label, **style)
@@ -138,7 +137,7 @@ def cut_part(folder, noise):
     hidden = [float(r["x_m"]) for r in mine if r["sight"] == "1"]
     if hidden:
         axis.axvspan(min(hidden) - 0.0125, max(hidden) + 0.0125, color="#d55e00", alpha=0.15, linewidth=0,
-                     label="hidden from one eye at least")
+                     label="hidden from at least one camera")
     axis.set(xlabel="ahead of base_link [m]", ylabel="height [mm]", ylim=(-200, CUT_TOP_MM),
              title=f"A cut through a 150 mm kerb 1.5 m ahead, one frame, noise x {noise}")
     axis.legend(fontsize=8, loc="lower left")
@@ -149,7 +148,7 @@ def correlation_part(folder, noise):
     rows = read(folder / "correlation.csv")
     patterns = list(dict.fromkeys(r["pattern"] for r in rows))
     floors = {r["pattern"]: r for r in read(folder / "floors.csv")}
-    drawn = [p for p in patterns if float(floors[p]["trusted"]) > 0.05]  # the others are a handful of pixels
+    drawn = [p for p in patterns if float(floors[p]["trusted"]) > 0.05]  # the others have too few pixels
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 3.6), sharey=True)
     lengths = {}
     for axis, name in zip(axes, ("row", "column")):
@@ -172,18 +171,16 @@ def correlation_part(folder, noise):
         mine = [r for r in cells if r["pattern"] == pattern]
         sigma = next(float(r["sigma_px"]) for r in rows if r["pattern"] == pattern)
         floor = floors[pattern]
-        is_told = pattern in drawn
+        is_drawn = pattern in drawn
         body.append([pattern, f"{100 * float(floor['matched']):.1f} %", f"{100 * float(floor['trusted']):.1f} %"] + (
             [f"{float(floor['median_sigma_px']):.2f}", f"{sigma:.2f}", lengths[pattern, "row"], lengths[pattern, "column"],
-             ", ".join(f"{float(r['independent']):.1f} of {float(r['pixels_per_cell']):.0f}" for r in mine),
-             f"{float(floor['correlation_between_frames']):.2f}"] if is_told else ["-"] * 6))
-    ranges = ", ".join(r["range_m"] for r in cells if r["pattern"] == patterns[0])
-    return ["Flat floor nearer than about 3 m, where both eyes see it: share of pixels with a disparity, and with one that is "
-            "trusted; what the matcher says its sigma is, and the true scatter; distance over which the correlation of errors falls "
-            f"to 1/e; how many independent pixels a 25 mm cell holds (at {ranges} m); how much of the error is the same in the "
-            "next frame from the same place:", ""] + table(
-        ["floor", "matched", "trusted", "its median sigma [px]", "true sigma [px]", "1/e along rows [px]", "along columns [px]",
-         "independent of all pixels in a cell", "same in the next frame"], body) + [
+             *(f"{float(r['independent']):.1f} of {float(r['pixels_per_cell']):.0f}" for r in mine),
+             f"{float(floor['correlation_between_frames']):.2f}"] if is_drawn else ["-"] * (5 + len(mine))))
+    ranges = [r["range_m"] for r in cells if r["pattern"] == patterns[0]]
+    return ["Flat floor nearer than about 3 m that both cameras see. Correlation length: the distance at which the correlation of the "
+            "errors falls to 1/e. Independent pixels: how many of the pixels of a 25 mm cell have independent errors, by distance.", ""] + table(
+        ["floor", "matched", "trusted", "stated sigma, median [px]", "true scatter [px]", "correlation length along rows [px]",
+         "correlation length along columns [px]", *(f"independent pixels at {r} m" for r in ranges), "correlation with the next frame"], body) + [
              "", save(figure, f"correlation_noise{noise}"), ""]
 
 

@@ -10,7 +10,7 @@ SHADOW_SEEDS = (20_001, 12)
 
 
 def drop_shadow(lab):
-    """The strip behind a kerb of 75 mm: how long it is, and what stands in it."""
+    """The occluded strip behind a kerb of 75 mm: its length, and the depth that fills it."""
     folders = {matcher: lab.folder(f"drop_shadow/{matcher}1") for matcher in ("census", "sgbm")}
     for matcher, folder in folders.items():
         lab.run("drop_shadow", folder, *SHADOW_SEEDS, 1, f"algorithm={matcher}")
@@ -23,11 +23,12 @@ def drop_shadow(lab):
         for rule in ("every match", DEFAULT_RULE):
             row += [f"{filled_share(of(matcher, rule)) * 1e3 * float(one['geometry_m']):.0f} mm "
                     f"({100 * filled_share(of(matcher, rule)):.0f} %)" for matcher in folders]
-        body.append(row + [", ".join(f"{height:.0f}" for height in fill_heights_mm(of("census", "every match")))])
+        body.append(row + [f"{height:.0f}" for height in fill_heights_mm(of("census", "every match"))])
     fill("correlated_depth", table(
-        ["edge ahead", "shadow: by geometry", "by lines of sight of both eyes", "first pixel with ground again", "filled by every match, census",
-         "sgbm", "filled by what the defaults let in, census", "sgbm", "height of the fill by fifths, every match of census [mm]"],
-        body) + ["", "A cut along the camera's axis, 24 mm wide, first seed, census:", "", shadow_picture(folders["census"], {r["distance_m"]: 1e3 * float(r["geometry_m"]) for r in rows["census"]}), ""], "shadow")
+        ["edge ahead", "occluded strip by geometry", "occluded strip by the rays of both cameras", "first pixel with ground again",
+         "filled by every match, census", "filled by every match, sgbm", "filled with the defaults, census", "filled with the defaults, sgbm",
+         *(f"height of the fill, fifth {k} [mm]" for k in range(1, 6))],
+        body) + ["", "The height of the fill is that of every match of census, in fifths of the strip from the edge on.", "", "A cut along the camera's axis, 24 mm wide, first seed, census:", "", shadow_picture(folders["census"], {r["distance_m"]: 1e3 * float(r["geometry_m"]) for r in rows["census"]}), ""], "shadow")
 
 
 def filled_share(rows):
@@ -35,7 +36,7 @@ def filled_share(rows):
 
 
 def fill_heights_mm(rows):
-    """Median over the seeds, a fifth of the strip after the other."""
+    """Median over the seeds for each fifth of the strip."""
     return [statistics.median(1e3 * float(r["height_m"]) for r in rows if r["fifth"] == str(k) and r["height_m"] != "nan")
             for k in range(5)]
 
@@ -44,14 +45,14 @@ def shadow_picture(folder, lengths_mm):
     rows = read(folder / "cut.csv")
     figure, axes = plt.subplots(2, 2, figsize=(9.5, 5.2), sharex=True, sharey=True, constrained_layout=True)
     for axis, (distance, length_mm) in zip(axes.flat, lengths_mm.items()):
-        axis.axvspan(0, length_mm, color="#d55e00", alpha=0.15, linewidth=0, label="seen by no eye")
+        axis.axvspan(0, length_mm, color="#d55e00", alpha=0.15, linewidth=0, label="seen by no camera")
         axis.plot([-150, 0, 0, 350], [0, 0, -75, -75], color="black", linewidth=1, label="truth")
-        axis.plot([0, length_mm], [0, -75], color="#d55e00", linewidth=1, linestyle="--", label="line of sight over the edge")
+        axis.plot([0, length_mm], [0, -75], color="#d55e00", linewidth=1, linestyle="--", label="ray over the edge")
         for rule, style in (("every match", {"color": "#999999", "markersize": 4}), (DEFAULT_RULE, {"color": COLOURS[0], "markersize": 4})):
             mine = [r for r in rows if r["distance_m"] == distance and r["rule"] == rule]
             axis.plot([1e3 * float(r["behind_m"]) for r in mine], [1e3 * float(r["height_m"]) for r in mine], ".",
-                      label=rule if rule != DEFAULT_RULE else "what the defaults let in", **style)
-        axis.set(title=f"edge {distance} m ahead: shadow of {length_mm:.0f} mm", xlim=(-150, 350), ylim=(-130, 60))
+                      label=rule if rule != DEFAULT_RULE else "matches that the defaults accept", **style)
+        axis.set(title=f"edge {distance} m ahead: occluded strip of {length_mm:.0f} mm", xlim=(-150, 350), ylim=(-130, 60))
     for axis in axes[1]:
         axis.set(xlabel="behind the edge [mm]")
     for axis in axes[:, 0]:
