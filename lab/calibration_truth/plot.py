@@ -44,7 +44,7 @@ def calibration_lenses(rows):
                              f"{100 * total('beyond') / total('pixels'):.2f} %", each("largest_sigmas", 1), total("without"),
                              each("median_px", 2), each("mean_square", 1)])
     return table(["lens", "board", "calibrated", "noise of each seed [px]", "pixels beyond 3 sigma", "largest error of each seed [sigma]", "pixels without an image",
-                  "median error of each seed [px]", "mean squared error of each seed (2 expected)"], body)
+                  "median error of each seed [px]", "mean squared Mahalanobis distance of each seed (2 expected)"], body)
 
 
 def calibration_rigs(rows):
@@ -55,7 +55,7 @@ def calibration_rigs(rows):
         within = abs(baseline) < 3 * sigma and turn < 3 * turn_sigma and square < 20.06
         body.append([r["lens"], r["seed"], f"{baseline:+.3f} ({sigma:.3f})", f"{turn:.3f} ({turn_sigma:.3f})", f"{square:.1f}",
                      "yes" if within else "**no**"])
-    return table(["lens", "seed", "baseline error (stated sigma) [mm]", "largest rotation error (stated sigma) [mrad]", "squared distance (6 expected)",
+    return table(["lens", "seed", "baseline error (stated sigma) [mm]", "largest rotation error (stated sigma) [mrad]", "squared Mahalanobis distance (6 expected)",
                   "within 3 sigma"], body)
 
 

@@ -11,9 +11,9 @@ import matplotlib.pyplot as plt
 from lab_figures import COLOURS, DOCS, ROOT, bound_of, fill, quantile, read, save_at, table
 
 GATE_SEED, GATE_SCENES = 77_001, 30_000  # scenes of each kind on maps
-# Runs: first seed, hazards of all kinds together that are wanted, title.
+# Runs: first seed, wanted number of hazards of all kinds together, title.
 GATE_RUNS = {"depth": (86_001, 3_000, "Maps of runs on analytic depth"), "images": (86_501, 300, "Maps of runs of the whole chain, from images")}
-GATE_KEPT = DOCS / "gate_runs.csv"  # hours of work, of more than one machine
+GATE_KEPT = DOCS / "gate_runs.csv"  # results of hours, from more than one computer
 GATE_KEPT_MISSES = DOCS / "gate_runs_misses.csv"
 GATE_CURVE_SEEDS, GATE_CURVE_SCENES = range(21, 25), 50
 GATE_DRIFT = (21, 150)  # seed, scenes
@@ -22,7 +22,7 @@ NOISE_RUNS = ((1, 21, 8), (2, 31, 2))  # factor on the images' noise, first seed
 
 
 def gate_scenes(lab):
-    """Hazards and safe scenes that the gate is asked about, as far as they have been counted."""
+    """Hazards that the gate misses, and safe movements that it refuses, on drawn maps."""
     folder = lab.folder("gate_scenes")
     for noise, first, seeds in NOISE_RUNS:
         file = folder / f"map_noise_{noise}.csv"
@@ -34,12 +34,12 @@ def gate_scenes(lab):
     for seed in GATE_CURVE_SEEDS:
         lab.run("gate_scenes", "curve", folder, seed, GATE_CURVE_SCENES, ",".join(k for k in GATE_KINDS if k != "unseen"))
     lab.run("gate_scenes", "drift", folder, *GATE_DRIFT, ",".join(k for k in GATE_KINDS if k != "unseen"))
-    lab.run("gate_scenes", "maps", folder, GATE_SEED, GATE_SCENES)  # long; goes on where it was stopped
+    lab.run("gate_scenes", "maps", folder, GATE_SEED, GATE_SCENES)  # hours; a stopped run is continued
 
     maps = gate_counts(folder / "maps")
     lines = ["### Map level: hazards that were allowed", ""] + gate_missed_table(maps, ("noise 0", "noise 1", "noise 2", "overconfident"))
     lines += ["", "### Map level: safe movements that were refused", ""] + gate_stops_table(maps, ("noise 0", "noise 1", "noise 2", "overconfident"))
-    lines += ["", "Refused at noise 1, what could not be proven and why (shares of the refused; several can hold):", ""]
+    lines += ["", "Reasons of the refusals at noise 1 (several reasons can apply):", ""]
     lines += gate_reasons_table(maps, "noise 1")
     lines += ["", "### All 26 movements, every hundredth scene", ""] + gate_all_table(maps, ("noise 0", "noise 1", "noise 2", "overconfident"))
     fill("gate_scenes", lines)
@@ -50,9 +50,9 @@ def gate_scenes(lab):
 
 
 def gate_runs(lab):
-    """The same scenes, on maps that whole runs made. Each machine has a seed of its own; the counts of all are kept."""
+    """The same scenes on maps of whole runs. Each computer has its own seed; the counts of all computers are kept."""
     lines, misses = [], []
-    for tier, (first_seed, wanted, _) in reversed(GATE_RUNS.items()):  # the shorter one first
+    for tier, (first_seed, wanted, _) in reversed(GATE_RUNS.items()):  # the shorter tier first
         folder = lab.folder(f"gate_runs/{tier}")
         if not lab.redraw:
             lab.set_aside_older_results("gate_scenes", folder)
@@ -71,8 +71,8 @@ def gate_runs(lab):
         lines += [f"Seeds {', '.join(sorted({row['seed'] for row in rows}))}; {programs} program{'s' * (programs != 1)}.", ""]
         lines += gate_runs_table(counts)
         reasons = gate_reasons_table(counts, "noise 1")
-        if len(reasons) > 2:  # more than the head
-            lines += ["", "Refused, what could not be proven and why:", ""] + reasons
+        if len(reasons) > 2:  # more than the heading
+            lines += ["", "Reasons of the refusals:", ""] + reasons
     if GATE_KEPT_MISSES.exists():
         misses = [(row["tier"], *(row[name] for name in MISS)) for row in read(GATE_KEPT_MISSES)]
     fill("gate_scenes", lines[1:], "runs")
@@ -80,7 +80,7 @@ def gate_runs(lab):
 
 
 def run_gate_tier(lab, tier, folder, first_seed, wanted):
-    """On two cores, a half of the kinds each."""
+    """Runs half of the kinds on each of two cores."""
     mark = folder / "seed.txt"
     others = [row for row in kept_gate_runs(tier) if not mark.exists() or row["seed"] != mark.read_text()]
     if not mark.exists():
@@ -90,7 +90,7 @@ def run_gate_tier(lab, tier, folder, first_seed, wanted):
         of_kind[row["kind"]] += int(row["count"]) * (row["what"] == "hazards")
     if sum(of_kind.values()) >= wanted:
         return
-    # Of one hazard in fifty the run ends where it is no longer clear.
+    # About one run in fifty ends where the hazard is no longer clear, so a few more are asked for.
     scenes = math.ceil(1.05 * wanted / len(GATE_KINDS)) - min(of_kind[kind] for kind in GATE_KINDS)
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         halves = [pool.submit(lab.run, "gate_scenes", tier, folder.parent, mark.read_text(), scenes, ",".join(GATE_KINDS[i::2])) for i in (0, 1)]
@@ -103,7 +103,7 @@ def kept_gate_runs(tier):
 
 
 def keep_gate_runs(tier, folder):
-    """Puts the counts of this machine, as far as they are, beside those of others."""
+    """Replaces the kept counts of this computer; the counts of other computers stay."""
     if not (folder / "seed.txt").exists():
         return
     own = {"tier": tier, "seed": (folder / "seed.txt").read_text()}
@@ -135,7 +135,7 @@ def misses_of(folder):
 
 
 def gate_counts(folder):
-    """{(kind, variant): {what: count}} of all chunks."""
+    """{(kind, variant): {what: count}} of all CSV files of a folder."""
     counts = collections.defaultdict(collections.Counter)
     for file in sorted(folder.glob("*.csv")) if folder.exists() else ():
         if not file.name.endswith("misses.csv"):
@@ -155,8 +155,8 @@ def gate_missed_table(counts, variants):
         clean, noisy = counts[kind, "noise 0"], counts[kind, "noise 1"]
         row += [percent(noisy["hazards_unknown"], noisy["hazards"])]
         body.append(row + [percent(c["thesis_missed"], c["hazards"]) for c in (clean, noisy)])
-    return table(["hazard", *(f"missed, {v}" for v in variants), "noise 1: refused as unknown alone", "thesis, noise 0: missed",
-                  "thesis, noise 1: missed"], body)
+    return table(["hazard", *(f"missed, {v}" for v in variants), "noise 1: refused only because unknown", "policy of the thesis, noise 0: missed",
+                  "policy of the thesis, noise 1: missed"], body)
 
 
 def gate_stops_table(counts, variants):
@@ -166,13 +166,13 @@ def gate_stops_table(counts, variants):
         body.append([kind, of[0]["safe"], *(percent(c["refused"], c["safe"]) for c in of), *(percent(c["thesis_refused"], c["safe"]) for c in of[:3])])
     total = [sum((counts[k, v] for k in GATE_KINDS if k != "unseen"), collections.Counter()) for v in variants]
     body.append(["**all but unseen**", total[0]["safe"], *(percent(c["refused"], c["safe"]) for c in total), *(percent(c["thesis_refused"], c["safe"]) for c in total[:3])])
-    return table(["scene", "safe asked", *(f"refused, {v}" for v in variants), *(f"thesis, {v}" for v in variants[:3])], body)
+    return table(["scene", "safe movements asked", *(f"refused, {v}" for v in variants), *(f"policy of the thesis, {v}" for v in variants[:3])], body)
 
 
 def gate_reasons_table(counts, variant):
     total = sum((counts[k, variant] for k in GATE_KINDS if k != "unseen"), collections.Counter())
     names = sorted((n for n in total if n.startswith(("reason:", "proof:", "alone:"))), key=lambda n: (n.split(":")[0], -total[n]))
-    return table(["", "", "of the refused"], [[*n.split(":"), f"{total[n]} ({percent(total[n], total['refused'])})"] for n in names])
+    return table(["kind", "reason", "share of the refused"], [[*n.split(":"), f"{total[n]} ({percent(total[n], total['refused'])})"] for n in names])
 
 
 def gate_all_table(counts, variants):
@@ -180,7 +180,7 @@ def gate_all_table(counts, variants):
     for variant in variants:
         total = sum((counts[k, variant] for k in GATE_KINDS if k != "unseen"), collections.Counter())
         body.append([variant, bound_of(total["all_missed"], total["all_hazards"]), total["all_safe"], percent(total["all_refused"], total["all_safe"])])
-    return table(["map", "missed", "safe asked", "refused"], body)
+    return table(["map", "missed", "safe movements asked", "refused"], body)
 
 
 def gate_runs_table(counts):
@@ -193,11 +193,11 @@ def gate_runs_table(counts):
     body.append(["**all but unseen**", bound_of(total["missed"], total["hazards"]), f"{total['refused']} of {total['safe']}",
                  bound_of(total["all_missed"], total["all_hazards"]), f"{percent(total['all_refused'], total['all_safe'])} of {total['all_safe']}",
                  f"{total['thesis_missed']} of {total['hazards']}"])
-    return table(["hazard", "own movement: missed", "safe refused", "all 26: missed", "safe refused", "thesis: missed"], body)
+    return table(["hazard", "movement of the scene: missed", "movement of the scene: safe refused", "all 26 movements: missed", "all 26 movements: safe refused", "policy of the thesis: missed"], body)
 
 
 def gate_curve(counts):
-    """Misses against false stops: the noise, and single limits of the gate, scaled."""
+    """Hazards missed and safe movements refused, with other noise and other limits of the gate."""
     total = collections.defaultdict(collections.Counter)
     for (_, variant), count in counts.items():
         total[variant] += count
@@ -205,8 +205,8 @@ def gate_curve(counts):
     figure, axis = plt.subplots(figsize=(7.5, 4.6))
     noises = sorted((float(v.split()[1]), v) for v in total if v.startswith("noise "))
     sweeps = {"noise of the map": [(f"x {n:g}", total[v]) for n, v in noises]}
-    boasts = sorted((float(v.split()[1]), v) for v in total if v.startswith("overconfident "))
-    sweeps["noise, the map says 3 mm everywhere"] = [(f"x {n:g}", total[v]) for n, v in boasts]
+    overconfident = sorted((float(v.split()[1]), v) for v in total if v.startswith("overconfident "))
+    sweeps["noise, the map states 3 mm everywhere"] = [(f"x {n:g}", total[v]) for n, v in overconfident]
     own = {"every_limit": (1, "noise 1"), "sigma_factor": (3.4, "noise 1"), "patch_residual_mm": (25, "noise 1"), "patch_sigma_mm": (3, "noise 1"),
            "step_mm": (20, "overconfident 1"), "drop_mm": (50, "overconfident 1"), "swing_clearance_mm": (40, "overconfident 1")}
     for name, (limit, base) in own.items():
@@ -215,18 +215,18 @@ def gate_curve(counts):
     body = []
     for (name, points), colour in zip(sweeps.items(), COLOURS + ["#8b4513", "#808000", "#4b0082"]):
         xy = [(share(c, "refused", "safe"), share(c, "missed", "hazards")) for _, c in points]
-        if name.split(",")[0] not in ("patch_residual_mm", "step_mm", "drop_mm", "patch_sigma_mm"):  # no misses: in the table alone
+        if name.split(",")[0] not in ("patch_residual_mm", "step_mm", "drop_mm", "patch_sigma_mm"):  # they have no misses: only the table shows them
             axis.plot(*zip(*xy), "o-", color=colour, markersize=4, label=f"gate: {name.replace('_', ' ')}")
         if name.startswith("every_limit"):
-            labels = collections.defaultdict(list)  # of what is drawn at one place
+            labels = collections.defaultdict(list)  # of all points at the same position
             for (x, y), (value, _) in zip(xy, points):
                 labels[round(x, 1), round(y, 1)].append(f"x {value.strip('*')}")
             for at, values in labels.items():
                 axis.annotate(", ".join(values), at, textcoords="offset points", xytext=(5, 6), fontsize=8, color=colour)
         body += [[name, value, bound_of(c["missed"], c["hazards"]), percent(c["refused"], c["safe"])] for value, c in points]
     xy = [(share(total[v], "thesis_refused", "safe"), share(total[v], "thesis_missed", "hazards")) for _, v in noises]
-    axis.plot(*zip(*xy), "s--", color="#999999", markersize=5, label="thesis' policy: noise of the map")
-    axis.annotate("thesis' policy", xy[-1], textcoords="offset points", xytext=(10, -3), fontsize=9, color="#666666")
+    axis.plot(*zip(*xy), "s--", color="#999999", markersize=5, label="policy of the thesis: noise of the map")
+    axis.annotate("policy of the thesis", xy[-1], textcoords="offset points", xytext=(10, -3), fontsize=9, color="#666666")
     axis.set_xscale("symlog", linthresh=0.5, linscale=0.5)
     axis.set_yscale("symlog", linthresh=0.1, linscale=0.6)
     axis.set(xlabel="safe movements refused [%]", ylabel="hazards allowed [%]", xlim=(-0.08, 130), ylim=(-0.02, 130))
@@ -235,27 +235,27 @@ def gate_curve(counts):
         scale.set_minor_locator(matplotlib.ticker.NullLocator())
     axis.legend(fontsize=8, loc="center right")
     save_at(figure, ROOT / "docs" / "img" / "gate_trade_off.png")
-    body += [["thesis' policy, noise", f"x {n:g}", bound_of(total[v]["thesis_missed"], total[v]["hazards"]), percent(total[v]["thesis_refused"], total[v]["safe"])]
+    body += [["policy of the thesis, noise", f"x {n:g}", bound_of(total[v]["thesis_missed"], total[v]["hazards"]), percent(total[v]["thesis_refused"], total[v]["safe"])]
              for n, v in noises]
-    return ["![misses against false stops](../img/gate_trade_off.png)", ""] + table(["scaled", "value", "missed", "safe refused"], body)
+    return ["![hazards missed and safe movements refused](../img/gate_trade_off.png)", ""] + table(["changed value", "value", "missed", "safe refused"], body)
 
 
 def gate_drift(counts):
-    """Misses where the machine stands beside where it believes."""
+    """Misses when the true pose differs from the estimated pose."""
     drifts = sorted({float(v.split()[-1]) for _, v in counts if "drift" in v})
     body = []
     for drift in drifts:
         row = [f"{drift:g} mm"]
         for name in ("drift", "overconfident drift"):
             total = sum((counts[k, f"{name} {drift:g}"] for k in GATE_KINDS), collections.Counter())
-            which = ", ".join(f"{k} {counts[k, f'{name} {drift:g}']['missed']}" for k in GATE_KINDS if counts[k, f"{name} {drift:g}"]["missed"])
-            row += [bound_of(total["missed"], total["hazards"]), which or "-", percent(total["refused"], total["safe"])]
+            kinds = ", ".join(f"{k} {counts[k, f'{name} {drift:g}']['missed']}" for k in GATE_KINDS if counts[k, f"{name} {drift:g}"]["missed"])
+            row += [bound_of(total["missed"], total["hazards"]), kinds or "-", percent(total["refused"], total["safe"])]
         body.append(row)
-    return table(["drift, 1 sigma of each axis, true and stated", "noise 1: missed", "which", "safe refused", "overconfident: missed", "which", "safe refused"], body)
+    return table(["drift, 1 sigma of each axis, true and stated", "noise 1: missed", "noise 1: kinds missed", "noise 1: safe refused", "overconfident: missed", "overconfident: kinds missed", "overconfident: safe refused"], body)
 
 
 def map_noise_table(folder):
-    """Level ground of whole runs: what map_noise draws from."""
+    """Errors on level ground in whole runs. scenes/map_noise.hpp draws from them."""
     body = []
     for noise, _, _ in NOISE_RUNS:
         file = folder / f"map_noise_{noise}.csv"
@@ -263,8 +263,8 @@ def map_noise_table(folder):
             body.append([f"x {noise}"] + ["not measured yet"] + ["-"] * 6)
             continue
         body.append([f"x {noise}"] + level_ground(read(file)))
-    return table(["images' noise", "runs", "cells seen from 3 poses or more", "of these unknown", "stated sigma: 10 / 50 / 90 / 99 / 99.9 % [mm]",
-                  "errors in sigma: sd", "off by 20 mm or more", "correlation at 1 / 2 / 3 / 6 cells"], body)
+    return table(["image noise", "runs", "cells seen from 3 poses or more", "unknown ones of these", "stated sigma: 10 / 50 / 90 / 99 / 99.9 % [mm]",
+                  "standard deviation of the errors [stated sigma]", "share with an error of 20 mm or more", "correlation of errors at 1 / 2 / 3 / 6 cells"], body)
 
 
 def level_ground(rows):
@@ -274,7 +274,7 @@ def level_ground(rows):
         near = math.hypot(float(r["dx_m"]), float(r["dy_m"])) < 0.9 and float(r["along_m"]) < -0.15
         if level and near and int(r["looks"]) >= 3:
             runs[r["kind"], r["seed"]].append((float(r["dx_m"]), float(r["dy_m"]), float(r["map_mm"]), float(r["sigma_mm"])))
-    # A run whose odom was placed on another level says nothing about its cells.
+    # A run whose odom lies on another level is left out.
     kept = {k: c for k, c in runs.items() if len(c) > 100 and abs(statistics.median(z for *_, z, _ in c if not math.isnan(z))) < 50}
     sigma, errors, seen, unknown, sums = [], [], 0, 0, collections.defaultdict(lambda: [0.0, 0])
     far = 0
@@ -299,7 +299,7 @@ def level_ground(rows):
 
 
 def gate_misses(misses):
-    """Every kind of miss with how often and one to make again. `misses`: the tier, then what MISS names."""
+    """Every kind of miss, its number, and one example to run again. `misses`: the tier, then the columns of MISS."""
     groups = collections.defaultdict(list)
     for tier, *miss in sorted(misses):
         kind, variant, danger = miss[:3]
@@ -307,7 +307,7 @@ def gate_misses(misses):
     if not groups:
         return ["None so far."]
     body = [[*group, len(some), some[0][3], f"`{some[0][0]} {some[0][4]}`", some[0][5]] for group, some in sorted(groups.items())]
-    return table(["tier", "scene", "map", "danger", "how often", "movement", "one of them (`gate_scenes again`)", "truth"], body)
+    return table(["tier", "scene", "map", "danger", "misses", "movement", "an example (`gate_scenes again`)", "truth"], body)
 
 
 EXPERIMENTS = {"gate_scenes": gate_scenes, "gate_runs": gate_runs}

@@ -8,12 +8,12 @@ def search_row(name, rows):
     right = [r for r in rows if r["accepted"] == "1" and r["wrong"] == "0"]
     wrong = sum(r["wrong"] == "1" for r in rows)
     nees = [float(r["nees_tilt"]) / 2 for r in right]
-    both = f"{statistics.mean(nees):.2f}, {statistics.median(nees):.2f}" if nees else "-"
-    return [name, len(rows), len(right), wrong, len(rows) - len(right) - wrong, both]
+    both = [f"{statistics.mean(nees):.2f}", f"{statistics.median(nees):.2f}"] if nees else ["-", "-"]
+    return [name, len(rows), len(right), wrong, len(rows) - len(right) - wrong, *both]
 
 
 def ground_search(lab):
-    """The ground of cameras of which nobody says how they are mounted, on analytic depth."""
+    """The ground plane found with a camera of unknown mounting, on analytic depth."""
     out = lab.folder("ground_search") / "views.csv"
     lab.run("ground_search", out, 1001, 200)
     rows = read(out)
@@ -28,10 +28,10 @@ def ground_search(lab):
     lines += [search_row(f"floor share {a}-{b} %", within(floors, "floor_share", a / 100, b / 100 + (b == 100))) for a, b in ((0, 8), (8, 15), (15, 30), (30, 60), (60, 100))]
     lines += [search_row("uneven floor, 8 % or more", [r for r in shown if float(r["relief_mm"]) > 0]),
               search_row("even floor, 8 % or more", [r for r in shown if float(r["relief_mm"]) == 0])]
-    lines += [search_row(f"{kind}, floor shows (4 % or more)", [r for r in of(kind) if share(r) >= 0.04]) for kind in ("table", "bed")]
+    lines += [search_row(f"{kind}, floor visible (4 % or more)", [r for r in of(kind) if share(r) >= 0.04]) for kind in ("table", "bed")]
     lines += [search_row("walls, no floor", of("wall")),
               search_row("a table or a bed hides the floor", of("full_table") + [r for r in of("table") + of("bed") if share(r) < 0.04])]
-    fill("ground", table(["views", "number", "ground found", "wrong plane", "not found", "NEES of the tilt per unknown: mean, median"], lines), "search")
+    fill("ground", table(["views", "number", "ground found", "wrong plane", "not found", "NEES of the tilt per unknown, mean", "NEES of the tilt per unknown, median"], lines), "search")
 
 
 EXPERIMENTS = {"ground_search": ground_search}

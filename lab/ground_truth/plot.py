@@ -9,7 +9,7 @@ GROUND_FIRST_SEED, GROUND_SEEDS, GROUND_FRAMES = 71501, 3, 20
 
 
 def ground(lab):
-    """The plane that places odom and those of single frames, against the true pose."""
+    """The ground plane that places odom, and those of single frames, against the true pose."""
     lines = []
     for profile in ("ideal", "zed_calibrated", "zed"):
         file = lab.folder("ground") / f"{profile}.csv"
@@ -26,8 +26,8 @@ def ground(lab):
                                                                             ("height_p50_mm", 1),
                                                                             ("height_p90_mm", 1)))])
         lines += [f"### {profile}", ""]
-        lines += table(["scene", "odom: tilt [deg]", "height [mm]", "frames accepted", "tilt 50 %", "tilt 90 % [deg]",
-                        "height 50 %", "height 90 % [mm]"], body) + [""]
+        lines += table(["scene", "odom: tilt [deg]", "odom: height [mm]", "frames accepted", "tilt of single frames, 50 % [deg]", "tilt of single frames, 90 % [deg]",
+                        "height of single frames, 50 % [mm]", "height of single frames, 90 % [mm]"], body) + [""]
         for row in rows:
             if row["source"] != "plane":
                 lines += [f"{row['scene']} {row['seed']}: placed by {row['source']}, no plane was accepted.", ""]
@@ -38,7 +38,7 @@ WARM_SCENES, WARM_FRAMES = ["floor", "corridor", "demo_stairs", "room"], 170
 
 
 def warm_up(lab):
-    """The same plane when the first 10-30 s are over-exposed."""
+    """The ground plane that places odom when the first 10-30 s are over-exposed."""
     body = []
     for profile in ("zed_calibrated", "zed"):
         file = lab.folder("ground") / f"warm_up_{profile}.csv"
@@ -46,8 +46,8 @@ def warm_up(lab):
                   WARM_FRAMES, "sim.exposure.sun_warm_up=true", "sim.rate_hz=5")
         for row in read(file):
             body.append([row[key] for key in ("scene", "seed", "profile", "waited_s", "source", "tilt_deg", "height_mm")])
-    return ["### Sun warm-up", ""] + table(["scene", "seed", "profile", "waited [s]", "placed by", "odom: tilt [deg]",
-                                            "height [mm]"], body) + [""]
+    return ["### Exposure warm-up in the sun", ""] + table(["scene", "seed", "profile", "waiting time [s]", "placed by", "odom: tilt [deg]",
+                                            "odom: height [mm]"], body) + [""]
 
 
 EXPERIMENTS = {"ground": ground}

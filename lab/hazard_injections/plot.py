@@ -5,13 +5,13 @@ import subprocess
 
 from lab_figures import fill, quantile, read, table
 
-INJECTIONS = (75_101, 200)  # first seed, of each kind; none of them was looked at before
+INJECTIONS = (75_101, 200)  # first seed, number of each kind; no choice used them
 
 
 def injections(lab):
-    """From a fault to the first answer that is not OK, and whether there is an OK after it."""
+    """The time from a fault to the first answer that is not OK, and answers OK after it."""
     out = lab.folder("injections")
-    if not lab.redraw:  # it fails where a hazard does: the table says which
+    if not lab.redraw:  # its status is 1 when a hazard fails; the table shows which
         subprocess.run([str(lab.build / "lab/hazard_injections"), str(out / "injections.csv"), *map(str, INJECTIONS)])
     rows = [r for file in sorted(out.glob("*.csv")) for r in read(file)]
     kinds = sorted({(int(r["hazard"][1:]), r["cause"]) for r in rows})
@@ -21,14 +21,14 @@ def injections(lab):
         row, counts = injections_row(mine)
         body.append([f"H{number}", cause, *row])
         sums += counts
-    fill("injections", table(["hazard", "what goes wrong", "where it comes in", "drawn", "wanted", "counted", "controls OK", "OK too late: runs (answers)",
-                              "fault to first inhibit: median / 99 % / most [ms]", "first reasons"], body) +
+    fill("injections", table(["hazard", "fault", "entry point", "drawn by the seed", "wanted class", "counted", "control runs OK", "runs with an OK too late (answers)",
+                              "fault to first inhibit: median / 99 % / most [ms]", "first reasons, number of injections"], body) +
          ["", f"{sums['counted']} of {sums['injected']} injections count, {sums['controls_ok']} of {sums['controls']} control runs were OK throughout "
           f"({sums['control_answers']} answers); an OK came too late in {sums['late']} injections.", ""])
 
 
 def injections_row(rows):
-    """The cells of one kind, and what is summed over all of them."""
+    """The cells of one kind, and the counts to sum over all kinds."""
     faulty, controls = ([r for r in rows if r["faulty"] == f] for f in "10")
     well = lambda r: 0 < int(r["asked_before"]) == int(r["allowed_before"])  # noqa: E731
     counted = [r for r in faulty if r["from_the_start"] == "1" or well(r)]
@@ -39,7 +39,7 @@ def injections_row(rows):
     reasons = collections.Counter(r["reason"] for r in counted if r["latency_ms"])
     counts = collections.Counter(counted=len(counted), injected=len(faulty), controls=len(controls), controls_ok=sum(map(well, controls)),
                                  control_answers=sum(int(r["asked_before"]) for r in controls if well(r)), late=len(late))
-    return [rows[0]["level"], rows[0]["drawn"], rows[0]["class"], f"{len(counted)} of {len(faulty)}", f"{counts['controls_ok']} of {len(controls)}",
+    return [rows[0]["level"], rows[0]["drawn by the seed"], rows[0]["class"], f"{len(counted)} of {len(faulty)}", f"{counts['controls_ok']} of {len(controls)}",
             f"**{len(late)}** ({sum(int(r['allowed_late']) for r in late)})" if late else "0",
             times + (f"; never in {never}" if never else ""), ", ".join(f"{name} {n}" for name, n in reasons.most_common(4))], counts
 

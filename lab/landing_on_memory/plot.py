@@ -11,7 +11,7 @@ def landing(lab):
     lines = []
     for noise in (1, 2):
         file = lab.folder("landing") / f"noise{noise}.csv"
-        if not file.with_suffix(".done").exists():  # long: kept once it is there
+        if not file.with_suffix(".done").exists():  # a long run: its result is kept
             if lab.redraw:
                 lines += [f"Camera noise x {noise}: not measured yet.", ""]
                 continue
@@ -27,7 +27,7 @@ def landing_part(rows, noise):
         groups[row["script"], row["pitch_deg"], row["height_m"], row["cameras"]].append(row)
     body, points = [], collections.defaultdict(list)
     for (script, pitch, height, cameras), mine in sorted(groups.items(), key=lambda g: [g[0][0], *map(float, g[0][1:])]):
-        known = [r for r in mine if r["known"] == "1"]
+        known = [r for r in mine if r["landing feet with known ground"] == "1"]
         heights = [1e3 * abs(float(r["height_error_m"])) for r in known]
         sideways = [1e3 * float(r["horizontal_m"]) for r in known]
         ages = [float(r["age_s"]) for r in known]
@@ -43,25 +43,25 @@ def landing_part(rows, noise):
         label = f"{height} m, {cameras} camera{'s' if cameras == '2' else ''}"
         for axis, index in zip(axes, (1, 2, 3)):
             axis.plot([m[0] for m in mine], [m[index] for m in mine], "o-" if cameras == "1" else "s--", label=label)
-    for axis, what, limit in zip(axes, ("known of the landing feet [%]", "|height error|, p99 [mm]",
+    for axis, what, limit in zip(axes, ("landing feet with known ground [%]", "|height error|, p99 [mm]",
                                         "horizontal error, p99 [mm]"), (None, 10, 25)):
         axis.set(xlabel="camera pitch, down [deg]", ylabel=what, ylim=(0, None))
         if limit:
             axis.set_title(f"wanted: at most {limit} mm", fontsize=9)
     axes[0].legend(fontsize=8)
-    return table(["walk", "pitch", "height", "cameras", "known", "age, median", "oldest", "height p50 [mm]", "height p99",
-                  "horizontal p50 [mm]", "horizontal p99"], body) + ["", save(figure, f"landing_noise{noise}"), ""]
+    return table(["walk", "camera pitch", "camera height", "cameras", "landing feet with known ground", "age of the ground, median", "oldest", "height error p50 [mm]", "height error p99",
+                  "horizontal error p50 [mm]", "horizontal error p99"], body) + ["", save(figure, f"landing_noise{noise}"), ""]
 
 
 LANDING_SEEDS = {"mounts": (20_001, 3), "conditions": (20_001, 2)}
 
 
 def landing_conditions(lab):
-    """The recommended mounts with three seeds, and the usual one under worse images."""
+    """The recommended mounts with three seeds, and the usual mount with worse images."""
     rows = []
     for kind, seeds in LANDING_SEEDS.items():
         file = lab.folder("landing") / f"{kind}1.csv"
-        if not file.with_suffix(".done").exists():  # long: kept once it is there
+        if not file.with_suffix(".done").exists():  # a long run: its result is kept
             lab.run("landing_on_memory", file, *seeds, 1, kind)
             file.with_suffix(".done").touch()
         rows += read(file)
@@ -70,9 +70,9 @@ def landing_conditions(lab):
         groups[row["condition"], row["pitch_deg"], row["cameras"]].append(row)
     body = []
     for (condition, pitch, cameras), mine in groups.items():
-        known = [r for r in mine if r["known"] == "1"]
+        known = [r for r in mine if r["landing feet with known ground"] == "1"]
         first = [r for r in mine if r["step"] == "0"]
-        unknown = lambda some: 100 * sum(r["known"] == "0" for r in some) / len(some)  # noqa: E731
+        unknown = lambda some: 100 * sum(r["landing feet with known ground"] == "0" for r in some) / len(some)  # noqa: E731
         p99 = lambda key: quantile([1e3 * abs(float(r[key])) for r in known], 0.99)  # noqa: E731
         worst_of = lambda key: max(1e3 * abs(float(r[key])) for r in known)  # noqa: E731
         last = {seed: max(int(r["lost"]) for r in mine if r["seed"] == seed) for seed in {r["seed"] for r in mine}}
@@ -80,8 +80,8 @@ def landing_conditions(lab):
                      f"{unknown([r for r in mine if r['step'] != '0']):.1f} %", f"{p99('height_error_m'):.1f} mm",
                      f"{worst_of('height_error_m'):.1f}", f"{p99('horizontal_m'):.1f} mm", f"{worst_of('horizontal_m'):.1f}",
                      sum(last.values())])
-    fill("landing", table(["images", "pitch", "cameras", "seeds", "unknown at the decision", "at the first step", "at the later ones",
-                           "height p99", "worst [mm]", "horizontal p99", "worst [mm]", "frames lost"], body), "conditions")
+    fill("landing", table(["images", "camera pitch", "cameras", "seeds", "unknown, all steps", "unknown, first step", "unknown, later steps",
+                           "height error p99", "height error, worst [mm]", "horizontal error p99", "horizontal error, worst [mm]", "frames lost"], body), "conditions")
 
 
 EXPERIMENTS = {"landing": landing, "landing_conditions": landing_conditions}

@@ -7,7 +7,7 @@ from lab_figures import ROOT, fill, table
 
 
 def slope_starts(lab):
-    """Runs that start on a slope: how true are the heights, and do they say so?"""
+    """Height errors and their stated sigma in runs that start on a slope."""
     out = lab.folder("slope_starts")
     starts = {"cross-fall of 1:50": "cross_fall", "ramp of 1:12": str(ROOT / "lab/scenes/ramp_start.yaml")}
     body = []
@@ -15,7 +15,7 @@ def slope_starts(lab):
         medians_mm, within = [], []
         for seed in range(50_101, 50_117):
             folder = out / f"{number}_{seed}"
-            if not (folder / "report.json").exists():  # kept once it is there
+            if not (folder / "report.json").exists():  # a finished run is kept
                 subprocess.run([str(lab.build / "apps/surefoot/surefoot"), "run", f"sim:{scene}", "--seed", str(seed), "--max-frames", "60",
                                 "--threads", "1", "--out", str(folder)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             truth = json.loads((folder / "report.json").read_text())["truth"]
@@ -23,8 +23,9 @@ def slope_starts(lab):
             within.append([truth["sigma"][f"within_{k}_sigma"] for k in (1, 2, 3)])
         shares = [statistics.mean(w) for w in zip(*within)]
         body.append([name, len(medians_mm), f"{statistics.median(medians_mm):.1f}", f"{max(medians_mm):.1f}",
-                     ", ".join(f"{100 * s:.0f} %" for s in shares)])
-    fill("ground", table(["start on a", "runs", "median error of the heights [mm]: middle run", "worst run", "cells within 1, 2, 3 sigma"], body), "slopes")
+                     *(f"{100 * s:.0f} %" for s in shares)])
+    fill("ground", table(["start on a", "runs", "median height error, median run [mm]", "median height error, worst run [mm]",
+                          *(f"cells within {k} sigma" for k in (1, 2, 3))], body), "slopes")
 
 
 EXPERIMENTS = {"slope_starts": slope_starts}
