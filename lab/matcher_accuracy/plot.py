@@ -17,14 +17,14 @@ def matching(lab):
     lab.run("matcher_tuning", lab.data / "stereo", out, HELD_OUT_SEED)
     lab.run("pixel_locking", out / "locking.csv", LOCKING_SEED)
     held_out = read(out / "held_out.csv")
-    fill("matching", ["### Where adirondack's truth lies", ""] + truth_table(read(out / "truth.csv")) +
-         ["", "### Settings as they come", ""] + pairs_table(read(out / "pairs.csv")) + [""] +
+    fill("matching", ["### Offset of adirondack's truth", ""] + truth_table(read(out / "truth.csv")) +
+         ["", "### Default settings", ""] + pairs_table(read(out / "pairs.csv")) + [""] +
          tuned_part(read(out / "chosen.csv"), held_out) + robustness_part(held_out) + locking_part(read(out / "locking.csv")))
 
 
 def truth_table(rows):
-    return table(["matched less stored disparity [px]", "matches", "10 %", "25 %", "median", "75 %", "90 %",
-                  "median of the far half", "of the near half"],
+    return table(["matched minus stored disparity [px]", "matches", "10 %", "25 %", "median", "75 %", "90 %",
+                  "median, far half", "median, near half"],
                  [[f"{r['pair']}, {r['matcher']}", r["count"]] + [f"{float(r[key]):+.2f}" for key in
                   ("q10", "q25", "q50", "q75", "q90", "q50_far", "q50_near")] for r in rows])
 
@@ -43,25 +43,25 @@ def pairs_table(rows):
                     [f"{mean('bad_1', t):.2f} / {mean('bad_2', t):.2f}" for t in ("as published", "centred")] +
                     [f"{mean('density', 'centred'):.1f} %"])
     return table(["bad-1 / bad-2 [%]"] + [p if t == "as published" else f"{p}, truth + 0.5" for p, t in columns] +
-                 ["mean of the first four, as published", "the same, truth + 0.5", "density"], body)
+                 ["mean of the first four, as published", "mean of the first four, truth + 0.5", "density"], body)
 
 
 AIMS = {"chosen": "both", "for pairs": "pairs alone", "for simulated": "simulated images alone"}
 
 
 def tuned_part(choices, rows):
-    """What the same budget of tuning makes of every matcher, image by image."""
+    """Every matcher after the same budget of tuning, image by image."""
     of = {(r["matcher"], r["set"]): r for r in choices}
     matchers = list(dict.fromkeys(r["matcher"] for r in choices))
-    lines = ["### 36 settings of each tried on cones, cloth3 and four simulated images, the best of them on others", ""]
-    lines += table(["matcher"] + [f"chosen by {words}" for words in AIMS.values()] + ["loss (both)", "loss of the settings as they come"],
+    lines = ["### The best of 36 settings of each, chosen on cones, cloth3 and four simulated images", ""]
+    lines += table(["matcher"] + [f"chosen by {words}" for words in AIMS.values()] + ["loss (both)", "loss of the default settings"],
                    [[m] + [of[m, aim]["words"] for aim in AIMS] + [f"{float(of[m, 'chosen'][key]):.1f}" for key in ("loss", "loss_as_it_comes")]
                     for m in matchers])
     truths = {"as published": "pairs, truth as published", "centred": "pairs, truth + 0.5 for adirondack"}
     pair, simulated = ("pair",), ("simulated",)
     parts = [(("tuned on",), "chosen", "as published", "tuned on")]
     parts += [(pair, "chosen", truth, name) for truth, name in truths.items()]
-    parts += [(simulated, "chosen", "as published", "simulated"), (pair + simulated, "chosen", "centred", "all that were not tuned on, truth + 0.5")]
+    parts += [(simulated, "chosen", "as published", "simulated"), (pair + simulated, "chosen", "centred", "all images outside the tuning, truth + 0.5")]
     parts += [(pair, "for pairs", "centred", f"{truths['centred']}; settings for pairs")]
     parts += [(simulated, "for simulated", "as published", "simulated; settings for simulated images")]
     body = []
@@ -69,13 +69,13 @@ def tuned_part(choices, rows):
         mine = [r for r in rows if r["kind"] in kinds and (r["set"], r["truth"]) == (aim, truth)]
         means_alone = len(kinds) > 1 or aim == "for simulated"
         body += held_out_rows(mine, matchers, name)[-1 if means_alone else 0:]
-    return lines + ["", "Bad-1 / bad-2 [%] after filling. The last column is bad-2 of our whole matcher less that of whichever "
-                    "OpenCV mode does best on that image (at most +0.5 is wanted); in the rows of means, less the best mean of one mode:",
-                    ""] + table(["image"] + matchers + ["ours less OpenCV's best"], body) + [""]
+    return lines + ["", "Bad-1 / bad-2 [%] after filling. The last column is bad-2 of our whole matcher minus that of the best OpenCV mode on "
+                    "that image (at most +0.5 is wanted). In the rows of means it is the difference to the best mean of one mode.",
+                    ""] + table(["image"] + matchers + ["bad-2 of ours minus OpenCV's best"], body) + [""]
 
 
 def held_out_rows(rows, matchers, name):
-    """One row an image and their mean."""
+    """One row per image, and their mean."""
     of = {(r["image"], r["matcher"]): r for r in rows}
     images = list(dict.fromkeys(r["image"] for r in rows))
     figures = {image: [[float(of[image, m][key]) for key in ("bad_1", "bad_2")] for m in matchers] for image in images}
@@ -92,32 +92,33 @@ def held_out_rows(rows, matchers, name):
     return body
 
 
-TROUBLES = {"smear": "smear of 2 px more in both eyes", "finger mark": "a finger mark on the left lens (4 px)", "glass": "glass",
+IMAGE_FAULTS = {"smear": "2 px more blur in both cameras", "finger mark": "a finger mark on the left lens (4 px)", "glass": "glass",
             "sun": "sun in stripes, shadows", "sun and over-exposed": "images 2.5 times too bright",
-            "right eye brighter": "right eye 1.3 times as bright", "right eye darker": "right eye 0.6 times as bright"}
+            "right eye brighter": "right camera 1.3 times as bright", "right eye darker": "right camera 0.6 times as bright"}
 
 
 def robustness_part(rows):
-    """What cameras have trouble with, the mean over the images of each kind."""
+    """Image faults: means over the images of each fault."""
     matchers = list(dict.fromkeys((r["matcher"], r["set"]) for r in rows if not r["set"].startswith("for ")))
     matchers.sort(key=lambda m: m != ("our whole matcher", "as it comes"))
     header = ["bad-1 / bad-2 [%]"] + [name if which == "chosen" else f"{name}, {which}" for name, which in matchers]
     filled, matched = [], []
-    for kind, words in TROUBLES.items():
+    for kind, words in IMAGE_FAULTS.items():
         of = lambda m, key: statistics.mean(float(r[key]) for r in rows if (r["kind"], r["truth"], r["matcher"], r["set"])  # noqa: E731
                                             == (kind, "as published", *m))  # noqa: B023
         filled.append([words] + [f"{of(m, 'bad_1'):.1f} / {of(m, 'bad_2'):.1f}" for m in matchers])
         matched.append([words] + [f"{of(m, 'matched_bad_1'):.1f} / {of(m, 'matched_bad_2'):.1f} of {of(m, 'density'):.0f} %" for m in matchers])
-    images = {kind: list(dict.fromkeys(r["image"] for r in rows if r["kind"] == kind)) for kind in TROUBLES}
-    return ["### What cameras have trouble with", "",
-            "Means over the images of each kind, the simulated ZED, settings as chosen above, after filling; every kind has seeds of its own, so compare along rows: " +
-            "; ".join(f"{words}: {', '.join(images[kind])}" for kind, words in TROUBLES.items()) + ".", ""] + \
-        table(header, filled) + ["", "The same of what was matched, and how much that is of the pixels that both eyes see:", ""] + \
+    images = {kind: list(dict.fromkeys(r["image"] for r in rows if r["kind"] == kind)) for kind in IMAGE_FAULTS}
+    return ["### Image faults", "",
+            "Means over the images of each fault, with the simulated ZED and the settings chosen above, after filling. Every fault has "
+            "its own seeds, so compare along rows.", ""] + \
+        table(["fault", "images"], [[words, ", ".join(images[kind])] for kind, words in IMAGE_FAULTS.items()]) + [""] + \
+        table(header, filled) + ["", "Bad-1 / bad-2 of the matched pixels alone, and their share of the pixels that both cameras see:", ""] + \
         table(header, matched) + [""]
 
 
 def locking_part(rows):
-    """The mean error by the fraction of a pixel."""
+    """Mean errors by the fraction of a pixel."""
     matchers = list(dict.fromkeys(r["matcher"] for r in rows))
     cameras = {"ideal": "ideal camera", "zed": "noise and smear of the ZED"}
     body = []
@@ -130,10 +131,11 @@ def locking_part(rows):
             body.append([f"{matcher}, {words}", sum(counts)] + [f"{1e3 * mean:+.0f}" for mean in means] +
                         [f"**{1e3 * (max(means) - min(means)) / 2:.0f}**", f"{1e3 * rms:.0f}"])
     return ["### Whole pixels", "",
-            "Planes of rendered floors, matches within 1 px, settings as they come: mean error [1/1000 px] by the fraction of the true "
-            "disparity (0.0: within 0.05 px of a whole one), half of its range, and the rms error:", "",
+            "Planes of rendered floors, matches within 1 px, default settings. The columns 0.0 to 0.9 give the mean error [1/1000 px] "
+            "by the fraction of the true disparity (0.0: within 0.05 px of a whole pixel). The range is that of these means; rms is "
+            "the rms error [1/1000 px].", "",
             locking_picture(rows, cameras), ""] + \
-        table(["matcher", "pixels"] + [f"{k / 10:.1f}" for k in range(10)] + ["swing, +-", "rms"], body) + [""]
+        table(["matcher", "pixels"] + [f"{k / 10:.1f}" for k in range(10)] + ["half of the range", "rms"], body) + [""]
 
 
 def locking_picture(rows, cameras):
@@ -146,10 +148,10 @@ def locking_picture(rows, cameras):
             means = {int(r["tenth"]): float(r["mean_px"]) for r in rows if (r["camera"], r["matcher"]) == (camera, matcher)}
             axis.plot([k / 10 for k in range(-5, 6)], [1e3 * means[k % 10] for k in range(-5, 6)], style, color=colour,
                       linewidth=width, marker="o", markersize=3, label=matcher)
-        axis.set(title=words, xlabel="true disparity less the nearest whole one [px]")
+        axis.set(title=words, xlabel="true disparity minus the nearest whole pixel [px]")
     axes[0].set(ylabel="mean error of the match [1/1000 px]")
     axes[1].legend(fontsize=8, ncols=2, loc="lower center")
-    figure.suptitle("A flat line prefers no fraction of a pixel")
+    figure.suptitle("A flat line means no preference for a fraction of a pixel")
     return save(figure, "pixel_locking")
 
 

@@ -7,7 +7,7 @@ MEMORY_SEEDS = (75_301, 30)
 
 
 def memory_scripts(lab):
-    """What the gate says of ground that was seen before a turn; kept seed by seed, because it takes hours."""
+    """Answers of the gate about ground that was seen before a turn. The results are kept seed by seed, because a run takes hours."""
     rows = []
     first, seeds = MEMORY_SEEDS
     for seed in range(first, first + seeds):
@@ -21,7 +21,7 @@ def memory_scripts(lab):
 
 
 def memory_table(rows):
-    """Steps that the script is about, and those on the way to them."""
+    """Answers to the steps that the script tests, and to the steps on the way to them."""
     groups = collections.defaultdict(list)
     for r in rows:
         groups[r["script"], r["pitch_deg"], float(r["drift_percent"]), r["stated"]].append(r)
@@ -37,15 +37,15 @@ def memory_table(rows):
             danger, safe = [r for r in asked if r["safe"] == "0"], [r for r in asked if r["safe"] == "1"]
             away = [float(r["off_mm"]) for r in asked]
             body.append([script if holes == "seen" else f"{script}, filled", f"{pitch} deg", f"{drift:g} %",
-                         {"own": "as odometry does", "told": "as it is"}[stated] if drift else "-", len({r["seed"] for r in mine}),
+                         {"own": "sound odometry", "told": "grows with the error"}[stated] if drift else "-", len({r["seed"] for r in mine}),
                          bound_of(allowed(danger), len(danger)), f"{allowed(safe)} of {len(safe)}",
                          f"{allowed(way)} of {len(way)}" if holes == "seen" else "-", f"{quantile(away, 0.5):.0f} / {quantile(away, 1.0):.0f}"])
-    return table(["script", "camera", "drift", "stated", "seeds", "dangerous: allowed", "safe: allowed", "safe on the way: allowed",
-                  "off by, median / most [mm]"], body)
+    return table(["script", "camera", "drift", "stated covariance", "seeds", "dangerous steps allowed", "safe steps allowed", "safe steps on the way allowed",
+                  "pose error, median / largest [mm]"], body)
 
 
 def memory_reasons(rows):
-    """Why safe steps were refused where nothing drifted, and which dangerous ones were allowed."""
+    """Reasons of the safe steps that were refused without drift, and the dangerous steps that were allowed."""
     cells = collections.defaultdict(list)
     for r in rows:
         if r["clear"] == "1" and r["safe"] == "1" and r["verdict"] != "OK" and float(r["drift_percent"]) == 0:
@@ -55,10 +55,10 @@ def memory_reasons(rows):
             for (script, pitch, step, reason), mine in sorted(cells.items(), key=lambda c: (c[0][:3], -len(c[1])))]
     missed = [r for r in rows if r["clear"] == "1" and r["safe"] == "0" and r["verdict"] == "OK"]
     lines = ["Safe steps that were refused without drift:", ""]
-    lines += table(["script", "camera", "step", "first reason", "how often", "one of them (from base_link)"], body)
+    lines += table(["script", "camera", "step", "first reason", "steps", "an example (from base_link)"], body)
     if missed:
         lines += ["", "Dangerous steps that were allowed:", ""]
-        lines += table(["script", "camera", "seed", "step", "movement", "danger", "drift", "off by [mm]", "stated [mm]"],
+        lines += table(["script", "camera", "seed", "step", "movement", "danger", "drift", "pose error [mm]", "stated drift [mm]"],
                        [[r["script"] if r["holes"] == "seen" else r["script"] + ", filled", r["pitch_deg"], r["seed"], r["step"], r["command"], r["danger"],
                          f"{float(r['drift_percent']):g} %, {r['stated']}", r["off_mm"], r["stated_drift_mm"]] for r in missed])
     return lines

@@ -13,7 +13,7 @@ KNOCK_S, KNOCK_LASTS_S = 17, 0.1
 
 
 def mount(lab):
-    """When is a knocked camera reported, and is one ever that was not knocked?"""
+    """How soon a knocked camera is reported, and whether a camera without a knock is reported."""
     out = lab.folder("mount")
     cases = [("walk_floor", seed, knock) for knock in KNOCKS for seed in (30_001, 30_002)]
     cases += [(scene, seed, None) for scene in UNHARMED for seed in (30_001, 30_002)]
@@ -21,7 +21,7 @@ def mount(lab):
     def run(case):
         scene, seed, knock = case
         folder = out / f"{scene}_{seed}_{knock}"
-        if lab.redraw or (folder / "report.json").exists():  # kept once it is there
+        if lab.redraw or (folder / "report.json").exists():  # a finished run is kept
             return
         words = [f"sim.knock.at_s={KNOCK_S}", f"sim.knock.{knock}"] if knock else []
         settings = [w for s in ["sim.profile=zed", "sim.rate_hz=6", *words] for w in ("--set", s)]
@@ -42,7 +42,7 @@ def mount(lab):
         after = [f for f in frames if knock and second(f) > KNOCK_S + KNOCK_LASTS_S and f["camera"] == "OK"]
         body.append([scene, seed, knock or "-", f"{second(frames[-1]):.0f} s", answer, len(after) if knock else "-",
                      f"{100 * len(leaning) / len(frames):.0f} %", lost])
-    fill("mount", table(["walk", "seed", "knock", "seen until", "reported", "frames after the knock in which a movement could have begun",
+    fill("mount", table(["walk", "seed", "knock", "run until", "reported", "frames after the knock in which a movement could have begun",
                          "frames LEANING", "frames lost"], body) + [""])
 
 

@@ -7,7 +7,7 @@ FAULT_SCENES, FAULT_FIRST_SEED, FAULT_SEEDS = ("walk_floor", "room"), 71_110, 3
 
 
 def faults(lab):
-    """What the odometry says of faults in the middle of a walk, and of the first millimetres after standing."""
+    """Reactions of the odometry to faults in the middle of a walk, and to the first millimetres after standing."""
     folder = lab.folder("odometry_faults")
     runs, onsets, missing = [], [], []
     for seed in range(FAULT_FIRST_SEED, FAULT_FIRST_SEED + FAULT_SEEDS):
@@ -22,7 +22,7 @@ def faults(lab):
 
 
 def fault_cases(rows):
-    """Frames of each run with one fault, what came of it."""
+    """One summary for the frames of each run with one fault."""
     runs = collections.defaultdict(list)
     for r in rows:
         runs[r["fault"], r["severity"], r["imu"]].append(r)
@@ -32,7 +32,7 @@ def fault_cases(rows):
 def fault_case(key, frames):
     faulty = [i for i, r in enumerate(frames) if r["faulty"] == "1"]
     begin, end = (faulty[0], faulty[-1]) if faulty else (0, len(frames) - 1)
-    after = frames[max(begin, 1):]  # the first frame of all has nothing to compare with
+    after = frames[max(begin, 1):]  # the first frame has no predecessor
     of = lambda name, some: [float(r[name]) for r in some]  # noqa: E731
     unwell = [int(r["frame"]) - int(frames[begin]["frame"]) for r in after if r["health"] != "OK"]
     well = [i for i in range(end + 1, len(frames)) if frames[i]["health"] == "OK"]
@@ -74,9 +74,9 @@ def faults_table(runs):
                          max(again) if again else "-" if not mine[0]["ended"] else "not yet",
                          f"**{beyond}**" if most("beyond_mm") > 10 else beyond, total("outside"), f"{total('mapped')} of {total('faulty')}"])
             assert all(run["finite"] for run in mine), (fault, severity)
-    return table(["fault", "how much", "IMU", "runs", "largest error of one frame [mm / deg]", "of an OK frame",
-                  "first not OK, frames after the onset, at most", "health and reason, frames", "OK again, frames after the end, at most",
-                  "seconds all OK with an error beyond 4 sigma", "frames beyond 3 sigma since the onset", "faulty frames that are mapped"], body) + [""]
+    return table(["fault", "severity", "IMU", "runs", "largest error of one frame [mm / deg]", "largest error of an OK frame [mm / deg]",
+                  "frames from the onset to the first not OK, largest", "health and reason, number of frames", "frames from the end to OK again, largest",
+                  "seconds, all frames OK, with an error beyond 4 sigma", "frames with an error beyond 3 sigma since the onset", "faulty frames that are mapped"], body) + [""]
 
 
 def onset_table(rows):
@@ -93,8 +93,8 @@ def onset_table(rows):
         body.append([profile, f"{float(shift):g}", spread if float(shift) else "-", len(mine), answer,
                      "-" if float(shift) == 0 else f"{max(abs(float(r['end_mm'])) for r in mine):.2f}",
                      sum(int(r["moved_before"]) for r in mine), f"{max(float(r['crept_mm']) for r in mine):.2f}"])
-    return table(["camera", "motion [mm]", "within frames", "runs", "seen, frames after it, at most", "error at the end, most [mm]",
-                  "frames that moved while standing", "crept while standing, most [mm]"], body) + [""]
+    return table(["camera", "motion [mm]", "within frames", "runs", "frames until it is detected, largest", "largest error at the end [mm]",
+                  "frames with a false motion while standing", "largest drift while standing [mm]"], body) + [""]
 
 
 EXPERIMENTS = {"faults": faults}

@@ -4,11 +4,11 @@ import statistics
 from lab_figures import fill, kept, render_room, table
 
 ODOMETRY_SCENES, ODOMETRY_FIRST_SEED, ODOMETRY_SEEDS, ODOMETRY_FRAMES = "walk_floor,room,corridor", 73_001, 30, 105
-ROOM_FRAMES, ROOM_FIRST, ROOM_STEP = 65, 20, 34  # of the recordings of render_room.py: 30 parts of its way
+ROOM_FRAMES, ROOM_FIRST, ROOM_STEP = 65, 20, 34  # recordings of render_room.py: 30 parts of its path
 
 
 def odometry(lab):
-    """Motions over one second and their covariance against the truth, camera and mount as bad as the real ones."""
+    """Motions over one second and their covariance against the truth, with the faults of the real camera and mount."""
     folder = lab.folder("odometry")
     simulated = kept(lab, "odometry_truth", folder / "zed.csv", ODOMETRY_SCENES, ODOMETRY_FIRST_SEED, ODOMETRY_SEEDS,
                      "zed", ODOMETRY_FRAMES)
@@ -35,9 +35,9 @@ def odometry(lab):
                      f"{statistics.median(of('rpe_mm')):.2f} / {max(of('rpe_mm')):.2f}",
                      f"{statistics.median(of('end_mm')):.1f} / {max(of('end_mm')):.1f}", f"{max(share):.2f} %",
                      f"{max(of('jump_mm')):.1f}", f"{max(of('held_mm')):.2f}", " / ".join(map(str, frames))])
-    fill("odometry", table(["scene", "seeds", "motions over 1 s", "NEES, mean (least to most of a seed)",
-                            "error over 1 s, rms [mm]: median / most", "error at the end [mm]: median / most",
-                            "of the way, most", "largest error of one frame [mm]", "while standing, most [mm]",
+    fill("odometry", table(["scene", "seeds", "motions over 1 s", "NEES, mean (smallest to largest of a seed)",
+                            "error over 1 s, rms [mm]: median / largest", "error at the end [mm]: median / largest",
+                            "error at the end, largest share of the path", "largest error of one frame [mm]", "largest error while standing [mm]",
                             "frames OK / DEGRADED / LOST"], body) + [""])
 
 

@@ -8,12 +8,12 @@ OWN_SCENES = "floor,walk_floor,room,corridor,door_900,demo_stairs,table,kerb_dow
 OWN_CARRIERS = ("trolley", "rex", "hand")
 OWN_FIRST_SEED, OWN_SEEDS, OWN_FRAMES = 71_701, 2, 120
 ROLLING_SCENES, ROLLING_SEEDS, ROLLING_S, ROLLING_30HZ_SEED = "floor,room,demo_stairs", 2, 10, 72_001
-ROLLING_HEADER = ["odometry", "images", "scene", "runs", "ATE, global shutter, mean [mm]", "rolling", "ratio of the means"]
+ROLLING_HEADER = ["odometry", "images", "scene", "runs", "ATE, global shutter, mean [mm]", "ATE, rolling shutter, mean [mm]", "ratio of the means"]
 RIGS = ("zed_vga", "zed_vga_rolling")
 
 
 def own_poses(lab):
-    """What the odometry's own poses do to the map, by carrier; a rolling shutter against a global one."""
+    """Effects of the odometry's own poses on the map by motion model, and of a rolling shutter."""
     folder = lab.folder("own_poses")
 
     rows_of = lambda name, *words: kept(lab, "own_poses", folder / f"{name}.csv", *words)  # noqa: E731
@@ -29,27 +29,28 @@ def own_poses(lab):
                 drift = max(1e-1 * float(r["end_mm"]) / float(r["path_m"]) for r in mine)
                 body.append([scene, carrier, len(mine), most(mine, "ate_mm"), f"{drift:.2f} %",
                              sum(int(r["lost"]) for r in mine), *pair(mine, "exact"), *pair(mine, "matched")])
-    lines = table(["scene", "carrier", "runs", "ATE, most [mm]", "drift, most", "frames lost",
-                   "exact depth: edges 99 %, true / own poses [mm]", "spread", "our depth: edges 99 %", "spread"], body)
+    lines = table(["scene", "motion model", "runs", "ATE, largest [mm]", "drift, largest", "frames lost",
+                   "exact depth: jumps 99 %, true / own poses [mm]", "exact depth: spread, true / own poses [mm]",
+                   "our depth: jumps 99 %, true / own poses [mm]", "our depth: spread, true / own poses [mm]"], body)
     lines += ["", floor_ratio(rows), "", "### A rolling shutter", ""]
     body = []
-    for name, imu in (("with IMU", "true"), ("without", "false")):
+    for name, imu in (("with IMU", "true"), ("without IMU", "false")):
         body += rolling_rows(lab, name, imu, 10, OWN_FIRST_SEED)
     fill("own_poses", lines + table(ROLLING_HEADER, body) + [""])
 
 
 def own_poses_30hz(lab):
-    """A rolling shutter without an IMU once more, at the rate of a real camera."""
-    fill("own_poses", table(ROLLING_HEADER, rolling_rows(lab, "without", "false", 30, ROLLING_30HZ_SEED)), "30hz")
+    """A rolling shutter without an IMU at the frame rate of a real camera."""
+    fill("own_poses", table(ROLLING_HEADER, rolling_rows(lab, "without IMU", "false", 30, ROLLING_30HZ_SEED)), "30hz")
 
 
 def floor_ratio(rows):
-    """The walking machine's floor against the trolley's, by our depth and our poses, the same scenes and seeds."""
+    """The floor from the walking machine against that from the trolley, with our depth and poses, in the same scenes and seeds."""
     spread = {(r["carrier"], r["scene"], r["seed"]): float(r["matched_own_spread_mm"]) for r in rows}
     ratios = [value / spread["trolley", scene, seed] for (carrier, scene, seed), value in spread.items()
               if carrier == "rex" and ("trolley", scene, seed) in spread]
     ratios = [ratio for ratio in ratios if not math.isnan(ratio)]
-    return (f"Floor of our depth at our poses, REX against trolley, {len(ratios)} pairs of runs: "
+    return (f"Spread of the floor with our depth and our poses, REX against trolley, {len(ratios)} pairs of runs: "
             f"{statistics.median(ratios):.2f} at the median, {max(ratios):.2f} at most.")
 
 
