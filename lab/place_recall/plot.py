@@ -5,17 +5,17 @@ import pathlib
 from lab_figures import ROOT, fill, quantile, read, table
 
 PLACE_SCENES = "room,door_900,walk_turn_round,demo_stairs,corridor"
-PLACE_FIRST_SEED = {"second_run": 71_601, "same_run": 71_601, "storey": 71_601}  # nothing was chosen by them
+PLACE_FIRST_SEED = {"second_run": 71_601, "same_run": 71_601, "storey": 71_601}  # no setting was chosen with these
 PLACE_PARTS = (("second_run", PLACE_SCENES, 6), ("same_run", PLACE_SCENES, 6),
                ("storey", ROOT / "lab/scenes/look_alike.yaml", 100))
 
 
 def places(lab):
-    """Recall where places are seen again; false acceptances in corridors that look alike."""
+    """Recognition of known places, and false acceptances in corridors that look alike."""
     lines = []
     for kind, scenes, seeds in PLACE_PARTS:
         file = lab.folder("places") / f"{kind}.csv"
-        if not file.with_suffix(".done").exists():  # long: kept once it is there
+        if not file.with_suffix(".done").exists():  # a long run: its result is kept
             if lab.redraw:
                 lines += [f"{kind}: not measured yet.", ""]
                 continue
@@ -50,8 +50,8 @@ def places_table(kind, rows):
     body = [row(pathlib.Path(name).stem, [r for r in rows if r["scene"] == name]) for name in names]
     if len(names) > 1:
         body.append(row("**all**", rows))
-    return [f"### {kind}", ""] + table(["scene", "recognised", "single keyframes that would be", "false acceptances",
-                                        "worst error [mm]", "[deg]", "agreeing share: least / median / most", "refusals"], body)
+    return [f"### {kind}", ""] + table(["scene", "recognised", "keyframes recognised without confirmation", "false acceptances",
+                                        "largest error [mm]", "largest error [deg]", "agreeing share: smallest / median / largest", "refusals by reason"], body)
 
 
 EXPERIMENTS = {"places": places}

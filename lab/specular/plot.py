@@ -7,11 +7,11 @@ PANE_SCENES = ("mirror_wall", "glass_balustrade", "glass_corner", "mirror_pillar
                "mirror_puddle", "mirror_table", "glass_table", "glass_cabinet", "glass_screen")
 SCENES_WITHOUT_PANES = ("floor", "stripes_window", "look_tiles", "door_900", "corridor", "shadow_window", "sill_13", "stripes_blind", "look_wood",
                         "room", "thesis_h_hall", "table", "cross_fall", "look_carpet", "shadow_pillar", "thesis_j_office")
-SPECULAR_SEEDS = (1001, 1)  # nothing was chosen by them; an hour of one core
+SPECULAR_SEEDS = (1001, 1)  # no setting was chosen with these; an hour of one core
 
 
 def specular(lab):
-    """Does the gate stop before mirrors and glass, and only there?"""
+    """Answers of the gate before mirrors and glass, and in scenes without them."""
     folder = lab.folder("specular")
     for name, scenes in (("panes", PANE_SCENES), ("others", SCENES_WITHOUT_PANES)):
         lab.run("specular", folder / f"{name}.csv", ",".join(scenes), *SPECULAR_SEEDS)
@@ -38,13 +38,13 @@ def specular(lab):
                 sum(int(r["panes"]) > 0 for r in rows)]
 
     lines = ["### Mirrors and glass", ""]
-    lines += table(["scene", "cases", "dangerous, last pose", "inhibited before", "inhibited after", "dangerous, within 0.6 m", "inhibited before",
-                    "inhibited after", "pane suspected"],
+    lines += table(["scene", "cases", "dangerous, last pose", "last pose: inhibited before", "last pose: inhibited after",
+                    "dangerous, within 0.6 m", "within 0.6 m: inhibited before", "within 0.6 m: inhibited after", "pane suspected"],
                    [pane_row(rows[0]["scene"], rows) for rows in by_scene(panes)] + [pane_row("**all**", panes)])
     whole = lambda when: sum(int(r[f"here_missed_{when}"]) == 0 for r in panes)  # noqa: E731
     lines += ["", f"Cases in which every dangerous movement at the last pose is inhibited: {whole('before')} of {len(panes)} before, "
               f"{whole('after')} of {len(panes)} after.", "", "### Scenes without panes", ""]
-    lines += table(["scene", "cases", "safe, within 0.6 m", "allowed before", "allowed after", "false stops added", "cases with a pane suspected"],
+    lines += table(["scene", "cases", "safe, within 0.6 m", "allowed before", "allowed after", "added false stops", "cases with a pane suspected"],
                    [other_row(rows[0]["scene"], rows) for rows in by_scene(others)] + [other_row("**all**", others)])
     fill("specular", lines)
 

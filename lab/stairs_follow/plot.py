@@ -5,14 +5,15 @@ import statistics
 from lab_figures import ROOT, fill, read, table
 from stairs_figures import numbers
 
-FOLLOW_FIRST_SEED = 82_001  # nothing was chosen by these
+FOLLOW_FIRST_SEED = 82_001  # no setting was chosen with these
 FOLLOW_SCENES = {"lab/scenes/stairs_up.yaml#up_common": 2, "lab/scenes/stairs_down.yaml#down_near": 2,
                  "lab/scenes/kerb_ahead.yaml": 2, "table": 1}  # seeds of each
 FOLLOW_HZ = 10
+WAYS = {"found": "single map", "followed": "tracked"}  # as in the CSV file: as in the tables
 
 
 def stairs_follow(lab):
-    """What is told of every frame, by its map alone and followed over time."""
+    """Features of every frame, from its map alone and tracked over time."""
     folder = lab.folder("stairs_follow")
     for scene, seeds in FOLLOW_SCENES.items():
         named = str(ROOT / scene) if "/" in scene else scene
@@ -21,19 +22,19 @@ def stairs_follow(lab):
     rows = [{**row, "scene": row["scene"].split("#")[-1].split("/")[-1].split(".")[0]} for row in read(folder / "follow.csv")]
     changes, errors = [], []
     for scene in dict.fromkeys(r["scene"] for r in rows):
-        for way in ("found", "followed"):
+        for way in WAYS:
             mine = [r for r in rows if (r["scene"], r["way"]) == (scene, way)]
             total = lambda key: sum(int(r[key]) for r in mine)  # noqa: E731
             seconds = total("looks") / FOLLOW_HZ
             calls = numbers(mine, "call_us")
-            changes.append([scene, len(mine), way, *(f"{total(key) / seconds:.1f}" for key in ("edges", "drops", "kerbs", "flights", "doors")),
+            changes.append([scene, len(mine), WAYS[way], *(f"{total(key) / seconds:.1f}" for key in ("edges", "drops", "kerbs", "flights", "doors")),
                             f"{total('steps_changes')} of {total('found_looks')}", total("drops_lost"),
                             f"{statistics.median(calls):.0f}" if calls else "-"])
             if any(numbers(mine, "across_mean")):
-                errors.append([scene, way, *(follow_errors(mine, name) for name in ("riser", "going", "across"))])
-    fill("stairs", table(["scene", "runs", "told", "edges that come or go a second", "drops", "kerbs", "flights", "doors",
-                          "changes of the number of steps", "drops found, not told", "call [us]"], changes)
-         + [""] + table(["scene", "told", "riser: mean error / from look to look / at the last look [mm]", "going", "first edge"], errors), "followed")
+                errors.append([scene, WAYS[way], *(follow_errors(mine, name) for name in ("riser", "going", "across"))])
+    fill("stairs", table(["scene", "runs", "features", "edges that appear or vanish per second", "drops", "kerbs", "flights", "doors",
+                          "changes of the number of steps", "drops found, but not reported", "call [us]"], changes)
+         + [""] + table(["scene", "features", "riser: mean error / change between observations, rms / error of the last observation [mm]", "going: the same [mm]", "first edge: the same [mm]"], errors), "followed")
 
 
 def follow_errors(rows, name):

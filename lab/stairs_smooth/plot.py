@@ -4,11 +4,11 @@ import statistics
 from lab_figures import fill, read, table
 from stairs_figures import numbers, wilson
 
-SMOOTH_SEEDS = (90_001, 1000)  # nothing was chosen by them
+SMOOTH_SEEDS = (90_001, 1000)  # no setting was chosen with these
 
 
 def stairs_smooth(lab):
-    """What is found on smooth ramps, planes, hills, dips and waves, where there is no step."""
+    """Steps detected on smooth ramps, planes, hills, dips and waves without steps."""
     folder = lab.folder("stairs_smooth")
     lab.run("stairs_smooth", folder / "smooth.csv", *SMOOTH_SEEDS)
     rows, body = read(folder / "smooth.csv"), []
@@ -16,10 +16,10 @@ def stairs_smooth(lab):
     for key in dict.fromkeys(map(errors, rows)):
         mine = [r for r in rows if errors(r) == key]
         with_some = lambda name: sum(r[name] != "0" for r in mine)  # noqa: E731
-        body.append([key[0], "independent" if key[1] == "0" else f"{key[1]} mm", "yes" if key[2] == "1" else "no", len(mine),
+        body.append([key[0], "uncorrelated" if key[1] == "0" else f"{key[1]} mm", "yes" if key[2] == "1" else "no", len(mine),
                      wilson(with_some("flights"), len(mine)), wilson(with_some("kerbs"), len(mine)), wilson(with_some("drops"), len(mine)),
                      f"{statistics.median(numbers(mine, 'find_us')) / 1e3:.1f}"])
-    fill("stairs", table(["errors, sd [mm]", "hang together over", "stated in the map", "maps", "with flights", "with kerbs", "with drops",
+    fill("stairs", table(["height errors, sd [mm]", "correlation length", "stated by the map", "maps", "maps with flights", "maps with kerbs", "maps with drops",
                           "one call [ms], median"], body), "smooth")
 
 

@@ -7,10 +7,10 @@ from lab_figures import ROOT, fill, quantile, read, table
 import stairs_figures
 from stairs_figures import errors_of, is_drop_near, is_flight_true, numbers, scatter, wilson
 
-STAIRS_FIRST_SEED = 85_001  # nothing was chosen by these
+STAIRS_FIRST_SEED = 85_001  # no setting was chosen with these
 OWN_POSES = "own poses"
 STAIRS_AT_ONCE = 10
-STAIRS_WAYS = {"told": "", "look": ", one look"}
+STAIRS_WAYS = {"told": "", "look": ", single observation"}
 
 
 def stairs(lab):
@@ -30,8 +30,8 @@ def stairs(lab):
                               ("down_far", "Stairs down, first edge 1.5 m before the camera", drops_table),
                               ("down_near", "Stairs down, first edge 0.67-1.0 m before the camera", downs_table),
                               ("kerbs", "Kerbs down of 75-150 mm, 0.67-1.5 m before the camera", kerbs_table),
-                              ("none", "Flights where there are no stairs", no_stairs_table),
-                              ("thesis", "Stairs like those of the thesis", flights_table), ("doors", "Doors and sills", doors_table)):
+                              ("none", "Flights reported where there are no stairs", no_stairs_table),
+                              ("thesis", "Stairs like those of the reference thesis (Lange 2016)", flights_table), ("doors", "Doors and sills", doors_table)):
         lines += [f"### {title}", ""]
         scenes, seeds, _ = stairs_figures.PARTS[part]
         missing = [f"{mode} ({len(done)} of {seeds * len(scenes)})" for mode in stairs_figures.MODES
@@ -42,8 +42,8 @@ def stairs(lab):
 
 
 def stairs_rows(lab, part, mode, variant="", *settings):
-    """Goes on where it was stopped: runs of the same program that are in the CSV files are kept. Nothing is kept of the looks:
-    a run of 36 maps takes 110 MB."""
+    """Runs the missing seeds. Results of the same program in the CSV files are kept. The maps are not kept: the 36 maps of a run
+    take 110 MB."""
     scenes, seeds, every = stairs_figures.PARTS[part]
     folder = lab.folder(f"stairs/{variant.replace(' ', '_') or 'true_poses'}")
     lab.set_aside_older_results("stairs_truth", folder)
@@ -60,7 +60,7 @@ def stairs_rows(lab, part, mode, variant="", *settings):
 
 
 def by_mode_and_scene(rows):
-    """Rows of each mode, all scenes together first where there are several."""
+    """Rows of each mode: first all scenes together, if there are several, then each scene."""
     for mode in dict.fromkeys(r["mode"] for r in rows):
         mine = [r for r in rows if r["mode"] == mode]
         scenes = list(dict.fromkeys(r["scene"] for r in mine))
@@ -71,7 +71,7 @@ def by_mode_and_scene(rows):
 
 
 def within_sigmas(rows):
-    """Share of risers within 2 of the sigmas that are stated for them: 95 % are wanted."""
+    """Share of risers within 2 stated sigma; 95 % are wanted."""
     found = [r for r in rows if r["found"] == "1"]
     return wilson(sum(abs(float(r["found_riser"]) - float(r["riser"])) <= 2 * float(r["riser_sigma"]) for r in found), len(found))
 
@@ -95,7 +95,7 @@ def drops_table(rows):
         near = sum(map(is_drop_near, mine))
         body.append([mode, wilson(len(found), len(mine)), wilson(near, len(mine)), scatter(numbers(found, "drop_across")),
                      f"{sum(r['bottom_seen'] == '1' for r in found)}", f"{sum(int(r['drops']) for r in mine)}"])
-    return table(["input", "drop found", "its edge within 30 mm, of all", "edge: mean / sd [mm]", "ground behind it seen",
+    return table(["input", "drop found", "edge within 30 mm, of all", "edge: mean / sd [mm]", "ground behind it observed",
                   "other drops"], body)
 
 
@@ -122,8 +122,8 @@ def kerbs_table(rows):
             near = sum(map(is_drop_near, some))
             body.append([mode, name, wilson(len(found), len(some)), wilson(near, len(some)), scatter(numbers(found, "drop_across")),
                          scatter(errors_of([r for r in found if r["bottom_seen"] == "1"], "drop_height", "riser"))])
-    return table(["input", "kerb, or its distance", "flagged as a drop", "its edge within 30 mm, of all", "edge: mean / sd [mm]",
-                  "height, bottom seen: mean error / sd [mm]"], body)
+    return table(["input", "height or distance of the kerb", "flagged as a drop", "edge within 30 mm, of all", "edge: mean / sd [mm]",
+                  "height, bottom observed: mean error / sd [mm]"], body)
 
 
 def no_stairs_table(rows):
@@ -134,7 +134,7 @@ def no_stairs_table(rows):
             runs[r["scene"], r["seed"]] += int(r["flights"])
         body.append([mode, scene, wilson(sum(r["flights"] != "0" for r in mine), len(mine)),
                      wilson(sum(r["of_2"] != "0" for r in mine), len(mine)), f"{sum(map(bool, runs.values()))} of {len(runs)}"])
-    return table(["input", "scene", "looks with any flight", "with one of two steps or more", "runs with any"], body)
+    return table(["input", "scene", "observations with a flight", "observations with a flight of two steps or more", "runs with a flight"], body)
 
 
 def doors_table(rows):
@@ -142,17 +142,17 @@ def doors_table(rows):
     for mode, scene, mine in by_mode_and_scene(rows):
         found = [r for r in mine if r["door"] == "1"]
         sills = [r for r in mine if float(r["sill"]) >= 20]
-        told = [r for r in sills if r["sill_height"] != "nan"]
+        with_height = [r for r in sills if r["sill_height"] != "nan"]
         none = [r for r in mine if float(r["sill"]) == 0]
         body.append([mode, scene, wilson(len(found), len(mine)), scatter(errors_of(found, "door_width", "width")),
-                     wilson(len(told), len(sills)), scatter(errors_of(told, "sill_height", "sill")),
+                     wilson(len(with_height), len(sills)), scatter(errors_of(with_height, "sill_height", "sill")),
                      wilson(sum(r["sill_height"] != "nan" for r in none), len(none))])
     return table(["input", "scene", "door found", "width: mean error / sd [mm]", "sill of 20 mm or more found",
-                  "its height: mean error / sd [mm]", "sill where there is none"], body)
+                  "sill height: mean error / sd [mm]", "sill reported where there is none"], body)
 
 
 def stairs_noise(rows):
-    """What the disparities of all looks were like, and what a call takes."""
+    """Noise of the disparities of all observations, and the time of a call."""
     body = []
     every = [r for part in rows.values() for r in part]
     for mode in dict.fromkeys(r["mode"] for r in every):
@@ -161,8 +161,8 @@ def stairs_noise(rows):
         body.append([mode, len(mine), " / ".join(f"{quantile(noise, share):.2f}" for share in (0.05, 0.5, 0.95)),
                      f"{statistics.median(numbers(mine, 'bias_px')):+.2f}", f"{statistics.median(numbers(mine, 'said_px')):.2f}",
                      " / ".join(f"{1e-3 * quantile(took_us, share):.1f}" for share in (0.5, 0.95))])
-    return table(["input", "looks", "measured noise of disparities on level floor [px]: 5 % / median / 95 %", "their bias, median",
-                  "stated sigma, median", "one call of the finder [ms]: median / 95 %"], body)
+    return table(["input", "observations", "measured disparity noise on level floor [px]: 5 % / median / 95 %", "bias of these disparities, median",
+                  "stated sigma, median [px]", "one call of the finder [ms]: median / 95 %"], body)
 
 
 EXPERIMENTS = {"stairs": stairs}

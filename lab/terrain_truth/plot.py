@@ -6,7 +6,7 @@ from lab_figures import fill, read, table
 LOOKED_BACK = ("walk_look_pivot_reverse", "walk_look_pivot_reverse_edge")
 TERRAIN_SCENES = ("floor", "demo_stairs", "kerb_down_100", "kerb_up_100", "platform_edge", "hole", "ramp_1_12_up",
                   "door_900", "table", "stairs_up_nz_common", "room", "walk_pivot_reverse", *LOOKED_BACK)
-TERRAIN_FIRST_SEED = 70_201  # nothing was chosen by them, nothing looked at
+TERRAIN_FIRST_SEED = 70_201  # no choice and no inspection used these seeds
 TERRAIN_RUNS = (("zed_calibrated", 1, 1), ("zed_calibrated", 2, 1), ("zed", 1, 1), ("ideal", 1, 1))
 
 
@@ -17,7 +17,7 @@ def terrain(lab):
         rows = []
         for scene in TERRAIN_SCENES:
             file = lab.folder(f"terrain/{profile}_noise{noise}") / f"{scene}.csv"
-            if not file.with_suffix(".done").exists():  # long: kept once it is there
+            if not file.with_suffix(".done").exists():  # a long run: its result is kept
                 if lab.redraw:
                     continue
                 lab.run("terrain_truth", file, scene, TERRAIN_FIRST_SEED, seeds, profile, noise)
@@ -50,13 +50,13 @@ def terrain_table(rows):
     by_scene = {scene: [r for r in rows if r["scene"] == scene] for scene in TERRAIN_SCENES}
     body = [figures(scene, mine) for scene, mine in by_scene.items() if mine]
     body.append(figures("**all**", rows))
-    return table(["scene", "median [mm]", "90 % [mm]", "known", "within 1 / 2 / 3 sigma [%]", "truly unsafe cells",
-                  "called safe", "largest cluster", "hazards called safe", "largest cluster of these",
-                  "truly safe called unsafe", "unsure", "unknown"], body)
+    return table(["scene", "height error, median [mm]", "height error, 90 % [mm]", "cells known", "within 1 / 2 / 3 sigma [%]", "truly unsafe cells",
+                  "truly unsafe called safe", "largest cluster called safe [cells]", "hazard cells called safe", "largest cluster of hazard cells called safe",
+                  "truly safe called unsafe", "truly safe unsure", "truly safe unknown"], body)
 
 
 def near_feet(rows):
-    """After the turn and the metre backwards, in all cells within 0.7 m of the body, seen or not."""
+    """All cells within 0.7 m of the body after the turn and the metre backwards, observed or not."""
     body = []
     for scene in ("walk_pivot_reverse", *LOOKED_BACK):
         mine = [r for r in rows if r["scene"] == scene]
@@ -66,8 +66,8 @@ def near_feet(rows):
         safe = count("truly_safe")
         body.append([scene, safe, *(f"{100 * count(key) / max(safe, 1):.1f} %" for key in ("called_unsafe", "unsure", "unknown")),
                      count("truly_unsafe"), count("called_safe"), count("hazards_called_safe")])
-    return table(["within 0.7 m of the body at the end", "truly safe cells", "called unsafe", "unsure", "unknown",
-                  "truly unsafe cells", "called safe", "hazards called safe"], body) if body else []
+    return table(["within 0.7 m of the body at the end", "truly safe cells", "truly safe called unsafe", "truly safe unsure", "truly safe unknown",
+                  "truly unsafe cells", "truly unsafe called safe", "hazard cells called safe"], body) if body else []
 
 
 EXPERIMENTS = {"terrain": terrain}

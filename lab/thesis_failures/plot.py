@@ -9,7 +9,7 @@ from lab_figures import COLOURS, fill, read, save, table
 
 
 def thesis_sometimes(lab):
-    """A tracker that is late now and then."""
+    """A pose tracker that is late for a part of the clouds."""
     folder = lab.folder("thesis_failures/drawn1")
     lab.run("thesis_failures", folder, 20_001, 3, 1, "drawn")
     rows = read(folder / "runs.csv")
@@ -27,8 +27,8 @@ def thesis_sometimes(lab):
             row.append(f"{statistics.median(middle):.0f} - {statistics.median(sides):.0f} "
                        f"({', '.join(f'{m:.0f}-{s:.0f}' for m, s in zip(middle, sides))})")
         body.append(row)
-    fill("thesis_failures", table(["pose late by", "floor spread, trolley / REX [mm] (each seed)", "its rms", "spread of 0.1 m medians",
-                                   "trolley: jumps p99, middle - sides [mm]", "REX: jumps p99, middle - sides [mm]"], body), "sometimes")
+    fill("thesis_failures", table(["pose late by", "floor spread, trolley / REX [mm] (each seed)", "rms of the floor, trolley / REX [mm]", "spread of 0.1 m medians, trolley / REX [mm]",
+                                   "trolley: jumps p99, middle - sides of the map [mm]", "REX: jumps p99, middle - sides of the map [mm]"], body), "sometimes")
 
 
 def thesis_failures(lab):
@@ -50,7 +50,7 @@ def riser_mm(row):
 
 
 def failures_table(rows):
-    """Medians over the seeds; everything in mm."""
+    """Medians over the seeds, in mm."""
     groups = collections.defaultdict(list)
     for row in rows:
         groups[row["late_images"], row["offset_px"], row["scene"], row["carrier"]].append(row)
@@ -69,20 +69,20 @@ def failures_table(rows):
             row.append(f"{middle('coarse_edges_middle_m', carrier):.0f} - {middle('coarse_edges_sides_m', carrier):.0f}")
             row.append(f"{middle('riser', carrier, 'demo_stairs'):.0f}")
         body.append(row)
-    return table(["pose late by", "disparity off by", "floor spread, trolley / REX [mm]", "its rms", "spread of 0.1 m medians",
-                  "trolley: jumps p99, middle - sides [mm]", "riser", "REX: jumps p99, middle - sides [mm]", "riser"], body)
+    return table(["pose late by", "disparity offset", "floor spread, trolley / REX [mm]", "rms of the floor, trolley / REX [mm]", "spread of 0.1 m medians, trolley / REX [mm]",
+                  "trolley: jumps p99, middle - sides of the map [mm]", "trolley: riser [mm]", "REX: jumps p99, middle - sides of the map [mm]", "REX: riser [mm]"], body)
 
 
 def failures_maps(folder):
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.4), sharey=True)
-    for axis, (carrier, who) in zip(axes, (("trolley", "trolley"), ("rex", "REX"))):
+    for axis, (carrier, title) in zip(axes, (("trolley", "trolley"), ("rex", "REX"))):
         heights = [[float(cell) for cell in row] for row in
                    csv.reader(open(folder / f"map_floor_{carrier}_10001_1_4_0_0.csv", newline=""))]
-        # Rows run along x: x up, y to the left, as the machine sees it.
+        # Rows run along x: x points up and y to the left, as seen from the machine.
         drawn = axis.imshow([[1e3 * cell for cell in row] for row in heights], origin="lower", cmap="RdBu_r", vmin=-60,
                             vmax=60, extent=(-3, 3, -3, 3))
         axis.invert_xaxis()
-        axis.set(title=f"{who}, pose late by 267 ms", xlabel="to the left of the machine [m]")
+        axis.set(title=f"{title}, pose late by 267 ms", xlabel="to the left of the machine [m]")
         axis.grid(False)
     axes[0].set(ylabel="ahead of the machine [m]")
     figure.colorbar(drawn, ax=axes, label="height of a level floor [mm]", shrink=0.85)
@@ -91,13 +91,13 @@ def failures_maps(folder):
 
 def failures_histograms(rows):
     figure, axes = plt.subplots(1, 2, figsize=(9.5, 3.4))
-    for carrier, who, colour in (("trolley", "trolley", COLOURS[0]), ("rex", "REX", COLOURS[1])):
+    for carrier, title, colour in (("trolley", "trolley", COLOURS[0]), ("rex", "REX", COLOURS[1])):
         late = [r for r in rows if r["carrier"] == carrier and r["late_images"] == "4" and r["seed"] == "10001"]
         floor = [1e3 * float(r["height_m"]) for r in late
                  if r["scene"] == "floor" and r["part"] == "floor" and r["offset_px"] == "0"]
-        axes[0].hist(floor, bins=range(-100, 101, 4), histtype="step", color=colour, linewidth=1.5, label=who, density=True)
+        axes[0].hist(floor, bins=range(-100, 101, 4), histtype="step", color=colour, linewidth=1.5, label=title, density=True)
         stairs = [1e3 * float(r["height_m"]) for r in late if r["part"].startswith("tread") and r["offset_px"] == "0.7"]
-        axes[1].hist(stairs, bins=range(-120, 661, 8), histtype="step", color=colour, linewidth=1.5, label=who, density=True)
+        axes[1].hist(stairs, bins=range(-120, 661, 8), histtype="step", color=colour, linewidth=1.5, label=title, density=True)
     for step in range(4):
         axes[1].axvline(180 * step, color="black", linestyle=":", label="truth" if step == 0 else None)
     axes[0].set(title="level floor, pose late by 267 ms", xlabel="height [mm]", yticks=[])
