@@ -39,7 +39,7 @@ def injections_row(rows):
     reasons = collections.Counter(r["reason"] for r in counted if r["latency_ms"])
     counts = collections.Counter(counted=len(counted), injected=len(faulty), controls=len(controls), controls_ok=sum(map(well, controls)),
                                  control_answers=sum(int(r["asked_before"]) for r in controls if well(r)), late=len(late))
-    return [rows[0]["level"], rows[0]["drawn by the seed"], rows[0]["class"], f"{len(counted)} of {len(faulty)}", f"{counts['controls_ok']} of {len(controls)}",
+    return [rows[0]["level"], rows[0]["drawn"], rows[0]["class"], f"{len(counted)} of {len(faulty)}", f"{counts['controls_ok']} of {len(controls)}",
             f"**{len(late)}** ({sum(int(r['allowed_late']) for r in late)})" if late else "0",
             times + (f"; never in {never}" if never else ""), ", ".join(f"{name} {n}" for name, n in reasons.most_common(4))], counts
 

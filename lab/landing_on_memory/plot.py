@@ -27,7 +27,7 @@ def landing_part(rows, noise):
         groups[row["script"], row["pitch_deg"], row["height_m"], row["cameras"]].append(row)
     body, points = [], collections.defaultdict(list)
     for (script, pitch, height, cameras), mine in sorted(groups.items(), key=lambda g: [g[0][0], *map(float, g[0][1:])]):
-        known = [r for r in mine if r["landing feet with known ground"] == "1"]
+        known = [r for r in mine if r["known"] == "1"]
         heights = [1e3 * abs(float(r["height_error_m"])) for r in known]
         sideways = [1e3 * float(r["horizontal_m"]) for r in known]
         ages = [float(r["age_s"]) for r in known]
@@ -70,9 +70,9 @@ def landing_conditions(lab):
         groups[row["condition"], row["pitch_deg"], row["cameras"]].append(row)
     body = []
     for (condition, pitch, cameras), mine in groups.items():
-        known = [r for r in mine if r["landing feet with known ground"] == "1"]
+        known = [r for r in mine if r["known"] == "1"]
         first = [r for r in mine if r["step"] == "0"]
-        unknown = lambda some: 100 * sum(r["landing feet with known ground"] == "0" for r in some) / len(some)  # noqa: E731
+        unknown = lambda some: 100 * sum(r["known"] == "0" for r in some) / len(some)  # noqa: E731
         p99 = lambda key: quantile([1e3 * abs(float(r[key])) for r in known], 0.99)  # noqa: E731
         worst_of = lambda key: max(1e3 * abs(float(r[key])) for r in known)  # noqa: E731
         last = {seed: max(int(r["lost"]) for r in mine if r["seed"] == seed) for seed in {r["seed"] for r in mine}}
