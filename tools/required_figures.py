@@ -1,4 +1,4 @@
-"""Which required figures of a measured page are missed, but for those that are known (state/known_misses.txt).
+"""Lists the required figures of a measured page that are missed and not listed in state/known_misses.txt.
 
 A page says what is required in tables whose header is HEADER: "yes" or "**no**" in the last column, "-" where nothing
 is required. The names in the first column are unique within a page.
@@ -31,7 +31,7 @@ def known_misses(text, page):
 
 
 def complaints(rows, known):
-    """A sentence for each thing that is not as it must be; nothing when all is well."""
+    """A sentence for each problem of the page; empty when there is none."""
     found = [] if rows else ["the page holds no required figure at all"]
     names = [row[0] for row in rows]
     found += [f"{name}: stands there {names.count(name)} times" for name in dict.fromkeys(names) if names.count(name) > 1]
@@ -45,7 +45,7 @@ def complaints(rows, known):
 
 
 def check(page):
-    """Exit status: 1 if anything is to be said against the page."""
+    """Exit status: 1 if the page has a complaint."""
     rows = figures(page.read_text())
     known = known_misses(KNOWN_MISSES.read_text(), page.stem)
     found = complaints(rows, known)

@@ -187,7 +187,7 @@ class Crowd:
         client.close()
 
     def storms(self):
-        """A crowd at the door whenever FOLDER/storm says how many shall come."""
+        """Opens many connections when FOLDER/storm gives a number."""
         order = self.folder / "storm"
         while True:
             time.sleep(0.1)

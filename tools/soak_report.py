@@ -1,4 +1,4 @@
-"""What the files of a soak say: growth, missed deadlines, faults. Used by tools/soak."""
+"""Evaluates the files of a soak: growth, missed deadlines, faults. Used by tools/soak."""
 import collections
 import csv
 import json

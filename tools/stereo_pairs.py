@@ -1,6 +1,6 @@
-"""Real rectified pairs with a measured disparity: what `surefoot depth` finds in them, and whether it knows.
+"""Compares `surefoot depth` and its stated sigma with real rectified pairs of known disparity.
 
-Judged are pixels that both eyes see. Where the right eye's truth is there, they are those whose two truths agree within
+Judged are pixels that both cameras see. Where the truth of the right camera exists, they are those whose two truths agree within
 1 px; else those of the pair's mask. What is wrong by more than 2 px is counted as the benchmark of these pairs does:
 pixels without a match take the smaller neighbour of their row. Trusted: outlier probability of at most one half; no
 trusted pixel is left out, however wrong it is. The truth's rounding (uniform over a step) is added to sigma.
@@ -56,7 +56,7 @@ def grey(path):
 
 
 def true_disparity(pair, folder):
-    """[px], NaN = unknown, or not seen by both eyes."""
+    """[px], NaN = unknown, or not seen by both cameras."""
     values = grey(folder / pair.truth)
     truth = np.where(values > 0, values / pair.scale, np.nan)
     if pair.mask:
@@ -84,8 +84,8 @@ def measure(pair, folder, out):
     disparity, sigma, outlier = (read_pfm(out / f"{name}.pfm") for name in ("disparity", "sigma", "outlier_probability"))
     judged, known = np.isfinite(truth), np.isfinite(disparity)
     trusted = judged & known & (outlier <= TRUSTED)
-    doubt = np.hypot(sigma[trusted], 1 / pair.scale / np.sqrt(12))
-    sigmas = np.abs(disparity[trusted] - truth[trusted]) / doubt
+    sigma_px = np.hypot(sigma[trusted], 1 / pair.scale / np.sqrt(12))
+    sigmas = np.abs(disparity[trusted] - truth[trusted]) / sigma_px
     wrong = ~(np.abs(filled(disparity)[judged] - truth[judged]) <= 2)
     return {"density": 100 * np.mean(known[judged]), "bad_2": 100 * np.mean(wrong),
             "trusted": 100 * np.mean(trusted[judged]),

@@ -155,8 +155,7 @@ void add_gate(VerbGroup verbs) {
     verb.option("--machine", o.machine, "machine file or built-in name").value("FILE|NAME");
     verb.option("--explain", o.explain_file, "picture of footprint, corridor and deciding cell")
         .value("F.png");
-    verb.option(
-            "--vouch",
+    verb.option("--vouch",
                 o.vouch_radius_m,
                 "operator attestation: radius around base_link within which ground that was not "
                 "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "

@@ -610,11 +610,93 @@ Status Service::run() {
     Channel channel(std::move(*writer));
     GateChild::Start how{gate_arguments(options_, path), {}, *key};
     if (options_.vouch_radius_m > 0.0)
-        how.first_arguments = {"--vouch",
-                o.vouch_radius_m,
-                "operator attestation: radius around the machine within which ground that was not "
-                "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "
-                "rex). The attestation ends when the machine leaves the circle")
+        how.first_arguments = {"--vouch", fmt::format("{}", options_.vouch_radius_m)};
+    auto gate = GateChild::start(std::move(how));
+    if (!gate) return gate.error();
+    if (auto introduced = introduce(**source, loaded->access, gate->port()); !introduced)
+        return introduced;
+    tell_where(*gate);
+    if (page_->port() != 0) {
+        std::FILE* const out = options_.common.json ? stderr : stdout;
+        const char* const s = options_.certificate_file.empty() ? "" : "s";
+        fmt::print(
+            out, "the page is at http{}://{}:{}/\n", s, options_.bind_address, page_->port());
+        fmt::print(
+            out, "Foxglove connects to ws{}://{}:{}/\n", s, options_.bind_address, page_->port());
+        std::fflush(out);
+    }
+    watch_for_interrupts();
+    if (auto steered = steer(**source, loaded->access.rider, gate->port()); !steered)
+        return steered;
+    Status perceived = perceive_beside(*gate, std::move(source).value(), channel);
+    walk_.reset();
+    if (!perceived) return perceived;
+    while (!options_.once && !interrupted()) {  // the gate keeps answering that the frames are old
+        look_after(*gate, channel);
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return {};
+}
+
+/// Loads the model that pages show. Without a model, pages show only the space that the machine
+/// occupies.
+Result<std::optional<io::MachineModel>> load_model(const ServeOptions& options,
+                                                   const std::optional<io::MachineFile>& machine) {
+    if (options.model.empty())
+        return machine ? built_in_model(machine->name) : std::optional<io::MachineModel>{};
+    auto model = find_model(options.model);
+    if (!model) return model.error();
+    return std::optional<io::MachineModel>(std::move(model).value());
+}
+
+/// `surefoot serve`: runs perception on a source and starts the gate process beside it.
+int serve(const ServeOptions& options) {
+    auto settings = load_settings(options.common);
+    if (!settings) return report(settings.error());
+    const auto machine = load_machine(options.machine);
+    if (!machine) return report(machine.error());
+    const auto model = load_model(options, *machine);
+    if (!model) return report(model.error());
+    if (options.no_page && !options.record_dir.empty()) {
+        return report(
+            usage_error("--record-dir: without the page there is nobody to begin a recording"));
+    }
+    if (!options.out_dir.empty()) {
+        if (auto made = io::make_folder(options.out_dir); !made) return report(made.error());
+    }
+    const auto executor = make_executor(options.common);
+    Service service(options, std::move(*settings), *machine, *model, *executor);
+    const Status served = service.run();
+    if (options.common.json) print_answer(serve_json(service.steps()));
+    return served ? kExitOk : report(served.error());
+}
+
+}  // namespace
+
+void add_serve(VerbGroup verbs) {
+    auto [verb, o] = verbs.add<ServeOptions>(
+        "serve",
+        "the whole chain, live, with the gate process beside it that answers over a "
+        "WebSocket (docs/reference/rosbridge.md)",
+        "surefoot serve sim:walk_floor --vouch 1 --walk 9,9 --port 0 --once "
+        "--set sim.sensor=analytic",
+        serve);
+    verb.option("source", o.source, "as for run").required();
+    verb.option("--rig", o.rig_file, "calibration, where the source has none").value("FILE");
+    verb.option("--machine", o.machine, "machine file, or a built-in name").show_default();
+    verb.option("--model",
+                o.model,
+                "what the machine looks like on the page: a model file or a built-in name; "
+                "unless given the built-in one of the machine's name")
+        .value("FILE|NAME");
+    add_reading(verb, o.reading);
+    add_skip_broken(verb, o.reading);
+    verb.option("--rate", o.rate_hz, "frames per second of a source without stamps").value("HZ");
+    verb.option("--max-frames", o.max_frames, "ends after so many").value("N");
+    verb.option("--speed",
+                o.speed,
+                "times real time; 0 = as it comes; unless given 1 for recordings and with "
+                "--joystick, and 0 for simulated scenes")
         .not_negative()
         .value("X");
     verb.option("--port", o.port, "of the gate; 0 = any free one").in(0, 65535).show_default();
@@ -656,8 +738,9 @@ Status Service::run() {
         .value("HZ");
     verb.option("--vouch",
                 o.vouch_radius_m,
-                "the operator's word for level ground so far around the machine where it "
-                "stands; void once it has left")
+                "operator attestation: radius around the machine within which ground that was not "
+                "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "
+                "rex). The attestation ends when the machine leaves the circle")
         .not_negative()
         .value("M");
     verb.option("--walk",

@@ -2,7 +2,9 @@
 import collections
 import statistics
 
-FINDER_SEEDS = (9_001,)  # nothing was chosen by them
+from lab_figures import fill, read, table
+
+FINDER_SEEDS = (9_001,)  # no setting was chosen with these
 RIG_SEEDS = (9_004, 9_005, 9_006)
 IMAGE_SETS = (("chess_fisheye", "calibration/chess_fisheye", "chessboard:9x6:0.02423"),
               ("chess_pinhole", "calibration/chess_pinhole", "chessboard:9x6:1"),
@@ -12,28 +14,28 @@ EMPTY_SETS = (("garden_walk", "real/garden_walk", "chessboard:9x6:0.03"),
               ("bumblebee_pairs", "real/bumblebee_pairs", "chessboard:9x6:0.03"))
 
 
-def measure(place, read):
-    """Runs what is not there yet; gives the rows of all finders, of images without a board, of rigs and of suggestions."""
-    folder = place.folder("boards")
+def measure(lab):
+    """Runs the missing measurements. Returns the rows of the finders, of images without a board, of rigs and of suggestions."""
+    folder = lab.folder("boards")
 
     def kept(name, *words):
         path = folder / f"{name}.csv"
-        if not path.exists() and not place.redraw:
+        if not path.exists() and not lab.redraw:
             part = path.with_suffix(".part")
-            place.run("board_finders", part, *words)
+            lab.run("board_finders", part, *words)
             part.rename(path)
         return read(path) if path.exists() else []
 
     found = [row for seed in FINDER_SEEDS for row in kept(f"rendered_{seed}", "rendered", seed, 1)]
     for name, where, board in IMAGE_SETS:
-        found += kept(name, "images", name, place.data / where, board)
+        found += kept(name, "images", name, lab.data / where, board)
     empty = [row for name, where, board in EMPTY_SETS
-             for row in kept(name, "images", name, place.data / where, board, "ours")]
+             for row in kept(name, "images", name, lab.data / where, board, "ours")]
     rigs, advice = [], []
     for seed in RIG_SEEDS:
         own = folder / f"rigs_{seed}"
-        if not (own / "done").exists() and not place.redraw:
-            place.run("wide_rigs", own, seed, 1)
+        if not (own / "done").exists() and not lab.redraw:
+            lab.run("wide_rigs", own, seed, 1)
             (own / "done").touch()
         if (own / "done").exists():
             rigs += read(own / "rigs.csv")
@@ -42,17 +44,17 @@ def measure(place, read):
 
 
 def finder_rows(rows):
-    """Of rendered boards those count that are right: every corner within 1.5 px of the true one; in brackets those found."""
+    """Boards found by each finder. A rendered board counts when every corner lies within 1.5 px of the true one; brackets: all found."""
     finders = list(dict.fromkeys(r["finder"] for r in rows))
     is_rendered = lambda name: " deg " in name  # noqa: E731
     groups = collections.OrderedDict()
     for row in rows:
         groups.setdefault(row["set"], []).append(row)
         if is_rendered(row["set"]):
-            look = row["image"].rsplit(" ", 1)[0]
-            groups.setdefault(f"look: {look}", []).append(row)
+            condition = row["image"].rsplit(" ", 1)[0]
+            groups.setdefault(f"condition: {condition}", []).append(row)
             groups.setdefault("all rendered", []).append(row)
-    order = sorted(groups, key=lambda name: (not is_rendered(name), not name.startswith("look"), name != "all rendered"))
+    order = sorted(groups, key=lambda name: (not is_rendered(name), not name.startswith("condition"), name != "all rendered"))
     body = []
     for name in order:
         mine = groups[name]
@@ -67,7 +69,7 @@ def finder_rows(rows):
     for finder in finders:
         ms = sorted(float(r["ms"]) for r in rows if r["finder"] == finder)
         times.append(f"{statistics.median(ms):.0f} / {ms[-1]:.0f}")
-    body.append(["time of an image [ms]: median / longest", len(rows) // len(finders)] + times)
+    body.append(["time per image [ms]: median / longest", len(rows) // len(finders)] + times)
     return ["set", "images"] + finders, body
 
 
@@ -77,7 +79,7 @@ def empty_rows(rows):
         mine = [r for r in rows if r["set"] == name]
         ms = sorted(float(r["ms"]) for r in mine)
         body.append([name, len(mine), sum(int(r["found"]) for r in mine), f"{statistics.median(ms):.0f} / {ms[-1]:.0f}"])
-    return ["set without a board", "images", "boards found", "time of an image [ms]: median / longest"], body
+    return ["set without a board", "images", "boards found", "time per image [ms]: median / longest"], body
 
 
 def within(rows, error, sigma, times):
@@ -96,12 +98,12 @@ def rig_rows(rows):
                      within(mine, "baseline_mm", "baseline_sigma_mm", 3), f"{max(map(abs, shares)):.1f}",
                      f"{statistics.median(float(r['depth_sigma_mm']) for r in mine):.2f}",
                      within(mine, "depth_mm", "depth_sigma_mm", 3), f"{max(map(abs, depths)):.1f}"])
-    return ["lens", "rigs", "pairs used", "baseline: stated sigma, median [mm]", "within 3 sigma", "largest [sigma]",
-            "depth at 1 m: stated sigma, median [mm]", "within 3 sigma", "largest [sigma]"], body
+    return ["lens", "rigs", "pairs used", "baseline: stated sigma, median [mm]", "errors within 3 sigma", "largest error [sigma]",
+            "depth at 1 m: stated sigma, median [mm]", "errors within 3 sigma", "largest error [sigma]"], body
 
 
 def advice_rows(rows):
-    """A line a lens and chosen model: what was suggested, and how the two explain boards that they were not fitted to."""
+    """One row per lens and chosen model: the suggested models, and the errors of both on boards that the fit did not use."""
     body = []
     for lens, chosen in dict.fromkeys((r["lens"], r["chosen"]) for r in rows):
         mine = [r for r in rows if (r["lens"], r["chosen"]) == (lens, chosen)]
@@ -109,15 +111,19 @@ def advice_rows(rows):
         pixels = [f"{float(r['better_px']):.2f} / {float(r['chosen_px']):.2f}" for r in mine if r["suggested"]]
         body.append([lens, mine[0]["kind"], chosen, ", ".join(f"{n} {name}" for name, n in counts.items()),
                      ", ".join(pixels) or "-", f"{sum(int(r['calibrated']) for r in mine)} of {len(mine)}"])
-    return ["lens", "its model", "chosen model", "suggested", "rms of the suggested / chosen model [px]",
+    return ["lens", "true model", "chosen model", "suggested", "rms of the suggested / chosen model [px]",
             "calibrated with the chosen model"], body
 
 
-def lines(place, read, table):
-    found, empty, rigs, advice = measure(place, read)
+def boards(lab):
+    """Chessboards through wide lenses: finders, stated sigma, suggested lens models."""
+    found, empty, rigs, advice = measure(lab)
     text = []
     for title, rows, make in (("Boards found", found, finder_rows), ("Images without a board", empty, empty_rows),
                               ("Rigs of wide lenses", rigs, rig_rows), ("Suggested lens models", advice, advice_rows)):
         text += ["", f"### {title}", ""]
         text += table(*make(rows)) if rows else ["Not measured yet."]
-    return text[1:]
+    fill("boards", text[1:])
+
+
+EXPERIMENTS = {"boards": boards}

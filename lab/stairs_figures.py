@@ -1,6 +1,6 @@
-"""What `tools/experiments stairs` measured: shares and scatters with their intervals, and the figures that are required.
+"""Results of `tools/experiments stairs`: shares and scatters with their intervals, and the required figures.
 
-Rows are those of lab/stairs_truth/main, a dictionary a line. Used by tools/experiments (tables) and tools/accuracy (page).
+Rows are those of lab/stairs_truth/main, a dictionary a line. Used by the stairs experiments (tables) and tools/accuracy (page).
 """
 import csv
 import math
@@ -19,7 +19,7 @@ PARTS = {"up": (STAIRS_UP, 40, 0), "few": (STAIRS_FEW, 200, 0), "down_far": (["l
          "down_near": (["lab/scenes/stairs_down.yaml#down_near"], 200, 0), "kerbs": (["lab/scenes/kerb_ahead.yaml"], 1000, 0),
          "none": (NO_STAIRS, 10, 1), "thesis": (STAIRS_THESIS, 50, 0), "doors": (STAIRS_DOORS, 40, 0)}
 MODES = ("analytic_0.25", "analytic_0.5", "images_0.25", "images_0.5")
-MOST_PX = {"images_0.25": 0.3, "images_0.5": 0.6}  # textures make of one noise of the images more or less of it in disparities
+MOST_PX = {"images_0.25": 0.3, "images_0.5": 0.6}  # the same image noise gives other disparity noise on other textures
 
 
 def short_name(scene):
@@ -69,7 +69,7 @@ def scatter(errors):
 
 
 def numbers(rows, key):
-    """Those that are there."""
+    """The values that exist."""
     return [value for r in rows if r[key] and not math.isnan(value := float(r[key]))]
 
 
@@ -97,7 +97,7 @@ def is_thesis_flight_true(row):
 
 
 def required(folder):
-    """(what, found, required, met) for each figure that was measured; of what is told after all looks."""
+    """(what, found, required, met) for each measured figure, from the results after all observations."""
     rows = {(part, mode): [r for r in read_part(folder, part, mode) if r["way"] == "told"] for part in PARTS for mode in MODES}
     figures = []
 
