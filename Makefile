@@ -28,7 +28,7 @@ demo:
 	@test -f $(BUILD)/build.ninja || cmake --preset release -DSUREFOOT_DEVELOPER=OFF > /dev/null
 	@NINJA_STATUS='[%f of %t, %e s] ' cmake --build $(BUILD) -j $(JOBS) --target surefoot surefoot-gate
 	@echo "make demo: 4. the demonstration"
-	@tools/demo $(BUILD)/apps/surefoot/surefoot $(OUT)/demo
+	@tools/demo $(BUILD)/bin/surefoot $(OUT)/demo
 
 test: build
 	@tools/setup page

@@ -65,7 +65,7 @@ def calibration_real(lab):
         out = lab.folder(f"calibration/{name}_{model}")
         answer = out / "answer.json"
         if not answer.exists() and not lab.redraw:
-            said = subprocess.run([str(lab.build / "apps/surefoot/surefoot"), "calibrate", "stereo",
+            said = subprocess.run([str(lab.build / "bin/surefoot"), "calibrate", "stereo",
                                    str(lab.data / "calibration" / name), "--board", board, "--model", model, "--out", str(out),
                                    "--json"], check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
             answer.write_text(said.stdout)

@@ -25,7 +25,7 @@ def mount(lab):
             return
         words = [f"sim.knock.at_s={KNOCK_S}", f"sim.knock.{knock}"] if knock else []
         settings = [w for s in ["sim.profile=zed", "sim.rate_hz=6", *words] for w in ("--set", s)]
-        subprocess.run([str(lab.build / "apps/surefoot/surefoot"), "run", f"sim:{scene}", "--seed", str(seed), "--machine",
+        subprocess.run([str(lab.build / "bin/surefoot"), "run", f"sim:{scene}", "--seed", str(seed), "--machine",
                         "rex", "--threads", "1", "--out", str(folder), *settings], check=True, stdout=subprocess.DEVNULL,
                        stderr=subprocess.DEVNULL)
 

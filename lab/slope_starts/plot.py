@@ -16,7 +16,7 @@ def slope_starts(lab):
         for seed in range(50_101, 50_117):
             folder = out / f"{number}_{seed}"
             if not (folder / "report.json").exists():  # a finished run is kept
-                subprocess.run([str(lab.build / "apps/surefoot/surefoot"), "run", f"sim:{scene}", "--seed", str(seed), "--max-frames", "60",
+                subprocess.run([str(lab.build / "bin/surefoot"), "run", f"sim:{scene}", "--seed", str(seed), "--max-frames", "60",
                                 "--threads", "1", "--out", str(folder)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             truth = json.loads((folder / "report.json").read_text())["truth"]
             medians_mm.append(1e3 * truth["elevation_away_from_edges"]["median_abs_m"])
