@@ -15,7 +15,7 @@ struct AuditDifference {
     std::string file;
     std::uint64_t offset = 0;    ///< of the record's frame in the file [bytes]
     std::uint64_t sequence = 0;  ///< number of that frame
-    std::vector<wire::FieldDifference> fields;
+    std::vector<gate_process::FieldDifference> fields;
 };
 
 /// Result of deciding every verdict of an audit log again: how many are equal, how many differ.

@@ -14,7 +14,7 @@
 namespace {
 
 using namespace surefoot;
-using namespace surefoot::wire;
+using namespace surefoot::gate_process;
 
 /// One that may take a step forward.
 Machine small_machine() {
@@ -37,7 +37,7 @@ Machine small_machine() {
     l.drop_evidence = 128;
     l.drift_tenth_mm = 250;
     l.frame_age_ns = l.pose_age_ns = l.verdict_ttl_ns = 200'000'000;
-    l.vouch_radius_tenth_mm = 10'000;
+    l.attestation_radius_tenth_mm = 10'000;
     must(m.problem() == nullptr);
     return m;
 }

@@ -20,7 +20,7 @@
 namespace {
 
 using namespace surefoot;
-using namespace surefoot::wire;
+using namespace surefoot::gate_process;
 
 constexpr const char* kOperatorToken = "operator-0123456789";
 constexpr const char* kRiderToken = "rider-0123456789ab";

@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const bool goes_on = client.take(line.empty() || line[0] != '\x01', line, now_ns).ok();
         hear(show, line);
         now_ns += data[0] * std::int64_t{1'000'000};
-        show.look(now_ns, std::nullopt);
+        show.observation(now_ns, std::nullopt);
         const auto messages = client.next(show, now_ns);
         const auto texts = std::count_if(
             messages.begin(), messages.end(), [](const auto& m) { return m.is_text; });

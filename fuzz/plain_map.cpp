@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "surefoot/core/time.hpp"
-#include "surefoot/elevation/region/map_region.hpp"
+#include "surefoot/elevation/region/region_transfer.hpp"
 #include "surefoot/elevation/sampling/depth_points.hpp"
 
 namespace surefoot::fuzz {
@@ -18,8 +18,8 @@ constexpr float kFaceDensity = 3.0F;
 constexpr int kSeenAbove = 2;
 constexpr int kSureAbove = 4;
 constexpr int kMostAbove = 8;
-constexpr float kNewLook = 0.25F;
-constexpr float kFirstLook = 0.5F;
+constexpr float kNewObservation = 0.25F;
+constexpr float kFirstObservation = 0.5F;
 constexpr int kGone = 16;
 constexpr int kBeside = 2;
 
@@ -175,7 +175,7 @@ void PlainMap::fuse(const Samples& samples,
                     std::int64_t time_ns,
                     FusionCounts& counts) {
     view_ = views_.look_from(T_odom_body);
-    SightEnds ends;
+    RayEndpoints ends;
     ends.reset(geometry_, camera_m);
     std::vector<std::pair<grid::Cell, float>> agreed;  // what a look before said as well
     for (const auto& [index, heights] : samples) {
@@ -193,7 +193,7 @@ void PlainMap::fuse(const Samples& samples,
         }
         const auto ix = static_cast<int>(index.second - first_ix_);
         const auto iy = static_cast<int>(index.first - first_iy_);
-        Seen seen{*measured, kNan, measured->z_m};
+        CellObservation seen{*measured, kNan, measured->z_m};
         if (expected != nullptr) {
             const auto points = static_cast<float>(heights.z_m.size());
             const float level = expected->at(ix, iy, measured->z_m);
@@ -213,7 +213,7 @@ void PlainMap::fuse(const Samples& samples,
         if (is_agreed) agreed.emplace_back(grid::Cell{ix, iy}, not_above_m(*measured));
     }
     look_overhead(ends);
-    LinesOfSight lines;
+    FreeSpaceRays lines;
     lines.reset(geometry_, camera_m);
     for (const auto& [at, z_m] : agreed) lines.add(at, z_m);
     lines.finish();
@@ -224,7 +224,7 @@ void PlainMap::fuse(const Samples& samples,
     counts.cells_cleared += static_cast<std::int64_t>(gone.size());
 }
 
-void PlainMap::look_over_unknown(const LinesOfSight& lines) {
+void PlainMap::look_over_unknown(const FreeSpaceRays& lines) {
     for (int iy = 0; iy < geometry_.ny; ++iy) {
         for (int ix = 0; ix < geometry_.nx; ++ix) {
             const float line_z_m = lines.lowest_over({ix, iy});
@@ -244,8 +244,8 @@ void PlainMap::see_over(Cell& cell, float line_z_m) {
     }
 }
 
-std::vector<PlainMap::Index> PlainMap::find_gone(const SightEnds& ends,
-                                                 const LinesOfSight& lines,
+std::vector<PlainMap::Index> PlainMap::find_gone(const RayEndpoints& ends,
+                                                 const FreeSpaceRays& lines,
                                                  std::int64_t time_ns) {
     const VisibilityConfig& visibility = config_.visibility;
     const auto margin_m = static_cast<float>(visibility.margin_m);
@@ -299,7 +299,7 @@ void PlainMap::set_confidence(Cell& cell, float confidence) {
     cell.steady = static_cast<int>(std::lround(kGone * confidence));
 }
 
-void PlainMap::look_overhead(const SightEnds& ends) {
+void PlainMap::look_overhead(const RayEndpoints& ends) {
     const auto margin_m = static_cast<float>(config_.visibility.margin_m);
     for (int iy = 0; iy < geometry_.ny; ++iy) {
         for (int ix = 0; ix < geometry_.nx; ++ix) {
@@ -312,7 +312,10 @@ void PlainMap::look_overhead(const SightEnds& ends) {
     }
 }
 
-void PlainMap::update(Cell& cell, const Seen& seen, std::int64_t time_ns, FusionCounts& counts) {
+void PlainMap::update(Cell& cell,
+                      const CellObservation& seen,
+                      std::int64_t time_ns,
+                      FusionCounts& counts) {
     const CellMeasurement& measured = seen.measured;
     ++counts.cells_measured;
     if (std::isnan(cell.height_m) || !std::isfinite(cell.height_var_m2)) {
@@ -336,7 +339,7 @@ void PlainMap::update(Cell& cell, const Seen& seen, std::int64_t time_ns, Fusion
         return;
     }
     ++counts.cells_inflated;
-    cell.confidence *= 1.0F - kNewLook;
+    cell.confidence *= 1.0F - kNewObservation;
     const auto hangs = static_cast<float>(config_.min_overhead_m);
     if (result.outcome == FusionOutcome::replaced) {
         start(cell, seen, time_ns);
@@ -348,7 +351,7 @@ void PlainMap::update(Cell& cell, const Seen& seen, std::int64_t time_ns, Fusion
     }
 }
 
-void PlainMap::start(Cell& cell, const Seen& seen, std::int64_t time_ns) {
+void PlainMap::start(Cell& cell, const CellObservation& seen, std::int64_t time_ns) {
     const CellMeasurement& measured = seen.measured;
     cell.height_m = measured.z_m;
     cell.height_var_m2 =
@@ -358,7 +361,7 @@ void PlainMap::start(Cell& cell, const Seen& seen, std::int64_t time_ns) {
     cell.horizontal_drift_m = 0.0F;
     cell.highest_m = measured.highest_m;
     cell.lowest_m = measured.lowest_m;
-    set_confidence(cell, kFirstLook);
+    set_confidence(cell, kFirstObservation);
     cell.density_ratio = seen.density_ratio;
     cell.free_above_m = kNan;
     cell.seen_through = 0;
@@ -369,7 +372,10 @@ void PlainMap::start(Cell& cell, const Seen& seen, std::int64_t time_ns) {
     set_clearance(cell);
 }
 
-void PlainMap::agree(Cell& cell, const Height& fused, const Seen& seen, std::int64_t time_ns) {
+void PlainMap::agree(Cell& cell,
+                     const Height& fused,
+                     const CellObservation& seen,
+                     std::int64_t time_ns) {
     const CellMeasurement& measured = seen.measured;
     if (views_.is_new_since(cell.view)) {
         cell.height_m = static_cast<float>(fused.z_m);
@@ -386,12 +392,12 @@ void PlainMap::agree(Cell& cell, const Height& fused, const Seen& seen, std::int
     cell.horizontal_drift_m = 0.0F;
     cell.highest_m = std::max(cell.highest_m, measured.highest_m);
     cell.lowest_m = std::min(cell.lowest_m, measured.lowest_m);
-    set_confidence(cell, cell.confidence + kNewLook * (1.0F - cell.confidence));
+    set_confidence(cell, cell.confidence + kNewObservation * (1.0F - cell.confidence));
     cell.seen_through = 0;
     if (std::isnan(cell.density_ratio)) {
         cell.density_ratio = seen.density_ratio;
     } else if (!std::isnan(seen.density_ratio)) {
-        cell.density_ratio += kNewLook * (seen.density_ratio - cell.density_ratio);
+        cell.density_ratio += kNewObservation * (seen.density_ratio - cell.density_ratio);
     }
     cell.bottom_m = std::min(cell.bottom_m, seen.bottom_m);
     if (!cell.overhead_hangs) see_no_more_above(cell);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "surefoot/elevation/elevation_map.hpp"
-#include "surefoot/elevation/visibility/sight_ends.hpp"
+#include "surefoot/elevation/visibility/ray_endpoints.hpp"
 #include "surefoot/elevation/visibility/visibility.hpp"
 
 namespace surefoot::fuzz {
@@ -77,7 +77,7 @@ class PlainMap {
         int seen_through = 0;
     };
     /// Measurement of one cell in one frame.
-    struct Seen {
+    struct CellObservation {
         elevation::CellMeasurement measured;
         float density_ratio = kNan;
         float bottom_m = kNan;
@@ -102,19 +102,25 @@ class PlainMap {
               const elevation::ExpectedPoints* expected,
               std::int64_t time_ns,
               FusionCounts& counts);
-    void update(Cell& cell, const Seen& seen, std::int64_t time_ns, FusionCounts& counts);
-    void start(Cell& cell, const Seen& seen, std::int64_t time_ns);
-    void agree(Cell& cell, const elevation::Height& fused, const Seen& seen, std::int64_t time_ns);
+    void update(Cell& cell,
+                const CellObservation& seen,
+                std::int64_t time_ns,
+                FusionCounts& counts);
+    void start(Cell& cell, const CellObservation& seen, std::int64_t time_ns);
+    void agree(Cell& cell,
+               const elevation::Height& fused,
+               const CellObservation& seen,
+               std::int64_t time_ns);
     /// Upper bound of a measured height, at the sigmas of the visibility clean-up.
     [[nodiscard]] float not_above_m(const elevation::CellMeasurement& measured) const {
         return measured.z_m +
                static_cast<float>(config_.visibility.sigmas) * std::sqrt(measured.var_m2);
     }
-    void look_overhead(const elevation::SightEnds& ends);
-    void look_over_unknown(const elevation::LinesOfSight& lines);
+    void look_overhead(const elevation::RayEndpoints& ends);
+    void look_over_unknown(const elevation::FreeSpaceRays& lines);
     /// Cells whose surface is gone because rays passed through it (visibility clean-up).
-    [[nodiscard]] std::vector<Index> find_gone(const elevation::SightEnds& ends,
-                                               const elevation::LinesOfSight& lines,
+    [[nodiscard]] std::vector<Index> find_gone(const elevation::RayEndpoints& ends,
+                                               const elevation::FreeSpaceRays& lines,
                                                std::int64_t time_ns);
     [[nodiscard]] bool stands_beside(Index index, std::int64_t time_ns) const;
     static void see_over(Cell& cell, float line_z_m);

@@ -15,24 +15,24 @@
 namespace {
 
 using namespace surefoot;
-using wire::Json;
+using gate_process::Json;
 
 constexpr std::uint64_t kConnection = 77;
 
 /// Remembers to whom it said OK in the present call.
-struct Witness : wire::testing::ScriptedGate {
-    [[nodiscard]] wire::Answer ask_step(const wire::StepQuestion& question,
-                                        std::int64_t now_ns) override {
+struct Witness : gate_process::testing::ScriptedGate {
+    [[nodiscard]] gate_process::Answer ask_step(const gate_process::StepQuestion& question,
+                                                std::int64_t now_ns) override {
         must(!asked);  // one message, one question
         asked = question;
-        wire::Answer answer = ScriptedGate::ask_step(question, now_ns);
+        gate_process::Answer answer = ScriptedGate::ask_step(question, now_ns);
         allowed = question.connection == kConnection && answer.verdict.allows_step(now_ns) &&
                   answer.verdict.connection == kConnection &&
                   answer.verdict.sequence == question.sequence &&
                   answer.verdict.command == question.command;
         return answer;
     }
-    std::optional<wire::StepQuestion> asked;
+    std::optional<gate_process::StepQuestion> asked;
     bool allowed = false;
 };
 
@@ -82,13 +82,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size < 2) return 0;
     Witness gate;
     set_mood(gate, data[0]);
-    wire::SessionLimits limits;
+    gate_process::SessionLimits limits;
     limits.messages = {.per_s = 100, .burst = 8};
     limits.refusals = {.per_s = 100, .burst = 8};
-    const wire::Access access = wire::testing::three_tokens();
+    const gate_process::Access access = gate_process::testing::three_tokens();
     // Any role; what it does not allow must not reach the gate.
-    const auto role = static_cast<wire::Role>((data[0] >> 4U) % 4U);
-    wire::RosbridgeSession session(kConnection, gate, limits, {role, &access});
+    const auto role = static_cast<gate_process::Role>((data[0] >> 4U) % 4U);
+    gate_process::RosbridgeSession session(kConnection, gate, limits, {role, &access});
     std::string_view rest(reinterpret_cast<const char*>(data) + 2, size - 2);
     std::int64_t now_ns = 1'000'000'000;
     for (bool dropped = false; !rest.empty() && !dropped;) {
@@ -96,14 +96,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         rest.remove_prefix(std::min(rest.size(), line.size() + 1));
         gate.asked.reset();
         gate.allowed = false;
-        const wire::Reaction reaction = session.on_message(line, now_ns);
+        const gate_process::Reaction reaction = session.on_message(line, now_ns);
         for (const auto& reply : reaction.replies) check_reply(gate, reply);
         for (const auto& message : reaction.published) {
-            if (message.topic == wire::Topic::verdict)
+            if (message.topic == gate_process::Topic::verdict)
                 check_verdict(gate, Json::parse(*message.body));
             for (const auto& text : session.on_topic(message, now_ns)) (void)Json::parse(text);
         }
-        now_ns += data[1] * wire::testing::kMs;
+        now_ns += data[1] * gate_process::testing::kMs;
         for (const auto& text : session.due(now_ns)) (void)Json::parse(text);
         dropped = reaction.drop;
     }

@@ -21,7 +21,7 @@
 namespace {
 
 using namespace surefoot;
-using namespace surefoot::wire;
+using namespace surefoot::gate_process;
 
 const char* const kHandshake =
     "GET / HTTP/1.1\r\nHost: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
@@ -174,7 +174,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     service.gate.questions.clear();
     service.gate.goals.clear();
     service.gate.rearmed.clear();
-    service.gate.vouched.clear();
+    service.gate.attested.clear();
     service.gate.forgotten.clear();
     service.gate.acts.clear();
     service.gate.last_sequence.clear();

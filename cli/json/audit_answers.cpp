@@ -14,10 +14,10 @@ namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written, so the same run gives the same bytes.
-using wire::Json;
+using gate_process::Json;
 constexpr int kIndent = 2;
 
-Json summary_json(const wire::AuditSummary& summary) {
+Json summary_json(const gate_process::AuditSummary& summary) {
     Json damage = nullptr;
     if (summary.damage) {
         damage = {
@@ -39,14 +39,15 @@ Json summary_json(const wire::AuditSummary& summary) {
 
 }  // namespace
 
-std::string audit_json(const wire::AuditSummary& summary) {
+std::string audit_json(const gate_process::AuditSummary& summary) {
     return summary_json(summary).dump(kIndent);
 }
 
-std::string audit_acts_json(const wire::AuditSummary& summary, const std::vector<wire::Act>& acts) {
+std::string audit_acts_json(const gate_process::AuditSummary& summary,
+                            const std::vector<gate_process::Act>& acts) {
     Json object = summary_json(summary);
     Json list = Json::array();
-    for (const wire::Act& act : acts) {
+    for (const gate_process::Act& act : acts) {
         list.push_back({{"time_ns", act.time_ns},
                         {"act", to_string(act.kind)},
                         {"outcome", to_string(act.outcome)},
@@ -60,14 +61,15 @@ std::string audit_acts_json(const wire::AuditSummary& summary, const std::vector
     return object.dump(kIndent);
 }
 
-std::string audit_replay_json(const wire::AuditSummary& summary, const AuditReplay& replay) {
+std::string audit_replay_json(const gate_process::AuditSummary& summary,
+                              const AuditReplay& replay) {
     Json object = summary_json(summary);
     object["equal"] = replay.equal;
     object["different"] = replay.different;
     Json first = nullptr;
     if (replay.first) {
         Json fields = Json::array();
-        for (const wire::FieldDifference& d : replay.first->fields)
+        for (const gate_process::FieldDifference& d : replay.first->fields)
             fields.push_back(
                 {{"field", d.field}, {"recorded", d.recorded}, {"replayed", d.replayed}});
         first = {{"file", replay.first->file},

@@ -11,10 +11,10 @@
 // written as null.
 namespace surefoot::app {
 
-[[nodiscard]] std::string audit_json(const wire::AuditSummary& summary);
-[[nodiscard]] std::string audit_acts_json(const wire::AuditSummary& summary,
-                                          const std::vector<wire::Act>& acts);
-[[nodiscard]] std::string audit_replay_json(const wire::AuditSummary& summary,
+[[nodiscard]] std::string audit_json(const gate_process::AuditSummary& summary);
+[[nodiscard]] std::string audit_acts_json(const gate_process::AuditSummary& summary,
+                                          const std::vector<gate_process::Act>& acts);
+[[nodiscard]] std::string audit_replay_json(const gate_process::AuditSummary& summary,
                                             const AuditReplay& replay);
 
 }  // namespace surefoot::app

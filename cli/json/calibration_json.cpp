@@ -11,19 +11,20 @@ namespace {
 // Keys keep the order in which they are written, so the same run gives the same bytes.
 using Json = nlohmann::ordered_json;
 
-Json eye_json(const CalibratedEye& eye, calibration::LensKind kind) {
+Json camera_fit_json(const CalibratedCamera& this_camera, calibration::LensKind kind) {
     Json parameters = Json::object();
     Json sigmas = Json::object();
     const auto names = calibration::parameter_names(kind);
     for (std::size_t i = 0; i < names.size(); ++i) {
-        parameters[names[i]] = eye.parameters[static_cast<Eigen::Index>(i)];
-        sigmas[names[i]] = eye.sigmas[static_cast<Eigen::Index>(i)];
+        parameters[names[i]] = this_camera.parameters[static_cast<Eigen::Index>(i)];
+        sigmas[names[i]] = this_camera.sigmas[static_cast<Eigen::Index>(i)];
     }
-    return {{"name", eye.name},
-            {"parameters", parameters},
-            {"sigmas", sigmas},
-            {"mapping_sigma_px",
-             {{"median", eye.mapping.median_px}, {"largest", eye.mapping.largest_px}}}};
+    return {
+        {"name", this_camera.name},
+        {"parameters", parameters},
+        {"sigmas", sigmas},
+        {"mapping_sigma_px",
+         {{"median", this_camera.mapping.median_px}, {"largest", this_camera.mapping.largest_px}}}};
 }
 
 Json rejected_json(const CalibrationRun& run) {
@@ -66,15 +67,16 @@ Json points_json(const calibration::BoardView& view, const std::string& problem)
 }  // namespace
 
 std::string calibration_json(const CalibrationRun& run) {
-    const auto eyes = calibrated_eyes(run);
+    const auto both_cameras = calibrated_cameras(run);
     Json cameras = Json::array();
-    for (const CalibratedEye& eye : eyes) cameras.push_back(eye_json(eye, lens_kind(run)));
+    for (const CalibratedCamera& this_camera : both_cameras)
+        cameras.push_back(camera_fit_json(this_camera, lens_kind(run)));
     Json json = {
         {"model", calibration::kLensKindNames[static_cast<std::size_t>(lens_kind(run))]},
         {"width", run.size.width},
         {"height", run.size.height},
         {"views", run.views.size()},
-        {"used", eyes.front().views.size()},
+        {"used", both_cameras.front().views.size()},
         {"rms_px", run.stereo ? run.stereo->rms_px : run.mono->rms_px},
         {"sigma_px", run.stereo ? run.stereo->sigma_px : run.mono->sigma_px},
     };

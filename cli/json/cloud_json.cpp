@@ -12,8 +12,8 @@
 namespace surefoot::app {
 namespace {
 
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 constexpr int kIndent = 2;
 
 Json vector(const Eigen::Vector3d& v) {

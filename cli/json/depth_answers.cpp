@@ -14,8 +14,8 @@ namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written, so the same run gives the same bytes.
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 constexpr int kIndent = 2;
 
 }  // namespace

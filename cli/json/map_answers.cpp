@@ -13,8 +13,8 @@ namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written, so the same run gives the same bytes.
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kIndent = 2;

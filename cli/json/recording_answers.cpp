@@ -14,7 +14,7 @@ namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written, so the same run gives the same bytes.
-using wire::Json;
+using gate_process::Json;
 constexpr int kIndent = 2;
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written, so the same run gives the same bytes.
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kIndent = 2;
@@ -48,9 +48,9 @@ std::string verdict_json(const gate::Verdict& verdict,
         {"max_drift_m", kTenthMm_m * static_cast<double>(e.max_drift_tenth_mm)},
         {"cells", e.cells},
         {"known_cells", e.known_cells},
-        {"vouched_cells", e.vouched_cells}};
+        {"vouched_cells", e.attested_cells}};
     const Json object = {{"verdict", to_string(verdict.decision)},
-                         {"reasons", wire::reasons_array(verdict.reasons)},
+                         {"reasons", gate_process::reasons_array(verdict.reasons)},
                          {"text", text},
                          {"evidence", evidence},
                          {"assumed", assumed},

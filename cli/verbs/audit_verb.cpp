@@ -19,7 +19,7 @@ struct AuditOptions {
     std::string path;  ///< folder of a log, or one of its files
 };
 
-void say_what_is_missing(const wire::AuditSummary& summary) {
+void say_what_is_missing(const gate_process::AuditSummary& summary) {
     for (const std::string& sentence : summary.unfinished) log_warning(sentence);
     if (summary.gaps > 0)
         log_warning(fmt::format(
@@ -27,7 +27,7 @@ void say_what_is_missing(const wire::AuditSummary& summary) {
     if (summary.damage) log_error(summary.damage->text());
 }
 
-std::string text_of(const wire::AuditSummary& summary) {
+std::string text_of(const gate_process::AuditSummary& summary) {
     return fmt::format("{} verdicts and {} acts of {} runs in {} files ({} bytes)",
                        summary.verdicts,
                        summary.acts,
@@ -39,18 +39,19 @@ std::string text_of(const wire::AuditSummary& summary) {
 void print_difference(const AuditDifference& first) {
     fmt::print(
         "first difference: {}, byte {}, frame {}\n", first.file, first.offset, first.sequence);
-    for (const wire::FieldDifference& d : first.fields)
+    for (const gate_process::FieldDifference& d : first.fields)
         fmt::print("  {}: recorded {}, now {}\n", d.field, d.recorded, d.replayed);
 }
 
-void print_act(const wire::Act& act) {
+void print_act(const gate_process::Act& act) {
     fmt::print("{:.3f} s  {} {}: {}",
                seconds_from_ns(act.time_ns),
                to_string(act.role),
                to_string(act.kind),
                to_string(act.outcome));
     if (act.connection != 0) fmt::print(", connection {}", act.connection);
-    if (act.kind == wire::ActKind::attest) fmt::print(", {:.4f} m", act.radius_tenth_mm * 1e-4);
+    if (act.kind == gate_process::ActKind::attest)
+        fmt::print(", {:.4f} m", act.radius_tenth_mm * 1e-4);
     if (!act.text.empty()) fmt::print(", {}", act.text);
     if (act.left_out > 0) fmt::print(" ({} refused acts before it were left out)", act.left_out);
     fmt::print("\n");
@@ -59,22 +60,22 @@ void print_act(const wire::Act& act) {
 /// `surefoot audit acts`: lists the attestations, the re-arming and the refused requests of the
 /// log.
 int audit_acts(const AuditOptions& options) {
-    std::vector<wire::Act> acts;
-    const auto summary =
-        wire::read_audit(options.path, {}, [&](const wire::Act& act) { acts.push_back(act); });
+    std::vector<gate_process::Act> acts;
+    const auto summary = gate_process::read_audit(
+        options.path, {}, [&](const gate_process::Act& act) { acts.push_back(act); });
     if (!summary) return report(summary.error());
     say_what_is_missing(*summary);
     if (options.common.json) {
         print_answer(audit_acts_json(*summary, acts));
     } else {
-        for (const wire::Act& act : acts) print_act(act);
+        for (const gate_process::Act& act : acts) print_act(act);
     }
     return summary->damage ? kExitFailed : kExitOk;
 }
 
 /// `surefoot audit verify`: checks the checksums, the chain and the gaps of an audit log.
 int audit_verify(const AuditOptions& options) {
-    const auto summary = wire::read_audit(options.path, {});
+    const auto summary = gate_process::read_audit(options.path, {});
     if (!summary) return report(summary.error());
     say_what_is_missing(*summary);
     if (options.common.json) {
@@ -88,16 +89,18 @@ int audit_verify(const AuditOptions& options) {
 /// `surefoot audit replay`: checks that the gate reproduces every verdict of the log.
 int audit_replay(const AuditOptions& options) {
     AuditReplay replay;
-    const auto summary = wire::read_audit(options.path, [&](const wire::AuditedAt& at) {
-        auto fields = wire::differences(at.record.verdict, wire::replay(at.machine, at.record));
-        if (fields.empty()) {
-            ++replay.equal;
-            return;
-        }
-        ++replay.different;
-        if (!replay.first)
-            replay.first = AuditDifference{at.file, at.offset, at.sequence, std::move(fields)};
-    });
+    const auto summary =
+        gate_process::read_audit(options.path, [&](const gate_process::AuditedAt& at) {
+            auto fields = gate_process::differences(at.record.verdict,
+                                                    gate_process::replay(at.machine, at.record));
+            if (fields.empty()) {
+                ++replay.equal;
+                return;
+            }
+            ++replay.different;
+            if (!replay.first)
+                replay.first = AuditDifference{at.file, at.offset, at.sequence, std::move(fields)};
+        });
     if (!summary) return report(summary.error());
     say_what_is_missing(*summary);
     if (options.common.json) {

@@ -26,8 +26,8 @@ struct BoardImagesOptions {
 };
 
 /// ASSUMPTION: a good camera in a well-lit room.
-sim::BoardLook room_look() {
-    sim::BoardLook look;
+sim::ImagingConditions room_look() {
+    sim::ImagingConditions look;
     look.blur_sigma_px = 0.7;
     look.noise_dn = 2.0;
     return look;
@@ -47,29 +47,30 @@ int render_boards(const BoardImagesOptions& options) {
     if (!sheet) return report(sheet.error());
     const auto rig = rig_of(options.rig);
     if (!rig) return report(rig.error());
-    const std::vector<BoardEye> eyes = eyes_of(*rig);
+    const std::vector<BoardCamera> cameras = cameras_of(*rig);
     Rng rng(options.common.seed);
-    const auto poses = shown_poses(*board, eyes, options.views, rng);
+    const auto poses = shown_poses(*board, cameras, options.views, rng);
     if (std::ssize(poses) < options.views) {
         return report(usage_error(fmt::format(
             "only {} of {} views were found in which the whole board is seen by {}; take a wider "
             "lens or a smaller baseline",
             poses.size(),
             options.views,
-            eyes.size() == 1 ? "the camera" : "both cameras")));
+            cameras.size() == 1 ? "the camera" : "both cameras")));
     }
     if (const Status made = io::make_folder(options.out_dir); !made) return report(made.error());
     ThreadPool pool(options.common.threads);
     Writes writes;
     writes += io::write_rig_yaml(io::join_path(options.out_dir, "rig.yaml"), *rig);
     for (std::size_t view = 0; view < poses.size(); ++view) {
-        for (std::size_t e = 0; e < eyes.size(); ++e) {
-            const GreyImage image = sim::render_board(*sheet,
-                                                      eyes[e].camera,
-                                                      eyes[e].T_left_eye.inverse() * poses[view],
-                                                      room_look(),
-                                                      mix_seed(options.common.seed, 2 * view + e),
-                                                      pool);
+        for (std::size_t e = 0; e < cameras.size(); ++e) {
+            const GreyImage image =
+                sim::render_board(*sheet,
+                                  cameras[e].camera,
+                                  cameras[e].T_left_camera.inverse() * poses[view],
+                                  room_look(),
+                                  mix_seed(options.common.seed, 2 * view + e),
+                                  pool);
             const char* name = e == 0 ? "left" : "right";
             writes += io::write_png(
                 io::join_path(options.out_dir, fmt::format("{}{:03}.png", name, view)), image);

@@ -27,7 +27,7 @@ struct CalibrateOptions {
     std::string source;
     std::string board;  ///< text for calibration::parse_board()
     std::string model = "pinhole5";
-    std::string eye;  ///< left | right: which camera of a stereo source
+    std::string this_camera;  ///< left | right: which camera of a stereo source
     std::string out_dir;
 };
 
@@ -89,7 +89,7 @@ Result<BoardSource> show_live(const CalibrateOptions& options,
     watch_for_interrupts();
     LiveBoards session{.address = options.source.substr(kLivePrefix.size()),
                        .stereo = options.stereo,
-                       .eye = options.eye,
+                       .camera = options.camera,
                        .config = settings->live,
                        .stop = [] { return interrupted(); }};
     session.opened = [] {
@@ -119,7 +119,7 @@ Status find_boards(const CalibrateOptions& options, CalibrationRun& run) {
     };
     const auto about = options.source.starts_with(kLivePrefix)
                            ? show_live(options, run, use)
-                           : for_board_images(options.source, options.stereo, options.eye, use);
+                           : for_board_images(options.source, options.stereo, options.camera, use);
     if (!about) return about.error();
     if (!problem.empty()) return input_error(problem);
     run.notes = about->notes;
@@ -227,28 +227,28 @@ void print_result(const CalibrationRun& run, const std::string& folder) {
         fmt::print(
             "left out {}: {}\n", run.views[rejected.index].name, why_left_out(run, rejected));
     }
-    for (const CalibratedEye& eye : calibrated_eyes(run)) {
+    for (const CalibratedCamera& this_camera : calibrated_cameras(run)) {
         fmt::print(
             "{}: f {:.2f} +- {:.2f}, {:.2f} +- {:.2f} px; centre {:.2f} +- {:.2f}, {:.2f} "
             "+- {:.2f} px; "
             "directions +- {:.3f} px in the image, {:.2f} where it is known worst{}\n",
-            eye.name,
-            eye.parameters[0],
-            eye.sigmas[0],
-            eye.parameters[1],
-            eye.sigmas[1],
-            eye.parameters[2],
-            eye.sigmas[2],
-            eye.parameters[3],
-            eye.sigmas[3],
-            eye.mapping.median_px,
-            eye.mapping.largest_px,
-            worst_words(eye.mapping));
+            this_camera.name,
+            this_camera.parameters[0],
+            this_camera.sigmas[0],
+            this_camera.parameters[1],
+            this_camera.sigmas[1],
+            this_camera.parameters[2],
+            this_camera.sigmas[2],
+            this_camera.parameters[3],
+            this_camera.sigmas[3],
+            this_camera.mapping.median_px,
+            this_camera.mapping.largest_px,
+            worst_words(this_camera.mapping));
     }
     const double radius_m = run.stereo ? run.stereo->disc_radius_m : run.mono->disc_radius_m;
     if (radius_m > 0.0)
         fmt::print("circles: diameter {:.2f} mm, as measured\n", 2.0 * kMillimetres * radius_m);
-    const std::size_t used = calibrated_eyes(run).front().views.size();
+    const std::size_t used = calibrated_cameras(run).front().views.size();
     fmt::print("{} of {} views used, rms {:.3f} px",
                used,
                run.views.size(),
@@ -338,7 +338,7 @@ void add_calibrate_mono(VerbGroup verbs) {
     verb.option("source", o.source, "folder of images, a video, or v4l2:DEVICE@WIDTHxHEIGHT")
         .required()
         .value("SOURCE");
-    verb.option("--eye", o.eye, "where there are two eyes: which").one_of({"left", "right"});
+    verb.option("--eye", o.camera, "where there are two eyes: which").one_of({"left", "right"});
     add_calibration(verb, o);
 }
 

@@ -140,7 +140,7 @@ void print_summary(std::span<const SuiteRow> rows) {
         };
         fmt::print("{:<24}{:>8}{:>6g}{:>6}{:>10.2f}{:>11.2f}{:>9.2f}{:>12.4f}{:>8g}{:>8.0f}%\n",
                    row.scene,
-                   row.carrier,
+                   row.motion_model,
                    row.noise,
                    row.cases,
                    1e3 * worst("ate_rmse_m"),
@@ -215,7 +215,7 @@ void add_eval_suite(VerbGroup verbs) {
         .value("NAMES");
     suite
         .option("--carriers",
-                s.carriers,
+                s.motion_models,
                 "who goes each scene's way: scene = as its file says; a way that a carrier "
                 "cannot go is named and left out")
         .separated_by_commas()

@@ -9,7 +9,7 @@
 #include "cli/verbs/verbs.hpp"
 #include "service/console/log.hpp"
 #include "service/console/option_settings.hpp"
-#include "surefoot/elevation/fusion/ancestor.hpp"
+#include "surefoot/elevation/fusion/reference_update.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/maps/dem_file.hpp"
 #include "surefoot/io/raw_floats.hpp"

@@ -26,7 +26,7 @@ struct GateOptions {
     std::string machine = "rex";
     std::string explain_file;
     /// Attested area around base_link; < 0 = as far as the standing feet reach.
-    double vouch_radius_m = -1.0;
+    double attestation_radius_m = -1.0;
     std::string audit_dir;  ///< audit log to which the verdict is added; empty = no log
 };
 
@@ -54,14 +54,14 @@ Status write_audit(const std::string& folder,
                    const gate::Query& query,
                    const grid::MapSnapshot& map,
                    const gate::Verdict& verdict) {
-    wire::AuditConfig config;
-    config.files.run_id = wire::new_run_id();
-    wire::AuditLog log(machine, wire::make_folder_disk(folder), config);
+    gate_process::AuditConfig config;
+    config.files.run_id = gate_process::new_run_id();
+    gate_process::AuditLog log(machine, gate_process::make_folder_disk(folder), config);
     if (auto status = log.start(); !status) return status;
     const OfflineMoment moment = moment_of(map);
     log.push({query, moment.health, moment.now_ns, map, verdict});
     log.stop();
-    const wire::AuditReport done = log.report();
+    const gate_process::AuditReport done = log.report();
     if (done.written == 1 && !done.failing) return {};
     return output_error("the verdict is not in the audit log: " + done.last_error);
 }
@@ -106,11 +106,11 @@ int gate(const GateOptions& options) {
     assumed.push_back("perception was ready");
     for (const io::Deviation& deviation : machine->value().deviations)
         assumed.push_back("the machine file goes beyond a rated limit: " + io::text_of(deviation));
-    if (options.vouch_radius_m != 0.0) {
-        const auto vouched = vouch_for_start(
-            machine->value().machine, query, *map->snapshot, options.vouch_radius_m, assumed);
-        if (!vouched) return report(vouched.error());
-        query.vouched = *vouched;
+    if (options.attestation_radius_m != 0.0) {
+        const auto attested = attest_start(
+            machine->value().machine, query, *map->snapshot, options.attestation_radius_m, assumed);
+        if (!attested) return report(attested.error());
+        query.attested = *attested;
     }
     const Machine& m = machine->value().machine;
     const gate::Verdict verdict = decide_offline(m, query, *map->snapshot);
@@ -156,7 +156,7 @@ void add_gate(VerbGroup verbs) {
     verb.option("--explain", o.explain_file, "picture of footprint, corridor and deciding cell")
         .value("F.png");
     verb.option("--vouch",
-                o.vouch_radius_m,
+                o.attestation_radius_m,
                 "operator attestation: radius around base_link within which ground that was not "
                 "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "
                 "rex); 0 = no attestation. Without this option the gate assumes a disc that "

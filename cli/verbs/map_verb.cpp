@@ -9,8 +9,8 @@
 #include "service/console/numbers.hpp"
 #include "service/console/option_settings.hpp"
 #include "surefoot/core/time.hpp"
-#include "surefoot/elevation/region/map_region.hpp"
 #include "surefoot/elevation/region/region_merge.hpp"
+#include "surefoot/elevation/region/region_transfer.hpp"
 #include "surefoot/io/maps/map_file.hpp"
 
 namespace surefoot::app {

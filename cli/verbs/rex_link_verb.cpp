@@ -101,7 +101,7 @@ int rex_link_verb(const RexLinkOptions& options) {
     rex_link::LinkClientConfig config;
     config.gate = *gate;
     if (!options.token_file.empty()) {
-        const auto access = wire::read_tokens(options.token_file);
+        const auto access = gate_process::read_tokens(options.token_file);
         if (!access) return report(access.error());
         if (access->rider.empty())
             return report(usage_error(options.token_file + ": no line with a rider's token"));

@@ -34,7 +34,7 @@
 #include "service/live/steered_walk.hpp"
 #include "service/page/page_server.hpp"
 #include "surefoot/core/checked_index.hpp"
-#include "surefoot/gate/vouching.hpp"
+#include "surefoot/gate/attestation.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/perception/fit_settings.hpp"
 #include "surefoot/sim/scene_source.hpp"
@@ -68,7 +68,7 @@ struct ServeOptions {
     int max_rate_hz = 0;   ///< largest message rate of one client; 0 = default of the gate
     int audit_mb = 0;      ///< largest size of the audit folder [MB]; 0 = default of the gate
     /// Radius of the operator attestation at the start; 0 = no attestation.
-    double vouch_radius_m = 0.0;
+    double attestation_radius_m = 0.0;
     std::string walk;       ///< joystick codes for a simulated REX; empty = no scripted walk
     bool joystick = false;  ///< a web page steers a simulated REX
     std::string out_dir;    ///< folder for a picture of each requested movement
@@ -91,7 +91,7 @@ constexpr auto kLookEvery = std::chrono::milliseconds(20);
 /// Owns the writer of the snapshot channel and removes the channel file at the end of the program.
 class Channel {
   public:
-    explicit Channel(wire::SnapshotWriter its_writer) : writer(std::move(its_writer)) {}
+    explicit Channel(gate_process::SnapshotWriter its_writer) : writer(std::move(its_writer)) {}
     ~Channel() { writer.remove(); }
     Channel(const Channel&) = delete;
     Channel& operator=(const Channel&) = delete;
@@ -107,7 +107,7 @@ class Channel {
         told_ = mended ? "" : mended.error().message;
     }
 
-    wire::SnapshotWriter writer;
+    gate_process::SnapshotWriter writer;
 
   private:
     static constexpr std::int64_t kMendEvery_ns = 250'000'000;
@@ -217,7 +217,7 @@ Result<std::unique_ptr<camera::FrameSource>> open(const ServeOptions& options,
 class PageService {
   public:
     static Result<std::unique_ptr<PageService>> start(const ServeOptions& options,
-                                                      const wire::Access& access) {
+                                                      const gate_process::Access& access) {
         std::unique_ptr<PageService> service(new PageService());
         if (options.no_page) return service;
         page::PageServerConfig config;
@@ -228,7 +228,7 @@ class PageService {
         config.tls = {options.certificate_file, options.key_file};
         config.insecure = options.insecure;
         // The socket of the page accepts a single token; only the gate distinguishes roles.
-        if (access.guest == wire::Role::none) config.token = access.operator_;
+        if (access.guest == gate_process::Role::none) config.token = access.operator_;
         auto server = page::PageServer::open(config, service->feed_, service->controls_);
         if (!server) return server.error();
         service->server_ = std::move(server).value();
@@ -296,14 +296,15 @@ class Service {
     [[nodiscard]] const std::vector<AskedStep>& steps() const noexcept { return steps_; }
 
   private:
-    Status perceive(std::unique_ptr<camera::FrameSource> source, wire::SnapshotWriter& writer);
+    Status perceive(std::unique_ptr<camera::FrameSource> source,
+                    gate_process::SnapshotWriter& writer);
     Result<LiveSession::End> perceive_anew(camera::FrameSource& source,
-                                           wire::SnapshotWriter& writer);
+                                           gate_process::SnapshotWriter& writer);
     Status perceive_beside(GateChild& gate,
                            std::unique_ptr<camera::FrameSource> source,
                            Channel& channel);
     Status introduce(const camera::FrameSource& source,
-                     const wire::Access& access,
+                     const gate_process::Access& access,
                      std::uint16_t gate_port);
     void offer_settings(bool is_scene);
     void offer_recording(const camera::FrameSource& source);
@@ -313,7 +314,7 @@ class Service {
                  const std::string& rider_token,
                  std::uint16_t gate_port);
     void follow_walk(sim::SceneSource& scene, const LiveSession& session);
-    bool follow_pages(LiveSession& session, const wire::SnapshotWriter& writer);
+    bool follow_pages(LiveSession& session, const gate_process::SnapshotWriter& writer);
     std::optional<int> next_jump(LiveSession::End end);
     void tell_where(const GateChild& gate);
     void look_after(GateChild& gate, Channel& channel);
@@ -335,7 +336,7 @@ class Service {
     double speed_ = 1.0;  ///< playback speed relative to real time; 0 = unpaced
     std::unique_ptr<SteeredWalk> walk_;
     std::vector<AskedStep> steps_;
-    gate::Vouching word_;
+    gate::Attestation word_;
     bool word_given_ = false;
 };
 
@@ -369,10 +370,11 @@ void Service::remember_word(const LiveSession& session) {
     if (session.published() == 0) return;
     if (!word_given_) {
         word_given_ = true;
-        std::ignore = word_.vouch(machine_->machine,
-                                  session.last(),
-                                  saturated_integer<std::int64_t>(1e4 * options_.vouch_radius_m),
-                                  steady_now_ns());
+        std::ignore =
+            word_.attest(machine_->machine,
+                         session.last(),
+                         saturated_integer<std::int64_t>(1e4 * options_.attestation_radius_m),
+                         steady_now_ns());
     }
     word_.observe(session.last(), steady_now_ns());
 }
@@ -380,7 +382,7 @@ void Service::remember_word(const LiveSession& session) {
 void Service::draw(const AskedStep& step, const grid::MapSnapshot& map) {
     if (options_.out_dir.empty() || !grid::is_intact(map)) return;
     gate::Query query = gate::query_at_body(step.command, map);
-    query.vouched = word_.area();
+    query.attested = word_.area();
     const gate::GateHealth ready{gate::GateState::ready, {}};
     const gate::Verdict verdict =
         gate::decide(machine_->machine, query, map, ready, map.frame_time_ns);
@@ -405,7 +407,7 @@ void Service::follow_walk(sim::SceneSource& scene, const LiveSession& session) {
 
 /// Waits while a page has paused the recording. Returns false if a page wants to jump to another
 /// frame.
-bool Service::follow_pages(LiveSession& session, const wire::SnapshotWriter& writer) {
+bool Service::follow_pages(LiveSession& session, const gate_process::SnapshotWriter& writer) {
     page::Playback& playback = page_->controls().playback;
     auto state = playback.state();
     if (!state) {
@@ -426,7 +428,7 @@ bool Service::follow_pages(LiveSession& session, const wire::SnapshotWriter& wri
 
 /// Processes the source with a new pipeline (one map, one odom frame), from its next frame on.
 Result<LiveSession::End> Service::perceive_anew(camera::FrameSource& source,
-                                                wire::SnapshotWriter& writer) {
+                                                gate_process::SnapshotWriter& writer) {
     auto* const scene = dynamic_cast<sim::SceneSource*>(&source);
     auto pipeline = pipeline::Pipeline::make(
         settings_.pipeline, mounted_rig(source.rig(), machine_), executor_, steady_now_ns);
@@ -465,7 +467,7 @@ std::optional<int> Service::next_jump(LiveSession::End end) {
 }
 
 Status Service::perceive(std::unique_ptr<camera::FrameSource> source,
-                         wire::SnapshotWriter& writer) {
+                         gate_process::SnapshotWriter& writer) {
     while (true) {
         const auto end = perceive_anew(*source, writer);
         if (!end) return end.error();
@@ -502,7 +504,7 @@ Status Service::perceive_beside(GateChild& gate,
 
 /// Sends the description of the source and the available controls to the pages.
 Status Service::introduce(const camera::FrameSource& source,
-                          const wire::Access& access,
+                          const gate_process::Access& access,
                           std::uint16_t gate_port) {
     auto page = PageService::start(options_, access);
     if (!page) return page.error();
@@ -598,19 +600,19 @@ Status Service::run() {
     if (!source) return source.error();
     fit_settings((*source)->rig(), machine_, settings_);
     const auto loaded =
-        wire::load_access(options_.token_file, options_.guests, options_.bind_address);
+        gate_process::load_access(options_.token_file, options_.guests, options_.bind_address);
     if (!loaded) return loaded.error();
     fmt::print(stderr, "{}", loaded->news);
-    auto key = options_.channel_key.empty() ? wire::new_checksum_key()
-                                            : wire::read_checksum_key(options_.channel_key);
+    auto key = options_.channel_key.empty() ? gate_process::new_checksum_key()
+                                            : gate_process::read_checksum_key(options_.channel_key);
     if (!key) return key.error();
     const std::string path = channel_path(options_);
-    auto writer = wire::SnapshotWriter::create({path, *key});
+    auto writer = gate_process::SnapshotWriter::create({path, *key});
     if (!writer) return writer.error();
     Channel channel(std::move(*writer));
     GateChild::Start how{gate_arguments(options_, path), {}, *key};
-    if (options_.vouch_radius_m > 0.0)
-        how.first_arguments = {"--vouch", fmt::format("{}", options_.vouch_radius_m)};
+    if (options_.attestation_radius_m > 0.0)
+        how.first_arguments = {"--vouch", fmt::format("{}", options_.attestation_radius_m)};
     auto gate = GateChild::start(std::move(how));
     if (!gate) return gate.error();
     if (auto introduced = introduce(**source, loaded->access, gate->port()); !introduced)
@@ -737,7 +739,7 @@ void add_serve(VerbGroup verbs) {
         .positive()
         .value("HZ");
     verb.option("--vouch",
-                o.vouch_radius_m,
+                o.attestation_radius_m,
                 "operator attestation: radius around the machine within which ground that was not "
                 "measured counts as level. At most vouch_radius_m of the machine file (1.0 m for "
                 "rex). The attestation ends when the machine leaves the circle")

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/result.hpp"
@@ -33,7 +33,7 @@ class ZedBench {
     void see(const sim::Scene& scene, const Pose& T_world_body, int frame, std::uint64_t seed);
     [[nodiscard]] const camera::RectifiedRig& rectified() const { return rectifier_.rig(); }
     [[nodiscard]] const camera::StereoRig& rig() const { return rig_; }
-    [[nodiscard]] const camera::DepthImage& depth() const { return depth_; }
+    [[nodiscard]] const DepthImage& depth() const { return depth_; }
     [[nodiscard]] const Image<float>& true_depth_m() const { return pair_.depth_m; }
     /// T_world_body with the body at `x_m` on the x axis and the camera 0.95 m above z = 0. The
     /// camera is `camera_x_m` ahead of the body.
@@ -47,7 +47,7 @@ class ZedBench {
     camera::Rectifier rectifier_;
     std::unique_ptr<stereo::Matcher> matcher_;
     sim::RenderedPair pair_;
-    camera::DepthImage depth_;
+    DepthImage depth_;
 };
 
 /// Arguments of the programs on this bench: OUT_DIR [FIRST_SEED [SEEDS [NOISE [KEY=VALUE...]]]].

@@ -163,8 +163,8 @@ gate::Verdict ask(const Machine& machine,
                   int command) {
     gate::Query query = query_of(command, T_odom_body);
     std::vector<std::string> assumed;
-    if (const auto area = app::vouch_for_start(machine, query, map, -1.0, assumed))
-        query.vouched = *area;
+    if (const auto area = app::attest_start(machine, query, map, -1.0, assumed))
+        query.attested = *area;
     return app::decide_offline(machine, query, map);
 }
 

@@ -27,7 +27,7 @@
 #include <string>
 
 #include "surefoot/ground/ground_search.hpp"
-#include "surefoot/ground/views_testing.hpp"
+#include "surefoot/ground/ground_views_testing.hpp"
 
 namespace surefoot::experiments {
 namespace {

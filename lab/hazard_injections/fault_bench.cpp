@@ -66,7 +66,7 @@ GateBench::GateBench(const Machine& machine,
       now_ns_(kStart_ns),
       next_tick_ns_(kStart_ns + kTick_ns),
       end_ns_(kStart_ns + kPatience_ns) {
-    auto writer = wire::SnapshotWriter::create({path_, {}});
+    auto writer = gate_process::SnapshotWriter::create({path_, {}});
     if (!writer) {  // no shared memory, no bench
         fmt::print(stderr, "{}\n", writer.error().message);
         std::exit(1);
@@ -86,10 +86,10 @@ GateBench::~GateBench() {
 }
 
 void GateBench::start_gate() {
-    keeper_ = std::make_unique<wire::Gatekeeper>(
+    keeper_ = std::make_unique<gate_process::Gatekeeper>(
         machine_,
         limits_,
-        wire::ChannelAddress{path_, {}},
+        gate_process::ChannelAddress{path_, {}},
         [this](const auto& judgement, const grid::MapSnapshot& map) {
             if (audit_) audit_(judgement, map);
         });
@@ -123,8 +123,8 @@ void GateBench::tick() {
 
 void GateBench::begin_watching() {
     watching_ = true;
-    if (plan_.vouch_radius_m > 0.0)
-        std::ignore = keeper_->vouch(kChooser, plan_.vouch_radius_m, now_ns_);
+    if (plan_.attestation_radius_m > 0.0)
+        std::ignore = keeper_->attest(kChooser, plan_.attestation_radius_m, now_ns_);
     std::vector<std::uint8_t> commands;
     for (std::uint8_t code = 1; code < Machine::kMovementCodes; ++code) {
         const Movement& movement = machine_.movements[code];
@@ -151,7 +151,7 @@ void GateBench::begin_watching() {
 GateBench::Heard GateBench::ask_step(std::uint64_t sequence,
                                      std::uint8_t command,
                                      std::int64_t now_ns) {
-    const wire::Answer answer = keeper_->ask_step({kClient, sequence, command}, now_ns);
+    const gate_process::Answer answer = keeper_->ask_step({kClient, sequence, command}, now_ns);
     return {answer.verdict.allows_step(now_ns), cause_of(answer.verdict)};
 }
 

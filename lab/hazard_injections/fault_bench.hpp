@@ -51,7 +51,7 @@ class GateBench {
         std::int64_t watched_on_ns = 0;     ///< from the first inhibit to an earlier end; 0 = none
         bool faulty = true;                 ///< false: a control run without a fault
         bool from_the_start = false;        ///< the fault exists before the gate starts
-        double vouch_radius_m = 0.0;        ///< attested area; 0 = no operator attestation
+        double attestation_radius_m = 0.0;  ///< attested area; 0 = no operator attestation
         /// false: choose only among movements of at most 0.2 m, which stay on attested ground.
         bool any_movement = true;
         bool forward_only = false;  ///< choose only among movements of more than 0.19 m ahead
@@ -98,11 +98,11 @@ class GateBench {
     [[nodiscard]] Heard ask_step(std::int64_t now_ns);
     [[nodiscard]] Heard ask_step(std::uint64_t sequence, std::uint8_t command, std::int64_t now_ns);
     [[nodiscard]] std::uint64_t sequence() const noexcept { return sequence_; }
-    [[nodiscard]] wire::Gatekeeper& keeper() noexcept { return *keeper_; }
-    [[nodiscard]] wire::SnapshotWriter& writer() noexcept { return *writer_; }
+    [[nodiscard]] gate_process::Gatekeeper& keeper() noexcept { return *keeper_; }
+    [[nodiscard]] gate_process::SnapshotWriter& writer() noexcept { return *writer_; }
     [[nodiscard]] std::uint8_t command() const noexcept { return command_; }
     /// `audit` receives every verdict.
-    void set_audit(wire::Gatekeeper::Audit audit) { audit_ = std::move(audit); }
+    void set_audit(gate_process::Gatekeeper::Audit audit) { audit_ = std::move(audit); }
 
     /// Sets the movement that the client asks for; needed when the fault exists from the start.
     void set_command(std::uint8_t command) noexcept { command_ = command; }
@@ -119,9 +119,9 @@ class GateBench {
     Plan plan_;
     Rng rng_;
     std::string path_;
-    std::optional<wire::SnapshotWriter> writer_;
-    wire::Gatekeeper::Audit audit_;
-    std::unique_ptr<wire::Gatekeeper> keeper_;
+    std::optional<gate_process::SnapshotWriter> writer_;
+    gate_process::Gatekeeper::Audit audit_;
+    std::unique_ptr<gate_process::Gatekeeper> keeper_;
     Ask ask_;
     std::function<void()> begin_;
     std::int64_t now_ns_;

@@ -61,8 +61,8 @@ struct Shot {
     int frames = 48;
     sim::KnockConfig knock = {};
     bool imu = true;
-    bool told_start = false;  ///< where odom lies is not measured, but told
-    double scale = 0.25;      ///< of the ZED's pixels, for depth
+    bool known_start = false;  ///< where odom lies is not measured, but told
+    double scale = 0.25;       ///< of the ZED's pixels, for depth
 };
 
 /// The ZED's view with fewer pixels.
@@ -98,7 +98,7 @@ Result<Recording> record(const Shot& shot, std::uint64_t seed) {
     std::filesystem::remove(file);
     if (!source) return source.error();
     Recording recording{(*source)->rig(), (*source)->info(), {}};
-    if (shot.told_start)
+    if (shot.known_start)
         recording.info.T_odom_first_body = (*source)->truth().trajectory.front().T_world_body;
     while (true) {
         auto frame = (*source)->next();
@@ -225,7 +225,7 @@ struct Setup {
 
 GateBench::Plan standing() {
     GateBench::Plan plan;
-    plan.vouch_radius_m = 1.0;
+    plan.attestation_radius_m = 1.0;
     plan.any_movement = false;
     return plan;
 }
@@ -333,14 +333,14 @@ void blur(GreyImage& image, int radius_px) {
 
 Fault blind(Rng& rng, const Recording&) {
     const std::uint64_t seed = rng.next_u64();
-    const int eyes = 1 + static_cast<int>(rng.below(3));  // left, right, both
-    const char* which = eyes == 1 ? "left" : eyes == 2 ? "right" : "both";
+    const int cameras = 1 + static_cast<int>(rng.below(3));  // left, right, both
+    const char* which = cameras == 1 ? "left" : cameras == 2 ? "right" : "both";
     if (rng.below(4) == 0) {
         const int radius_px = 8 + static_cast<int>(rng.below(12));
         return {fmt::format("{}: lens smeared, blur over {} px", which, 2 * radius_px + 1),
                 [=](StereoFrame& frame, int) {
-                    if ((eyes & 1) != 0) blur(frame.left, radius_px);
-                    if ((eyes & 2) != 0) blur(frame.right, radius_px);
+                    if ((cameras & 1) != 0) blur(frame.left, radius_px);
+                    if ((cameras & 2) != 0) blur(frame.right, radius_px);
                     return true;
                 }};
     }
@@ -349,8 +349,8 @@ Fault blind(Rng& rng, const Recording&) {
     return {fmt::format("{}: {:.0f} % covered, grey {}", which, 100.0 * share, grey_dn),
             [=](StereoFrame& frame, int k) {
                 Rng noise(mix_seed(seed, static_cast<std::uint64_t>(k)));
-                if ((eyes & 1) != 0) cover(frame.left, share, grey_dn, noise);
-                if ((eyes & 2) != 0) cover(frame.right, share, grey_dn, noise);
+                if ((cameras & 1) != 0) cover(frame.left, share, grey_dn, noise);
+                if ((cameras & 2) != 0) cover(frame.right, share, grey_dn, noise);
                 return true;
             }};
 }
@@ -592,9 +592,9 @@ std::vector<Injection> frame_injections(const io::MachineFile& file, int scenes)
     const auto with = [&runs](Sight sight, Draw draw, GateBench::Plan plan = standing()) {
         Shot shot;
         shot.sight = sight;
-        shot.told_start = sight == Sight::images && !plan.from_the_start;
+        shot.known_start = sight == Sight::images && !plan.from_the_start;
         const Setup setup{shot,
-                          shot.told_start          ? "images, start told"
+                          shot.known_start         ? "images, start told"
                           : sight == Sight::images ? "images"
                                                    : "depth",
                           plan,

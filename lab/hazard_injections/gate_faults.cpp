@@ -424,8 +424,11 @@ std::string broken_text(const std::string& whole, Rng& rng, std::string& variant
 }
 
 void break_messages(GateBench& bench, Rng& rng) {
-    const auto session = std::make_shared<wire::RosbridgeSession>(
-        21, bench.keeper(), wire::SessionLimits{}, wire::SessionRights{wire::Role::rider});
+    const auto session = std::make_shared<gate_process::RosbridgeSession>(
+        21,
+        bench.keeper(),
+        gate_process::SessionLimits{},
+        gate_process::SessionRights{gate_process::Role::rider});
     const auto draws = std::make_shared<Rng>(rng.next_u64());
     bench.set_ask([&bench, session, draws](std::int64_t now_ns, bool faulty) {
         std::string text = fmt::format(
@@ -434,7 +437,7 @@ void break_messages(GateBench& bench, Rng& rng) {
         std::string variant;
         if (faulty) text = broken_text(text, *draws, variant);
         if (faulty && bench.outcome().variant.empty()) bench.outcome().variant = variant;
-        const wire::Reaction reaction = session->on_message(text, now_ns);
+        const gate_process::Reaction reaction = session->on_message(text, now_ns);
         bool allowed = false;
         for (const std::string& reply : reaction.replies)
             allowed = allowed || reply.find(R"("verdict":"OK")") != std::string::npos;
@@ -451,28 +454,30 @@ void restart(GateBench& bench, Rng& rng) {
 /// The log's disk is full, or fails; an assured gate.
 void fill_disk(GateBench& bench, Rng& rng) {
     struct Log {
-        std::shared_ptr<wire::testing::Platter> platter =
-            std::make_shared<wire::testing::Platter>();
-        std::optional<wire::AuditWriter> writer;
+        std::shared_ptr<gate_process::testing::Platter> platter =
+            std::make_shared<gate_process::testing::Platter>();
+        std::optional<gate_process::AuditWriter> writer;
         bool failing = false;
     };
     const auto log = std::make_shared<Log>();
     const Machine machine = machines::load_machine("rex")->machine;
-    log->writer.emplace(
-        machine, std::make_unique<wire::testing::MemoryDisk>(log->platter), wire::AuditFiles{});
-    bench.set_audit([&bench, log, machine](const wire::Judgement& j, const MapSnapshot& map) {
-        const wire::AuditedVerdict audited{j.query, j.health, j.now_ns, map, j.verdict};
-        const wire::CellBox zone = wire::query_zone(machine, j.query, map, 0);
-        std::string record(wire::record_bytes(audited, zone), '\0');
-        wire::write_record(1, audited, zone, record.data());
-        const bool written =
-            log->writer->open().ok() && log->writer->write(wire::FrameKind::verdict, record).ok();
-        bench.keeper().set_log_failing(!written);
-    });
+    log->writer.emplace(machine,
+                        std::make_unique<gate_process::testing::MemoryDisk>(log->platter),
+                        gate_process::AuditFiles{});
+    bench.set_audit(
+        [&bench, log, machine](const gate_process::Judgement& j, const MapSnapshot& map) {
+            const gate_process::AuditedVerdict audited{j.query, j.health, j.now_ns, map, j.verdict};
+            const gate_process::CellBox zone = gate_process::query_zone(machine, j.query, map, 0);
+            std::string record(gate_process::record_bytes(audited, zone), '\0');
+            gate_process::write_record(1, audited, zone, record.data());
+            const bool written = log->writer->open().ok() &&
+                                 log->writer->write(gate_process::FrameKind::verdict, record).ok();
+            bench.keeper().set_log_failing(!written);
+        });
     const int error = rng.below(2) == 0 ? 0 : EIO;
     bench.outcome().variant = error == 0 ? "full" : "EIO";
     bench.set_begin([log, error] {
-        log->platter->set([&](wire::testing::Platter& platter) {
+        log->platter->set([&](gate_process::testing::Platter& platter) {
             platter.write_error = error;
             if (error == 0) platter.room = platter.used() + 100;
         });
@@ -626,7 +631,7 @@ Result<Outcome> switched_off(const io::MachineFile& whole, std::uint64_t seed, b
         {"tilt 90 deg", [&] { l.min_normal_z = 0.0; }},
         {"tilt NaN", [&] { l.min_normal_z = kNaN; }},
         {"step 1 m", [&] { l.step[0].up_tenth_mm = 10'000; }},
-        {"vouch radius 100 m", [&] { l.vouch_radius_tenth_mm = 1'000'000; }},
+        {"vouch radius 100 m", [&] { l.attestation_radius_tenth_mm = 1'000'000; }},
         {"body without parts", [&] { file.machine.body.count = 0; }},
         {"sway -1", [&] { file.machine.body.sway_tenth_mm = -1; }},
         {"foot without length", [&] { file.machine.left_foot.length_tenth_mm = 0; }},

@@ -207,10 +207,11 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
         const bool lost = i > 0 && estimate.health == Health::lost;
         lost_frames += lost ? 1 : 0;
         const bool with_depth = i % kDepthEvery == 0 && !lost;
-        std::vector<camera::DepthImage> depths;
-        for (const camera::RectifiedRig& eyes : memories[1].rigs) {
+        std::vector<DepthImage> depths;
+        for (const camera::RectifiedRig& both_cameras : memories[1].rigs) {
             if (with_depth)
-                depths.push_back(experiments::exact_depth(scene, eyes, T_world_body, executor));
+                depths.push_back(
+                    experiments::exact_depth(scene, both_cameras, T_world_body, executor));
         }
         for (Memory& memory : memories) {
             memory.map.follow(estimate.T_odom_body, estimate.relative_covariance);
@@ -234,7 +235,7 @@ Status walk(const Setup& setup, const Machine& machine, Executor& executor, fmt:
 
 sim::MotionScript straight_walk() {
     sim::MotionScript straight;
-    straight.carrier = sim::Carrier::rex;
+    straight.motion_model = sim::MotionModel::rex;
     straight.waypoints = {{0.0, 0.0, 0.0, 1.0}, {2.4, 0.0, 0.0, 0.5}};
     return straight;
 }
@@ -242,7 +243,7 @@ sim::MotionScript straight_walk() {
 std::vector<Setup> grid(std::uint64_t seed, double noise) {
     const sim::MotionScript straight = straight_walk();
     sim::MotionScript turning;
-    turning.carrier = sim::Carrier::rex;
+    turning.motion_model = sim::MotionModel::rex;
     turning.waypoints = {{0.0, 0.0, 0.0, 1.0}, {0.8, 0.0, 0.0, 0.5}, {0.8, 0.8, M_PI / 2.0, 0.5}};
     std::vector<Setup> all;
     for (const double pitch_deg : {28.0, 32.0, 36.0, 42.0, 50.0})

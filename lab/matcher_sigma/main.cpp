@@ -58,7 +58,7 @@ struct Confidences {
 };
 
 void Confidences::add(const TruePair& pair) {
-    const camera::DepthImage depth = chain_depth(pair);
+    const DepthImage depth = chain_depth(pair);
     const Image<float> doubt = peak_doubt(pair);
     for (std::size_t i = 0; i < doubt.size(); ++i) {
         if (std::isnan(pair.truth_px.data()[i])) continue;

@@ -63,7 +63,7 @@ constexpr double kStepAhead_m = 0.40;
 /// Of the movement of class stair: no REX goes so far back, but a shorter one would land on the
 /// strip behind the nosing, which its camera never sees.
 constexpr double kStairBack_m = 0.60;
-constexpr double kVouched_m = 1.0;
+constexpr double kAttested_m = 1.0;
 constexpr double kRate_hz = 0.5;  ///< a step takes ten seconds
 constexpr double kSettled_s = 1.0;
 
@@ -371,7 +371,7 @@ class Walk {
                                              T_odom_body.translation_m.y(),
                                              std::cos(yaw),
                                              std::sin(yaw));
-        vouch(query);
+        attest(query);
         print(
             order, truth, "seen", app::decide_offline(machine, query, *map_), query, T_world_body);
         if (order.stair) {
@@ -387,14 +387,14 @@ class Walk {
     }
 
     /// The operator's word at the start holds until the machine has left.
-    void vouch(gate::Query& query) {
+    void attest(gate::Query& query) {
         if (left_) return;
         const double away_m = 1e-4 * std::hypot(static_cast<double>(query.x_tenth_mm),
                                                 static_cast<double>(query.y_tenth_mm));
-        left_ = away_m > kVouched_m;
+        left_ = away_m > kAttested_m;
         if (left_) return;
-        query.vouched.active = true;
-        query.vouched.radius_tenth_mm = static_cast<std::int32_t>(1e4 * kVouched_m);
+        query.attested.active = true;
+        query.attested.radius_tenth_mm = static_cast<std::int32_t>(1e4 * kAttested_m);
     }
 
     void print(const Order& order,

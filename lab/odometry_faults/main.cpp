@@ -34,11 +34,11 @@
 #include "lab/scenes/scene_cases.hpp"
 #include "service/console/log.hpp"
 #include "service/console/source.hpp"
-#include "surefoot/camera/frame_watch.hpp"
+#include "surefoot/camera/frame_integrity_check.hpp"
 #include "surefoot/core/rng.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/perception/settings.hpp"
-#include "surefoot/pipeline/light.hpp"
+#include "surefoot/pipeline/exposure_state.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
 #include "surefoot/sim/rendering/smooth_noise.hpp"
 
@@ -86,24 +86,25 @@ class Painter {
     void person(double share, double shift_m, Shown& shown) {
         constexpr double kAway_m = 1.2;
         const double edge_px = share * rig_.left.width;
-        const auto paint =
-            [&](const camera::Camera& eye, const Pose& T_left_eye, Image<float>& signal_dn) {
-                signal_dn.fill(-1.0F);
-                for (int v = 0; v < eye.height; ++v) {
-                    for (int u = 0; u < eye.width; ++u) {
-                        const auto ray = camera::unproject(eye.model, Eigen::Vector2d(u, v));
-                        if (!ray) continue;
-                        const Eigen::Vector3d along = T_left_eye.rotation * *ray;
-                        const double scale = (kAway_m - T_left_eye.translation_m.z()) / along.z();
-                        const Eigen::Vector3d p = T_left_eye.translation_m + scale * along;
-                        const auto seen = camera::project(rig_.left.model, p);
-                        if (!seen || seen->x() > edge_px) continue;
-                        const double x_m = p.x() - shift_m;
-                        signal_dn.at(u, v) = 110.0F + 25.0F * fine_.at(noise_, 0, x_m, p.y()) +
-                                             30.0F * coarse_.at(noise_, 0, x_m, p.y());
-                    }
+        const auto paint = [&](const camera::Camera& this_camera,
+                               const Pose& T_left_camera,
+                               Image<float>& signal_dn) {
+            signal_dn.fill(-1.0F);
+            for (int v = 0; v < this_camera.height; ++v) {
+                for (int u = 0; u < this_camera.width; ++u) {
+                    const auto ray = camera::unproject(this_camera.model, Eigen::Vector2d(u, v));
+                    if (!ray) continue;
+                    const Eigen::Vector3d along = T_left_camera.rotation * *ray;
+                    const double scale = (kAway_m - T_left_camera.translation_m.z()) / along.z();
+                    const Eigen::Vector3d p = T_left_camera.translation_m + scale * along;
+                    const auto seen = camera::project(rig_.left.model, p);
+                    if (!seen || seen->x() > edge_px) continue;
+                    const double x_m = p.x() - shift_m;
+                    signal_dn.at(u, v) = 110.0F + 25.0F * fine_.at(noise_, 0, x_m, p.y()) +
+                                         30.0F * coarse_.at(noise_, 0, x_m, p.y());
                 }
-            };
+            }
+        };
         paint(rig_.left, Pose{}, clean_.left.signal_dn);
         paint(*rig_.right, rig_.T_left_right, clean_.right.signal_dn);
         expose(shown.frame.index);
@@ -160,8 +161,8 @@ void snow(std::uint64_t seed, GreyImage& image) {
         image.data()[i] = static_cast<std::uint8_t>(rng.next_u64() >> 56);
 }
 
-void lengthen_focus(double factor, camera::Camera& eye) {
-    auto& lens = std::get<camera::PinholeRadTan>(eye.model);
+void lengthen_focus(double factor, camera::Camera& this_camera) {
+    auto& lens = std::get<camera::PinholeRadTan>(this_camera.model);
     lens.fx_px *= factor;
     lens.fy_px *= factor;
 }
@@ -236,7 +237,7 @@ std::vector<Fault> faults_of_people() {
     return faults;
 }
 
-std::vector<Fault> faults_of_arrival() {
+std::vector<Fault> faults_of_status() {
     std::vector<Fault> faults;
     for (const int n : {1, 5, 20})
         faults.push_back({"dropped", fmt::format("{}", n), kOnset, n, [](Shown& s, int, Bench&) {
@@ -344,7 +345,7 @@ std::vector<Fault> all_faults() {
     std::vector<Fault> faults{{"none", "-", kOnset, 0}};
     for (auto part : {faults_of_light(),
                       faults_of_people(),
-                      faults_of_arrival(),
+                      faults_of_status(),
                       faults_of_imu(),
                       faults_of_rig()})
         faults.insert(faults.end(), part.begin(), part.end());
@@ -354,7 +355,7 @@ std::vector<Fault> all_faults() {
 /// The recording with the fault; what was dropped leaves its inertial samples to the next frame.
 std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, Painter& painter) {
     Bench bench{clean, painter};
-    camera::FrameWatch watch;
+    camera::FrameIntegrityCheck watch;
     std::vector<Shown> out;
     std::vector<ImuSample> waiting;
     int dropped = 0;
@@ -372,8 +373,8 @@ std::vector<Shown> damaged(const std::vector<Shown>& clean, const Fault& fault, 
         if (dropped > 0) shown.faulty = true;  // the gap is seen when the next one comes
         shown.frame.imu.insert(shown.frame.imu.begin(), waiting.begin(), waiting.end());
         waiting.clear();
-        shown.frame.arrival.dropped = std::exchange(dropped, 0);
-        if (fault.watched) shown.frame.arrival = watch.look(shown.frame);
+        shown.frame.frame_status.dropped = std::exchange(dropped, 0);
+        if (fault.watched) shown.frame.frame_status = watch.look(shown.frame);
         out.push_back(std::move(shown));
     }
     return out;
@@ -452,24 +453,25 @@ Status follow(const Recording& recording,
             if (!since) since.emplace();
             since->append(pieces.back());
         }
-        out.print("{},{},{},{},{:d},{},{},{:d},{},{},{:.2f},{},{},{},{},{},{}\n",
-                  head,
-                  shown[i].frame.index,
-                  to_string(m.health),
-                  to_string(m.reason),
-                  shown[i].faulty,
-                  to_string(report.camera),
-                  m.tracks,
-                  pipeline::light_of(shown[i].frame) == pipeline::Light::lit,
-                  m.inliers,
-                  fmt::format("{:.3f}", m.residual_px),
-                  1e3 * T_true.translation_m.norm(),
-                  pieces.back().text(),
-                  second.text(),
-                  to_string(second.worst),
-                  since ? since->text() : ",,,",
-                  m.T_odom_body.all_finite() && m.relative_covariance.allFinite() ? 1 : 0,
-                  fault.frames);
+        out.print(
+            "{},{},{},{},{:d},{},{},{:d},{},{},{:.2f},{},{},{},{},{},{}\n",
+            head,
+            shown[i].frame.index,
+            to_string(m.health),
+            to_string(m.reason),
+            shown[i].faulty,
+            to_string(report.camera),
+            m.tracks,
+            pipeline::exposure_state_of(shown[i].frame) == pipeline::ExposureState::well_exposed,
+            m.inliers,
+            fmt::format("{:.3f}", m.residual_px),
+            1e3 * T_true.translation_m.norm(),
+            pieces.back().text(),
+            second.text(),
+            to_string(second.worst),
+            since ? since->text() : ",,,",
+            m.T_odom_body.all_finite() && m.relative_covariance.allFinite() ? 1 : 0,
+            fault.frames);
     }
     return {};
 }
@@ -498,12 +500,12 @@ Status measure(const SceneCase& now,
         shown.T_world_body = experiments::true_pose(truth.trajectory, shown.frame.time_ns);
         recording.frames.push_back(std::move(shown));
     }
-    const camera::StereoRig eyes = experiments::true_rig(recording.rig, sim);
+    const camera::StereoRig cameras = experiments::true_rig(recording.rig, sim);
     sim::CameraConfig camera = sim.camera;
     sim::apply_profile(sim.profile, sim.noise, camera);
-    auto renderer = sim::Renderer::make(truth.scene, eyes, camera, sim.seed);
+    auto renderer = sim::Renderer::make(truth.scene, cameras, camera, sim.seed);
     if (!renderer) return renderer.error();
-    Painter painter(eyes, std::move(renderer).value(), executor);
+    Painter painter(cameras, std::move(renderer).value(), executor);
     for (const Fault& fault : faults) {
         const std::vector<Shown> shown = damaged(recording.frames, fault, painter);
         for (const bool with_imu : {true, false}) {

@@ -135,10 +135,10 @@ Status measure_scene(const experiments::SceneCase& now,
     auto source = sim::open_scene(sim, &executor);
     if (!source) return source.error();
     const sim::SceneTruth& truth = (*source)->truth();
-    const camera::StereoRig eyes = experiments::true_rig(truth.rig, sim);
+    const camera::StereoRig cameras = experiments::true_rig(truth.rig, sim);
     sim::CameraConfig camera = sim.camera;
     sim::apply_profile(sim.profile, sim.noise, camera);
-    auto renderer = sim::Renderer::make(truth.scene, eyes, camera, sim.seed);
+    auto renderer = sim::Renderer::make(truth.scene, cameras, camera, sim.seed);
     if (!renderer) return renderer.error();
     const Stage stage{truth.rig,
                       truth.trajectory.front().T_world_body,

@@ -53,7 +53,7 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 struct Case {
     SceneCase seen;
-    sim::CarriedBy carrier = sim::CarriedBy::scene;
+    sim::CarriedBy motion_model = sim::CarriedBy::scene;
     std::string rig;
 };
 
@@ -74,8 +74,7 @@ class Maps {
         if (report.motion.health == Health::lost) return;
         const std::int64_t time_ns = report.motion.time_ns;
         const camera::RectifiedRig& rig = pipeline.rig();
-        const camera::DepthImage exact =
-            experiments::exact_depth(scene, rig, T_world_body, executor);
+        const DepthImage exact = experiments::exact_depth(scene, rig, T_world_body, executor);
         exact_own.add(rig, T_odom_body, exact, time_ns, executor);
         exact_true.add(rig, T_world_body, exact, time_ns, executor);
         matched_true.add(rig, T_world_body, pipeline.depth(), time_ns, executor);
@@ -123,10 +122,10 @@ Result<std::optional<std::string>> measure(const Case& now,
     sim::SceneOptions& sim = settings->sim;
     if (Status seen = now.seen.put_into(sim); !seen) return seen.error();
     sim.frames = frames;
-    sim.carrier = now.carrier;
+    sim.motion_model = now.motion_model;
     sim.rig_preset = now.rig;
     auto source = sim::open_scene(sim, &executor);
-    if (!source && now.carrier != sim::CarriedBy::scene) {
+    if (!source && now.motion_model != sim::CarriedBy::scene) {
         log_warning(source.error().message);
         return std::optional<std::string>{};
     }
@@ -172,7 +171,7 @@ Result<std::optional<std::string>> measure(const Case& now,
                          floor_figures(truth.scene, pipeline->map()));
 }
 
-Result<sim::CarriedBy> carrier_named(std::string_view name) {
+Result<sim::CarriedBy> motion_model_named(std::string_view name) {
     const auto* const found =
         std::find(std::begin(sim::kCarriedByNames), std::end(sim::kCarriedByNames), name);
     if (found == std::end(sim::kCarriedByNames))
@@ -186,7 +185,7 @@ int measure_all(const std::vector<std::string>& words) {
             "own_poses OUT.csv SCENES [FIRST_SEED [SEEDS [PROFILES [FRAMES [CARRIERS [RIGS "
             "[KEY=VALUE...]]]]]]]"));
     const int frames = words.size() > 5 ? std::atoi(words[5].c_str()) : 0;
-    const std::string carriers = words.size() > 6 ? words[6] : "scene";
+    const std::string motion_models = words.size() > 6 ? words[6] : "scene";
     const std::string rigs = words.size() > 7 ? words[7] : "zed_vga";
     SettingsRequest common;
     if (words.size() > 8) common.overrides.assign(words.begin() + 8, words.end());
@@ -197,9 +196,9 @@ int measure_all(const std::vector<std::string>& words) {
         "exact_true_jump_mm,exact_true_spread_mm,exact_own_jump_mm,exact_own_spread_mm,"
         "matched_true_jump_mm,matched_true_spread_mm,matched_own_jump_mm,matched_own_spread_mm\n");
     for (const SceneCase& seen : experiments::scene_cases({words.begin() + 1, words.end()})) {
-        for (const std::string_view carrier : io::split(carriers, ",")) {
+        for (const std::string_view motion_model : io::split(motion_models, ",")) {
             for (const std::string_view rig : io::split(rigs, ",")) {
-                const auto carried = carrier_named(carrier);
+                const auto carried = motion_model_named(motion_model);
                 if (!carried) return report(carried.error());
                 const auto done =
                     measure({seen, *carried, std::string(rig)}, frames, common, *executor);
@@ -209,7 +208,7 @@ int measure_all(const std::vector<std::string>& words) {
                           seen.scene,
                           seen.seed,
                           seen.profile,
-                          carrier,
+                          motion_model,
                           rig,
                           **done);
                 out.flush();

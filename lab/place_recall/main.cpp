@@ -140,12 +140,12 @@ std::vector<Stop> way_and_back(const std::string& scene, Rng& rng) {
 }
 
 /// What one machine sees of one scene.
-class Eyes {
+class Cameras {
   public:
-    static Result<Eyes> open(const std::string& scene,
-                             int storey,
-                             std::uint64_t seed,
-                             const std::string& profile) {
+    static Result<Cameras> open(const std::string& scene,
+                                int storey,
+                                std::uint64_t seed,
+                                const std::string& profile) {
         sim::SceneOptions options;
         if (auto status = experiments::SceneCase{scene, seed, profile}.put_into(options); !status)
             return status.error();
@@ -155,15 +155,15 @@ class Eyes {
         if (!rig) return rig.error();
         auto rectifier = camera::Rectifier::make(*rig);
         if (!rectifier) return rectifier.error();
-        Eyes eyes;
-        eyes.rig_ = rectifier->rig();
-        eyes.scene_ = std::make_unique<sim::Scene>(std::move(scripted->scene));
+        Cameras cameras;
+        cameras.rig_ = rectifier->rig();
+        cameras.scene_ = std::make_unique<sim::Scene>(std::move(scripted->scene));
         sim::apply_profile(options.profile, 1.0, options.camera);
-        auto renderer = sim::Renderer::make(*eyes.scene_, *rig, options.camera, seed);
+        auto renderer = sim::Renderer::make(*cameras.scene_, *rig, options.camera, seed);
         if (!renderer) return renderer.error();
-        eyes.renderer_.emplace(std::move(renderer).value());
-        eyes.matcher_ = stereo::make_matcher({});
-        return eyes;
+        cameras.renderer_.emplace(std::move(renderer).value());
+        cameras.matcher_ = stereo::make_matcher({});
+        return cameras;
     }
 
     void look(const Pose& T_world_body, int frame, Executor& executor) {
@@ -206,14 +206,14 @@ struct Case {
 /// One run of a tracker along a way; prints what became of each keyframe.
 class Run {
   public:
-    Run(const Case& now, const Pose& T_world_map, places::Place saved, fmt::ostream& out)
+    Run(const Case& now, const Pose& T_world_map, place_recognition::Place saved, fmt::ostream& out)
         : now_(now),
           T_world_map_(T_world_map),
           tracker_({}, std::move(saved)),
           saved_(tracker_.place()),
           out_(out) {}
 
-    void drive(Eyes& eyes,
+    void drive(Cameras& cameras,
                const std::vector<Stop>& stops,
                const Pose& T_world_odom,
                int first_frame,
@@ -221,7 +221,7 @@ class Run {
                Executor& executor) {
         sim::ModelledOdometry odometry(
             {},
-            eyes.rig().T_body_camera,
+            cameras.rig().T_body_camera,
             mix_seed(now_.seed, static_cast<std::uint64_t>(first_frame)));
         const Pose T_odom_first = T_world_odom.inverse() * stops.front().world_from_body();
         for (std::size_t i = 0; i < stops.size(); ++i) {
@@ -231,23 +231,23 @@ class Run {
                 odometry.follow(1'000'000'000LL * (frame + 1), frame, T_world_body);
             motion.health = Health::ok;
             motion.T_odom_body = T_odom_first * motion.T_odom_body;
-            eyes.look(T_world_body, first_frame + frame, executor);
+            cameras.look(T_world_body, first_frame + frame, executor);
             const double start_ms = cpu_ms();
             tracker_.follow(motion);
-            const auto seen = tracker_.see(eyes.rig(), eyes.left().view(), eyes.depth());
+            const auto seen = tracker_.see(cameras.rig(), cameras.left().view(), cameras.depth());
             const double query_ms = cpu_ms() - start_ms;
             if (print && seen) line(*seen, stops[i], frame, motion.T_odom_body, query_ms);
         }
     }
-    [[nodiscard]] places::Place place() const { return tracker_.place(); }
+    [[nodiscard]] place_recognition::Place place() const { return tracker_.place(); }
 
   private:
-    void line(const places::Sighting& seen,
+    void line(const place_recognition::Sighting& seen,
               const Stop& stop,
               int frame,
               const Pose& T_odom_body,
               double query_ms) const {
-        const places::Comparison& c = seen.comparison;
+        const place_recognition::Comparison& c = seen.comparison;
         double error_m = std::nan("");
         double error_deg = std::nan("");
         if (seen.T_map_odom) {
@@ -288,8 +288,8 @@ class Run {
 
     Case now_;
     Pose T_world_map_;  ///< the first run's odom
-    places::PlaceTracker tracker_;
-    places::Place saved_;
+    place_recognition::PlaceTracker tracker_;
+    place_recognition::Place saved_;
     fmt::ostream& out_;
 };
 
@@ -302,9 +302,9 @@ Pose leaning(const Pose& T_world_odom, Rng& rng) {
 
 /// A run with an odom of its own where `saved` was remembered.
 Status drive_second(const Case& now,
-                    Eyes& eyes,
+                    Cameras& cameras,
                     const Pose& T_world_map,
-                    places::Place saved,
+                    place_recognition::Place saved,
                     Rng& rng,
                     Executor& executor,
                     fmt::ostream& out) {
@@ -315,41 +315,43 @@ Status drive_second(const Case& now,
     const Pose T_start = again.front().world_from_body();
     const Eigen::Vector3d ground_m(T_start.translation_m.x(), T_start.translation_m.y(), 0.0);
     second.drive(
-        eyes, again, leaning({T_start.rotation, ground_m}, rng), kSecondRun, true, executor);
+        cameras, again, leaning({T_start.rotation, ground_m}, rng), kSecondRun, true, executor);
     return {};
 }
 
 Status measure(const Case& now, Executor& executor, fmt::ostream& out) {
     Rng rng(mix_seed(now.seed, kWayStream));
-    auto eyes = Eyes::open(now.scene, 0, now.seed, now.profile);
-    if (!eyes) return eyes.error();
+    auto cameras = Cameras::open(now.scene, 0, now.seed, now.profile);
+    if (!cameras) return cameras.error();
     const bool alone = now.kind == "same_run";
     const Pose T_world_map = leaning({}, rng);
     Run first(now, T_world_map, {}, out);
     const auto stops = alone ? way_and_back(now.scene, rng) : first_way(now.scene);
-    first.drive(*eyes, stops, T_world_map, 0, alone, executor);
+    first.drive(*cameras, stops, T_world_map, 0, alone, executor);
     if (alone) return {};
 
     if (now.kind == "storey") {
-        eyes = Eyes::open(now.scene, 1, now.seed, now.profile);
-        if (!eyes) return eyes.error();
+        cameras = Cameras::open(now.scene, 1, now.seed, now.profile);
+        if (!cameras) return cameras.error();
     }
-    return drive_second(now, *eyes, T_world_map, first.place(), rng, executor, out);
+    return drive_second(now, *cameras, T_world_map, first.place(), rng, executor, out);
 }
 
 /// One place of the corridors of all cases, which stand 100 m from each other in its map.
 Status measure_house(const std::vector<Case>& cases, Executor& executor, fmt::ostream& out) {
-    places::Place house;
+    place_recognition::Place house;
     std::vector<Pose> T_world_map;
     for (const Case& now : cases) {
-        auto eyes = Eyes::open(now.scene, 0, now.seed, now.profile);
-        if (!eyes) return eyes.error();
+        auto cameras = Cameras::open(now.scene, 0, now.seed, now.profile);
+        if (!cameras) return cameras.error();
         const Pose T_map_world{Eigen::Quaterniond::Identity(),
                                {100.0 * static_cast<double>(T_world_map.size()), 0.0, 0.0}};
         Run first(now, {}, {}, out);
-        first.drive(*eyes, first_way(now.scene), {}, 0, false, executor);
-        for (places::Keyframe& keyframe : first.place().keyframes) {
-            if (house.keyframes.size() == static_cast<std::size_t>(places::kMostKeyframes)) break;
+        first.drive(*cameras, first_way(now.scene), {}, 0, false, executor);
+        for (place_recognition::Keyframe& keyframe : first.place().keyframes) {
+            if (house.keyframes.size() ==
+                static_cast<std::size_t>(place_recognition::kMostKeyframes))
+                break;
             keyframe.T_map_body = T_map_world * keyframe.T_map_body;
             house.keyframes.push_back(std::move(keyframe));
         }
@@ -357,9 +359,9 @@ Status measure_house(const std::vector<Case>& cases, Executor& executor, fmt::os
     }
     for (std::size_t i = 0; i < cases.size(); i += 5) {
         Rng rng(mix_seed(cases[i].seed, kWayStream));
-        auto eyes = Eyes::open(cases[i].scene, 0, cases[i].seed, cases[i].profile);
-        if (!eyes) return eyes.error();
-        auto done = drive_second(cases[i], *eyes, T_world_map[i], house, rng, executor, out);
+        auto cameras = Cameras::open(cases[i].scene, 0, cases[i].seed, cases[i].profile);
+        if (!cameras) return cameras.error();
+        auto done = drive_second(cases[i], *cameras, T_world_map[i], house, rng, executor, out);
         if (!done) return done;
     }
     return {};

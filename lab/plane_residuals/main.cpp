@@ -111,7 +111,10 @@ Window fit(const Image<float>& disparity_px, int u0, int v0) {
 
 /// One sigma [dn] of what is left between the eyes where a window is its plane, gain and offset
 /// taken out: noise, without any matcher's doing. NaN where the right eye does not see all of it.
-double eye_difference_of(const camera::RectifiedPair& pair, const Window& window, int u0, int v0) {
+double camera_difference_of(const camera::RectifiedPair& pair,
+                            const Window& window,
+                            int u0,
+                            int v0) {
     std::vector<double> differences;
     Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
     Eigen::Vector2d b = Eigen::Vector2d::Zero();
@@ -226,7 +229,7 @@ int run(const std::string& name,
     if (!matching) return failed(matching.error());
     const auto matcher = stereo::make_matcher(*matching);
     camera::RectifiedPair pair;
-    camera::DepthImage depth;
+    DepthImage depth;
     auto file = fmt::output_file(out);
     file.print(
         "frame,u,v,texture_dn,coarse_dn,grey_dn,density,residual_px,rms_px,inliers,eyes_dn\n");
@@ -257,7 +260,7 @@ int run(const std::string& name,
                            window.residual_px,
                            window.rms_px,
                            window.inliers,
-                           eye_difference_of(pair, window, u, v));
+                           camera_difference_of(pair, window, u, v));
                 if (!before.empty()) repetition.add(before[windows.size()], window);
                 windows.push_back(window);
             }

@@ -62,11 +62,11 @@ bool Sight::both_see(const Pose& T_world_camera, const Vector3d& p_m) const {
     if (v_px < kBorder_px || v_px > rig_.height - kBorder_px || right_px < kBorder_px ||
         left_px > rig_.width - kBorder_px)
         return false;
-    const Vector3d right_eye_m = T_world_camera * Vector3d(rig_.baseline_m, 0.0, 0.0);
-    for (const Vector3d& eye_m : {T_world_camera.translation_m, right_eye_m}) {
-        const Vector3d short_of_m = p_m + 1e-3 * (eye_m - p_m).normalized();
+    const Vector3d right_camera_m = T_world_camera * Vector3d(rig_.baseline_m, 0.0, 0.0);
+    for (const Vector3d& camera_m : {T_world_camera.translation_m, right_camera_m}) {
+        const Vector3d short_of_m = p_m + 1e-3 * (camera_m - p_m).normalized();
         for (const Solid& solid : scene_->solids)
-            if (solid.blocks(eye_m, short_of_m)) return false;
+            if (solid.blocks(camera_m, short_of_m)) return false;
     }
     return true;
 }

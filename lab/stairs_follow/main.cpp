@@ -7,7 +7,7 @@
 //   surefoot.
 //
 // Writes OUT.csv, one line per run and method: `found` = each frame on its own, `followed` =
-// tracked by stairs::FeatureFollower. Lengths in mm; empty or nan = not found:
+// tracked by stairs::FeatureTracker. Lengths in mm; empty or nan = not found:
 //   looks                  frames of the run
 //   edges, drops, kerbs, flights, doors   appearances and disappearances, summed over the frames
 //                          after the first: no feature of that class within 0.1 m across and 20 deg
@@ -36,18 +36,18 @@
 #include <utility>
 #include <vector>
 
-#include "lab/stairs_scenes/stairs_look.hpp"
 #include "lab/stairs_scenes/stairs_match.hpp"
+#include "lab/stairs_scenes/stairs_observation.hpp"
 #include "service/console/log.hpp"
 #include "surefoot/io/text.hpp"
 #include "surefoot/perception/settings.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
-#include "surefoot/stairs/tracking/feature_follower.hpp"
+#include "surefoot/stairs/tracking/feature_tracker.hpp"
 
 namespace surefoot::app {
 namespace {
 
-using experiments::Look;
+using experiments::Observation;
 using experiments::TrueFeature;
 using experiments::TrueKind;
 using stairs::FeaturePose;
@@ -104,7 +104,7 @@ struct Changes {
         came_or_went += missing(before, now) + missing(now, before);
         const auto has_id_of = [](const std::vector<Feature>& among, const Feature& one) {
             return std::any_of(among.begin(), among.end(), [&](const Feature& other) {
-                return other.followed.id == one.followed.id;
+                return other.tracked.id == one.tracked.id;
             });
         };
         for (const Feature& old : before) {
@@ -159,7 +159,7 @@ class Errors {
 class Account {
   public:
     void add(const TerrainFeatures& now, const TrueFeature& truth) {
-        if (looks_++ > 0) compare(now);
+        if (observations_++ > 0) compare(now);
         judge(now, truth);
         before_ = now;
     }
@@ -172,7 +172,7 @@ class Account {
     [[nodiscard]] std::string columns() const {
         return fmt::format(
             ",{},{},{},{},{},{},{},{},{},{},{}{}{}{}{},{},{}",
-            looks_,
+            observations_,
             edges_.came_or_went,
             drops_.came_or_went,
             kerbs_.came_or_went,
@@ -180,7 +180,7 @@ class Account {
             doors_.came_or_went,
             edges_.new_ids + drops_.new_ids + kerbs_.new_ids + flights_.new_ids + doors_.new_ids,
             lost_,
-            found_looks_,
+            found_observations_,
             steps_changes_,
             steps_exact_,
             riser_.columns(),
@@ -214,7 +214,7 @@ class Account {
         if (drop != nullptr)
             across_.add(experiments::across_m(drop->pose, truth), drop->across_sigma_m);
         if (flight == nullptr) return;
-        if (found_looks_++ > 0) steps_changes_ += flight->steps != steps_ ? 1 : 0;
+        if (found_observations_++ > 0) steps_changes_ += flight->steps != steps_ ? 1 : 0;
         steps_ = flight->steps;
         steps_exact_ += flight->steps == truth.steps ? 1 : 0;
         riser_.add(flight->riser_m - truth.riser_m, flight->riser_sigma_m);
@@ -226,10 +226,10 @@ class Account {
     }
 
     TerrainFeatures before_;
-    int looks_ = 0;
+    int observations_ = 0;
     Changes edges_, drops_, kerbs_, flights_, doors_;
     int lost_ = 0;
-    int found_looks_ = 0;
+    int found_observations_ = 0;
     int steps_ = 0;
     int steps_changes_ = 0;
     int steps_exact_ = 0;
@@ -244,27 +244,27 @@ constexpr const char* kHeader =
 
 Result<std::string> judge_run(const std::vector<std::string>& folders, const Settings& settings) {
     stairs::FeatureFinder finder(settings.pipeline.stairs);
-    stairs::FeatureFollower follower(settings.pipeline.stairs);
+    stairs::FeatureTracker tracker(settings.pipeline.stairs);
     TerrainFeatures found;
-    TerrainFeatures followed;
+    TerrainFeatures tracked;
     Account alone;
     Account over_time;
     std::vector<double> call_us;
     std::string run;
     std::string kind;
     for (const std::string& folder : folders) {
-        const auto look = experiments::read_look(folder);
-        if (!look) return look.error();
-        const stairs::Terrain terrain = look->terrain();
+        const auto observation = experiments::read_observation(folder);
+        if (!observation) return observation.error();
+        const stairs::Terrain terrain = observation->terrain();
         finder.find(terrain, found);
         const std::int64_t start_ns = steady_now_ns();
-        follower.follow(found, terrain, {look->frame * kFrame_ns, {}}, followed);
+        tracker.update(found, terrain, {observation->frame * kFrame_ns, {}}, tracked);
         call_us.push_back(1e-3 * static_cast<double>(steady_now_ns() - start_ns));
-        alone.add(found, look->truth);
-        over_time.add(followed, look->truth);
-        over_time.add_lost(found, followed);
-        run = fmt::format("{},{},{},", look->scene, look->seed, look->mode);
-        kind = experiments::kTrueKindNames[static_cast<int>(look->truth.kind)];
+        alone.add(found, observation->truth);
+        over_time.add(tracked, observation->truth);
+        over_time.add_lost(found, tracked);
+        run = fmt::format("{},{},{},", observation->scene, observation->seed, observation->mode);
+        kind = experiments::kTrueKindNames[static_cast<int>(observation->truth.kind)];
     }
     std::sort(call_us.begin(), call_us.end());
     return run + "found," + kind + alone.columns() + ",,\n" + run + "followed," + kind +

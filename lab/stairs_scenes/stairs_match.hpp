@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "lab/stairs_scenes/stairs_look.hpp"
+#include "lab/stairs_scenes/stairs_observation.hpp"
 #include "surefoot/stairs/features.hpp"
 
 /// Association of detected features with the true feature of the scene.

@@ -152,9 +152,9 @@ void measure_noise(const sim::Scene& scene,
                    const pipeline::Pipeline& pipeline,
                    const Pose& T_world_body,
                    Executor& executor,
-                   Look& look) {
+                   Observation& observation) {
     constexpr double kMaxDepth_m = 2.5;
-    const camera::DepthImage& depth = pipeline.depth();
+    const DepthImage& depth = pipeline.depth();
     const Image<float> exact_px =
         sim::rectified_disparity_px(scene, pipeline.rig(), T_world_body, executor);
     const auto floor = floor_pixels(exact_px, pipeline.rig(), T_world_body, kMaxDepth_m);
@@ -173,10 +173,10 @@ void measure_noise(const sim::Scene& scene,
             said_px.push_back(static_cast<double>(depth.sigma_px.at(u, v)));
         }
     }
-    look.bias_px = median(errors_px);
-    look.said_px = median(std::move(said_px));
-    for (double& error_px : errors_px) error_px = std::abs(error_px - look.bias_px);
-    look.noise_px = 1.4826 * median(std::move(errors_px));
+    observation.bias_px = median(errors_px);
+    observation.said_px = median(std::move(said_px));
+    for (double& error_px : errors_px) error_px = std::abs(error_px - observation.bias_px);
+    observation.noise_px = 1.4826 * median(std::move(errors_px));
 }
 
 /// One run of a scene.
@@ -188,7 +188,8 @@ class Run {
           world_(truth_in_world(script)),
           T_odom_world_(drawn_odom(now.seed)) {}
 
-    Result<std::vector<Look>> go(const Settings& settings, const sim::SceneOptions& options) {
+    Result<std::vector<Observation>> go(const Settings& settings,
+                                        const sim::SceneOptions& options) {
         auto source = sim::open_scene(options, &executor_);
         if (!source) return source.error();
         auto pipeline = pipeline::Pipeline::make(settings.pipeline, (*source)->rig(), executor_);
@@ -200,10 +201,12 @@ class Run {
             pipeline->process(frame, Work::full);
             const Pose T_world_body = true_pose(truth.trajectory, frame.time_ns);
             ++processed;
-            if (is_look(processed, static_cast<int>(truth.trajectory.size()), T_world_body)) {
-                add_look(processed, *pipeline, T_world_body);
+            if (is_observation(
+                    processed, static_cast<int>(truth.trajectory.size()), T_world_body)) {
+                add_observation(processed, *pipeline, T_world_body);
                 if (now_.every > 0 || done_)
-                    measure_noise(truth.scene, *pipeline, T_world_body, executor_, looks_.back());
+                    measure_noise(
+                        truth.scene, *pipeline, T_world_body, executor_, observations_.back());
             }
         };
         const auto start = [&] {
@@ -223,11 +226,11 @@ class Run {
             }
         }
         if (processed == 0) start();
-        return std::move(looks_);
+        return std::move(observations_);
     }
 
   private:
-    [[nodiscard]] bool is_look(int processed, int frames, const Pose& T_world_body) {
+    [[nodiscard]] bool is_observation(int processed, int frames, const Pose& T_world_body) {
         if (now_.every > 0) return processed % now_.every == 0;
         const Eigen::Vector2d to_go_m = world_.middle_m - T_world_body.translation_m.head<2>();
         const Eigen::Vector2d ahead(std::cos(world_.yaw_rad), std::sin(world_.yaw_rad));
@@ -236,30 +239,32 @@ class Run {
         return true;
     }
 
-    void add_look(int processed, const pipeline::Pipeline& pipeline, const Pose& T_world_body) {
-        Look look;
-        look.scene = now_.scene;
-        look.seed = now_.seed;
-        look.mode = now_.mode;
-        look.frame = processed;
-        look.truth = moved(world_, T_odom_world_);
+    void add_observation(int processed,
+                         const pipeline::Pipeline& pipeline,
+                         const Pose& T_world_body) {
+        Observation observation;
+        observation.scene = now_.scene;
+        observation.seed = now_.seed;
+        observation.mode = now_.mode;
+        observation.frame = processed;
+        observation.truth = moved(world_, T_odom_world_);
         const Pose T_world_camera = T_world_body * pipeline.rig().T_body_camera;
         const Eigen::Vector2d to_go_m = world_.middle_m - T_world_camera.translation_m.head<2>();
-        look.truth.ahead_m =
+        observation.truth.ahead_m =
             to_go_m.dot(Eigen::Vector2d(std::cos(world_.yaw_rad), std::sin(world_.yaw_rad)));
         const elevation::ElevationLayers& layers = pipeline.map().layers();
-        look.geometry = pipeline.map().geometry();
-        look.height_m = layers.height_m.copy();
-        look.height_var_m2 = layers.height_var_m2.copy();
-        look.free_above_m = layers.free_above_m.copy();
-        look.clearance_m = layers.clearance_m.copy();
-        look.density_ratio = layers.density_ratio.copy();
-        look.looks = layers.count.copy();
-        look.stance_m = pipeline.T_odom_body().translation_m.head<2>();
-        look.view = pipeline.view();
-        look.disparity_px = pipeline.depth().disparity_px;
-        look.disparity_sigma_px = pipeline.depth().sigma_px;
-        looks_.push_back(std::move(look));
+        observation.geometry = pipeline.map().geometry();
+        observation.height_m = layers.height_m.copy();
+        observation.height_var_m2 = layers.height_var_m2.copy();
+        observation.free_above_m = layers.free_above_m.copy();
+        observation.clearance_m = layers.clearance_m.copy();
+        observation.density_ratio = layers.density_ratio.copy();
+        observation.observations = layers.count.copy();
+        observation.stance_m = pipeline.T_odom_body().translation_m.head<2>();
+        observation.view = pipeline.view();
+        observation.disparity_px = pipeline.depth().disparity_px;
+        observation.disparity_sigma_px = pipeline.depth().sigma_px;
+        observations_.push_back(std::move(observation));
     }
 
     StairsCase now_;
@@ -267,7 +272,7 @@ class Run {
     TrueFeature world_;
     Pose T_odom_world_;
     bool done_ = false;
-    std::vector<Look> looks_;
+    std::vector<Observation> observations_;
 };
 
 }  // namespace
@@ -298,7 +303,9 @@ Status StairsCase::put_into(sim::SceneOptions& options) const {
     return {};
 }
 
-Result<std::vector<Look>> look_at(const StairsCase& now, Settings settings, Executor& executor) {
+Result<std::vector<Observation>> look_at(const StairsCase& now,
+                                         Settings settings,
+                                         Executor& executor) {
     sim::SceneOptions& options = settings.sim;
     if (Status put = now.put_into(options); !put) return put.error();
     const auto script = sim::make_scene(options.scene, options.seed);

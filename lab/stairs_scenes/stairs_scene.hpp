@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/stairs_scenes/stairs_look.hpp"
+#include "lab/stairs_scenes/stairs_observation.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/perception/settings.hpp"
@@ -36,8 +36,8 @@ struct StairsCase {
 /// With `every` = 0 the run ends at the end of the path, or 0.9 m before a door in it.
 /// `Look::noise_px` is 1.4826 times the median absolute deviation of the disparity errors. It uses
 /// pixels that the map accepts and whose 17 x 17 px neighbourhood shows only level floor.
-[[nodiscard]] Result<std::vector<Look>> look_at(const StairsCase& now,
-                                                Settings settings,
-                                                Executor& executor);
+[[nodiscard]] Result<std::vector<Observation>> look_at(const StairsCase& now,
+                                                       Settings settings,
+                                                       Executor& executor);
 
 }  // namespace surefoot::experiments

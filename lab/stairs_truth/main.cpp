@@ -13,7 +13,7 @@
 //
 // Writes OUT.csv, two lines per judged frame: the detection in this frame alone, and the tracked
 // result. Lengths in mm, angles in deg; empty or nan = not found:
-//   way                look = this frame alone, told = tracked by FeatureFollower
+//   way                look = this frame alone, told = tracked by FeatureTracker
 //   noise_px, bias_px, said_px   scatter and mean of disparity errors on level floor, stated sigma
 //   kind, steps, riser, going, width, sill, ahead   true values; ahead: from the left camera
 //   found              flight whose first edge lies within 0.1 m and 10 deg of the true one
@@ -42,22 +42,22 @@
 #include <utility>
 #include <vector>
 
-#include "lab/stairs_scenes/stairs_look.hpp"
 #include "lab/stairs_scenes/stairs_match.hpp"
+#include "lab/stairs_scenes/stairs_observation.hpp"
 #include "lab/stairs_scenes/stairs_scene.hpp"
 #include "service/console/log.hpp"
 #include "surefoot/io/text.hpp"
 #include "surefoot/perception/settings.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
-#include "surefoot/stairs/tracking/feature_follower.hpp"
+#include "surefoot/stairs/tracking/feature_tracker.hpp"
 
 namespace surefoot::app {
 namespace {
 
 using experiments::across_m;
 using experiments::is_line_of;
-using experiments::Look;
 using experiments::nearest;
+using experiments::Observation;
 using experiments::StairsCase;
 using experiments::TrueFeature;
 using experiments::TrueKind;
@@ -146,49 +146,49 @@ constexpr const char* kHeader =
 /// Looks of one run, one after the other.
 class Judge {
   public:
-    explicit Judge(const stairs::StairsConfig& config) : finder_(config), follower_(config) {}
+    explicit Judge(const stairs::StairsConfig& config) : finder_(config), tracker_(config) {}
 
-    void look(const Look& look) { (void)look_once(look); }
+    void observation(const Observation& observation) { (void)observe_once(observation); }
 
     /// The two lines of a look.
-    std::string rows(const Look& look) {
-        const std::int64_t first_ns = look_once(look);
+    std::string rows(const Observation& observation) {
+        const std::int64_t first_ns = observe_once(observation);
         std::int64_t took_ns = first_ns;
         for (int call = 1; call < kCalls; ++call) {  // the first one of a size allocates
             const std::int64_t start_ns = steady_now_ns();
-            finder_.find(look.terrain(), found_);
+            finder_.find(observation.terrain(), found_);
             took_ns = std::min(took_ns, steady_now_ns() - start_ns);
         }
-        return row(look, "look", found_, took_ns) + row(look, "told", told_, took_ns);
+        return row(observation, "look", found_, took_ns) + row(observation, "told", told_, took_ns);
     }
 
   private:
-    std::int64_t look_once(const Look& look) {
+    std::int64_t observe_once(const Observation& observation) {
         constexpr std::int64_t kFrame_ns = 100'000'000;
-        const stairs::Terrain terrain = look.terrain();
+        const stairs::Terrain terrain = observation.terrain();
         const std::int64_t start_ns = steady_now_ns();
         finder_.find(terrain, found_);
         const std::int64_t took_ns = steady_now_ns() - start_ns;
-        follower_.follow(found_, terrain, {look.frame * kFrame_ns, {}}, told_);
+        tracker_.update(found_, terrain, {observation.frame * kFrame_ns, {}}, told_);
         return took_ns;
     }
 
-    static std::string row(const Look& look,
+    static std::string row(const Observation& observation,
                            const char* way,
                            const stairs::TerrainFeatures& features,
                            std::int64_t took_ns) {
-        const TrueFeature& truth = look.truth;
+        const TrueFeature& truth = observation.truth;
         return fmt::format(
             "{},{},{},{},{},{:.4f},{:.4f},{:.4f},{},{},{:.2f},{:.2f},{:.1f},{:.1f},{:.1f}{}{}{},{}"
             "\n",
-            look.scene,
-            look.seed,
-            look.mode,
+            observation.scene,
+            observation.seed,
+            observation.mode,
             way,
-            look.frame,
-            look.noise_px,
-            look.bias_px,
-            look.said_px,
+            observation.frame,
+            observation.noise_px,
+            observation.bias_px,
+            observation.said_px,
             experiments::kTrueKindNames[static_cast<int>(truth.kind)],
             truth.steps,
             mm(truth.riser_m),
@@ -203,7 +203,7 @@ class Judge {
     }
 
     stairs::FeatureFinder finder_;
-    stairs::FeatureFollower follower_;
+    stairs::FeatureTracker tracker_;
     stairs::TerrainFeatures found_;
     stairs::TerrainFeatures told_;
 };
@@ -220,22 +220,22 @@ class Keep {
         : folder_(std::move(maps) + "/" + now.mode), list_(folder_ + "/" + list_name(now)) {}
 
     [[nodiscard]] bool has_it() const { return std::filesystem::exists(list_); }
-    [[nodiscard]] Result<std::vector<Look>> read() const {
-        std::vector<Look> looks;
+    [[nodiscard]] Result<std::vector<Observation>> read() const {
+        std::vector<Observation> observations;
         std::ifstream list(list_);
         for (std::string name; std::getline(list, name);) {
-            auto look = experiments::read_look(folder_ + "/" + name);
-            if (!look) return look.error();
-            looks.push_back(std::move(*look));
+            auto observation = experiments::read_observation(folder_ + "/" + name);
+            if (!observation) return observation.error();
+            observations.push_back(std::move(*observation));
         }
-        return looks;
+        return observations;
     }
-    [[nodiscard]] Status write(const std::vector<Look>& looks) const {
+    [[nodiscard]] Status write(const std::vector<Observation>& observations) const {
         std::string names;
-        for (const Look& look : looks) {
-            names += look.folder_name() + "\n";
-            const std::string folder = folder_ + "/" + look.folder_name();
-            if (Status saved = save_look(look, folder); !saved) return saved;
+        for (const Observation& observation : observations) {
+            names += observation.folder_name() + "\n";
+            const std::string folder = folder_ + "/" + observation.folder_name();
+            if (Status saved = save_observation(observation, folder); !saved) return saved;
         }
         fmt::output_file(list_).print("{}", names);
         return {};
@@ -251,36 +251,36 @@ class Keep {
     std::string list_;
 };
 
-Result<std::vector<Look>> looks_of(const StairsCase& now,
-                                   const std::string& maps,
-                                   const Settings& settings) {
+Result<std::vector<Observation>> observations_of(const StairsCase& now,
+                                                 const std::string& maps,
+                                                 const Settings& settings) {
     const Keep keep(maps, now);
     if (maps != "-" && keep.has_it()) return keep.read();
     Serial alone;
-    auto looks = look_at(now, settings, alone);
-    if (!looks || maps == "-") return looks;
-    if (Status kept = keep.write(*looks); !kept) return kept.error();
-    return looks;
+    auto observations = look_at(now, settings, alone);
+    if (!observations || maps == "-") return observations;
+    if (Status kept = keep.write(*observations); !kept) return kept.error();
+    return observations;
 }
 
 Done judge(const StairsCase& now, const std::string& maps, const Settings& settings) {
-    const auto looks = looks_of(now, maps, settings);
-    if (!looks) return {{}, looks.error()};
+    const auto observations = observations_of(now, maps, settings);
+    if (!observations) return {{}, observations.error()};
     Judge judge(settings.pipeline.stairs);
     Done done;
-    for (const Look& look : *looks) {
-        if (now.every > 0 || &look == &looks->back())
-            done.rows += judge.rows(look);
+    for (const Observation& observation : *observations) {
+        if (now.every > 0 || &observation == &observations->back())
+            done.rows += judge.rows(observation);
         else
-            judge.look(look);
+            judge.observation(observation);
     }
     return done;
 }
 
 Done judge_saved(const std::string& folder, const Settings& settings) {
-    const auto look = experiments::read_look(folder);
-    if (!look) return {{}, look.error()};
-    return {Judge(settings.pipeline.stairs).rows(*look), {}};
+    const auto observation = experiments::read_observation(folder);
+    if (!observation) return {{}, observation.error()};
+    return {Judge(settings.pipeline.stairs).rows(*observation), {}};
 }
 
 std::vector<StairsCase> cases_of(const std::vector<std::string>& words) {
@@ -302,7 +302,7 @@ std::vector<StairsCase> cases_of(const std::vector<std::string>& words) {
     return cases;
 }
 
-std::vector<std::string> saved_looks(const std::string& maps) {
+std::vector<std::string> saved_observations(const std::string& maps) {
     std::vector<std::string> folders;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(maps))
         if (entry.path().filename() == "truth.txt")
@@ -348,7 +348,7 @@ int measure_all(const std::vector<std::string>& words) {
     const auto settings = surefoot::load_settings(common);
     if (!settings) return report(settings.error());
     if (is_saved) {
-        const std::vector<std::string> folders = saved_looks(words[1]);
+        const std::vector<std::string> folders = saved_observations(words[1]);
         return write_all(static_cast<int>(folders.size()), words[0], [&](int i) {
             return judge_saved(folders[static_cast<std::size_t>(i)], *settings);
         });

@@ -58,7 +58,7 @@ std::vector<Setting> settings_of_ours(Match (*match)(const OurSettings&)) {
                          match({.search = {.slope_penalty = slope,
                                            .jump_penalty = jump,
                                            .min_jump_penalty = least},
-                                .settle = {.uniqueness_percent = unique}})});
+                                .selection = {.uniqueness_percent = unique}})});
     return all;
 }
 
@@ -93,24 +93,24 @@ std::vector<Setting> settings_of_bm() {
 
 }  // namespace
 
-Image<float> settled_px(const OurSettings& settings, const TruePair& pair) {
+Image<float> selected_px(const OurSettings& settings, const TruePair& pair) {
     stereo::SemiGlobalConfig config = settings.search;
     config.disparities = pair.disparities;
     Serial serial;
     stereo::Winners winners;
     stereo::SemiGlobalSearch(config).search(pair.left.view(), pair.right.view(), serial, winners);
-    Image<float> settled_px;
-    stereo::settle(settings.settle, winners, serial, settled_px);
+    Image<float> selected_px;
+    stereo::select_disparities(settings.selection, winners, serial, selected_px);
     stereo::SpeckleFilter().remove(
-        serial, stereo::kSpeckleSize_px, stereo::kSpeckleRange_px, settled_px);
-    return settled_px;
+        serial, stereo::kSpeckleSize_px, stereo::kSpeckleRange_px, selected_px);
+    return selected_px;
 }
 
-camera::DepthImage chain_depth(const TruePair& pair) {
+DepthImage chain_depth(const TruePair& pair) {
     stereo::MatcherConfig config;
     config.disparities = pair.disparities;
     Serial serial;
-    camera::DepthImage depth;
+    DepthImage depth;
     stereo::make_matcher(config)->match(pair.left.view(), pair.right.view(), serial, depth);
     return depth;
 }
@@ -121,7 +121,7 @@ Match chain() {
 
 Match trusted_chain() {
     return [](const TruePair& pair) {
-        camera::DepthImage depth = chain_depth(pair);
+        DepthImage depth = chain_depth(pair);
         for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
             if (depth.outlier_probability.data()[i] > kTrusted) depth.disparity_px.data()[i] = kNan;
         }
@@ -131,7 +131,7 @@ Match trusted_chain() {
 
 Match our_search(const OurSettings& settings) {
     return [=](const TruePair& pair) {
-        const Image<float> found_px = settled_px(settings, pair);
+        const Image<float> found_px = selected_px(settings, pair);
         Image<float> disparity_px(found_px.width(), found_px.height());
         std::vector<float> scratch;
         for (int v = 0; v < found_px.height(); ++v)
@@ -142,9 +142,9 @@ Match our_search(const OurSettings& settings) {
 
 Match our_whole(const OurSettings& settings) {
     return [=](const TruePair& pair) {
-        const Image<float> found_px = settled_px(settings, pair);
+        const Image<float> found_px = selected_px(settings, pair);
         Serial serial;
-        camera::DepthImage depth;
+        DepthImage depth;
         depth.resize(found_px.width(), found_px.height());
         stereo::Finisher({.lag_rows = stereo::kSearchLag_rows})
             .finish(pair.left.view(),

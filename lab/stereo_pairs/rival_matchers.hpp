@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "lab/stereo_pairs/stereo_pairs.hpp"
-#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/core/depth_image.hpp"
+#include "surefoot/stereo/disparity_selection.hpp"
 #include "surefoot/stereo/semi_global.hpp"
-#include "surefoot/stereo/settle.hpp"
 
 /// Our matcher and OpenCV's matchers, with adjustable settings.
 namespace surefoot::experiments {
@@ -23,19 +23,19 @@ using Match = std::function<Image<float>(const TruePair&)>;
 /// Largest outlier probability of a trusted match.
 inline constexpr float kTrusted = 0.5F;
 /// Output of the pipeline's matcher: disparities with sigma and outlier probability.
-[[nodiscard]] camera::DepthImage chain_depth(const TruePair& pair);
+[[nodiscard]] DepthImage chain_depth(const TruePair& pair);
 
 /// Settings of our matcher.
 struct OurSettings {
     stereo::SemiGlobalConfig search;
-    stereo::SettleConfig settle;
+    stereo::SelectionConfig selection;
 };
 /// Disparities of our search after stereo::settle and the speckle filter: the input of the
 /// pipeline's refinement.
-[[nodiscard]] Image<float> settled_px(const OurSettings& settings, const TruePair& pair);
-/// `settled_px` and a 3 x 3 median, without the pipeline's refinement.
+[[nodiscard]] Image<float> selected_px(const OurSettings& settings, const TruePair& pair);
+/// `selected_px` and a 3 x 3 median, without the pipeline's refinement.
 [[nodiscard]] Match our_search(const OurSettings& settings);
-/// `settled_px` and the pipeline's refinement. With the default settings the disparities equal
+/// `selected_px` and the pipeline's refinement. With the default settings the disparities equal
 /// those of `chain`.
 [[nodiscard]] Match our_whole(const OurSettings& settings);
 

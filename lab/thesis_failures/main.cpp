@@ -37,7 +37,7 @@
 #include "service/console/log.hpp"
 #include "surefoot/camera/rectifier.hpp"
 #include "surefoot/core/time.hpp"
-#include "surefoot/elevation/fusion/ancestor.hpp"
+#include "surefoot/elevation/fusion/reference_update.hpp"
 #include "surefoot/elevation/sampling/depth_points.hpp"
 #include "surefoot/eval/maps/map_comparison.hpp"
 #include "surefoot/geometry/ransac_plane.hpp"
@@ -86,7 +86,7 @@ constexpr Fault kDrawnFaults[] = {
 
 struct Walk {
     std::string scene;
-    sim::Carrier carrier = sim::Carrier::trolley;
+    sim::MotionModel motion_model = sim::MotionModel::trolley;
     std::uint64_t seed = 1;
     double noise = 1.0;
     std::span<const Fault> faults = kFaults;
@@ -117,7 +117,7 @@ elevation::AncestorConfig thesis_map() {
 /// How far the first depth image puts body and world wrong: the largest plane within the tolerance
 /// is taken for level ground, and its height for that of the machine.
 Pose ground_error(const camera::RectifiedRig& rig,
-                  const camera::DepthImage& depth,
+                  const DepthImage& depth,
                   const Pose& T_world_body) {
     constexpr int kStep_px = 4;
     ground::FramePoints seen;
@@ -143,8 +143,8 @@ class Mapper {
     Mapper(const camera::RectifiedRig& rig, const Fault& fault, std::uint64_t seed)
         : rig_(rig), fault_(fault), delays_(mix_seed(seed, kDelayStream)) {}
 
-    void add(const camera::DepthImage& seen, const sim::Motion& motion, double time_s) {
-        camera::DepthImage depth = seen;
+    void add(const DepthImage& seen, const sim::Motion& motion, double time_s) {
+        DepthImage depth = seen;
         for (std::size_t i = 0; i < depth.disparity_px.size(); ++i)
             depth.disparity_px.data()[i] += static_cast<float>(fault_.disparity_offset_px);
         const Pose T_world_body = motion.at(time_s - delay_s()).T_world_body;
@@ -161,7 +161,7 @@ class Mapper {
         return draw < fault_.drawn_share ? drawn_s : fault_.late_images / kCamera_hz;
     }
 
-    void fuse(const camera::DepthImage& depth, const Pose& T_believed_body, double time_s) {
+    void fuse(const DepthImage& depth, const Pose& T_believed_body, double time_s) {
         const Eigen::Vector2d at_m = T_believed_body.translation_m.head<2>();
         map_.move_to(at_m.x(), at_m.y());
         const Eigen::Vector2d corner_m = map_.geometry().origin_m;
@@ -309,7 +309,7 @@ void report_map(const Walk& walk,
     const HeightMap map{mapper.map().geometry(), mapper.map().elevation_m().copy()};
     const std::string who = fmt::format("{},{},{},{:g},{},{:g},{:g}",
                                         walk.scene,
-                                        sim::kCarrierNames[static_cast<int>(walk.carrier)],
+                                        sim::kMotionModelNames[static_cast<int>(walk.motion_model)],
                                         walk.seed,
                                         walk.noise,
                                         mapper.fault().late_images,
@@ -353,7 +353,7 @@ Status follow(const Walk& walk, Executor& executor, Tables& out) {
     sim::Scene scene = place->scene;
     scene.scale_contrast(zed.contrast);
     sim::MotionScript script;
-    script.carrier = walk.carrier;
+    script.motion_model = walk.motion_model;
     script.waypoints = {{0.0, 0.0, 0.0, 1.0}, {kWay_m, 0.0, 0.0, 1.0}};
     const auto scripted = sim::make_motion(script, walk.seed);
     if (!scripted) return scripted.error();
@@ -374,7 +374,7 @@ Status follow(const Walk& walk, Executor& executor, Tables& out) {
     sim::CleanPair clean;
     sim::RenderedPair images;
     camera::RectifiedPair pair;
-    camera::DepthImage depth;
+    DepthImage depth;
     for (int i = 0; i / kMap_hz <= motion.duration_s(); ++i) {
         const double time_s = i / kMap_hz;
         renderer->collect(motion, time_s, camera.exposure.exposure_s, executor, clean);
@@ -426,8 +426,9 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
         for (const char* scene : {"floor", "demo_stairs"}) {
             if (drawn && scene != std::string("floor")) continue;
-            for (const sim::Carrier carrier : {sim::Carrier::trolley, sim::Carrier::rex}) {
-                Walk walk{scene, carrier, static_cast<std::uint64_t>(seed), noise};
+            for (const sim::MotionModel motion_model :
+                 {sim::MotionModel::trolley, sim::MotionModel::rex}) {
+                Walk walk{scene, motion_model, static_cast<std::uint64_t>(seed), noise};
                 if (drawn) walk.faults = kDrawnFaults;
                 const Status walked = follow(walk, *executor, out);
                 if (!walked) return app::report(walked.error());
@@ -435,7 +436,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
                            "seed {}: {} by {} done\n",
                            seed,
                            scene,
-                           sim::kCarrierNames[static_cast<int>(carrier)]);
+                           sim::kMotionModelNames[static_cast<int>(motion_model)]);
             }
         }
     }

@@ -109,11 +109,12 @@ Pairs seen_pairs(const camera::StereoRig& rig, std::uint64_t seed) {
         if (!is_whole(*rig.right, T_right_board)) continue;
         const auto i = pairs.left.size();
         const auto& look = calibration::testing::kWideLooks[i % 6];
-        const auto found = [&](const camera::Camera& camera, const Pose& T, std::uint64_t eye) {
-            const auto image = calibration::testing::wide_picture(
-                board_9x6, camera, T, look, mix_seed(seed, 2 * i + eye));
-            return calibration::detect_board(board_9x6, image.view()).view;
-        };
+        const auto found =
+            [&](const camera::Camera& camera, const Pose& T, std::uint64_t this_camera) {
+                const auto image = calibration::testing::wide_picture(
+                    board_9x6, camera, T, look, mix_seed(seed, 2 * i + this_camera));
+                return calibration::detect_board(board_9x6, image.view()).view;
+            };
         pairs.left.push_back(found(rig.left, T_left_board, 0));
         pairs.right.push_back(found(*rig.right, T_right_board, 1));
         if (!pairs.left.back().ids.empty() && !pairs.right.back().ids.empty())

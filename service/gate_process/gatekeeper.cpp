@@ -9,7 +9,7 @@
 #include "surefoot/gate/goal.hpp"
 #include "surefoot/gate/verdict_text.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kOpenEvery_ns = 100'000'000;
@@ -112,18 +112,18 @@ void Gatekeeper::fetch(std::int64_t now_ns) {
         writer_ = reader_->writer();
         has_map_ = waits_ = false;
         map_ = nothing_seen();
-        vouching_.revoke();
+        attestation_.revoke();
         readiness_.perception_restarted(now_ns);
     }
     if (has_arrived(read, now_ns) && writer_ != given_up_) {
         std::swap(map_, incoming_);
         has_map_ = true;
         readiness_.observe(*map_, now_ns);
-        vouching_.observe(*map_, now_ns);
+        attestation_.observe(*map_, now_ns);
     }
     readiness_.tick(now_ns);
     if (readiness_.state() != gate::GateState::fault) return;
-    vouching_.revoke();
+    attestation_.revoke();
     if (reader_) reader_->keep_faults(readiness_.latched().bits());
 }
 
@@ -155,7 +155,7 @@ Judgement Gatekeeper::judge(const StepQuestion& question,
     judgement.health = health();
     if (!in_sequence) judgement.health.faults.add(gate::Reason::seq);
     judgement.query = gate::query_at_body(question.command, *map_);
-    judgement.query.vouched = vouching_.area();
+    judgement.query.attested = attestation_.area();
     judgement.query.connection = question.connection;
     judgement.query.sequence = question.sequence;
     judgement.now_ns = now_ns;
@@ -183,7 +183,7 @@ Answer Gatekeeper::ask_goal(const GoalQuestion& question, std::int64_t now_ns) {
     gate::GateHealth health = this->health();
     if (question.frame_id != "odom") health.faults.add(gate::Reason::frame_id);
     gate::Query here = gate::query_at_body(0, *map_);
-    here.vouched = vouching_.area();
+    here.attested = attestation_.area();
     here.connection = question.connection;
     // make_query refuses what is no number; then the goal is no pose either.
     const gate::Query there = gate::make_query(
@@ -219,8 +219,8 @@ GateReport Gatekeeper::report(std::int64_t now_ns) {
         else if (report.health.state != gate::GateState::ready)
             report.why = gate::Reason::not_ready;
     }
-    report.vouching = vouching_.area().active;
-    report.vouched = vouching_.area();
+    report.attestation = attestation_.area().active;
+    report.attested = attestation_.area();
     report.asked = asked_;
     report.allowed = allowed_;
     if (has_map_) {
@@ -241,7 +241,7 @@ Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
         return Error{ErrorCode::usage,
                      "there is nothing to re-arm: the gate is in no fault, or in one that only a "
                      "restart with a valid configuration ends"};
-    vouching_.revoke();
+    attestation_.revoke();
     if (channel_state_ == ChannelState::forged) channel_state_ = ChannelState::open;
     if (reader_) {  // the map that a fault left behind is not believed again
         reader_->keep_faults(0);
@@ -252,7 +252,7 @@ Status Gatekeeper::rearm(std::uint64_t /*connection*/, std::int64_t now_ns) {
 }
 
 Status Gatekeeper::check_radius(double radius_m) const {
-    const double most_m = machine_.limits.vouch_radius_tenth_mm * 1e-4;
+    const double most_m = machine_.limits.attestation_radius_tenth_mm * 1e-4;
     const std::int64_t least_tenth_mm = least_radius_tenth_mm();
     const bool is_number = radius_m > 0.0 && radius_m <= most_m;
     if (is_number && tenth_mm(radius_m) >= least_tenth_mm) return {};
@@ -265,23 +265,23 @@ Status Gatekeeper::check_radius(double radius_m) const {
 }
 
 std::int64_t Gatekeeper::least_radius_tenth_mm() const {
-    const auto square = static_cast<double>(gate::least_vouched_radius_sq(machine_));
+    const auto square = static_cast<double>(gate::least_attested_radius_sq(machine_));
     return static_cast<std::int64_t>(std::ceil(std::sqrt(square)));  // in range: of an integer
 }
 
-Status Gatekeeper::vouch(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
+Status Gatekeeper::attest(std::uint64_t /*connection*/, double radius_m, std::int64_t now_ns) {
     fetch(now_ns);
     if (!has_map_ || !gate::snapshot_faults(machine_, *map_, now_ns).empty())
         return refuse_attestation("no healthy pose is known");
     if (readiness_.state() == gate::GateState::fault)
         return refuse_attestation("the gate is in a fault");
     if (auto status = check_radius(radius_m); !status) return status;
-    if (!vouching_.vouch(machine_, *map_, tenth_mm(radius_m), now_ns))
+    if (!attestation_.attest(machine_, *map_, tenth_mm(radius_m), now_ns))
         return refuse_attestation("the map of this moment is damaged");
     return {};
 }
 
-Status Gatekeeper::vouch_when_ready(double radius_m) {
+Status Gatekeeper::attest_when_ready(double radius_m) {
     if (auto status = check_radius(radius_m); !status) return status;
     starters_word_m_ = radius_m;
     return {};
@@ -303,11 +303,11 @@ void Gatekeeper::give_starters_word(std::int64_t now_ns) {
     const gate::GateState state = readiness_.state();
     if (state != gate::GateState::ready && state != gate::GateState::fault) return;
     const double radius_m = std::exchange(starters_word_m_, 0.0);
-    if (vouching_.area().active) return;  // the operator's own attestation is not replaced
+    if (attestation_.area().active) return;  // the operator's own attestation is not replaced
     // Refused in a fault, and then it is over: the attestation was for where the machine stood at
     // the start. `report` says whether it is in force.
-    const Status attested = vouch(0, radius_m, now_ns);
+    const Status attested = attest(0, radius_m, now_ns);
     note(act_of(ActKind::attest, Role::operator_, 0, attested, now_ns, radius_m));
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

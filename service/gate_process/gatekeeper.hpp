@@ -14,11 +14,11 @@
 #include "service/gate_process/sockets/token_bucket.hpp"
 #include "service/gate_process/step_gate.hpp"
 #include "surefoot/core/machine.hpp"
+#include "surefoot/gate/attestation.hpp"
 #include "surefoot/gate/canary.hpp"
 #include "surefoot/gate/readiness.hpp"
-#include "surefoot/gate/vouching.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// A verdict and what it was made of, but for the machine and the map.
 struct Judgement {
@@ -61,7 +61,7 @@ class Gatekeeper final : public StepGate {
     /// Whoever starts the process attests the ground: once, when the gate is first ready, and after
     /// a fault not any more. An attestation that the operator gave before then stays. Refuses a
     /// radius that could never be attested.
-    [[nodiscard]] Status vouch_when_ready(double radius_m);
+    [[nodiscard]] Status attest_when_ready(double radius_m);
     /// The process ends: nothing is OK any more.
     void stop() noexcept { readiness_.stop(); }
 
@@ -75,9 +75,9 @@ class Gatekeeper final : public StepGate {
     [[nodiscard]] std::string words_of(const Prospect& prospect) const override;
     [[nodiscard]] GateReport report(std::int64_t now_ns) override;
     [[nodiscard]] Status rearm(std::uint64_t connection, std::int64_t now_ns) override;
-    [[nodiscard]] Status vouch(std::uint64_t connection,
-                               double radius_m,
-                               std::int64_t now_ns) override;
+    [[nodiscard]] Status attest(std::uint64_t connection,
+                                double radius_m,
+                                std::int64_t now_ns) override;
     void forget(std::uint64_t connection) override { sequences_.erase(connection); }
     /// Of refusals a hundred at once and ten a second in the long run are passed on: nobody fills
     /// the log with them. The act that follows tells how many were left out.
@@ -107,7 +107,7 @@ class Gatekeeper final : public StepGate {
     TokenBucket refusals_{{10, 100}};  ///< that are passed on to the log
     std::uint32_t refusals_left_out_ = 0;
     gate::Readiness readiness_;
-    gate::Vouching vouching_;
+    gate::Attestation attestation_;
     std::unique_ptr<gate::Canaries> canaries_;
     std::optional<SnapshotReader> reader_;
     ChannelState channel_state_ = ChannelState::absent;
@@ -127,4 +127,4 @@ class Gatekeeper final : public StepGate {
     std::uint64_t allowed_ = 0;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

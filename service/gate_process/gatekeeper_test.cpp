@@ -12,7 +12,7 @@
 #include "surefoot/core/allocations_testing.hpp"
 #include "surefoot/gate/gate_testing.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 using gate::Decision;
@@ -105,7 +105,7 @@ TEST_F(GatekeeperTest, without_perception_it_says_what_is_missing) {
     EXPECT_EQ(report.health.state, GateState::warmup);
     EXPECT_EQ(report.frame_age_ns, -1);
     EXPECT_NE(report.why, Reason::none);
-    EXPECT_FALSE(keeper_->vouch(1, 0.5, now_ns_).ok());
+    EXPECT_FALSE(keeper_->attest(1, 0.5, now_ns_).ok());
     EXPECT_EQ(keeper_->ask_goal({1, "odom", 1.0, 0.0, 0.0}, now_ns_).verdict.decision,
               Decision::error);
 }
@@ -241,69 +241,69 @@ TEST_F(GatekeeperTest, an_operators_word_lasts_until_the_machine_has_left_or_a_f
     map_ = blind.snapshot();
     become_ready();
     EXPECT_EQ(ask().verdict.primary, Reason::unknown_cells);
-    EXPECT_FALSE(keeper_->vouch(1, 1.5, now_ns_).ok()) << "the machine file allows 1.0 m";
-    EXPECT_FALSE(keeper_->vouch(1, std::nan(""), now_ns_).ok());
-    EXPECT_FALSE(keeper_->vouch(1, -1.0, now_ns_).ok());
+    EXPECT_FALSE(keeper_->attest(1, 1.5, now_ns_).ok()) << "the machine file allows 1.0 m";
+    EXPECT_FALSE(keeper_->attest(1, std::nan(""), now_ns_).ok());
+    EXPECT_FALSE(keeper_->attest(1, -1.0, now_ns_).ok());
     EXPECT_FALSE(ask().verdict.allows_step(now_ns_));
-    ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
-    EXPECT_TRUE(keeper_->report(now_ns_).vouching);
-    EXPECT_EQ(keeper_->report(now_ns_).vouched.radius_tenth_mm, 10'000);
+    ASSERT_TRUE(keeper_->attest(1, 1.0, now_ns_).ok());
+    EXPECT_TRUE(keeper_->report(now_ns_).attestation);
+    EXPECT_EQ(keeper_->report(now_ns_).attested.radius_tenth_mm, 10'000);
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << gate::testing::words(ask().verdict);
     run(0.5);
     EXPECT_TRUE(ask().verdict.allows_step(now_ns_)) << "it lasts while the machine stands";
     map_->camera = CameraState::dark;
     publish();
-    EXPECT_FALSE(keeper_->vouch(1, 1.0, now_ns_).ok()) << "nobody knows where the machine is";
+    EXPECT_FALSE(keeper_->attest(1, 1.0, now_ns_).ok()) << "nobody knows where the machine is";
     map_->camera = CameraState::ok;
     run(1.5);
-    ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
+    ASSERT_TRUE(keeper_->attest(1, 1.0, now_ns_).ok());
     while (map_->body_x_tenth_mm < 10'100) {  // at half a metre a second
         map_->body_x_tenth_mm += 325;
         run(0.065);
     }
-    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "the machine has left";
-    EXPECT_FALSE(keeper_->report(now_ns_).vouched.active);
+    EXPECT_FALSE(keeper_->report(now_ns_).attestation) << "the machine has left";
+    EXPECT_FALSE(keeper_->report(now_ns_).attested.active);
     while (map_->body_x_tenth_mm > 0) {
         map_->body_x_tenth_mm -= 325;
         run(0.065);
     }
     EXPECT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
-    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "and coming back revives nothing";
-    ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
+    EXPECT_FALSE(keeper_->report(now_ns_).attestation) << "and coming back revives nothing";
+    ASSERT_TRUE(keeper_->attest(1, 1.0, now_ns_).ok());
     map_->camera = CameraState::moved;
     publish();
     run(0.01, false);
-    EXPECT_FALSE(keeper_->report(now_ns_).vouching);
+    EXPECT_FALSE(keeper_->report(now_ns_).attestation);
 }
 
 TEST_F(GatekeeperTest, an_attestation_too_small_for_the_soles_replaces_none) {
     become_ready();
-    ASSERT_TRUE(keeper_->vouch(1, 1.0, now_ns_).ok());
+    ASSERT_TRUE(keeper_->attest(1, 1.0, now_ns_).ok());
     for (const double radius_m : {0.00005, 0.0, 0.1, 0.3649, 1.5}) {
-        const Status refused = keeper_->vouch(2, radius_m, now_ns_);
+        const Status refused = keeper_->attest(2, radius_m, now_ns_);
         ASSERT_FALSE(refused.ok()) << radius_m;
         EXPECT_NE(refused.error().message.find("0.3650 m, which holds both soles"),
                   std::string::npos)
             << refused.error().message;
-        EXPECT_TRUE(keeper_->report(now_ns_).vouching);
+        EXPECT_TRUE(keeper_->report(now_ns_).attestation);
     }
     (void)ask();
-    EXPECT_EQ(audited_.back().query.vouched.radius_tenth_mm, 10'000);
-    EXPECT_TRUE(keeper_->vouch(2, 0.365, now_ns_).ok());
+    EXPECT_EQ(audited_.back().query.attested.radius_tenth_mm, 10'000);
+    EXPECT_TRUE(keeper_->attest(2, 0.365, now_ns_).ok());
 }
 
 TEST_F(GatekeeperTest, the_starters_attestation_is_noted_and_does_not_replace_the_operators) {
-    ASSERT_TRUE(keeper_->vouch_when_ready(1.0).ok());
+    ASSERT_TRUE(keeper_->attest_when_ready(1.0).ok());
     start_perception();
     run(1.0);
-    ASSERT_TRUE(keeper_->vouch(7, 0.5, now_ns_).ok());
+    ASSERT_TRUE(keeper_->attest(7, 0.5, now_ns_).ok());
     run(2.0);
     ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
     (void)ask();
-    EXPECT_EQ(audited_.back().query.vouched.radius_tenth_mm, 5'000);
+    EXPECT_EQ(audited_.back().query.attested.radius_tenth_mm, 5'000);
     EXPECT_TRUE(acts_.empty());
     keep();
-    ASSERT_TRUE(keeper_->vouch_when_ready(1.0).ok());
+    ASSERT_TRUE(keeper_->attest_when_ready(1.0).ok());
     run(3.0);
     ASSERT_EQ(acts_.size(), 1U);
     EXPECT_EQ(acts_[0].kind, ActKind::attest);
@@ -330,18 +330,18 @@ TEST_F(GatekeeperTest, nobody_fills_the_log_with_refusals) {
 TEST_F(GatekeeperTest, whoever_starts_it_gives_their_word_once_and_after_a_fault_none) {
     const auto start_with_word = [this] {
         keep();
-        ASSERT_TRUE(keeper_->vouch_when_ready(1.0).ok());
+        ASSERT_TRUE(keeper_->attest_when_ready(1.0).ok());
     };
-    EXPECT_FALSE(keeper_->vouch_when_ready(1.5).ok()) << "the machine file allows 1.0 m";
-    EXPECT_FALSE(keeper_->vouch_when_ready(-1.0).ok());
-    EXPECT_FALSE(keeper_->vouch_when_ready(std::nan("")).ok());
+    EXPECT_FALSE(keeper_->attest_when_ready(1.5).ok()) << "the machine file allows 1.0 m";
+    EXPECT_FALSE(keeper_->attest_when_ready(-1.0).ok());
+    EXPECT_FALSE(keeper_->attest_when_ready(std::nan("")).ok());
     start_with_word();
     start_perception();
     run(0.5);
-    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "the gate warms up";
+    EXPECT_FALSE(keeper_->report(now_ns_).attestation) << "the gate warms up";
     run(2.5);
     ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
-    EXPECT_TRUE(keeper_->report(now_ns_).vouching);
+    EXPECT_TRUE(keeper_->report(now_ns_).attestation);
 
     map_->body_x_tenth_mm += 3'000;  // a jump
     run(0.2);
@@ -354,7 +354,7 @@ TEST_F(GatekeeperTest, whoever_starts_it_gives_their_word_once_and_after_a_fault
         ASSERT_EQ(keeper_->report(now_ns_).health.state, GateState::ready);
     };
     re_arm();
-    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "it was given once";
+    EXPECT_FALSE(keeper_->report(now_ns_).attestation) << "it was given once";
 
     start_with_word();
     run(0.5);
@@ -362,7 +362,7 @@ TEST_F(GatekeeperTest, whoever_starts_it_gives_their_word_once_and_after_a_fault
     run(0.2);
     map_->camera = CameraState::ok;
     re_arm();
-    EXPECT_FALSE(keeper_->report(now_ns_).vouching) << "where it stands now nobody answered for";
+    EXPECT_FALSE(keeper_->report(now_ns_).attestation) << "where it stands now nobody answered for";
 }
 
 TEST_F(GatekeeperTest, goals_are_pictures_and_their_frame_must_be_known) {
@@ -561,4 +561,4 @@ TEST_F(GatekeeperTest, a_computer_that_slept_is_a_fault) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -6,7 +6,7 @@
 
 #include "service/gate_process/protocol/topic_json.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kRoundNs = 250'000'000;  // from beginning to beginning: 4 Hz
@@ -49,4 +49,4 @@ std::optional<TopicMessage> OutlookRounds::next(StepGate& gate,
     return TopicMessage{Topic::outlook, std::make_shared<const std::string>(dump(body))};
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 #include "service/gate_process/protocol/subscriptions.hpp"
 #include "service/gate_process/step_gate.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// What speaks for and against a look ahead in this moment.
 struct OutlookDemand {
@@ -42,4 +42,4 @@ class OutlookRounds {
     int gave_way_ = 0;                      ///< calls in a row
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 #include "service/gate_process/protocol/json_text.hpp"
 #include "service/gate_process/wire_testing.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 using testing::kBackward;
@@ -131,4 +131,4 @@ TEST(OutlookRounds, NoMessageMixesTwoStates) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

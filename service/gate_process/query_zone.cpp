@@ -6,14 +6,14 @@
 #include "surefoot/gate/footprints.hpp"
 #include "surefoot/gate/ground.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 using grid::MapSnapshot;
 
 /// 100 km and 2 m, as in the gate: within them no product overflows.
 constexpr std::int64_t kFarthestTenthMm = 1'000'000'000;
-constexpr std::int64_t kWidestVouchedTenthMm = 20'000;
+constexpr std::int64_t kWidestAttestedTenthMm = 20'000;
 
 constexpr bool within(std::int64_t value, std::int64_t bound) noexcept {
     return value >= -bound && value <= bound;
@@ -32,16 +32,16 @@ bool has_cells(const MapSnapshot& map) noexcept {
 
 /// Not narrower than what the gate asks before it looks at the ground.
 bool can_look(const Machine& machine, const gate::Query& query, const MapSnapshot& map) noexcept {
-    const gate::VouchedArea& area = query.vouched;
-    const bool vouched =
-        !area.active || (within(area.center_x_tenth_mm, kFarthestTenthMm) &&
-                         within(area.center_y_tenth_mm, kFarthestTenthMm) &&
-                         area.radius_tenth_mm > 0 && area.radius_tenth_mm <= kWidestVouchedTenthMm);
+    const gate::AttestedArea& area = query.attested;
+    const bool attested = !area.active || (within(area.center_x_tenth_mm, kFarthestTenthMm) &&
+                                           within(area.center_y_tenth_mm, kFarthestTenthMm) &&
+                                           area.radius_tenth_mm > 0 &&
+                                           area.radius_tenth_mm <= kWidestAttestedTenthMm);
     return has_cells(map) && machine.problem() == nullptr &&
            query.command < Machine::kMovementCodes && machine.movements[query.command].configured &&
            within(query.x_tenth_mm, kFarthestTenthMm) &&
            within(query.y_tenth_mm, kFarthestTenthMm) && is_unit(query.cos_yaw) &&
-           is_unit(query.sin_yaw) && vouched;
+           is_unit(query.sin_yaw) && attested;
 }
 
 /// First cell and number of cells of [low, high] along one axis of `n` cells.
@@ -87,4 +87,4 @@ CellBox query_zone(const Machine& machine,
     return {x.first, y.first, x.count, y.count};
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

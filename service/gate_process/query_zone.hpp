@@ -6,7 +6,7 @@
 
 #include "surefoot/gate/gate.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// A rectangle of cells of a snapshot: the first one and how many. It lies inside the map.
 struct CellBox {
@@ -35,4 +35,4 @@ struct CellBox {
                                  const grid::MapSnapshot& map,
                                  std::int64_t drift_tenth_mm) noexcept;
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -8,7 +8,7 @@
 
 #include "service/gate_process/audit/audit_testing.hpp"
 
-namespace surefoot::wire::testing {
+namespace surefoot::gate_process::testing {
 namespace {
 
 /// Other bytes in every cell outside of the zone: ground at the height of the floor on another
@@ -45,7 +45,7 @@ Machine climbing_rex() {
 TEST(QueryZone, cells_outside_of_it_never_change_a_verdict) {
     Rng rng(21);
     int allowed = 0;
-    int vouched = 0;
+    int attested = 0;
     for (int round = 0; round < 400; ++round) {
         Case c = random_case(rng,
                              round % 2 == 1   ? random_machine(rng)
@@ -58,10 +58,10 @@ TEST(QueryZone, cells_outside_of_it_never_change_a_verdict) {
         const auto found = differences(before, c.verdict);
         ASSERT_TRUE(found.empty()) << "round " << round << ": " << words(found);
         allowed += c.verdict.decision == gate::Decision::ok ? 1 : 0;
-        vouched += c.verdict.evidence.vouched_cells > 0 ? 1 : 0;
+        attested += c.verdict.evidence.attested_cells > 0 ? 1 : 0;
     }
     EXPECT_GT(allowed, 20);  // or the rounds prove nothing
-    EXPECT_GT(vouched, 20);
+    EXPECT_GT(attested, 20);
 }
 
 /// What the vouched area lends its word to lies one cell beside it: without that ring a landing
@@ -71,11 +71,11 @@ TEST(QueryZone, holds_the_surfaces_beside_the_vouched_area) {
     Case c;
     c.map = terrain.snapshot();
     c.query = gate::query_at_body(gate::testing::kForward, *c.map);
-    c.query.vouched = {true, -9000, 0, 10'000, 0};
+    c.query.attested = {true, -9000, 0, 10'000, 0};
     const CellBox zone = c.zone();
     const std::int64_t left = c.map->origin_x_tenth_mm + zone.x * c.map->resolution_tenth_mm;
     EXPECT_LE(left, -9000 - 10'000 - 250);
-    c.query.vouched.active = false;
+    c.query.attested.active = false;
     EXPECT_GT(c.zone().x, zone.x);
 }
 
@@ -102,8 +102,8 @@ TEST(QueryZone, is_empty_where_the_gate_does_not_look) {
     EXPECT_EQ(zone_after([&](Case& c) { c.query.sin_yaw = 1e300; }), CellBox{});
     EXPECT_EQ(zone_after([](Case& c) { c.query.x_tenth_mm = kMax; }), CellBox{});
     EXPECT_EQ(zone_after([](Case& c) { c.query.y_tenth_mm = -kMax; }), CellBox{});
-    EXPECT_EQ(zone_after([](Case& c) { c.query.vouched = {true, kMax, 0, 100, 0}; }), CellBox{});
-    EXPECT_EQ(zone_after([](Case& c) { c.query.vouched = {true, 0, 0, -1, 0}; }), CellBox{});
+    EXPECT_EQ(zone_after([](Case& c) { c.query.attested = {true, kMax, 0, 100, 0}; }), CellBox{});
+    EXPECT_EQ(zone_after([](Case& c) { c.query.attested = {true, 0, 0, -1, 0}; }), CellBox{});
     EXPECT_EQ(zone_after([](Case& c) { c.machine = Machine{}; }), CellBox{});
     EXPECT_EQ(zone_after([](Case& c) { c.map->nx = 257; }), CellBox{});
     EXPECT_EQ(zone_after([](Case& c) { c.map->ny = 0; }), CellBox{});
@@ -128,4 +128,4 @@ TEST(QueryZone, a_box_inside_a_map_is_told_from_all_others) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire::testing
+}  // namespace surefoot::gate_process::testing

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Time that never jumps and stands still while the computer sleeps.
 [[nodiscard]] inline std::int64_t steady_ns() {
@@ -22,4 +22,4 @@ namespace surefoot::wire {
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/gate/gate.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// "May I make this movement now, from where I stand?"
 struct StepQuestion {
@@ -48,8 +48,8 @@ struct GateReport {
     std::uint64_t map_version = 0;
     std::int64_t frame_age_ns = -1;  ///< of the last snapshot; -1 = none came yet
     std::int64_t pose_age_ns = -1;
-    bool vouching = false;      ///< an operator's attestation is in force
-    gate::VouchedArea vouched;  ///< its area, in odom; inactive if none is in force
+    bool attestation = false;     ///< an operator's attestation is in force
+    gate::AttestedArea attested;  ///< its area, in odom; inactive if none is in force
     std::uint64_t asked = 0;
     std::uint64_t allowed = 0;
 };
@@ -81,13 +81,13 @@ class StepGate {
     /// replaces the one before; a refused one changes nothing. Refused when the area does not hold
     /// both soles, beyond the limit of the machine file (0: attestations are off), and when no pose
     /// is known. The caller has checked the client's role.
-    [[nodiscard]] virtual Status vouch(std::uint64_t connection,
-                                       double radius_m,
-                                       std::int64_t now_ns) = 0;
+    [[nodiscard]] virtual Status attest(std::uint64_t connection,
+                                        double radius_m,
+                                        std::int64_t now_ns) = 0;
     /// The client is gone: nothing that was answered to it counts any more.
     virtual void forget(std::uint64_t connection) = 0;
     /// For the audit log: what somebody did, or was refused.
     virtual void note(const Act& act) = 0;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

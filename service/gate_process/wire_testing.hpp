@@ -11,7 +11,7 @@
 #include "service/gate_process/step_gate.hpp"
 
 /// What the tests of the service share: a gate that follows a script instead of a map.
-namespace surefoot::wire::testing {
+namespace surefoot::gate_process::testing {
 
 inline constexpr std::int64_t kMs = 1'000'000;
 inline constexpr std::int64_t kNowNs = 5'000'000'000;
@@ -96,12 +96,12 @@ class ScriptedGate : public StepGate {
         rearmed.push_back(connection);
         return {};
     }
-    [[nodiscard]] Status vouch(std::uint64_t connection,
-                               double radius_m,
-                               std::int64_t /*now_ns*/) override {
+    [[nodiscard]] Status attest(std::uint64_t connection,
+                                double radius_m,
+                                std::int64_t /*now_ns*/) override {
         if (!(radius_m > 0.0 && radius_m <= 0.5))
             return input_error("vouch: the radius is not within 0.5 m");
-        vouched.emplace_back(connection, radius_m);
+        attested.emplace_back(connection, radius_m);
         return {};
     }
     void forget(std::uint64_t connection) override { forgotten.push_back(connection); }
@@ -114,7 +114,7 @@ class ScriptedGate : public StepGate {
     std::vector<StepQuestion> questions;
     std::vector<GoalQuestion> goals;
     std::vector<std::uint64_t> rearmed;
-    std::vector<std::pair<std::uint64_t, double>> vouched;
+    std::vector<std::pair<std::uint64_t, double>> attested;
     std::vector<std::uint64_t> forgotten;
     std::vector<Act> acts;
     std::map<std::uint64_t, std::uint64_t> last_sequence;
@@ -180,4 +180,4 @@ class ScriptedGate : public StepGate {
     }
 };
 
-}  // namespace surefoot::wire::testing
+}  // namespace surefoot::gate_process::testing

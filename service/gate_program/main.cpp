@@ -52,8 +52,8 @@ struct Options {
     int audit_mb = 1024;
     std::string key_file;
     int parent_fd = -1;
-    double vouch_radius_m = 0.0;
-    wire::ServerConfig server;
+    double attestation_radius_m = 0.0;
+    gate_process::ServerConfig server;
 };
 
 std::int64_t clock_ns(clockid_t clock) {
@@ -69,21 +69,21 @@ int fail(const Error& error) {
 
 /// Reads the key of the snapshot channel from the program that started the gate, or from a file.
 /// Without a key it returns a new random one, so the gate trusts no map.
-Result<wire::ChecksumKey> channel_key(const Options& options) {
+Result<gate_process::ChecksumKey> channel_key(const Options& options) {
     if (options.parent_fd >= 0) {
         std::array<char, 16> bytes{};
         if (::recv(options.parent_fd, bytes.data(), bytes.size(), MSG_WAITALL) !=
             static_cast<ssize_t>(bytes.size()))
             return usage_error("--parent-fd: only `surefoot serve` uses this option");
         ::fcntl(options.parent_fd, F_SETFD, FD_CLOEXEC);
-        return wire::key_of({bytes.data(), bytes.size()});
+        return gate_process::key_of({bytes.data(), bytes.size()});
     }
-    if (!options.key_file.empty()) return wire::read_checksum_key(options.key_file);
+    if (!options.key_file.empty()) return gate_process::read_checksum_key(options.key_file);
     fmt::print(stderr,
                "surefoot-gate: warning: without the key of the channel no map is trusted and every "
                "answer is ERROR; name the file that `surefoot serve --channel-key` got "
                "(--channel-key)\n");
-    return wire::new_checksum_key();
+    return gate_process::new_checksum_key();
 }
 
 /// True if the program that started the gate has ended, normally or by a crash.
@@ -96,15 +96,15 @@ bool is_orphan(int parent_fd) {
 class ChannelNews {
   public:
     explicit ChannelNews(std::string path) : path_(std::move(path)) {}
-    void tell(wire::ChannelState state) {
+    void tell(gate_process::ChannelState state) {
         if (state == told_) return;
-        const bool was_lost = told_ == wire::ChannelState::lost;
+        const bool was_lost = told_ == gate_process::ChannelState::lost;
         told_ = state;
-        if (state == wire::ChannelState::lost)
+        if (state == gate_process::ChannelState::lost)
             say("the channel was deleted, replaced or cut off; nothing is allowed until perception "
                 "has made it again");
-        if (state == wire::ChannelState::open && was_lost) say("the channel is open again");
-        if (state == wire::ChannelState::forged)
+        if (state == gate_process::ChannelState::open && was_lost) say("the channel is open again");
+        if (state == gate_process::ChannelState::forged)
             say("another process has changed a map; the gate is in FAULT until an operator re-arms "
                 "it. Find that process first: only this user and root can write there");
     }
@@ -115,26 +115,27 @@ class ChannelNews {
         std::fflush(stderr);
     }
     std::string path_;
-    wire::ChannelState told_ = wire::ChannelState::absent;
+    gate_process::ChannelState told_ = gate_process::ChannelState::absent;
 };
 
 /// Opens the server. If another process uses the port it retries for kPortPatience_ns, then returns
 /// an error that names that process.
-Result<std::unique_ptr<wire::WebsocketServer>> listen(const wire::ServerConfig& config,
-                                                      wire::StepGate& gate,
-                                                      const wire::WebsocketServer::Tick& tick) {
+Result<std::unique_ptr<gate_process::WebsocketServer>> listen(
+    const gate_process::ServerConfig& config,
+    gate_process::StepGate& gate,
+    const gate_process::WebsocketServer::Tick& tick) {
     const std::int64_t end_ns = clock_ns(CLOCK_MONOTONIC) + kPortPatience_ns;
     while (true) {
-        auto server = wire::WebsocketServer::open(config, gate, tick);
+        auto server = gate_process::WebsocketServer::open(config, gate, tick);
         if (server || config.port == 0) return server;
-        const auto holder = wire::holder_of_port(config.port);
+        const auto holder = gate_process::holder_of_port(config.port);
         if (!holder) return server;
         if (clock_ns(CLOCK_MONOTONIC) > end_ns)
             return Error{server.error().code,
                          fmt::format("{}; {} listens there{}; end that process, or name another "
                                      "port (--port)",
                                      server.error().message,
-                                     wire::words_of(*holder),
+                                     gate_process::words_of(*holder),
                                      holder->parent == 1 ? ", whose parent has ended" : "")};
         constexpr timespec kPause{0, 20'000'000};
         ::nanosleep(&kPause, nullptr);
@@ -169,16 +170,17 @@ void ask_for_short_slices() {
 }
 
 /// Opens the audit log; null without --audit.
-Result<std::unique_ptr<wire::AuditLog>> open_log(const Options& options, const Machine& machine) {
-    std::unique_ptr<wire::AuditLog> log;
+Result<std::unique_ptr<gate_process::AuditLog>> open_log(const Options& options,
+                                                         const Machine& machine) {
+    std::unique_ptr<gate_process::AuditLog> log;
     if (options.audit_dir.empty()) return log;
-    wire::AuditConfig config;
-    config.files.run_id = wire::new_run_id();
+    gate_process::AuditConfig config;
+    config.files.run_id = gate_process::new_run_id();
     config.files.total_bytes = static_cast<std::uint64_t>(options.audit_mb) << 20U;
     // The newest file is never removed, so a file must be small compared with the total limit.
     config.files.file_bytes = std::min(config.files.file_bytes, config.files.total_bytes / 4);
-    log = std::make_unique<wire::AuditLog>(
-        machine, wire::make_folder_disk(options.audit_dir), config);
+    log = std::make_unique<gate_process::AuditLog>(
+        machine, gate_process::make_folder_disk(options.audit_dir), config);
     if (auto status = log->start(); !status) return status.error();
     return log;
 }
@@ -188,29 +190,30 @@ int serve(const Options& options, const io::MachineFile& file) {
     if (!key) return fail(key.error());
     auto log = open_log(options, file.machine);
     if (!log) return fail(log.error());
-    wire::AuditLog* const audit = log->get();
-    wire::Gatekeeper keeper(
+    gate_process::AuditLog* const audit = log->get();
+    gate_process::Gatekeeper keeper(
         file.machine,
         limits_of(file),
         {options.snapshots, *key},
-        [audit](const wire::Judgement& j, const grid::MapSnapshot& map) {
+        [audit](const gate_process::Judgement& j, const grid::MapSnapshot& map) {
             if (audit != nullptr)
-                audit->push(wire::AuditedVerdict{j.query, j.health, j.now_ns, map, j.verdict});
+                audit->push(
+                    gate_process::AuditedVerdict{j.query, j.health, j.now_ns, map, j.verdict});
         },
-        [audit](const wire::Act& act) {
+        [audit](const gate_process::Act& act) {
             if (audit != nullptr) audit->push(act);
         });
-    if (options.vouch_radius_m > 0.0) {
-        if (auto status = keeper.vouch_when_ready(options.vouch_radius_m); !status)
+    if (options.attestation_radius_m > 0.0) {
+        if (auto status = keeper.attest_when_ready(options.attestation_radius_m); !status)
             return fail(status.error());
     }
     ChannelNews news(options.snapshots);
-    wire::WebsocketServer* running = nullptr;
+    gate_process::WebsocketServer* running = nullptr;
     const auto tick = [&](std::int64_t now_ns) {
         keeper.poll(now_ns, clock_ns(CLOCK_BOOTTIME));
         news.tell(keeper.channel_state());
         if (options.assured && audit != nullptr)
-            keeper.set_log_failing(audit->state(now_ns) != wire::AuditState::ok);
+            keeper.set_log_failing(audit->state(now_ns) != gate_process::AuditState::ok);
         if (stop_wanted || is_orphan(options.parent_fd)) running->stop();
     };
     auto server = listen(options.server, keeper, tick);
@@ -235,7 +238,7 @@ int run(Options options) {
     for (const io::Deviation& deviation : machine->deviations)
         fmt::print(stderr, "surefoot-gate: {}: {}\n", options.machine, io::text_of(deviation));
     auto loaded =
-        wire::load_access(options.token_file, options.guests, options.server.bind_address);
+        gate_process::load_access(options.token_file, options.guests, options.server.bind_address);
     if (!loaded) return fail(loaded.error());
     fmt::print(stderr, "{}", loaded->news);
     options.server.access = std::move(loaded->access);
@@ -243,7 +246,7 @@ int run(Options options) {
         return fail(usage_error("--assured gives no OK without a log: name its folder (--audit)"));
     // Each start of the gate begins at another connection number, so a verdict from before the
     // start never carries the number of a present client.
-    options.server.first_connection = wire::new_run_id() >> 24U | 1U;
+    options.server.first_connection = gate_process::new_run_id() >> 24U | 1U;
     struct sigaction action = {};
     action.sa_handler = [](int) { stop_wanted = true; };
     sigaction(SIGINT, &action, nullptr);
@@ -309,7 +312,7 @@ int main_with_arguments(int argc, char** argv) {
         ->capture_default_str()
         ->type_name("HZ");
     app.add_option("--vouch",
-                   options.vouch_radius_m,
+                   options.attestation_radius_m,
                    "operator attestation, given once when the gate is ready: radius around the "
                    "machine within which ground that was not measured counts as level. At most "
                    "vouch_radius_m of the machine file (1.0 m for rex). The attestation ends when "

@@ -125,7 +125,7 @@ Status GateChild::launch(std::vector<std::string> arguments) {
     std::vector<char*> words{program_.data()};
     for (std::string& word : arguments) words.push_back(word.data());
     words.push_back(nullptr);
-    const std::string key = wire::bytes_of(how_.key);
+    const std::string key = gate_process::bytes_of(how_.key);
     std::ignore = ::send(line[0], key.data(), key.size(), MSG_NOSIGNAL);
     const pid_t parent = ::getpid();
     process_ = ::fork();

@@ -24,7 +24,7 @@ class GateChild {
     struct Start {
         std::vector<std::string> arguments;        ///< for every start
         std::vector<std::string> first_arguments;  ///< for the first start only, after `arguments`
-        wire::ChecksumKey key;  ///< of the snapshot channel; sent through the socket pair
+        gate_process::ChecksumKey key;  ///< of the snapshot channel; sent through the socket pair
     };
     /// Starts the program surefoot-gate from the folder of this program (or from its place in a
     /// build tree). Returns when it listens. Returns an error if it ends or is silent

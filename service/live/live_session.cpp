@@ -25,7 +25,7 @@ std::int64_t Arrivals::steady_ns(std::int64_t stamp_ns) const noexcept {
 
 LiveSession::LiveSession(pipeline::Pipeline& pipeline,
                          camera::FrameSource& source,
-                         wire::SnapshotWriter& writer,
+                         gate_process::SnapshotWriter& writer,
                          std::uint64_t config_hash,
                          SteadyClock clock)
     : pipeline_(pipeline),
@@ -33,7 +33,7 @@ LiveSession::LiveSession(pipeline::Pipeline& pipeline,
       writer_(writer),
       config_hash_(config_hash),
       clock_(std::move(clock)),
-      eyes_(source.info().path),
+      cameras_(source.info().path),
       snapshot_(std::make_unique<grid::MapSnapshot>()) {}
 
 void LiveSession::wait_for(std::int64_t stamp_ns) {
@@ -104,7 +104,7 @@ Result<LiveSession::End> LiveSession::run(double speed,
         pipeline_, [this] { return next(); }, source_.info().T_odom_first_body);
     const auto process = [&](const StereoFrame& frame) -> Status {
         const FrameReport report = pipeline_.process(frame, Work::full);
-        if (auto eyes = eyes_.look(pipeline_, report); !eyes) return eyes;
+        if (auto cameras = cameras_.look(pipeline_, report); !cameras) return cameras;
         const auto map_time_ns = publish();
         if (!map_time_ns) return map_time_ns.error();
         if (after_frame) after_frame(report, *map_time_ns);

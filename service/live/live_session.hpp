@@ -9,7 +9,7 @@
 
 #include "service/console/option_settings.hpp"
 #include "service/gate_process/channel/snapshot_channel.hpp"
-#include "service/live/eyes_check.hpp"
+#include "service/live/camera_order_check.hpp"
 #include "surefoot/camera/frame_source.hpp"
 #include "surefoot/core/frame.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
@@ -53,7 +53,7 @@ class LiveSession {
 
     LiveSession(pipeline::Pipeline& pipeline,
                 camera::FrameSource& source,
-                wire::SnapshotWriter& writer,
+                gate_process::SnapshotWriter& writer,
                 std::uint64_t config_hash,
                 SteadyClock clock = steady_now_ns);
 
@@ -77,10 +77,10 @@ class LiveSession {
 
     pipeline::Pipeline& pipeline_;
     camera::FrameSource& source_;
-    wire::SnapshotWriter& writer_;
+    gate_process::SnapshotWriter& writer_;
     std::uint64_t config_hash_;
     SteadyClock clock_;
-    EyesCheck eyes_;
+    CameraOrderCheck cameras_;
     std::unique_ptr<grid::MapSnapshot> snapshot_;
     Arrivals arrivals_;
     double speed_ = 0.0;

@@ -89,7 +89,7 @@ TEST_P(LiveSessionTest, TheGateHearsOfRepeatedAndTornImages) {
     Serial serial;
     auto pipeline = pipeline::Pipeline::make({}, camera.rig(), serial);
     ASSERT_TRUE(pipeline.ok()) << pipeline.error().message;
-    auto writer = wire::SnapshotWriter::create({path.string(), {}});
+    auto writer = gate_process::SnapshotWriter::create({path.string(), {}});
     ASSERT_TRUE(writer.ok()) << writer.error().message;
     std::int64_t now_ns = 0;
     LiveSession session(*pipeline, camera, *writer, 1, [&now_ns] { return now_ns += 1000; });
@@ -113,7 +113,7 @@ TEST(LiveSessionAges, ThoseOfALiveCameraCountFromItsStamps) {
         Serial serial;
         auto pipeline = pipeline::Pipeline::make({}, camera.rig(), serial);
         ASSERT_TRUE(pipeline.ok()) << pipeline.error().message;
-        auto writer = wire::SnapshotWriter::create({path.string(), {}});
+        auto writer = gate_process::SnapshotWriter::create({path.string(), {}});
         ASSERT_TRUE(writer.ok()) << writer.error().message;
         LiveSession session(
             *pipeline, camera, *writer, 1, [&] { return camera.last_stamp_ns() + latency_ns; });
@@ -135,7 +135,7 @@ TEST(LiveSessionPace, BeginsAnewAfterAPause) {
     Serial serial;
     auto pipeline = pipeline::Pipeline::make({}, camera.rig(), serial);
     ASSERT_TRUE(pipeline.ok()) << pipeline.error().message;
-    auto writer = wire::SnapshotWriter::create({path.string(), {}});
+    auto writer = gate_process::SnapshotWriter::create({path.string(), {}});
     ASSERT_TRUE(writer.ok()) << writer.error().message;
     LiveSession session(*pipeline, camera, *writer, 1);
     int frames = 0;

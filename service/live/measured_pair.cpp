@@ -58,8 +58,8 @@ stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities)
     return check_pair(pair.left.view(), pair.right.view(), search);
 }
 
-Status refuse_exchanged(const stereo::PairCheck& check) {
-    if (!check.exchanged()) return {};
+Status refuse_swapped(const stereo::PairCheck& check) {
+    if (!check.swapped()) return {};
     return input_error(
         fmt::format("left and right seem to be exchanged: {} of {} corners lie farther right in "
                     "the right image "
@@ -113,7 +113,7 @@ Result<MeasuredPair> measure_pair(const StereoFrame& frame,
             config.stereo.disparities));
     }
     measured.check = check_rows(measured.pair, config.stereo.disparities);
-    if (auto status = refuse_exchanged(measured.check); !status) return status.error();
+    if (auto status = refuse_swapped(measured.check); !status) return status.error();
     stereo::make_matcher(config.stereo)->match(left.view(), right.view(), executor, measured.depth);
     return measured;
 }

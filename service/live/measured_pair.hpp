@@ -42,7 +42,7 @@ inline constexpr float kTrustedOutlierProbability = 0.5F;
 /// searches more rows, which takes longer, only if too few corners matched.
 [[nodiscard]] stereo::PairCheck check_rows(const camera::RectifiedPair& pair, int disparities);
 /// Input error if the left and the right camera are swapped.
-[[nodiscard]] Status refuse_exchanged(const stereo::PairCheck& check);
+[[nodiscard]] Status refuse_swapped(const stereo::PairCheck& check);
 /// Describes a row error of the pair; empty if the rows agree.
 [[nodiscard]] std::string row_problem(const stereo::PairCheck& check, bool has_rig);
 

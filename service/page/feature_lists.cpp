@@ -12,8 +12,8 @@
 namespace surefoot::page {
 namespace {
 
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 
 Json point_json(const Eigen::Vector2d& p_m) {
     return {number(p_m.x()), number(p_m.y())};
@@ -24,11 +24,11 @@ Json pose_json(const stairs::FeaturePose& pose) {
 }
 
 /// Adds the tracking data of a tracked feature. `now_ns`: time of the newest observation of all.
-Json followed_json(Json json, const stairs::Followed& followed, std::int64_t now_ns) {
-    if (followed.id == 0) return json;
-    json["id"] = followed.id;
-    json["looks"] = followed.looks;
-    json["last_seen_s"] = seconds_from_ns(now_ns - followed.last_seen_ns);
+Json tracked_json(Json json, const stairs::Tracked& tracked, std::int64_t now_ns) {
+    if (tracked.id == 0) return json;
+    json["id"] = tracked.id;
+    json["looks"] = tracked.looks;
+    json["last_seen_s"] = seconds_from_ns(now_ns - tracked.last_seen_ns);
     return json;
 }
 
@@ -54,7 +54,7 @@ Json flight_json(const stairs::Flight& flight, std::int64_t now_ns) {
                        {"left", side_json(flight.left)},
                        {"right", side_json(flight.right)},
                        {"pose", pose_json(flight.pose)}};
-    return followed_json(json, flight.followed, now_ns);
+    return tracked_json(json, flight.tracked, now_ns);
 }
 
 Json line_json(const stairs::LineFeature& line, std::int64_t now_ns) {
@@ -63,7 +63,7 @@ Json line_json(const stairs::LineFeature& line, std::int64_t now_ns) {
                        {"length_m", number(line.length_m)},
                        {"sigma_m", number(line.sigma_m)},
                        {"bottom_seen", line.bottom_seen}};
-    return followed_json(json, line.followed, now_ns);
+    return tracked_json(json, line.tracked, now_ns);
 }
 
 Json kerb_json(const stairs::LineFeature& kerb, std::int64_t now_ns) {
@@ -78,7 +78,7 @@ Json door_json(const stairs::Door& door, std::int64_t now_ns) {
                        {"sill_m", number(door.sill_m)},
                        {"clearance_m", number(door.clearance_m)},
                        {"pose", pose_json(door.pose)}};
-    return followed_json(json, door.followed, now_ns);
+    return tracked_json(json, door.tracked, now_ns);
 }
 
 Json edge_json(const stairs::Edge& edge, std::int64_t now_ns) {
@@ -88,7 +88,7 @@ Json edge_json(const stairs::Edge& edge, std::int64_t now_ns) {
                        {"lower_m", number(edge.lower_m)},
                        {"lower_seen", edge.lower_seen},
                        {"sigma_m", number(edge.height_sigma_m)}};
-    return followed_json(json, edge.followed, now_ns);
+    return tracked_json(json, edge.tracked, now_ns);
 }
 
 template <typename T>
@@ -103,7 +103,7 @@ Json list_json(const std::vector<T>& values,
 /// The lists as if the newest observation had found all features: comparing them ignores time.
 Json timeless_lists(stairs::TerrainFeatures features) {
     const auto seen_now = [&features](auto& list) {
-        for (auto& feature : list) feature.followed.last_seen_ns = features.time_ns;
+        for (auto& feature : list) feature.tracked.last_seen_ns = features.time_ns;
     };
     seen_now(features.flights);
     seen_now(features.drops);
@@ -128,7 +128,7 @@ Json feature_lists(const stairs::TerrainFeatures& features) {
 std::string stairs_text(const stairs::TerrainFeatures& features) {
     Json json = {{"kind", "stairs"}, {"time_ns", features.time_ns}};
     json.update(feature_lists(features));
-    return wire::dump(json);
+    return gate_process::dump(json);
 }
 
 bool say_the_same(const stairs::TerrainFeatures& one, const stairs::TerrainFeatures& other) {

@@ -14,7 +14,7 @@ namespace surefoot::page {
 /// Drops and kerbs have positive heights. A tracked feature also has `id`, `looks` (number of
 /// observations) and `last_seen_s` (age of the last observation at `features.time_ns`). A value
 /// that is NaN or infinite becomes null.
-[[nodiscard]] wire::Json feature_lists(const stairs::TerrainFeatures& features);
+[[nodiscard]] gate_process::Json feature_lists(const stairs::TerrainFeatures& features);
 
 /// The "stairs" message of messages.json, one line of JSON.
 [[nodiscard]] std::string stairs_text(const stairs::TerrainFeatures& features);

@@ -15,13 +15,13 @@ stairs::TerrainFeatures one_flight() {
     flight.steps = 3;
     flight.riser_m = 0.18;
     flight.riser_sigma_m = 0.002;
-    flight.followed = {7, 4, 4'500'000'000, false};
+    flight.tracked = {7, 4, 4'500'000'000, false};
     features.flights.push_back(flight);
     return features;
 }
 
 TEST(FeatureLists, TheMessageHasTheListsAndItsTime) {
-    const auto message = wire::Json::parse(stairs_text(one_flight()));
+    const auto message = gate_process::Json::parse(stairs_text(one_flight()));
     EXPECT_EQ(message["kind"], "stairs");
     EXPECT_EQ(message["time_ns"], 5'000'000'000);
     EXPECT_EQ(message["flights"][0]["riser_std_m"], 0.002);

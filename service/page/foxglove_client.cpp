@@ -13,7 +13,7 @@ namespace surefoot::page {
 namespace {
 
 /// Limit of unreadable texts. A few may come from a client of another version; more are a flood.
-constexpr wire::RateLimit kUnreadable{1, 8};
+constexpr gate_process::RateLimit kUnreadable{1, 8};
 constexpr std::size_t kMostReplies = 64;
 
 struct Large {

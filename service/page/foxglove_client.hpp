@@ -88,7 +88,7 @@ class FoxgloveClient {
 
     std::array<Slot, kFoxgloveChannelCount> subscriptions_;
     std::vector<SocketMessage> replies_;
-    wire::TokenBucket unreadable_;
+    gate_process::TokenBucket unreadable_;
     std::uint64_t frame_serial_ = 0;
     std::int64_t free_ns_ = 0;  ///< earliest time of the next large message
 };

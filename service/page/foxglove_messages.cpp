@@ -15,7 +15,7 @@
 namespace surefoot::page {
 namespace {
 
-using wire::Json;
+using gate_process::Json;
 
 constexpr const char* kOdom = "odom";
 constexpr const char* kBody = "base_link";
@@ -41,7 +41,7 @@ std::string base64(std::string_view bytes) {
 /// Appends "data" as the last key of the object `head`. The base64 text bypasses the JSON library,
 /// which would search a megabyte for characters to escape.
 std::string with_data(const Json& head, std::string_view bytes) {
-    std::string text = wire::dump(head);
+    std::string text = gate_process::dump(head);
     text.pop_back();
     text += R"(,"data":")";
     text += base64(bytes);
@@ -235,12 +235,12 @@ std::optional<std::string_view> foxglove_protocol_of(std::string_view offered) n
 
 std::string foxglove_server_info(const std::string& name, const std::string& session) {
     // Capability `time`: the service sends the source's clock, which differs from the client's.
-    return wire::dump({{"op", "serverInfo"},
-                       {"name", name},
-                       {"capabilities", {"time"}},
-                       {"supportedEncodings", {"json"}},
-                       {"metadata", Json::object()},
-                       {"sessionId", session}});
+    return gate_process::dump({{"op", "serverInfo"},
+                               {"name", name},
+                               {"capabilities", {"time"}},
+                               {"supportedEncodings", {"json"}},
+                               {"metadata", Json::object()},
+                               {"sessionId", session}});
 }
 
 std::string foxglove_advertise() {
@@ -253,11 +253,11 @@ std::string foxglove_advertise() {
                             {"schema", schema_of(channel)},
                             {"schemaEncoding", "jsonschema"}});
     }
-    return wire::dump({{"op", "advertise"}, {"channels", std::move(channels)}});
+    return gate_process::dump({{"op", "advertise"}, {"channels", std::move(channels)}});
 }
 
 std::string foxglove_status(FoxgloveLevel level, const std::string& sentence) {
-    return wire::dump({{"op", "status"}, {"level", level}, {"message", sentence}});
+    return gate_process::dump({{"op", "status"}, {"level", level}, {"message", sentence}});
 }
 
 std::string foxglove_message(std::uint32_t subscription,
@@ -352,13 +352,13 @@ std::string transforms_payload(const PagePose& pose, const std::optional<Pose>& 
     };
     add(kOdom, kBody, pose.T_odom_body);
     if (T_body_camera) add(kBody, kCamera, *T_body_camera);
-    return wire::dump({{"transforms", std::move(transforms)}});
+    return gate_process::dump({{"transforms", std::move(transforms)}});
 }
 
 std::string pose_payload(const PagePose& pose) {
-    return wire::dump({{"timestamp", time_json(pose.time_ns)},
-                       {"frame_id", kOdom},
-                       {"pose", pose_json(pose.T_odom_body)}});
+    return gate_process::dump({{"timestamp", time_json(pose.time_ns)},
+                               {"frame_id", kOdom},
+                               {"pose", pose_json(pose.T_odom_body)}});
 }
 
 std::string status_payload(const PageStatus& status, CameraState camera) {
@@ -370,22 +370,22 @@ std::string status_payload(const PageStatus& status, CameraState camera) {
         median_ms[stage.name] = stage.median_ms;
         total_ms += stage.last_ms;
     }
-    return wire::dump({{"timestamp", time_json(status.time_ns)},
-                       {"state", to_string(status.state)},
-                       {"text", status.text},
-                       {"health", to_string(status.health)},
-                       {"camera", to_string(camera)},
-                       {"reasons", status.reasons},
-                       {"frames", status.frames},
-                       {"rate_hz", status.rate_hz},
-                       {"total_ms", total_ms},
-                       {"stage_ms", std::move(stage_ms)},
-                       {"median_ms", std::move(median_ms)}});
+    return gate_process::dump({{"timestamp", time_json(status.time_ns)},
+                               {"state", to_string(status.state)},
+                               {"text", status.text},
+                               {"health", to_string(status.health)},
+                               {"camera", to_string(camera)},
+                               {"reasons", status.reasons},
+                               {"frames", status.frames},
+                               {"rate_hz", status.rate_hz},
+                               {"total_ms", total_ms},
+                               {"stage_ms", std::move(stage_ms)},
+                               {"median_ms", std::move(median_ms)}});
 }
 
 Result<FoxgloveRequest> parse_foxglove_request(std::string_view text) {
-    constexpr wire::JsonLimits kLimits{kMaxFoxgloveText_bytes, 6, kMaxFoxgloveText_bytes};
-    const auto json = wire::parse_json(text, kLimits);
+    constexpr gate_process::JsonLimits kLimits{kMaxFoxgloveText_bytes, 6, kMaxFoxgloveText_bytes};
+    const auto json = gate_process::parse_json(text, kLimits);
     if (!json) return json.error();
     if (!json->is_object() || !json->contains("op") || !json->at("op").is_string())
         return input_error("an object with an \"op\" is wanted");

@@ -196,7 +196,7 @@ TEST(FoxgloveMessages, PayloadsKeepToTheirSchemas) {
     check(FoxgloveChannel::transforms, transforms_payload(pose(), Pose{}));
     check(FoxgloveChannel::pose, pose_payload(pose()));
     check(FoxgloveChannel::status, status_payload(status(), CameraState::ok));
-    check(FoxgloveChannel::verdict, wire::dump(wire::verdict_object({}, "no way")));
+    check(FoxgloveChannel::verdict, gate_process::dump(gate_process::verdict_object({}, "no way")));
 }
 
 template <typename T>

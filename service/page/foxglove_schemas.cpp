@@ -12,7 +12,7 @@
 namespace surefoot::page {
 namespace {
 
-using wire::Json;
+using gate_process::Json;
 using Properties = std::initializer_list<std::pair<const char*, Json>>;
 
 Json object(Properties properties) {
@@ -185,7 +185,7 @@ const char* schema_name_of(FoxgloveChannel channel) noexcept {
 }
 
 std::string schema_of(FoxgloveChannel channel) {
-    return wire::dump(titled(schema_name_of(channel), shape_of(channel)));
+    return gate_process::dump(titled(schema_name_of(channel), shape_of(channel)));
 }
 
 }  // namespace surefoot::page

@@ -45,8 +45,8 @@ net::ip::address reachable(const std::string& address) {
 }  // namespace
 
 std::optional<GateNews> read_gate_news(std::string_view text) {
-    const auto json =
-        wire::parse_json(text, {kLongestNews_bytes, wire::JsonLimits{}.max_depth, 4096});
+    const auto json = gate_process::parse_json(
+        text, {kLongestNews_bytes, gate_process::JsonLimits{}.max_depth, 4096});
     if (!json || !json->is_object()) return std::nullopt;
     const auto op = json->find("op");
     const auto topic = json->find("topic");
@@ -55,7 +55,7 @@ std::optional<GateNews> read_gate_news(std::string_view text) {
         !body->is_object())
         return std::nullopt;
     for (const GateTopic ours : {GateTopic::verdict, GateTopic::outlook}) {
-        if (*topic == name_of(ours)) return GateNews{ours, wire::dump(*body)};
+        if (*topic == name_of(ours)) return GateNews{ours, gate_process::dump(*body)};
     }
     return std::nullopt;
 }
@@ -118,9 +118,10 @@ class GateListener::Connection : public std::enable_shared_from_this<Connection>
     }
     void ask(GateTopic topic, bool had, bool wanted) {
         if (had == wanted) return;
-        wire::Json json{{"op", wanted ? "subscribe" : "unsubscribe"}, {"topic", name_of(topic)}};
+        gate_process::Json json{{"op", wanted ? "subscribe" : "unsubscribe"},
+                                {"topic", name_of(topic)}};
         if (wanted) json["type"] = type_of(topic);
-        waiting_.push_back(wire::dump(json));
+        waiting_.push_back(gate_process::dump(json));
     }
     void write() {
         if (over_ || is_writing_ || waiting_.empty()) return;

@@ -49,13 +49,13 @@ TEST(GateNews, AreReadFromWhatIsPublished) {
 class Gate {
   public:
     explicit Gate(std::string token = {}) {
-        wire::ServerConfig config;
+        gate_process::ServerConfig config;
         config.port = 0;
         if (!token.empty()) {
             config.access.observer = std::move(token);
-            config.access.guest = wire::Role::none;
+            config.access.guest = gate_process::Role::none;
         }
-        auto opened = wire::WebsocketServer::open(config, script_);
+        auto opened = gate_process::WebsocketServer::open(config, script_);
         EXPECT_TRUE(opened);
         server_ = std::move(opened).value();
         thread_ = std::thread([this] { server_->run(); });
@@ -80,8 +80,8 @@ class Gate {
     }
 
   private:
-    wire::testing::ScriptedGate script_;
-    std::unique_ptr<wire::WebsocketServer> server_;
+    gate_process::testing::ScriptedGate script_;
+    std::unique_ptr<gate_process::WebsocketServer> server_;
     std::thread thread_;
 };
 
@@ -92,9 +92,9 @@ struct Listening {
     GateListener listener{io, [this](GateNews what) { news.push_back(std::move(what)); }};
 
     bool until(const GateService& service, GateTopics topics, const std::function<bool()>& done) {
-        const std::int64_t end_ns = wire::steady_ns() + 10'000'000'000;
-        while (!done() && wire::steady_ns() < end_ns) {
-            listener.want(service, topics, wire::steady_ns());
+        const std::int64_t end_ns = gate_process::steady_ns() + 10'000'000'000;
+        while (!done() && gate_process::steady_ns() < end_ns) {
+            listener.want(service, topics, gate_process::steady_ns());
             io.restart();
             io.run_for(std::chrono::milliseconds(5));
         }
@@ -140,9 +140,9 @@ TEST(GateListener, KnowsTheTokenAndFindsAGateThatBeganAnew) {
     listening.news.clear();
     EXPECT_TRUE(listening.until({"0.0.0.0", second.port(), token}, {false, true}, heard));
     listening.news.clear();
-    const std::int64_t end_ns = wire::steady_ns() + 600'000'000;
+    const std::int64_t end_ns = gate_process::steady_ns() + 600'000'000;
     listening.until(
-        {"0.0.0.0", second.port(), token}, {}, [&] { return wire::steady_ns() > end_ns; });
+        {"0.0.0.0", second.port(), token}, {}, [&] { return gate_process::steady_ns() > end_ns; });
     EXPECT_TRUE(listening.news.empty()) << "nobody wants to hear it";
 }
 

@@ -38,8 +38,8 @@ PageMap small_map() {
     map.cells[1] = {-4, 255, 3};
     map.cells[5] = {-32767, 12, 2 | kDropBit};
     map.cells[6] = {32767, 1, 2 | kOverheadBit};  // the run continues in the next row
-    map.cells[17] = {0, 0, 1 | kVouchedBit};
-    map.cells[10].state = kVouchedBit;  // attested by an operator, never measured
+    map.cells[17] = {0, 0, 1 | kAttestedBit};
+    map.cells[10].state = kAttestedBit;  // attested by an operator, never measured
     return map;
 }
 
@@ -106,7 +106,7 @@ PageHello hello() {
     PageHello::Machine machine;
     machine.name = "rex";
     machine.limits.sole_depth_tenth_mm = 9900;
-    machine.limits.limits.vouch_radius_tenth_mm = 10000;
+    machine.limits.limits.attestation_radius_tenth_mm = 10000;
     machine.limits.left_foot = {570, 1800, 3660, 1900};
     machine.limits.right_foot = {570, -1800, 3660, 1900};
     machine.limits.movements[9] = {true, MovementClass::walk, {'N'}, 4000, 0, 1.0, 0.0};
@@ -137,7 +137,7 @@ PageStatus status() {
 stairs::TerrainFeatures features() {
     stairs::TerrainFeatures features;
     features.time_ns = 2'000'000'000;
-    const stairs::Followed followed{7, 4, 1'750'000'000, false};
+    const stairs::Tracked tracked{7, 4, 1'750'000'000, false};
     stairs::Flight flight;
     flight.pose = {{1.5, -0.25, 0.0}, 0.125};
     flight.steps = 3;
@@ -151,14 +151,14 @@ stairs::TerrainFeatures features() {
     flight.landing_m = 0.75;
     flight.left = {stairs::SideKind::wall, 0.0};
     flight.right = {stairs::SideKind::open, 0.95};
-    flight.followed = followed;
+    flight.tracked = tracked;
     features.flights.push_back(flight);
     stairs::Flight step = flight;  // a single step has no going
     step.kind = stairs::FlightKind::down;
     step.steps = 1;
     step.going_m = step.going_sigma_m = step.going_spread_m = kNan;
     step.cut = true;
-    step.followed.id = 8;
+    step.tracked.id = 8;
     features.flights.push_back(step);
     stairs::LineFeature line;
     line.pose = {{2.0, 0.5, 0.0}, -0.5};
@@ -166,20 +166,20 @@ stairs::TerrainFeatures features() {
     line.length_m = 1.25;
     line.sigma_m = 0.0625;
     line.bottom_seen = false;
-    line.followed = followed;
+    line.tracked = tracked;
     features.drops.push_back(line);
     line.bottom_seen = true;
     features.kerbs.push_back(line);
     line.height_m = 0.03125;
     features.sills.push_back(line);
-    features.doors.push_back({line.pose, 0.875, 0.015625, 0.03125, 0.0078125, kNan, followed});
+    features.doors.push_back({line.pose, 0.875, 0.015625, 0.03125, 0.0078125, kNan, tracked});
     stairs::Edge edge;
     edge.from_m = {1.5, -1.0};
     edge.to_m = {1.5, 0.5};
     edge.upper_m = 0.18;
     edge.lower_seen = true;
     edge.height_sigma_m = 0.003;
-    edge.followed = followed;
+    edge.tracked = tracked;
     features.edges.push_back(edge);
     return features;
 }

@@ -45,7 +45,7 @@ bool is_ip_address(const std::string& host) {
 }
 
 bool is_loopback_host(const std::string& host) {
-    return host == "localhost" || wire::is_loopback_address(bare(host));
+    return host == "localhost" || gate_process::is_loopback_address(bare(host));
 }
 
 /// The parts of an origin; a missing port becomes the default port of the scheme.
@@ -68,7 +68,7 @@ bool is_host_of(std::string_view origin, const HostAndPort& host) {
 
 bool is_own_name(const PageAddress& page, const std::string& host) {
     if (is_loopback_host(host)) return true;
-    if (wire::is_loopback_address(page.bind_address)) return false;
+    if (gate_process::is_loopback_address(page.bind_address)) return false;
     return is_ip_address(host) ||
            std::find(page.names.begin(), page.names.end(), host) != page.names.end();
 }
@@ -143,7 +143,7 @@ std::vector<std::pair<std::string_view, std::string>> security_headers(std::stri
 }
 
 std::string wrong_host_text(const PageAddress& page) {
-    const bool local = wire::is_loopback_address(page.bind_address);
+    const bool local = gate_process::is_loopback_address(page.bind_address);
     return std::string("This page is not served under the name and port of this request. Open ") +
            "http://" + (local ? "localhost" : "ADDRESS") + ":" + std::to_string(page.port) + "/" +
            (local ? "" : ", where ADDRESS is the name of this computer or its address in numbers") +

@@ -60,7 +60,7 @@ PageCell cell_of(const grid::MapSnapshot& snapshot,
         cell.state = static_cast<std::uint8_t>(ground_state(snapshot, ix, iy, limits));
         if (snapshot.drop_evidence[i] >= limits.drop_evidence) cell.state |= kDropBit;
     }
-    if (snapshot.source[i] == grid::EvidenceSource::vouched) cell.state |= kVouchedBit;
+    if (snapshot.source[i] == grid::EvidenceSource::attested) cell.state |= kAttestedBit;
     if (is_too_low(snapshot, i, limits)) cell.state |= kOverheadBit;
     return cell;
 }

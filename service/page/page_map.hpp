@@ -15,7 +15,7 @@ namespace surefoot::page {
 enum class GroundState : std::uint8_t { unknown = 0, free = 1, unsafe = 2, unsure = 3 };
 
 /// Operator attestation: an operator confirmed this ground.
-inline constexpr std::uint8_t kVouchedBit = 1U << 2U;
+inline constexpr std::uint8_t kAttestedBit = 1U << 2U;
 inline constexpr std::uint8_t kDropBit = 1U << 3U;  ///< evidence of a drop above the gate's limit
 /// Something in the way of the machine's body.
 inline constexpr std::uint8_t kOverheadBit = 1U << 4U;

@@ -13,7 +13,7 @@
 namespace surefoot::page {
 namespace {
 
-using wire::Json;
+using gate_process::Json;
 
 /// A division, not a product with 1e-4: so 9900 is written exactly as 0.99.
 double metres(std::int32_t tenth_mm) noexcept {
@@ -83,7 +83,7 @@ Json machine_json(const std::optional<PageHello::Machine>& machine) {
     return {
         {"name", machine->name},
         {"sole_depth_m", metres(limits.sole_depth_tenth_mm)},
-        {"vouch_radius_m", metres(limits.limits.vouch_radius_tenth_mm)},
+        {"vouch_radius_m", metres(limits.limits.attestation_radius_tenth_mm)},
         {"feet", {{"left", box_json(limits.left_foot)}, {"right", box_json(limits.right_foot)}}},
         {"movements", movements_json(limits)},
         {"body", body_json(*machine)},
@@ -112,7 +112,8 @@ Status read_images(const Json& names, PageWish& wish) {
             return name.is_string() && name.get<std::string>() == n;
         });
         if (found == kImageNames.end())
-            return input_error("images: left and disparity are known, not " + wire::dump(name));
+            return input_error("images: left and disparity are known, not " +
+                               gate_process::dump(name));
         wish.images[static_cast<std::size_t>(found - kImageNames.begin())] = true;
     }
     return {};
@@ -269,18 +270,18 @@ std::string hello_text(const PageHello& hello) {
     Json zone = Json::array();
     for (const PageHello::GroundPoint& point : hello.blind_zone)
         zone.push_back({point.x_m, point.y_m});
-    return wire::dump({{"kind", "hello"},
-                       {"protocol", kProtocol},
-                       {"program", hello.program},
-                       {"source", hello.source},
-                       {"source_kind", hello.source_kind},
-                       {"gate_port", hello.gate_port},
-                       {"layers", hello.layers},
-                       {"images", kImageNames},
-                       {"machine", machine_json(hello.machine)},
-                       {"blind_zone", std::move(zone)},
-                       {"can_steer", hello.can_steer},
-                       {"rate_hz", hello.rate_hz}});
+    return gate_process::dump({{"kind", "hello"},
+                               {"protocol", kProtocol},
+                               {"program", hello.program},
+                               {"source", hello.source},
+                               {"source_kind", hello.source_kind},
+                               {"gate_port", hello.gate_port},
+                               {"layers", hello.layers},
+                               {"images", kImageNames},
+                               {"machine", machine_json(hello.machine)},
+                               {"blind_zone", std::move(zone)},
+                               {"can_steer", hello.can_steer},
+                               {"rate_hz", hello.rate_hz}});
 }
 
 std::string status_text(const PageStatus& status, const std::optional<PlaybackState>& playback) {
@@ -289,32 +290,32 @@ std::string status_text(const PageStatus& status, const std::optional<PlaybackSt
         stages.push_back(
             {{"name", stage.name}, {"last_ms", stage.last_ms}, {"median_ms", stage.median_ms}});
     }
-    return wire::dump({{"kind", "status"},
-                       {"time_ns", status.time_ns},
-                       {"frames", status.frames},
-                       {"rate_hz", status.rate_hz},
-                       {"state", to_string(status.state)},
-                       {"text", status.text},
-                       {"health", to_string(status.health)},
-                       {"reasons", status.reasons},
-                       {"stages", std::move(stages)},
-                       {"viewers", status.viewers},
-                       {"playback", playback_json(playback)}});
+    return gate_process::dump({{"kind", "status"},
+                               {"time_ns", status.time_ns},
+                               {"frames", status.frames},
+                               {"rate_hz", status.rate_hz},
+                               {"state", to_string(status.state)},
+                               {"text", status.text},
+                               {"health", to_string(status.health)},
+                               {"reasons", status.reasons},
+                               {"stages", std::move(stages)},
+                               {"viewers", status.viewers},
+                               {"playback", playback_json(playback)}});
 }
 
 std::string steer_text(bool yours, bool taken, const SteerOutcome& last) {
-    return wire::dump({{"kind", "steer"},
-                       {"yours", yours},
-                       {"taken", taken},
-                       {"asked", last.command},
-                       {"verdict", last.verdict},
-                       {"moved", last.moved},
-                       {"text", last.text}});
+    return gate_process::dump({{"kind", "steer"},
+                               {"yours", yours},
+                               {"taken", taken},
+                               {"asked", last.command},
+                               {"verdict", last.verdict},
+                               {"moved", last.moved},
+                               {"text", last.text}});
 }
 
 Result<PageRequest> parse_request(std::string_view text, std::span<const std::string> layers) {
-    constexpr wire::JsonLimits kLimits{4096, 3, 64};
-    const auto json = wire::parse_json(text, kLimits);
+    constexpr gate_process::JsonLimits kLimits{4096, 3, 64};
+    const auto json = gate_process::parse_json(text, kLimits);
     if (!json) return json.error();
     if (!json->is_object() || !json->contains("op") || !json->at("op").is_string())
         return input_error("an object with an \"op\" is wanted");

@@ -42,7 +42,7 @@ namespace net = boost::asio;
 namespace websocket = beast::websocket;
 using tcp = net::ip::tcp;
 using beast::error_code;
-using wire::steady_ns;
+using gate_process::steady_ns;
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kMs_ns = 1'000'000;
@@ -56,8 +56,8 @@ constexpr std::int64_t kMostLayerBytesPerSecond =
     1'200'000;  ///< share of layers in the 2 MB/s of a page
 // Limits of one viewer; beyond them it is disconnected. A wish may cost a whole map, a repeated
 // joystick command costs nothing.
-constexpr wire::RateLimit kWishes{5, 20};
-constexpr wire::RateLimit kMessages{40, 80};
+constexpr gate_process::RateLimit kWishes{5, 20};
+constexpr gate_process::RateLimit kMessages{40, 80};
 
 std::string_view view(beast::string_view text) {
     return {text.data(), text.size()};
@@ -134,7 +134,7 @@ class PageSockets {
     const PageServerConfig config;
     PageControls& controls;
     const PageRates& rates;
-    wire::Slots slots;
+    gate_process::Slots slots;
     Show show;
     FoxgloveShow foxglove{show};
     /// Identifies this run of the service.
@@ -145,14 +145,14 @@ class PageSockets {
     Status listen_with_tls();
     void accept();
     void admit(tcp::socket socket, const std::string& peer);
-    void end(std::optional<wire::Slots::Id> name);
+    void end(std::optional<gate_process::Slots::Id> name);
     void wait_for_tick();
     void on_tick();
 
     PageFeed& feed_;
     net::io_context io_{1};  // destroyed last, with all pending handlers
     tcp::acceptor acceptor_{io_};
-    std::unique_ptr<wire::TlsDoor> tls_door_;
+    std::unique_ptr<gate_process::TlsDoor> tls_door_;
     net::steady_timer timer_{io_};
     GateListener gate_{io_, [this](GateNews news) { foxglove.hear(std::move(news)); }};
     std::vector<std::shared_ptr<Viewer>> connections_;  // shared with their pending handlers
@@ -231,14 +231,14 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::optional<http::request_parser<http::empty_body>> parser_;
     http::response<http::string_body> response_;
     std::string host_;  ///< Host header of the request, if it names the page
-    wire::TokenBucket messages_;
-    wire::TokenBucket wishes_;
+    gate_process::TokenBucket messages_;
+    gate_process::TokenBucket wishes_;
     PageWish wish_;
     std::optional<FoxgloveClient> foxglove_;
     std::deque<SocketMessage> waiting_;
     SocketMessage writing_;
     std::optional<std::int64_t> write_since_ns_;  ///< start of the write in progress
-    /// Sent a message: from now on each completed write counts as service in wire::Slots.
+    /// Sent a message: from now on each completed write counts as service in gate_process::Slots.
     bool has_asked_ = false;
     bool looks_ = false;  ///< it is a WebSocket, not a request for a file
     bool open_ = false;   ///< the WebSocket's handshake is complete
@@ -293,10 +293,10 @@ void Viewer::on_request(error_code error) {
         if (!head && request.method() != http::verb::get)
             return answer(
                 http::status::method_not_allowed, "text/plain", "GET and HEAD are served\n");
-        if (wire::path_of(target) == kModelPath) return send_model(head);
-        return send_file(wire::path_of(target), head);
+        if (gate_process::path_of(target) == kModelPath) return send_model(head);
+        return send_file(gate_process::path_of(target), head);
     }
-    const bool is_page = wire::path_of(target) == "/page";
+    const bool is_page = gate_process::path_of(target) == "/page";
     const auto offered = request.find(http::field::sec_websocket_protocol);
     const auto foxglove = is_page || offered == request.end()
                               ? std::nullopt
@@ -339,8 +339,8 @@ std::optional<Viewer::Refusal> Viewer::refuse_socket(bool is_foxglove) const {
                 http::status::forbidden,
                 "only the page itself may connect, not a page of another host or port\n"};
     }
-    if (wire::admit(sockets_.config.token, {}, view(request.target()), std::nullopt) !=
-        wire::Admission::welcome)
+    if (gate_process::admit(sockets_.config.token, {}, view(request.target()), std::nullopt) !=
+        gate_process::Admission::welcome)
         return Refusal{http::status::unauthorized, "the URL needs the token: ?token=...\n"};
     return std::nullopt;
 }
@@ -664,7 +664,7 @@ Status PageSockets::listen() {
 Status PageSockets::listen_with_tls() {
     error_code ignored;
     acceptor_.close(ignored);
-    auto opened = wire::open_tls_door(
+    auto opened = gate_process::open_tls_door(
         config.bind_address,
         port_,
         config.tls,
@@ -707,7 +707,7 @@ void PageSockets::accept() {
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
         accepting_ = false;
         if (error) return;  // no file handles left, or the peer has gone: the next tick tries again
-        const std::string peer = wire::peer_of(socket);
+        const std::string peer = gate_process::peer_of(socket);
         admit(std::move(socket), peer);
         accept();
     });
@@ -721,13 +721,13 @@ void PageSockets::admit(tcp::socket socket, const std::string& peer) {
 }
 
 bool PageSockets::enter(std::uint64_t name) {
-    const auto entry = slots.enter(name, wire::Rank::low, steady_ns());
+    const auto entry = slots.enter(name, gate_process::Rank::low, steady_ns());
     end(entry.ended);
     return entry.granted;
 }
 
 /// Ends this connection because another one needs its slot.
-void PageSockets::end(std::optional<wire::Slots::Id> name) {
+void PageSockets::end(std::optional<gate_process::Slots::Id> name) {
     if (!name) return;
     const auto found = std::find_if(connections_.begin(), connections_.end(), [&](const auto& c) {
         return c->name() == *name;
@@ -774,12 +774,12 @@ std::size_t PageSockets::viewers() const {
 }
 
 const char* PageServerConfig::problem() const {
-    if (!wire::is_loopback_address(bind_address) && token.empty())
+    if (!gate_process::is_loopback_address(bind_address) && token.empty())
         return "the page is served beyond this machine with a token alone (--token-file)";
     if (tls.certificate_file.empty() != tls.key_file.empty())
         return "TLS needs both files: --certificate FILE and --key FILE";
-    if (!wire::is_loopback_address(bind_address) && tls.empty() &&
-        insecure != wire::kInsecureSentence)
+    if (!gate_process::is_loopback_address(bind_address) && tls.empty() &&
+        insecure != gate_process::kInsecureSentence)
         return "the page is served beyond this machine with TLS alone (--certificate FILE --key "
                "FILE), or without it in words (--insecure)";
     if (header_ms <= 0 || answer_ms <= 0 || write_ms <= 0)

@@ -23,18 +23,18 @@ namespace surefoot::page {
 struct PageServerConfig {
     /// Beyond loopback: needs a token, and TLS or `insecure`.
     std::string bind_address = "127.0.0.1";
-    std::uint16_t port = 8080;  ///< 0 = any free port
-    int more_ports = 16;        ///< number of following ports to try if `port` is in use
-    std::string token;          ///< required in the WebSocket's URL as ?token=; empty = none
-    wire::TlsFiles tls;         ///< empty: plain HTTP, on loopback only
-    std::string insecure;       ///< wire::kInsecureSentence allows plain HTTP beyond loopback
+    std::uint16_t port = 8080;   ///< 0 = any free port
+    int more_ports = 16;         ///< number of following ports to try if `port` is in use
+    std::string token;           ///< required in the WebSocket's URL as ?token=; empty = none
+    gate_process::TlsFiles tls;  ///< empty: plain HTTP, on loopback only
+    std::string insecure;  ///< gate_process::kInsecureSentence allows plain HTTP beyond loopback
     /// Addresses of the page through a proxy or a tunnel, e.g. "https://robot.example".
     std::vector<std::string> origins;
     /// Origins of Foxglove if it is a web page of another machine, or a local file (file://).
     std::vector<std::string> foxglove_origins;
     /// Limits of connections. Only WebSockets count as clients; a request for a file ends before
     /// that.
-    wire::SlotLimits slots{16, 0, 256, 8};
+    gate_process::SlotLimits slots{16, 0, 256, 8};
     int header_ms = 5000;   ///< limit from the connection to the last byte of the request
     int answer_ms = 20000;  ///< limit for sending a file
     int write_ms = 10000;   ///< limit for sending one message to a viewer
@@ -60,12 +60,12 @@ class PageSockets;
 /// All work happens on the thread that calls `run`. The next message for a viewer is made when the
 /// previous one has left: a slow viewer gets fewer messages, but never an old one. A viewer that
 /// sends an invalid message gets the reason and is disconnected. With a certificate everything uses
-/// TLS (wire::TlsDoor), but clients on the same machine may still connect without TLS.
+/// TLS (gate_process::TlsDoor), but clients on the same machine may still connect without TLS.
 ///
 /// A request must name the page by a name or address of this computer and the page's port. A web
 /// page that opens a socket must be the page itself (page_door.hpp) or a configured origin. The
 /// server ends connections that send their request too slowly or do not receive. When all slots are
-/// taken, wire::Slots chooses the connection to end.
+/// taken, gate_process::Slots chooses the connection to end.
 class PageServer {
   public:
     /// Opens the port and listens. The error names the address and the reason. `feed` and

@@ -249,7 +249,7 @@ TEST(PageServerConfig, OutsideNeedsATokenAndTlsOrTheSentence) {
     EXPECT_NE(std::string(config.problem()).find("--certificate"), std::string::npos);
     config.insecure = "yes";
     EXPECT_NE(config.problem(), nullptr);
-    config.insecure = wire::kInsecureSentence;
+    config.insecure = gate_process::kInsecureSentence;
     EXPECT_EQ(config.problem(), nullptr);
     config.insecure.clear();
     config.tls = {"certificate.pem", ""};

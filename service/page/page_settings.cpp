@@ -11,7 +11,7 @@
 
 namespace surefoot::page {
 
-using wire::Json;
+using gate_process::Json;
 
 void PageSettings::offer(std::vector<PageSetting> settings, Change change) {
     const std::lock_guard lock(mutex_);
@@ -67,15 +67,15 @@ std::string settings_text(const std::vector<PageSetting>& settings) {
                         {"comment", setting.comment},
                         {"changeable", setting.changeable}});
     }
-    return wire::dump({{"kind", "settings"}, {"settings", std::move(list)}});
+    return gate_process::dump({{"kind", "settings"}, {"settings", std::move(list)}});
 }
 
 std::string setting_text(const SettingAnswer& answer) {
-    return wire::dump({{"kind", "setting"},
-                       {"key", answer.key},
-                       {"accepted", answer.accepted},
-                       {"value", answer.value},
-                       {"text", answer.text}});
+    return gate_process::dump({{"kind", "setting"},
+                               {"key", answer.key},
+                               {"accepted", answer.accepted},
+                               {"value", answer.value},
+                               {"text", answer.text}});
 }
 
 }  // namespace surefoot::page

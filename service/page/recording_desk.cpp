@@ -23,14 +23,14 @@ const char* name_of(RecordingStage stage) noexcept {
 }  // namespace
 
 std::string recording_text(const RecordingState& state) {
-    return wire::dump({{"kind", "recording"},
-                       {"state", name_of(state.stage)},
-                       {"folder", state.folder},
-                       {"frames", state.frames},
-                       {"left_out", state.left_out},
-                       {"bytes", state.bytes},
-                       {"duration_s", state.duration_s},
-                       {"text", state.text}});
+    return gate_process::dump({{"kind", "recording"},
+                               {"state", name_of(state.stage)},
+                               {"folder", state.folder},
+                               {"frames", state.frames},
+                               {"left_out", state.left_out},
+                               {"bytes", state.bytes},
+                               {"duration_s", state.duration_s},
+                               {"text", state.text}});
 }
 
 void RecordingDesk::serve_with(std::function<void(const RecordWish&)> asked) {

@@ -17,7 +17,7 @@ namespace surefoot::app {
 namespace {
 
 /// A disk that accepts every write and stores nothing.
-class NoDisk final : public wire::AuditDisk {
+class NoDisk final : public gate_process::AuditDisk {
   public:
     Result<std::vector<Entry>> list() override { return std::vector<Entry>{}; }
     Status create(const std::string&) override { return {}; }
@@ -29,11 +29,12 @@ class NoDisk final : public wire::AuditDisk {
 };
 
 /// Times the push of one verdict into the audit log, as the deciding thread sees it.
-Result<BenchResult> bench_audit_push(const Machine& machine, const wire::AuditedVerdict& audited) {
+Result<BenchResult> bench_audit_push(const Machine& machine,
+                                     const gate_process::AuditedVerdict& audited) {
     constexpr int kRepeats = 2000;
-    wire::AuditConfig config;
+    gate_process::AuditConfig config;
     config.memory_bytes = 128U << 20U;  // room for all: a push into a full ring copies nothing
-    wire::AuditLog log(machine, std::make_unique<NoDisk>(), config);
+    gate_process::AuditLog log(machine, std::make_unique<NoDisk>(), config);
     if (auto status = log.start(); !status) return status.error();
     const BenchResult result{"gate/audit_push", timed(kRepeats, [&] { log.push(audited); })};
     log.stop();
@@ -83,7 +84,7 @@ class Asking {
     }
     void ask_next() noexcept { ask(codes_[next_++ % codes_.size()]); }
     [[nodiscard]] std::int64_t refused() const noexcept { return refused_; }
-    [[nodiscard]] wire::AuditedVerdict last() const noexcept {
+    [[nodiscard]] gate_process::AuditedVerdict last() const noexcept {
         return {query_, health_, map_.frame_time_ns, map_, verdict_};
     }
 

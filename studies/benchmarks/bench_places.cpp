@@ -22,7 +22,7 @@ constexpr int kKeyframes = 10;    ///< per corridor; together they fill the data
 constexpr int kQueries = 5;       ///< per corridor that is queried
 constexpr int kGoneThrough = 12;  ///< corridors that are queried, of either kind
 constexpr double kApart_m = 100.0;
-static_assert(kCorridors * kKeyframes == places::kMostKeyframes);
+static_assert(kCorridors * kKeyframes == place_recognition::kMostKeyframes);
 
 /// An observation: the rectified images, the depth, and the true pose in the scene.
 struct Look {
@@ -83,14 +83,14 @@ class Corridors {
     camera::RectifiedRig rig_;
 };
 
-places::View view_of(const Look& look, const camera::RectifiedRig& rig) {
-    return {0, rig, places::describe({}, look.images.left.view(), look.depth)};
+place_recognition::View view_of(const Look& look, const camera::RectifiedRig& rig) {
+    return {0, rig, place_recognition::describe({}, look.images.left.view(), look.depth)};
 }
 
 /// Fills the place database to its limit; the corridors lie far from each other.
-Result<places::PlaceMemory> remember(Corridors& corridors, std::uint64_t first_seed) {
+Result<place_recognition::PlaceMemory> remember(Corridors& corridors, std::uint64_t first_seed) {
     constexpr double kRate_hz = 1.0;
-    places::PlaceMemory memory;
+    place_recognition::PlaceMemory memory;
     for (int i = 0; i < kCorridors; ++i) {
         const auto looks =
             corridors.look(first_seed + static_cast<std::uint64_t>(i), kRate_hz, kKeyframes);
@@ -111,17 +111,17 @@ struct Queries {
 };
 
 /// Times one query, including the description of its image.
-void ask(const places::PlaceMemory& memory,
+void ask(const place_recognition::PlaceMemory& memory,
          const Look& look,
          const camera::RectifiedRig& rig,
          Queries& queries) {
     const std::int64_t start_ns = steady_now_ns();
     const std::int64_t start_cpu_ns = cpu_now_ns();
-    const places::Answer answer =
-        memory.recognise(view_of(look, rig), look.up_body(), places::kMostKeyframes);
+    const place_recognition::Answer answer =
+        memory.recognise(view_of(look, rig), look.up_body(), place_recognition::kMostKeyframes);
     queries.wall_ms.push_back(1e-6 * static_cast<double>(steady_now_ns() - start_ns));
     queries.cpu_ms.push_back(1e-6 * static_cast<double>(cpu_now_ns() - start_cpu_ns));
-    queries.recognised += answer.refusal == places::Refusal::none ? 1 : 0;
+    queries.recognised += answer.refusal == place_recognition::Refusal::none ? 1 : 0;
 }
 
 }  // namespace
@@ -147,8 +147,9 @@ Result<std::vector<BenchResult>> bench_places(const CommonOptions& common, Execu
         const Percentiles wall = percentiles(std::move(queries.wall_ms));
         const double least_ms = *std::min_element(queries.cpu_ms.begin(), queries.cpu_ms.end());
         results.push_back(
-            {fmt::format(
-                 "places/query_among_{}_{}", places::kMostKeyframes, known ? "known" : "unknown"),
+            {fmt::format("places/query_among_{}_{}",
+                         place_recognition::kMostKeyframes,
+                         known ? "known" : "unknown"),
              {wall.median, wall.p99, least_ms, percentiles(std::move(queries.cpu_ms)).median}});
     }
     return results;

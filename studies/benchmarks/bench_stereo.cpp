@@ -64,7 +64,7 @@ BenchResult time_match(const Work& work,
                        const std::string& what,
                        Executor& executor) {
     const auto matcher = stereo::make_census_matcher(config_of(work, settings));
-    camera::DepthImage depth;
+    DepthImage depth;
     const Timing timing = timed(kRepeats, [&] {
         matcher->match(work.pair.left.view(), work.pair.right.view(), executor, depth);
     });
@@ -101,8 +101,8 @@ BenchResult time_two_copies(const Work& work, const Settings& settings) {
     const auto first = stereo::make_census_matcher(config_of(work, settings));
     const auto second = stereo::make_census_matcher(config_of(work, settings));
     Serial serial;
-    camera::DepthImage depths[2];
-    const auto match = [&](stereo::Matcher& matcher, camera::DepthImage& depth) {
+    DepthImage depths[2];
+    const auto match = [&](stereo::Matcher& matcher, DepthImage& depth) {
         matcher.match(work.pair.left.view(), work.pair.right.view(), serial, depth);
     };
     Timing both = timed(kRepeats, [&] {

@@ -54,9 +54,9 @@ Pose body_at(double x_m) {
 
 /// Simulates a depth image: each pixel below the horizon sees the floor or, in the middle columns,
 /// a surface 0.2 m above it.
-camera::DepthImage look(const camera::RectifiedRig& rig, const Pose& T_odom_body, Rng& rng) {
+DepthImage look(const camera::RectifiedRig& rig, const Pose& T_odom_body, Rng& rng) {
     const Pose T_odom_camera = T_odom_body * rig.T_body_camera;
-    camera::DepthImage depth;
+    DepthImage depth;
     depth.resize(rig.width, rig.height);
     depth.sigma_px.fill(0.25F);
     depth.outlier_probability.fill(0.05F);
@@ -76,9 +76,9 @@ camera::DepthImage look(const camera::RectifiedRig& rig, const Pose& T_odom_body
     return depth;
 }
 
-std::vector<camera::DepthImage> looks(const camera::RectifiedRig& rig) {
+std::vector<DepthImage> looks(const camera::RectifiedRig& rig) {
     Rng rng(1);
-    std::vector<camera::DepthImage> views;
+    std::vector<DepthImage> views;
     views.reserve(kViews);
     for (int i = 0; i < kViews; ++i) views.push_back(look(rig, body_at(0.02 * i), rng));
     return views;
@@ -95,7 +95,7 @@ ElevationConfig window_of(int side) {
 Workload fusing(std::string name, const ElevationConfig& config, int repeats, Executor& executor) {
     struct State {
         camera::RectifiedRig rig = zed();
-        std::vector<camera::DepthImage> views = looks(rig);
+        std::vector<DepthImage> views = looks(rig);
         ElevationMap map;
         int frame = 0;
     };
@@ -145,7 +145,7 @@ void for_each_cell(const grid::GridGeometry& geometry, const F& f) {
 /// Adds a ray that ends in every cell, then queries the lowest ray over every cell.
 Workload seeing_through(std::string name, int side) {
     const auto prepare = [side]() -> Result<Workload::Job> {
-        const auto lines = std::make_shared<elevation::LinesOfSight>();
+        const auto lines = std::make_shared<elevation::FreeSpaceRays>();
         return Workload::Job([lines, geometry = centred(side)] {
             lines->reset(geometry, {0.1, 0.0, 1.0});
             for_each_cell(geometry, [&](grid::Cell cell) { lines->add(cell, 0.0F); });
@@ -165,7 +165,7 @@ Workload checking_sight(std::string name, int side, Executor& executor) {
         ElevationConfig config;
         grid::GridGeometry geometry;
         elevation::ElevationCells cells{config, geometry.nx, geometry.ny};
-        elevation::SightCheck check{config};
+        elevation::VisibilityCleanup check{config};
     };
     const auto prepare = [side, &executor]() -> Result<Workload::Job> {
         const auto state =

@@ -28,7 +28,7 @@ constexpr std::array kUsualDistances_m = {0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0};
 constexpr double kSameDistance_m = 1e-6;
 
 /// Errors of one image pair of a board.
-struct Look {
+struct BoardObservation {
     double distance_m;
     std::optional<eval::BoardErrors> errors;
     double density_percent;
@@ -75,7 +75,10 @@ std::vector<Eigen::Vector3d> board_points(const camera::RectifiedRig& rig,
     return points_m;
 }
 
-Look look_at(const MeasuredPair& measured, double nominal_m, double true_m, double side_m) {
+BoardObservation look_at(const MeasuredPair& measured,
+                         double nominal_m,
+                         double true_m,
+                         double side_m) {
     std::int64_t pixels = 0;
     const auto points_m = board_points(*measured.rig, measured.depth, nominal_m, side_m, pixels);
     const double share =
@@ -98,10 +101,10 @@ double true_distance_m(const camera::RectifiedRig& rig,
     return plane ? plane->distance_m() : nominal_m;
 }
 
-Result<std::vector<Look>> rendered_looks(const DepthAccuracyOptions& options,
-                                         const Settings& settings,
-                                         const camera::StereoRig& rig,
-                                         Executor& executor) {
+Result<std::vector<BoardObservation>> rendered_observations(const DepthAccuracyOptions& options,
+                                                            const Settings& settings,
+                                                            const camera::StereoRig& rig,
+                                                            Executor& executor) {
     const auto rectifier = camera::Rectifier::make(rig, settings.pipeline.camera);
     if (!rectifier) return rectifier.error();
     sim::BoardView view;
@@ -113,7 +116,7 @@ Result<std::vector<Look>> rendered_looks(const DepthAccuracyOptions& options,
     view.calibration_error = settings.sim.calibration_error;
     std::vector<double> distances_m = options.distances_m;
     if (distances_m.empty()) distances_m.assign(kUsualDistances_m.begin(), kUsualDistances_m.end());
-    std::vector<Look> looks;
+    std::vector<BoardObservation> observations;
     for (const double distance_m : distances_m) {
         const auto config = with_range_for(distance_m, rectifier->rig(), settings.pipeline);
         for (int k = 0; k < options.repeats; ++k) {
@@ -125,10 +128,10 @@ Result<std::vector<Look>> rendered_looks(const DepthAccuracyOptions& options,
             if (!measured) return measured.error();
             const double true_m =
                 true_distance_m(*measured->rig, seen->disparity_px, distance_m, options.board_m);
-            looks.push_back(look_at(*measured, distance_m, true_m, options.board_m));
+            observations.push_back(look_at(*measured, distance_m, true_m, options.board_m));
         }
     }
-    return looks;
+    return observations;
 }
 
 struct PairLine {
@@ -169,34 +172,36 @@ Result<std::vector<PairLine>> read_pairs(const std::string& path) {
     return pairs;
 }
 
-Result<std::vector<Look>> recorded_looks(const DepthAccuracyOptions& options,
-                                         const Settings& settings,
-                                         const camera::StereoRig& rig,
-                                         Executor& executor) {
+Result<std::vector<BoardObservation>> recorded_observations(const DepthAccuracyOptions& options,
+                                                            const Settings& settings,
+                                                            const camera::StereoRig& rig,
+                                                            Executor& executor) {
     const auto pairs = read_pairs(options.pairs_file);
     if (!pairs) return pairs.error();
     const auto rectifier = camera::Rectifier::make(rig, settings.pipeline.camera);
     if (!rectifier) return rectifier.error();
-    std::vector<Look> looks;
+    std::vector<BoardObservation> observations;
     for (const PairLine& pair : *pairs) {
         const auto config = with_range_for(pair.distance_m, rectifier->rig(), settings.pipeline);
         const auto measured = measure_files(pair.left, pair.right, rig, config, executor);
         if (!measured) return measured.error();
-        looks.push_back(look_at(*measured, pair.distance_m, pair.distance_m, options.board_m));
+        observations.push_back(
+            look_at(*measured, pair.distance_m, pair.distance_m, options.board_m));
     }
-    return looks;
+    return observations;
 }
 
 DistanceAccuracy summary_of(double distance_m,
-                            const std::vector<Look>& looks,
+                            const std::vector<BoardObservation>& observations,
                             const std::optional<std::string>& thesis) {
     DistanceAccuracy row;
     row.distance_m = distance_m;
-    row.looks = static_cast<int>(looks.size());
+    row.observations = static_cast<int>(observations.size());
     std::vector<eval::BoardErrors> found;
-    for (const Look& look : looks) {
-        row.density_percent += look.density_percent / static_cast<double>(looks.size());
-        if (look.errors) found.push_back(*look.errors);
+    for (const BoardObservation& observation : observations) {
+        row.density_percent +=
+            observation.density_percent / static_cast<double>(observations.size());
+        if (observation.errors) found.push_back(*observation.errors);
     }
     if (!found.empty()) row.errors = eval::mean_of(found);
     for (const ThesisAccuracy& value : thesis_accuracy()) {
@@ -234,12 +239,13 @@ Result<std::vector<DistanceAccuracy>> measure_accuracy(const DepthAccuracyOption
                                                        const Settings& settings,
                                                        const camera::StereoRig& rig,
                                                        Executor& executor) {
-    const auto looks = options.pairs_file.empty()
-                           ? rendered_looks(options, settings, rig, executor)
-                           : recorded_looks(options, settings, rig, executor);
-    if (!looks) return looks.error();
-    std::map<double, std::vector<Look>> by_distance;
-    for (const Look& look : *looks) by_distance[look.distance_m].push_back(look);
+    const auto observations = options.pairs_file.empty()
+                                  ? rendered_observations(options, settings, rig, executor)
+                                  : recorded_observations(options, settings, rig, executor);
+    if (!observations) return observations.error();
+    std::map<double, std::vector<BoardObservation>> by_distance;
+    for (const BoardObservation& observation : *observations)
+        by_distance[observation.distance_m].push_back(observation);
     std::vector<DistanceAccuracy> rows;
     rows.reserve(by_distance.size());
     for (const auto& [distance_m, same] : by_distance)

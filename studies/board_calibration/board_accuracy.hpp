@@ -46,7 +46,7 @@ struct ThesisAccuracy {
 /// Depth accuracy of a rig at one distance of the board.
 struct DistanceAccuracy {
     double distance_m = 0.0;
-    int looks = 0;                            ///< number of image pairs
+    int observations = 0;                     ///< number of image pairs
     std::optional<eval::BoardErrors> errors;  ///< nullopt if the depth image shows no board
     double density_percent = 0.0;             ///< share of the board's pixels with trusted depth
     std::optional<ThesisAccuracy> thesis;     ///< same camera, same distance

@@ -57,7 +57,7 @@ std::vector<Entry> paired(const std::string& left_folder,
 }
 
 /// The folders of the left and right images inside `folder`; nullopt if there are none.
-std::optional<std::pair<std::string, std::string>> eye_folders(const std::string& folder) {
+std::optional<std::pair<std::string, std::string>> camera_folders(const std::string& folder) {
     constexpr const char* kPairs[][2] = {
         {"left", "right"}, {"cam0/data", "cam1/data"}, {"cam0", "cam1"}, {"image_0", "image_1"}};
     for (const auto& names : kPairs) {
@@ -69,12 +69,12 @@ std::optional<std::pair<std::string, std::string>> eye_folders(const std::string
 }
 
 Result<std::vector<Entry>> stereo_entries(const std::string& folder, BoardSource& about) {
-    if (const auto eyes = eye_folders(folder)) {
-        const auto left = images_in(eyes->first);
+    if (const auto cameras = camera_folders(folder)) {
+        const auto left = images_in(cameras->first);
         if (!left) return left.error();
-        const auto right = images_in(eyes->second);
+        const auto right = images_in(cameras->second);
         if (!right) return right.error();
-        return paired(eyes->first, *left, "", eyes->second, *right, "", about);
+        return paired(cameras->first, *left, "", cameras->second, *right, "", about);
     }
     const auto names = images_in(folder);
     if (!names) return names.error();
@@ -92,7 +92,7 @@ Result<std::vector<Entry>> stereo_entries(const std::string& folder, BoardSource
     return entries;
 }
 
-Result<std::vector<Entry>> mono_entries(const std::string& folder, const std::string& eye) {
+Result<std::vector<Entry>> mono_entries(const std::string& folder, const std::string& camera) {
     const auto names = images_in(folder);
     if (!names) return names.error();
     const auto any = [&](const char* word) {
@@ -101,7 +101,7 @@ Result<std::vector<Entry>> mono_entries(const std::string& folder, const std::st
         });
     };
     const bool two_cameras = any("left") && any("right");
-    if (two_cameras && eye.empty()) {
+    if (two_cameras && camera.empty()) {
         return usage_error(fmt::format(
             "{}: images of two cameras (left*, right*); calibrate stereo takes both, --eye left or "
             "--eye right one of them",
@@ -109,7 +109,7 @@ Result<std::vector<Entry>> mono_entries(const std::string& folder, const std::st
     }
     std::vector<Entry> entries;
     for (const std::string& name : *names) {
-        if (two_cameras && !begins_with(name, eye)) continue;
+        if (two_cameras && !begins_with(name, camera)) continue;
         entries.push_back({name, io::join_path(folder, name), {}});
     }
     return entries;
@@ -169,7 +169,7 @@ Status for_video(const std::string& path, bool stereo, const Use& use, BoardSour
 
 Result<BoardSource> for_board_images(const std::string& source,
                                      bool stereo,
-                                     const std::string& eye,
+                                     const std::string& camera,
                                      const Use& use) {
     BoardSource about;
     if (io::is_file(source) && io::is_video_name(source)) {
@@ -177,7 +177,7 @@ Result<BoardSource> for_board_images(const std::string& source,
             return status.error();
         return about;
     }
-    const auto entries = stereo ? stereo_entries(source, about) : mono_entries(source, eye);
+    const auto entries = stereo ? stereo_entries(source, about) : mono_entries(source, camera);
     if (!entries) return entries.error();
     if (entries->empty()) {
         return input_error(fmt::format(

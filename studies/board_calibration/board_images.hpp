@@ -36,7 +36,7 @@ inline constexpr int kMostVideoViews = 60;
 /// side-by-side images; or a side-by-side video.
 [[nodiscard]] Result<BoardSource> for_board_images(const std::string& source,
                                                    bool stereo,
-                                                   const std::string& eye,
+                                                   const std::string& camera,
                                                    const std::function<void(BoardImages)>& use);
 
 }  // namespace surefoot::app

@@ -27,10 +27,11 @@ struct Given {
     std::string error;
 };
 
-Given given(const std::string& source, bool stereo, const std::string& eye = "") {
+Given given(const std::string& source, bool stereo, const std::string& camera = "") {
     Given all;
-    const auto about = for_board_images(
-        source, stereo, eye, [&](BoardImages images) { all.images.push_back(std::move(images)); });
+    const auto about = for_board_images(source, stereo, camera, [&](BoardImages images) {
+        all.images.push_back(std::move(images));
+    });
     if (about) {
         all.notes = about->notes;
     } else {

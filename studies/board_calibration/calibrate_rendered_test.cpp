@@ -133,8 +133,8 @@ TEST_P(CalibrateMoving, BlurredViewsLeaveOrDoNoHarm) {
     const camera::Camera truth = testing::camera_of(LensKind::pinhole4);
     auto views = testing::seen_boards(board, truth, kViews, kPoseSeed, kNoiseSeed);
     Rng rng(kPoseSeed);
-    const BoardEye eye{truth, Pose{}};
-    const std::vector<Pose> poses = shown_poses(board, {&eye, 1}, kViews, rng);
+    const BoardCamera this_camera{truth, Pose{}};
+    const std::vector<Pose> poses = shown_poses(board, {&this_camera, 1}, kViews, rng);
     const double focal_px = std::get<camera::PinholeRadTan>(truth.model).fx_px;
     for (const std::size_t i : {3U, 7U}) {
         const double m_per_px = poses[i].translation_m.z() / focal_px;

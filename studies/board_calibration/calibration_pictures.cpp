@@ -156,25 +156,25 @@ eval::Picture tilt_picture(const CalibrationRun& run, int camera) {
     return std::move(figure.picture);
 }
 
-eval::Picture residual_picture(const CalibrationRun& run, const CalibratedEye& eye) {
+eval::Picture residual_picture(const CalibrationRun& run, const CalibratedCamera& this_camera) {
     std::vector<double> lengths_px;
-    for (const auto& view : eye.views) {
+    for (const auto& view : this_camera.views) {
         for (const auto& residual : view.fit.residuals_px) lengths_px.push_back(residual.norm());
     }
     std::sort(lengths_px.begin(), lengths_px.end());
     const double usual_px = lengths_px.empty() ? 1.0 : eval::percentile_of_sorted(lengths_px, 0.95);
     constexpr double kShown_px = 20.0;  // drawn length of the 95th percentile
     const double enlarged = kShown_px / std::max(usual_px, 1e-6);
-    const bool right = std::string(eye.name) == "right";
+    const bool right = std::string(this_camera.name) == "right";
     Plane plane = plane_of(
         run.size,
-        {fmt::format("Measured minus predicted, {}", eye.name),
+        {fmt::format("Measured minus predicted, {}", this_camera.name),
          fmt::format(
              "{} points; 95 % within {:.2f} px; drawn {:.0f} times enlarged; orange: left out",
              lengths_px.size(),
              usual_px,
              enlarged / plane_of(run.size, {}).scale)});
-    for (const auto& view : eye.views) {
+    for (const auto& view : this_camera.views) {
         const auto& seen = right ? run.views[view.index].right : run.views[view.index].left;
         for (std::size_t i = 0; i < view.fit.ids.size(); ++i) {
             const int id = view.fit.ids[i];

@@ -14,7 +14,8 @@ namespace surefoot::app {
 [[nodiscard]] eval::Picture tilt_picture(const CalibrationRun& run, int camera);
 /// Draws the residual (measured minus predicted pixel) of every point used, enlarged so that the
 /// 95th percentile is clearly visible.
-[[nodiscard]] eval::Picture residual_picture(const CalibrationRun& run, const CalibratedEye& eye);
+[[nodiscard]] eval::Picture residual_picture(const CalibrationRun& run,
+                                             const CalibratedCamera& this_camera);
 /// Draws the sample pair, rectified by the result, side by side. Corresponding points must lie on
 /// the same horizontal line. Empty for one camera.
 [[nodiscard]] eval::Picture epipolar_picture(const CalibrationRun& run);

@@ -32,11 +32,11 @@ void add_pictures(const CalibrationRun& run, eval::ReportContent& content) {
         content.pictures.push_back(
             {"Tilt of the board in every view.", eval::encode_png(tilt_picture(run, camera))});
     }
-    for (const CalibratedEye& eye : calibrated_eyes(run)) {
+    for (const CalibratedCamera& this_camera : calibrated_cameras(run)) {
         content.pictures.push_back(
             {"Residual of every point. Good ones point everywhere; a pattern over the image means "
              "that the lens model does not fit the lens, or that the board is not flat.",
-             eval::encode_png(residual_picture(run, eye))});
+             eval::encode_png(residual_picture(run, this_camera))});
     }
 }
 
@@ -49,7 +49,7 @@ void add_figures(const CalibrationRun& run, eval::ReportContent& content) {
                                "root mean square distance, as OpenCV defines it"});
     content.figures.push_back(
         {"Corner noise", fmt::format("{:.3f}", sigma_px), "px", "one sigma of a coordinate"});
-    const std::size_t used = calibrated_eyes(run).front().views.size();
+    const std::size_t used = calibrated_cameras(run).front().views.size();
     content.figures.push_back({run.stereo ? "Pairs used" : "Views used",
                                std::to_string(used),
                                "",
@@ -88,23 +88,24 @@ eval::ReportTable depth_table(const calibration::StereoCalibration& stereo) {
     return table;
 }
 
-eval::ReportTable lens_table(const CalibratedEye& eye, calibration::LensKind kind) {
+eval::ReportTable lens_table(const CalibratedCamera& this_camera, calibration::LensKind kind) {
     eval::ReportTable table;
-    table.title = fmt::format(
-        "Lens, {} ({})", eye.name, calibration::kLensKindNames[static_cast<std::size_t>(kind)]);
+    table.title = fmt::format("Lens, {} ({})",
+                              this_camera.name,
+                              calibration::kLensKindNames[static_cast<std::size_t>(kind)]);
     table.header = {"parameter", "value", "one sigma"};
     const auto names = calibration::parameter_names(kind);
     for (std::size_t i = 0; i < names.size(); ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         table.rows.push_back({names[i],
-                              fmt::format("{:.6g}", eye.parameters[k]),
-                              fmt::format("{:.2g}", eye.sigmas[k])});
+                              fmt::format("{:.6g}", this_camera.parameters[k]),
+                              fmt::format("{:.2g}", this_camera.sigmas[k])});
     }
     table.hint = fmt::format(
         "Together they put a direction into the image to {:.3f} px (one sigma, median), and to "
         "{:.2f} px where it is known worst: in a corner that no board came near.{}",
-        eye.mapping.median_px,
-        eye.mapping.largest_px,
+        this_camera.mapping.median_px,
+        this_camera.mapping.largest_px,
         kind == calibration::LensKind::rational
             ? " The coefficients of this lens can stand in for each other: look at the image, not "
               "at them."
@@ -126,16 +127,16 @@ eval::ReportTable view_table(const CalibrationRun& run) {
     eval::ReportTable table;
     table.title = "Views used";
     table.header = {"view"};
-    const auto eyes = calibrated_eyes(run);
-    for (const CalibratedEye& eye : eyes) {
+    const auto cameras = calibrated_cameras(run);
+    for (const CalibratedCamera& this_camera : cameras) {
         for (const char* what : {"points", "rms [px]", "tilt [deg]", "points apart [px]"})
-            table.header.push_back(fmt::format("{}: {}", eye.name, what));
+            table.header.push_back(fmt::format("{}: {}", this_camera.name, what));
     }
-    for (std::size_t i = 0; i < eyes.front().views.size(); ++i) {
-        const std::size_t index = eyes.front().views[i].index;
+    for (std::size_t i = 0; i < cameras.front().views.size(); ++i) {
+        const std::size_t index = cameras.front().views[i].index;
         std::vector<std::string> row = {run.views[index].name};
-        for (std::size_t camera = 0; camera < eyes.size(); ++camera) {
-            const calibration::EyeFit& fit = eyes[camera].views[i].fit;
+        for (std::size_t camera = 0; camera < cameras.size(); ++camera) {
+            const calibration::CameraFit& fit = cameras[camera].views[i].fit;
             const calibration::ViewShape& shape = run.coverage[camera].views[index];
             row.push_back(std::to_string(fit.ids.size() - fit.outliers.size()));
             row.push_back(fmt::format("{:.3f}", fit.rms_px));
@@ -169,8 +170,8 @@ std::string calibration_html(const CalibrationRun& run) {
     for (const std::string& note : run.notes) content.reasons.push_back(note);
     content.details_title = "Cameras and views";
     if (run.stereo) content.tables.push_back(depth_table(*run.stereo));
-    for (const CalibratedEye& eye : calibrated_eyes(run))
-        content.tables.push_back(lens_table(eye, lens_kind(run)));
+    for (const CalibratedCamera& this_camera : calibrated_cameras(run))
+        content.tables.push_back(lens_table(this_camera, lens_kind(run)));
     content.tables.push_back(rejected_table(run));
     content.tables.push_back(view_table(run));
     return eval::render_html(content);

@@ -12,10 +12,13 @@ namespace {
 /// Sets the uncertainty of each parameter and of the whole mapping from the covariance.
 void add_uncertainty(const Eigen::MatrixXd& covariance,
                      calibration::LensKind kind,
-                     CalibratedEye& eye) {
-    eye.sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    eye.mapping = calibration::mapping_sigmas_px(
-        kind, eye.parameters, covariance, {eye.camera.width, eye.camera.height});
+                     CalibratedCamera& this_camera) {
+    this_camera.sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    this_camera.mapping =
+        calibration::mapping_sigmas_px(kind,
+                                       this_camera.parameters,
+                                       covariance,
+                                       {this_camera.camera.width, this_camera.camera.height});
 }
 
 /// Parameters in the order of calibration::parameter_names.
@@ -35,33 +38,34 @@ Eigen::VectorXd parameters_of(const camera::KannalaBrandt& k, calibration::LensK
     return all;
 }
 
-CalibratedEye stereo_eye(const calibration::StereoCalibration& stereo, bool left) {
+CalibratedCamera stereo_camera(const calibration::StereoCalibration& stereo, bool left) {
     const auto count = static_cast<Eigen::Index>(calibration::parameter_names(stereo.kind).size());
-    CalibratedEye eye;
-    eye.name = left ? "left" : "right";
-    eye.camera = left ? stereo.rig.left : *stereo.rig.right;
-    eye.parameters = std::visit([&](const auto& lens) { return parameters_of(lens, stereo.kind); },
-                                eye.camera.model);
+    CalibratedCamera this_camera;
+    this_camera.name = left ? "left" : "right";
+    this_camera.camera = left ? stereo.rig.left : *stereo.rig.right;
+    this_camera.parameters =
+        std::visit([&](const auto& lens) { return parameters_of(lens, stereo.kind); },
+                   this_camera.camera.model);
     const Eigen::Index first = left ? 0 : count;
-    add_uncertainty(stereo.covariance.block(first, first, count, count), stereo.kind, eye);
+    add_uncertainty(stereo.covariance.block(first, first, count, count), stereo.kind, this_camera);
     for (const calibration::PairFit& pair : stereo.pairs)
-        eye.views.push_back({pair.index, left ? pair.left : pair.right});
-    return eye;
+        this_camera.views.push_back({pair.index, left ? pair.left : pair.right});
+    return this_camera;
 }
 
 }  // namespace
 
-std::vector<CalibratedEye> calibrated_eyes(const CalibrationRun& run) {
-    if (run.stereo) return {stereo_eye(*run.stereo, true), stereo_eye(*run.stereo, false)};
+std::vector<CalibratedCamera> calibrated_cameras(const CalibrationRun& run) {
+    if (run.stereo) return {stereo_camera(*run.stereo, true), stereo_camera(*run.stereo, false)};
     SUREFOOT_ASSERT(run.mono.has_value());
-    CalibratedEye eye;
-    eye.name = "camera";
-    eye.camera = run.mono->camera;
-    eye.parameters = run.mono->parameters;
-    add_uncertainty(run.mono->covariance, run.mono->kind, eye);
+    CalibratedCamera this_camera;
+    this_camera.name = "camera";
+    this_camera.camera = run.mono->camera;
+    this_camera.parameters = run.mono->parameters;
+    add_uncertainty(run.mono->covariance, run.mono->kind, this_camera);
     for (const calibration::ViewFit& view : run.mono->views)
-        eye.views.push_back({view.index, view.eye});
-    return {eye};
+        this_camera.views.push_back({view.index, view.camera});
+    return {this_camera};
 }
 
 const std::vector<calibration::RejectedView>& rejected_views(const CalibrationRun& run) {

@@ -39,7 +39,7 @@ struct CalibrationRun {
 };
 
 /// One camera of a mono or stereo calibration, in a common form.
-struct CalibratedEye {
+struct CalibratedCamera {
     const char* name = "";
     camera::Camera camera;
     Eigen::VectorXd parameters;          ///< in the order of calibration::parameter_names
@@ -47,12 +47,12 @@ struct CalibratedEye {
     calibration::MappingSigmas mapping;  ///< joint effect of all parameters on the pixels
     struct View {
         std::size_t index = 0;  ///< into CalibrationRun::views
-        calibration::EyeFit fit;
+        calibration::CameraFit fit;
     };
     std::vector<View> views;
 };
 /// The cameras of the result: left and right, or the only one. Requires a result.
-[[nodiscard]] std::vector<CalibratedEye> calibrated_eyes(const CalibrationRun& run);
+[[nodiscard]] std::vector<CalibratedCamera> calibrated_cameras(const CalibrationRun& run);
 [[nodiscard]] const std::vector<calibration::RejectedView>& rejected_views(
     const CalibrationRun& run);
 [[nodiscard]] calibration::LensKind lens_kind(const CalibrationRun& run);

@@ -13,16 +13,16 @@ namespace {
 
 /// Placeholder rig of the right image size: LiveCamera needs a rig, but it is not calibrated yet.
 camera::StereoRig rig_of_size(int width, int height) {
-    const camera::Camera eye{camera::PinholeRadTan{.fx_px = static_cast<double>(width),
-                                                   .fy_px = static_cast<double>(width),
-                                                   .cx_px = 0.5 * (width - 1),
-                                                   .cy_px = 0.5 * (height - 1)},
-                             width,
-                             height};
+    const camera::Camera camera{camera::PinholeRadTan{.fx_px = static_cast<double>(width),
+                                                      .fy_px = static_cast<double>(width),
+                                                      .cx_px = 0.5 * (width - 1),
+                                                      .cy_px = 0.5 * (height - 1)},
+                                width,
+                                height};
     camera::StereoRig rig;
     rig.name = "not calibrated yet";
-    rig.left = eye;
-    rig.right = eye;
+    rig.left = camera;
+    rig.right = camera;
     rig.T_left_right.translation_m.x() = 0.1;
     return rig;
 }
@@ -40,7 +40,7 @@ Status for_live_images(std::unique_ptr<io::VideoDevice> device,
             "v4l2:DEVICE@WIDTHxHEIGHT with an even width; surefoot info v4l2:DEVICE lists them",
             session.address));
     }
-    if (!session.stereo && session.eye.empty()) {
+    if (!session.stereo && session.camera.empty()) {
         return usage_error(fmt::format(
             "{}: a camera with two eyes; --eye left or --eye right takes one", session.address));
     }
@@ -58,12 +58,13 @@ Status for_live_images(std::unique_ptr<io::VideoDevice> device,
         if (!next) return next.error();
         if (!next->has_value()) return {};
         StereoFrame& frame = **next;
-        if (!frame.arrival.is_new_and_whole()) continue;
+        if (!frame.frame_status.is_new_and_whole()) continue;
         if (last_ns && frame.time_ns - *last_ns < pause_ns) continue;
         last_ns = frame.time_ns;
         ++used;
         BoardImages images{fmt::format("frame {}", frame.index), {}, {}};
-        images.left = std::move(session.stereo || session.eye == "left" ? frame.left : frame.right);
+        images.left =
+            std::move(session.stereo || session.camera == "left" ? frame.left : frame.right);
         if (session.stereo) images.right = std::move(frame.right);
         use(std::move(images));
     }

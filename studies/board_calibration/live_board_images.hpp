@@ -14,7 +14,7 @@ namespace surefoot::app {
 struct LiveBoards {
     std::string address;  ///< DEVICE@WIDTHxHEIGHT[@RATE]; WIDTH is that of both images together
     bool stereo = true;
-    std::string eye = {};  ///< camera to use if not `stereo`: left or right
+    std::string camera = {};  ///< camera to use if not `stereo`: left or right
     io::CameraConfig config = {};
     std::function<bool()> stop = {};    ///< polled while waiting; true ends the session
     std::function<void()> opened = {};  ///< called once when the camera is open

@@ -69,7 +69,8 @@ TEST(LiveBoards, AreAPauseApartAndHaveBothEyes) {
 }
 
 TEST(LiveBoards, OneEyeOfTwo) {
-    const LiveBoards right{.address = "/dev/fake@32x8", .stereo = false, .eye = "right", .most = 1};
+    const LiveBoards right{
+        .address = "/dev/fake@32x8", .stereo = false, .camera = "right", .most = 1};
     const Session session = held(camera_with(3), right);
     ASSERT_EQ(session.images.size(), 1U);
     EXPECT_EQ(session.images[0].left.at(0, 0), 100);
@@ -89,9 +90,9 @@ TEST(LiveBoards, SayWhatIsMissing) {
     const Session no_size = held(camera_with(1), {.address = "/dev/fake"});
     ASSERT_FALSE(no_size.status);
     EXPECT_NE(no_size.status.error().message.find("WIDTHxHEIGHT"), std::string::npos);
-    const Session no_eye = held(camera_with(1), {.address = "/dev/fake@32x8", .stereo = false});
-    ASSERT_FALSE(no_eye.status);
-    EXPECT_NE(no_eye.status.error().message.find("--eye"), std::string::npos);
+    const Session no_camera = held(camera_with(1), {.address = "/dev/fake@32x8", .stereo = false});
+    ASSERT_FALSE(no_camera.status);
+    EXPECT_NE(no_camera.status.error().message.find("--eye"), std::string::npos);
 }
 
 }  // namespace

@@ -70,16 +70,16 @@ camera::Camera fisheye() {
 GreyImage rendered(const Board& board,
                    const camera::Camera& camera,
                    const Pose& T_camera_board,
-                   const sim::BoardLook& look = {}) {
+                   const sim::ImagingConditions& observation = {}) {
     Serial serial;
     return sim::render_board(
-        calibration::print_of(board).value(), camera, T_camera_board, look, 5, serial);
+        calibration::print_of(board).value(), camera, T_camera_board, observation, 5, serial);
 }
 
 std::vector<Pose> poses_for(const Board& board, const camera::Camera& camera, int count) {
     Rng rng(11);
-    const BoardEye eye{camera, Pose{}};
-    return shown_poses(board, {&eye, 1}, count, rng);
+    const BoardCamera this_camera{camera, Pose{}};
+    return shown_poses(board, {&this_camera, 1}, count, rng);
 }
 
 /// True image of a board point; for a disc its centre of gravity.
@@ -125,7 +125,7 @@ double mean(const std::vector<double>& values) {
 }
 
 /// Checks the mean error over several poses of every board and lens.
-void expect_found(const sim::BoardLook& look, double limit_px) {
+void expect_found(const sim::ImagingConditions& observation, double limit_px) {
     for (const char* text : kBoards) {
         const Board board = board_of(text);
         for (const camera::Camera& camera : {pinhole(), fisheye()}) {
@@ -133,7 +133,7 @@ void expect_found(const sim::BoardLook& look, double limit_px) {
             ASSERT_EQ(std::ssize(poses), kPoses) << text;
             std::vector<double> all;
             for (const Pose& T_camera_board : poses) {
-                const GreyImage image = rendered(board, camera, T_camera_board, look);
+                const GreyImage image = rendered(board, camera, T_camera_board, observation);
                 const BoardSighting sighting = calibration::detect_board(board, image.view());
                 ASSERT_TRUE(sighting.found()) << text << ": " << sighting.problem;
                 // Markers of a ChArUco board may be too small to read in a corner of the image.
@@ -160,10 +160,10 @@ TEST(RenderedBoard, AllKindsAreFoundToATenthOfAPixelByBothLenses) {
 }
 
 TEST(RenderedBoard, BlurAndNoiseCostLittle) {
-    sim::BoardLook look;
-    look.blur_sigma_px = 0.8;
-    look.noise_dn = 2.0;
-    expect_found(look, 0.1);
+    sim::ImagingConditions observation;
+    observation.blur_sigma_px = 0.8;
+    observation.noise_dn = 2.0;
+    expect_found(observation, 0.1);
 }
 
 TEST(RenderedBoard, BigCirclesSeenAtASlantAreFoundWithTheirRadius) {
@@ -246,14 +246,14 @@ TEST(RenderedBoard, WhatShowsNoBoardGivesNone) {
         EXPECT_FALSE(
             calibration::detect_board(board, rendered(board, pinhole(), far).view()).found())
             << text;
-        sim::BoardLook blurred;
+        sim::ImagingConditions blurred;
         blurred.blur_sigma_px = 20.0;
         const Pose near{Eigen::Quaterniond::Identity(), {-0.1, -0.07, 0.5}};
         EXPECT_FALSE(
             calibration::detect_board(board, rendered(board, pinhole(), near, blurred).view())
                 .found())
             << text;
-        sim::BoardLook noise;
+        sim::ImagingConditions noise;
         noise.paper_dn = noise.ink_dn = 100.0;
         noise.noise_dn = 40.0;
         EXPECT_FALSE(

@@ -17,8 +17,10 @@ constexpr double kFarthest = 1.7;
 constexpr double kBorder_px = 4.0;
 
 /// True if a camera sees the whole sheet, at least kBorder_px inside the image.
-bool sees(const BoardEye& eye, const PrintedSheet::Rectangle& paper, const Pose& T_left_board) {
-    const Pose T_eye_board = eye.T_left_eye.inverse() * T_left_board;
+bool sees(const BoardCamera& camera,
+          const PrintedSheet::Rectangle& paper,
+          const Pose& T_left_board) {
+    const Pose T_camera_board = camera.T_left_camera.inverse() * T_left_board;
     constexpr int kSteps = 8;  // samples along each side, because straight edges bend in a fisheye
     for (int i = 0; i <= kSteps; ++i) {
         const double s = static_cast<double>(i) / kSteps;
@@ -28,10 +30,10 @@ bool sees(const BoardEye& eye, const PrintedSheet::Rectangle& paper, const Pose&
                                            Eigen::Vector3d(x_m, paper.bottom_m, 0.0),
                                            Eigen::Vector3d(paper.left_m, y_m, 0.0),
                                            Eigen::Vector3d(paper.right_m, y_m, 0.0)}) {
-            const auto pixel = camera::project(eye.camera.model, T_eye_board * p_m);
+            const auto pixel = camera::project(camera.camera.model, T_camera_board * p_m);
             if (!pixel || pixel->x() < kBorder_px || pixel->y() < kBorder_px ||
-                pixel->x() > eye.camera.width - 1 - kBorder_px ||
-                pixel->y() > eye.camera.height - 1 - kBorder_px)
+                pixel->x() > camera.camera.width - 1 - kBorder_px ||
+                pixel->y() > camera.camera.height - 1 - kBorder_px)
                 return false;
         }
     }
@@ -40,23 +42,23 @@ bool sees(const BoardEye& eye, const PrintedSheet::Rectangle& paper, const Pose&
 
 }  // namespace
 
-std::vector<BoardEye> eyes_of(const camera::StereoRig& rig) {
-    std::vector<BoardEye> eyes = {{rig.left, Pose{}}};
-    if (rig.right) eyes.push_back({*rig.right, rig.T_left_right});
-    return eyes;
+std::vector<BoardCamera> cameras_of(const camera::StereoRig& rig) {
+    std::vector<BoardCamera> cameras = {{rig.left, Pose{}}};
+    if (rig.right) cameras.push_back({*rig.right, rig.T_left_right});
+    return cameras;
 }
 
 std::vector<Pose> shown_poses(const calibration::Board& board,
-                              std::span<const BoardEye> eyes,
+                              std::span<const BoardCamera> cameras,
                               int count,
                               Rng& rng) {
     const auto sheet = calibration::print_of(board);
-    if (!sheet || eyes.empty()) return {};
+    if (!sheet || cameras.empty()) return {};
     const auto& paper = sheet->paper;
     const Eigen::Vector3d middle_m(
         0.5 * (paper.left_m + paper.right_m), 0.5 * (paper.top_m + paper.bottom_m), 0.0);
     const double size_m = std::max(paper.right_m - paper.left_m, paper.bottom_m - paper.top_m);
-    const camera::Camera& left = eyes.front().camera;
+    const camera::Camera& left = cameras.front().camera;
     std::vector<Pose> poses;
     constexpr int kTriesPerPose = 400;
     for (int tries = 0; tries < count * kTriesPerPose && std::ssize(poses) < count; ++tries) {
@@ -72,9 +74,10 @@ std::vector<Pose> shown_poses(const calibration::Board& board,
             Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), *ray);
         Pose T_left_board{facing * exp_so3(turn_rad), Eigen::Vector3d::Zero()};
         T_left_board.translation_m = distance_m * *ray - T_left_board.rotation * middle_m;
-        const bool seen = std::all_of(eyes.begin(), eyes.end(), [&](const BoardEye& eye) {
-            return sees(eye, paper, T_left_board);
-        });
+        const bool seen =
+            std::all_of(cameras.begin(), cameras.end(), [&](const BoardCamera& camera) {
+                return sees(camera, paper, T_left_board);
+            });
         if (seen) poses.push_back(T_left_board);
     }
     return poses;

@@ -12,17 +12,17 @@
 namespace surefoot::app {
 
 /// A camera and its pose in the frame of the left camera.
-struct BoardEye {
+struct BoardCamera {
     camera::Camera camera;
-    Pose T_left_eye;
+    Pose T_left_camera;
 };
-[[nodiscard]] std::vector<BoardEye> eyes_of(const camera::StereoRig& rig);
+[[nodiscard]] std::vector<BoardCamera> cameras_of(const camera::StereoRig& rig);
 
 /// Returns `count` poses of the board in the left optical frame, as a careful operator shows it:
 /// all cameras see the whole board, near and far, turned by up to 40 deg about each axis. Returns
 /// fewer poses if too few positions fit into all images.
 [[nodiscard]] std::vector<Pose> shown_poses(const calibration::Board& board,
-                                            std::span<const BoardEye> eyes,
+                                            std::span<const BoardCamera> cameras,
                                             int count,
                                             Rng& rng);
 

@@ -91,11 +91,11 @@ inline camera::StereoRig rig_of(calibration::LensKind kind, int scale = 1) {
     return rig;
 }
 
-inline sim::BoardLook blurred_and_noisy() {
-    sim::BoardLook look;
-    look.blur_sigma_px = 0.7;
-    look.noise_dn = 2.0;
-    return look;
+inline sim::ImagingConditions blurred_and_noisy() {
+    sim::ImagingConditions observation;
+    observation.blur_sigma_px = 0.7;
+    observation.noise_dn = 2.0;
+    return observation;
 }
 
 /// Boards detected in `count` rendered images with slight blur and noise.
@@ -105,14 +105,14 @@ inline std::vector<calibration::BoardView> seen_boards(const calibration::Board&
                                                        std::uint64_t pose_seed,
                                                        std::uint64_t noise_seed) {
     Rng rng(pose_seed);
-    const BoardEye eye{camera, Pose{}};
+    const BoardCamera this_camera{camera, Pose{}};
     const auto sheet = calibration::print_of(board);
-    const sim::BoardLook look = blurred_and_noisy();
+    const sim::ImagingConditions observation = blurred_and_noisy();
     Serial serial;
     std::vector<calibration::BoardView> views;
-    for (const Pose& T_camera_board : shown_poses(board, {&eye, 1}, count, rng)) {
+    for (const Pose& T_camera_board : shown_poses(board, {&this_camera, 1}, count, rng)) {
         const GreyImage image =
-            sim::render_board(*sheet, camera, T_camera_board, look, noise_seed++, serial);
+            sim::render_board(*sheet, camera, T_camera_board, observation, noise_seed++, serial);
         views.push_back(calibration::detect_board(board, image.view()).view);
     }
     return views;
@@ -130,20 +130,21 @@ inline SeenPairs seen_pairs(const calibration::Board& board,
                             std::uint64_t pose_seed,
                             std::uint64_t noise_seed) {
     Rng rng(pose_seed);
-    const std::vector<BoardEye> eyes = eyes_of(rig);
+    const std::vector<BoardCamera> cameras = cameras_of(rig);
     const auto sheet = calibration::print_of(board);
     Serial serial;
     SeenPairs pairs;
-    for (const Pose& T_left_board : shown_poses(board, eyes, count, rng)) {
+    for (const Pose& T_left_board : shown_poses(board, cameras, count, rng)) {
         std::array<calibration::BoardView, 2> found;
-        for (std::size_t eye = 0; eye < found.size(); ++eye) {
-            const GreyImage image = sim::render_board(*sheet,
-                                                      eyes[eye].camera,
-                                                      eyes[eye].T_left_eye.inverse() * T_left_board,
-                                                      blurred_and_noisy(),
-                                                      noise_seed++,
-                                                      serial);
-            found[eye] = calibration::detect_board(board, image.view()).view;
+        for (std::size_t this_camera = 0; this_camera < found.size(); ++this_camera) {
+            const GreyImage image =
+                sim::render_board(*sheet,
+                                  cameras[this_camera].camera,
+                                  cameras[this_camera].T_left_camera.inverse() * T_left_board,
+                                  blurred_and_noisy(),
+                                  noise_seed++,
+                                  serial);
+            found[this_camera] = calibration::detect_board(board, image.view()).view;
         }
         if (!found[0].ids.empty() && !found[1].ids.empty())
             found[1] = calibration::turned_like(board, found[0], found[1]);

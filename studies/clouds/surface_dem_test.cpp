@@ -42,7 +42,7 @@ Points depth_camera(std::uint64_t seed) {
     constexpr int kRows = 260;
     constexpr double kPixel_rad = 0.0025;
     Rng rng(seed);
-    const Vector3d eye_m(-1.0, 0.0, 0.7);
+    const Vector3d camera_m(-1.0, 0.0, 0.7);
     Points points_m;
     for (int column = 0; column < kColumns; ++column) {
         const double yaw = kPixel_rad * (column - kColumns / 2);
@@ -52,7 +52,7 @@ Points depth_camera(std::uint64_t seed) {
             const double pitch = -0.15 - kPixel_rad * row;
             rays.emplace_back(
                 std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch));
-            ranges_m.push_back(range_m(eye_m, rays.back()));
+            ranges_m.push_back(range_m(camera_m, rays.back()));
         }
         for (std::size_t row = 1; row < rays.size(); ++row) {
             double r_m = ranges_m[row];
@@ -65,7 +65,7 @@ Points depth_camera(std::uint64_t seed) {
                 r_m += rng.uniform(0.05, 0.95) * jump_m;
                 break;
             }
-            points_m.push_back(eye_m + (r_m + 0.003 * rng.normal()) * rays[row]);
+            points_m.push_back(camera_m + (r_m + 0.003 * rng.normal()) * rays[row]);
         }
     }
     // Outliers high above all surfaces, some of them alone in their cells.

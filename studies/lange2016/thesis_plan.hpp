@@ -37,7 +37,7 @@ struct ThesisRun {
     const char* figures;  ///< figure numbers in the thesis
     const char* title;
     const char* scene;
-    const char* carrier;
+    const char* motion_model;
     double rate_hz = 10.0;
     const char* preset;         ///< traversability preset of the thesis for this run
     double map_length_m = 0.0;  ///< 0 = from the settings

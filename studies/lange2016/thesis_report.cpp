@@ -17,8 +17,8 @@
 namespace surefoot::app {
 namespace {
 
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 
 const ThesisRun& run_named(std::string_view name) {
     for (const ThesisRun& run : thesis_runs()) {
@@ -49,7 +49,8 @@ double value_of(const ThesisResults& results, const ThesisRow& row, ThesisColumn
 double exact_of(const ThesisRow& row, std::uint64_t seed) {
     if (std::string_view(row.truth).empty()) return std::nan("");
     const ThesisRun& run = run_named(row.run);
-    const auto script = sim::make_scene(run.scene, seed, sim::carrier_of(carried_by(run.carrier)));
+    const auto script =
+        sim::make_scene(run.scene, seed, sim::motion_model_of(carried_by(run.motion_model)));
     if (!script) return std::nan("");
     const auto value = sim::evaluate(row.truth, sim::drawn_numbers(*script));
     return value ? *value : std::nan("");

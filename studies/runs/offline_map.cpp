@@ -106,17 +106,17 @@ Result<OfflineMap> load_offline_map(const std::string& folder) {
     return OfflineMap{std::move(snapshot).value(), {}};
 }
 
-Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
-                                          const gate::Query& query,
-                                          const grid::MapSnapshot& map,
-                                          double radius_m,
-                                          std::vector<std::string>& assumed) {
-    const double limit_m = kTenthMm_m * machine.limits.vouch_radius_tenth_mm;
+Result<gate::AttestedArea> attest_start(const Machine& machine,
+                                        const gate::Query& query,
+                                        const grid::MapSnapshot& map,
+                                        double radius_m,
+                                        std::vector<std::string>& assumed) {
+    const double limit_m = kTenthMm_m * machine.limits.attestation_radius_tenth_mm;
     if (!(radius_m <= limit_m)) {
         return usage_error(
             fmt::format("--vouch {:g}: the machine file allows at most {:g} m", radius_m, limit_m));
     }
-    gate::VouchedArea area;
+    gate::AttestedArea area;
     area.active = true;
     area.center_x_tenth_mm = query.x_tenth_mm;
     area.center_y_tenth_mm = query.y_tenth_mm;

@@ -25,11 +25,11 @@ struct OfflineMap {
 /// Makes an operator attestation for the ground around base_link, at the height of the known cells
 /// there. A negative radius means: as far as the standing feet reach. Adds a sentence to `assumed`.
 /// Usage error if the radius exceeds the limit of the machine file.
-[[nodiscard]] Result<gate::VouchedArea> vouch_for_start(const Machine& machine,
-                                                        const gate::Query& query,
-                                                        const grid::MapSnapshot& map,
-                                                        double radius_m,
-                                                        std::vector<std::string>& assumed);
+[[nodiscard]] Result<gate::AttestedArea> attest_start(const Machine& machine,
+                                                      const gate::Query& query,
+                                                      const grid::MapSnapshot& map,
+                                                      double radius_m,
+                                                      std::vector<std::string>& assumed);
 
 /// Inputs of the gate besides map and query when it runs offline. The gate state is `ready`. The
 /// time is the latest stamp of the map, so an old depth frame still counts as old.

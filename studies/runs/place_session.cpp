@@ -23,16 +23,17 @@ Result<PlaceSession> PlaceSession::open(const std::string& file) {
     return PlaceSession(file, std::move(read->place));
 }
 
-PlaceSession::PlaceSession(const std::string& file, places::Place saved) {
+PlaceSession::PlaceSession(const std::string& file, place_recognition::Place saved) {
     record_.file = file;
     record_.saved_keyframes = static_cast<int>(saved.keyframes.size());
-    tracker_ = std::make_unique<places::PlaceTracker>(places::TrackerConfig{}, std::move(saved));
+    tracker_ = std::make_unique<place_recognition::PlaceTracker>(place_recognition::TrackerConfig{},
+                                                                 std::move(saved));
 }
 
 void PlaceSession::after_frame(const FrameReport& report, const pipeline::Pipeline& pipeline) {
     // A repeated or torn image contains no information about the pose.
-    if (!report.arrival.is_new_and_whole()) return;
-    tracker_->follow(report.motion);
+    if (!report.frame_status.is_new_and_whole()) return;
+    tracker_->update(report.motion);
     const GreyImage& left = pipeline.pair().left;
     if (report.work != Work::full || left.empty()) return;
     const auto seen = tracker_->see(pipeline.rig(), left.view(), pipeline.depth());
@@ -50,7 +51,7 @@ Status PlaceSession::save() {
     else if (!tracker_->located())
         record_.left_as_it_was = "the place was not recognised";
     if (!record_.left_as_it_was.empty()) return {};
-    const places::Place place = tracker_->place();
+    const place_recognition::Place place = tracker_->place();
     record_.kept_keyframes = static_cast<int>(place.keyframes.size());
     return io::write_place(record_.file, place);
 }

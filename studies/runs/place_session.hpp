@@ -19,7 +19,7 @@ struct PlaceRecord {
     int own_keyframes = 0;   ///< keyframes that this run made
     int kept_keyframes = 0;  ///< keyframes in the file after the run
     /// Number of keyframes by result of the recognition.
-    std::array<int, places::kRefusals> refusals{};
+    std::array<int, place_recognition::kRefusals> refusals{};
     std::optional<std::int64_t> recognised_ns;  ///< time of the first T_map_odom
     std::optional<Pose> T_map_odom;             ///< at the end of the run
     std::string left_as_it_was;  ///< reason why the file was not written; empty = it was written
@@ -41,9 +41,9 @@ class PlaceSession {
     [[nodiscard]] const PlaceRecord& record() const noexcept { return record_; }
 
   private:
-    PlaceSession(const std::string& file, places::Place saved);
+    PlaceSession(const std::string& file, place_recognition::Place saved);
     PlaceRecord record_;
-    std::unique_ptr<places::PlaceTracker> tracker_;
+    std::unique_ptr<place_recognition::PlaceTracker> tracker_;
 };
 
 }  // namespace surefoot::app

@@ -13,8 +13,8 @@ namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written, so the same run gives the same bytes.
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 
 Json elevation_json(const eval::ElevationErrors& e) {
     return {{"median_abs_m", number(e.median_abs_m)},
@@ -153,12 +153,12 @@ Json frame_json(const FrameReport& frame) {
             {"known_cells", frame.known_cells},
             {"ground_accepted", frame.ground.accepted},
             {"camera", to_string(frame.camera)},
-            {"repeated", frame.arrival.repeated},
-            {"torn", frame.arrival.torn},
-            {"dropped", frame.arrival.dropped},
-            {"skipped", frame.arrival.skipped},
-            {"damaged", frame.arrival.damaged},
-            {"reconnected", frame.arrival.reconnected},
+            {"repeated", frame.frame_status.repeated},
+            {"torn", frame.frame_status.torn},
+            {"dropped", frame.frame_status.dropped},
+            {"skipped", frame.frame_status.skipped},
+            {"damaged", frame.frame_status.damaged},
+            {"reconnected", frame.frame_status.reconnected},
             {"counts", counts_json(frame.fusion)}};
 }
 

@@ -17,20 +17,20 @@
 // written as null.
 namespace surefoot::app {
 
-[[nodiscard]] wire::Json counts_json(const FusionCounts& f);
-[[nodiscard]] wire::Json traversability_json(const eval::TraversabilityErrors& t);
-[[nodiscard]] wire::Json errors_json(const eval::TrajectoryErrors& e);
-[[nodiscard]] wire::Json figures_json(const eval::ErrorFigures& e, const std::string& unit);
+[[nodiscard]] gate_process::Json counts_json(const FusionCounts& f);
+[[nodiscard]] gate_process::Json traversability_json(const eval::TraversabilityErrors& t);
+[[nodiscard]] gate_process::Json errors_json(const eval::TrajectoryErrors& e);
+[[nodiscard]] gate_process::Json figures_json(const eval::ErrorFigures& e, const std::string& unit);
 /// Errors [m] per bin; the limits of the bins are in `key_unit`.
-[[nodiscard]] wire::Json bins_json(const std::vector<eval::ErrorBin>& bins,
-                                   const std::string& key_unit);
-[[nodiscard]] wire::Json sigma_json(const eval::SigmaCoverage& s);
+[[nodiscard]] gate_process::Json bins_json(const std::vector<eval::ErrorBin>& bins,
+                                           const std::string& key_unit);
+[[nodiscard]] gate_process::Json sigma_json(const eval::SigmaCoverage& s);
 /// x y z qx qy qz qw
-[[nodiscard]] wire::Json pose_json(const Pose& T);
-[[nodiscard]] wire::Json camera_json(const camera::RectifiedRig& rig);
-[[nodiscard]] wire::Json maps_object(const eval::MapComparison& result);
-void add_broken(const camera::BrokenFrames& broken, wire::Json& object);
-[[nodiscard]] wire::Json source_json(const camera::SourceInfo& source);
-[[nodiscard]] wire::Json frame_json(const FrameReport& frame);
+[[nodiscard]] gate_process::Json pose_json(const Pose& T);
+[[nodiscard]] gate_process::Json camera_json(const camera::RectifiedRig& rig);
+[[nodiscard]] gate_process::Json maps_object(const eval::MapComparison& result);
+void add_broken(const camera::BrokenFrames& broken, gate_process::Json& object);
+[[nodiscard]] gate_process::Json source_json(const camera::SourceInfo& source);
+[[nodiscard]] gate_process::Json frame_json(const FrameReport& frame);
 
 }  // namespace surefoot::app

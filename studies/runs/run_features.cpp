@@ -17,7 +17,7 @@ template <typename Feature>
 void split(std::vector<Feature>& confirmed, std::vector<Feature>& unconfirmed) {
     const auto once =
         std::stable_partition(confirmed.begin(), confirmed.end(), [](const Feature& feature) {
-            return feature.followed.is_confirmed();
+            return feature.tracked.is_confirmed();
         });
     unconfirmed.assign(once, confirmed.end());
     confirmed.erase(once, confirmed.end());
@@ -27,23 +27,23 @@ void split(std::vector<Feature>& confirmed, std::vector<Feature>& unconfirmed) {
 template <typename Feature>
 void compare(const eval::KindErrors& errors,
              const std::vector<Feature>& final_map,
-             std::vector<Feature>& followed) {
-    for (Feature& feature : followed) feature.followed.in_final_map = true;
-    for (const std::size_t i : errors.extra_at) followed[i].followed.in_final_map = false;
+             std::vector<Feature>& tracked) {
+    for (Feature& feature : tracked) feature.tracked.in_final_map = true;
+    for (const std::size_t i : errors.extra_at) tracked[i].tracked.in_final_map = false;
     for (const std::size_t i : errors.missed_at) {
         Feature feature = final_map[i];
-        feature.followed.looks = 0;
-        feature.followed.seen_now = false;
-        feature.followed.in_final_map = true;
-        followed.push_back(std::move(feature));
+        feature.tracked.looks = 0;
+        feature.tracked.seen_now = false;
+        feature.tracked.in_final_map = true;
+        tracked.push_back(std::move(feature));
     }
 }
 
 }  // namespace
 
-RunFeatures split_by_confirmation(stairs::TerrainFeatures followed) {
+RunFeatures split_by_confirmation(stairs::TerrainFeatures tracked) {
     RunFeatures out;
-    out.confirmed = std::move(followed);
+    out.confirmed = std::move(tracked);
     out.unconfirmed.time_ns = out.confirmed.time_ns;
     split(out.confirmed.edges, out.unconfirmed.edges);
     split(out.confirmed.drops, out.unconfirmed.drops);
@@ -54,16 +54,16 @@ RunFeatures split_by_confirmation(stairs::TerrainFeatures followed) {
     return out;
 }
 
-RunFeatures compare_with_final_map(stairs::TerrainFeatures followed,
+RunFeatures compare_with_final_map(stairs::TerrainFeatures tracked,
                                    const stairs::TerrainFeatures& final_map) {
-    const eval::FeatureErrors errors = eval::feature_errors(followed, final_map, {});
-    compare(errors.edges, final_map.edges, followed.edges);
-    compare(errors.drops, final_map.drops, followed.drops);
-    compare(errors.kerbs, final_map.kerbs, followed.kerbs);
-    compare(errors.sills, final_map.sills, followed.sills);
-    compare(errors.flights, final_map.flights, followed.flights);
-    compare(errors.doors, final_map.doors, followed.doors);
-    return split_by_confirmation(std::move(followed));
+    const eval::FeatureErrors errors = eval::feature_errors(tracked, final_map, {});
+    compare(errors.edges, final_map.edges, tracked.edges);
+    compare(errors.drops, final_map.drops, tracked.drops);
+    compare(errors.kerbs, final_map.kerbs, tracked.kerbs);
+    compare(errors.sills, final_map.sills, tracked.sills);
+    compare(errors.flights, final_map.flights, tracked.flights);
+    compare(errors.doors, final_map.doors, tracked.doors);
+    return split_by_confirmation(std::move(tracked));
 }
 
 std::string features_count_text(const RunFeatures& features) {

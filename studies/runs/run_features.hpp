@@ -18,11 +18,11 @@ struct RunFeatures {
 /// Splits the tracked features and compares them with the features of the final map. Sets
 /// `in_final_map` of each tracked feature. Features that only the final map contains are added to
 /// `unconfirmed`. Features are paired as in eval::feature_errors().
-[[nodiscard]] RunFeatures compare_with_final_map(stairs::TerrainFeatures followed,
+[[nodiscard]] RunFeatures compare_with_final_map(stairs::TerrainFeatures tracked,
                                                  const stairs::TerrainFeatures& final_map);
 
 /// Splits the tracked features without a comparison, for runs whose final map cannot be read.
-[[nodiscard]] RunFeatures split_by_confirmation(stairs::TerrainFeatures followed);
+[[nodiscard]] RunFeatures split_by_confirmation(stairs::TerrainFeatures tracked);
 
 /// "1 flight, 2 drops, ...; 3 edges; 1 drop seen once, not confirmed".
 [[nodiscard]] std::string features_count_text(const RunFeatures& features);

@@ -8,16 +8,16 @@
 #include <nlohmann/json.hpp>
 
 #include "service/gate_process/protocol/json_text.hpp"
-#include "studies/runs/stairs_json.hpp"
 #include "studies/runs/report_parts.hpp"
 #include "studies/runs/run_output.hpp"
+#include "studies/runs/stairs_json.hpp"
 
 namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written, so the same run gives the same bytes.
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 
 constexpr double kDegPerRad = 180.0 / M_PI;
 constexpr int kIndent = 2;
@@ -48,7 +48,7 @@ Json truth_json(const TruthFigures& t) {
                        {"median_abs_error_px", number(d.median_abs_error_px)},
                        {"sigma_at_1_m_m", number(d.sigma_at_1_m_m)},
                        {"sigma_at_2_m_m", number(d.sigma_at_2_m_m)},
-                       {"doubtful_share", number(d.doubtful_share)}};
+                       {"doubtful_share", number(d.outlier_share)}};
     return object;
 }
 
@@ -74,7 +74,7 @@ Json health_json(const RunRecord& record) {
     return {{"OK", counts[0]}, {"DEGRADED", counts[1]}, {"LOST", counts[2]}};
 }
 
-Json arrivals_json(const ArrivalCounts& counts) {
+Json frame_status_json(const FrameStatusCounts& counts) {
     return {{"repeated_frames", counts.repeated_frames},
             {"longest_freeze_frames", counts.longest_freeze_frames},
             {"torn_frames", counts.torn_frames},
@@ -84,21 +84,24 @@ Json arrivals_json(const ArrivalCounts& counts) {
             {"reconnections", counts.reconnections}};
 }
 
-Json trim_json(const std::optional<stereo::PairTrim>& trim) {
-    if (!trim) return nullptr;
-    return {{"roll_rad", number(trim->eye.roll_rad)},
-            {"pitch_rad", number(trim->eye.pitch_rad)},
-            {"focal_share", number(trim->eye.focal_share)},
-            {"sigma", {number(trim->sigma[0]), number(trim->sigma[1]), number(trim->sigma[2])}},
-            {"corners", trim->corners},
-            {"row_error_px", number(trim->row_error_px)},
-            {"row_error_left_px", number(trim->row_error_left_px)}};
+Json self_calibration_json(const std::optional<stereo::RigSelfCalibration>& self_calibration) {
+    if (!self_calibration) return nullptr;
+    return {{"roll_rad", number(self_calibration->camera.roll_rad)},
+            {"pitch_rad", number(self_calibration->camera.pitch_rad)},
+            {"focal_share", number(self_calibration->camera.focal_share)},
+            {"sigma",
+             {number(self_calibration->sigma[0]),
+              number(self_calibration->sigma[1]),
+              number(self_calibration->sigma[2])}},
+            {"corners", self_calibration->corners},
+            {"row_error_px", number(self_calibration->row_error_px)},
+            {"row_error_left_px", number(self_calibration->row_error_left_px)}};
 }
 
 Json place_json(const PlaceRecord& place) {
     Json refusals = Json::object();
-    for (int i = 1; i < places::kRefusals; ++i)  // index 0 is Refusal::none
-        refusals[to_string(static_cast<places::Refusal>(i))] =
+    for (int i = 1; i < place_recognition::kRefusals; ++i)  // index 0 is Refusal::none
+        refusals[to_string(static_cast<place_recognition::Refusal>(i))] =
             place.refusals[static_cast<std::size_t>(i)];
     const std::string& reason = place.left_as_it_was;
     return {{"file", place.file},
@@ -133,10 +136,10 @@ Json run_object(const RunRecord& record,
                    {"tilt_sigma_deg", number(alignment.tilt_sigma_rad * kDegPerRad)},
                    {"ground_height_m",
                     alignment.has_ground ? number(alignment.ground_height_m) : Json(nullptr)},
-                   {"trim", trim_json(pipeline.trim())},
+                   {"trim", self_calibration_json(pipeline.self_calibration())},
                    {"health", health_json(record)},
                    {"counts", counts_json(record.fusion)},
-                   {"arrivals", arrivals_json(record.arrivals)},
+                   {"arrivals", frame_status_json(record.frame_status)},
                    {"camera", camera_json(pipeline.rig())},
                    {"map",
                     {{"known_cells", pipeline.map().known_cells()},

@@ -21,7 +21,7 @@
 #include "studies/runs/stairs_text.hpp"
 #include "studies/runs/terrain_map.hpp"
 #include "surefoot/camera/reproject.hpp"
-#include "surefoot/elevation/region/map_region.hpp"
+#include "surefoot/elevation/region/region_transfer.hpp"
 #include "surefoot/io/clouds/point_cloud.hpp"
 #include "surefoot/io/file.hpp"
 #include "surefoot/io/maps/dem_file.hpp"
@@ -93,7 +93,7 @@ void write_all_layers(const std::string& out,
 /// such frame.
 std::optional<double> nearest_seen_m(const RunRecord& record, const pipeline::Pipeline& pipeline) {
     constexpr double kChance = 0.01;
-    const camera::DepthImage& depth = pipeline.depth();
+    const DepthImage& depth = pipeline.depth();
     const auto full =
         std::find_if(record.frames.rbegin(), record.frames.rend(), [](const FrameReport& frame) {
             return frame.work == Work::full;
@@ -333,16 +333,16 @@ std::string run_summary(const RunRecord& record, const pipeline::Pipeline& pipel
             "ground (mount.wait_for_light_s, mount.wait_for_ground_s, mount.wait_for_search_s)\n",
             record.waited_frames);
     }
-    if (const auto& trim = pipeline.trim()) {
+    if (const auto& self_calibration = pipeline.self_calibration()) {
         text += fmt::format(
             "the right eye is corrected by {:+.3f} deg about the line of sight, {:+.3f} deg up and "
             "down and {:+.3f} % of the focal length: rows differed by {:.2f} px, now {:.2f} "
             "(median); trim.enabled=false leaves the calibration alone\n",
-            trim->eye.roll_rad * 180.0 / std::numbers::pi,
-            trim->eye.pitch_rad * 180.0 / std::numbers::pi,
-            100.0 * trim->eye.focal_share,
-            trim->row_error_px,
-            trim->row_error_left_px);
+            self_calibration->camera.roll_rad * 180.0 / std::numbers::pi,
+            self_calibration->camera.pitch_rad * 180.0 / std::numbers::pi,
+            100.0 * self_calibration->camera.focal_share,
+            self_calibration->row_error_px,
+            self_calibration->row_error_left_px);
     }
     if (!pipeline.features().edges.empty()) {
         text += features_count_text(split_by_confirmation(pipeline.features())) + "\n";

@@ -29,7 +29,7 @@ RunSession::RunSession(pipeline::Pipeline& pipeline,
       source_(source),
       depth_every_(depth_every),
       maps_(maps),
-      eyes_(source.info().path),
+      cameras_(source.info().path),
       truth_(source) {
     record_.source = source.info();
     record_.rig = rig;
@@ -100,10 +100,10 @@ void RunSession::process(const StereoFrame& frame, const AfterFrame& after_frame
     const bool full = frame.index % depth_every_ == 0;
     const FrameReport report = pipeline_.process(frame, full ? Work::full : Work::odometry);
     if (report.work == Work::full) truth_.compare_depth(frame, pipeline_);
-    if (const Status eyes = eyes_.look(pipeline_, report, quiet_); !eyes && !record_.error)
-        record_.error = eyes.error();
+    if (const Status cameras = cameras_.look(pipeline_, report, quiet_); !cameras && !record_.error)
+        record_.error = cameras.error();
     record_.fusion += report.fusion;
-    record_.arrivals += report.arrival;
+    record_.frame_status += report.frame_status;
     record_.frames.push_back(report);
     if (after_frame) after_frame(report);
 }

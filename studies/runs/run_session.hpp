@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "service/console/option_settings.hpp"
-#include "service/live/eyes_check.hpp"
+#include "service/live/camera_order_check.hpp"
 #include "studies/runs/place_session.hpp"
 #include "studies/runs/sim_truth.hpp"
 #include "surefoot/camera/frame_source.hpp"
@@ -22,13 +22,13 @@ struct RunRecord {
     camera::SourceInfo source;
     camera::StereoRig rig;
     std::vector<FrameReport> frames;
-    FusionCounts fusion;     ///< summed over all frames
-    ArrivalCounts arrivals;  ///< summed over all frames
+    FusionCounts fusion;             ///< summed over all frames
+    FrameStatusCounts frame_status;  ///< summed over all frames
     /// Frames skipped before the first of `frames`, see pipeline/start.hpp.
     int waited_frames = 0;
     std::optional<Error> error;  ///< reason why the run ended early
     GreyImage last_left;         ///< last rectified left image, for the report
-    camera::DepthImage last_depth;
+    DepthImage last_depth;
     std::optional<TruthFigures> truth;  ///< simulated sources only
     std::optional<PlaceRecord> place;   ///< `run --place` only
     double wall_s = 0.0;
@@ -68,7 +68,7 @@ class RunSession {
     camera::FrameSource& source_;
     int depth_every_;
     eval::EvalMapsConfig maps_;
-    EyesCheck eyes_;
+    CameraOrderCheck cameras_;
     bool quiet_ = false;
     SimTruth truth_;
     RunRecord record_;

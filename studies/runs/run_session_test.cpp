@@ -138,15 +138,15 @@ TEST(RunSession, FindsEveryRepeatedTornAndFrozenImage) {
         const bool frozen = frame.index >= 19 && frame.index <= 21;
         const int repeated = frozen ? frame.index - 18 : frame.index == 4 || frame.index == 16;
         const bool torn = frame.index == 13;
-        EXPECT_EQ(frame.arrival.repeated, repeated) << "frame " << frame.index;
-        EXPECT_EQ(frame.arrival.torn, torn) << "frame " << frame.index;
+        EXPECT_EQ(frame.frame_status.repeated, repeated) << "frame " << frame.index;
+        EXPECT_EQ(frame.frame_status.torn, torn) << "frame " << frame.index;
         const bool used = repeated == 0 && !torn;
         EXPECT_EQ(frame.motion.health == Health::lost, !used) << "frame " << frame.index;
         EXPECT_EQ(frame.fusion.points > 0, used) << "frame " << frame.index;
     }
-    EXPECT_EQ(record.arrivals.repeated_frames, 5);
-    EXPECT_EQ(record.arrivals.longest_freeze_frames, 3);
-    EXPECT_EQ(record.arrivals.torn_frames, 1);
+    EXPECT_EQ(record.frame_status.repeated_frames, 5);
+    EXPECT_EQ(record.frame_status.longest_freeze_frames, 3);
+    EXPECT_EQ(record.frame_status.torn_frames, 1);
     // Tracking continues from the last good image, so the whole path keeps its length.
     const auto& truth = (*floor)->truth().trajectory;
     const double way_m =

@@ -14,7 +14,7 @@ namespace surefoot::app {
 namespace {
 
 constexpr double kErrorBin_px = 0.01;
-constexpr float kDoubtful = 0.5F;
+constexpr float kOutlier = 0.5F;
 constexpr double kVisibleRange_m = 2.5;
 
 double median_of(const std::vector<std::int64_t>& histogram, std::int64_t total) {
@@ -128,14 +128,14 @@ void SimTruth::compare_depth(const StereoFrame& frame, const pipeline::Pipeline&
     if (depths_.empty() || depths_.front().first != frame.index) return;
     const Image<float> truth_m = seen_by(pipeline.rig(), scene_->rig(), depths_.front().second);
     if (truth_m.empty()) return;
-    const camera::DepthImage& depth = pipeline.depth();
+    const DepthImage& depth = pipeline.depth();
     const double fb_px_m = pipeline.rig().depth_to_disparity_px_m();
     for (std::size_t i = 0; i < truth_m.size(); ++i) {
         const double disparity_px = static_cast<double>(depth.disparity_px.data()[i]);
         const double true_z_m = static_cast<double>(truth_m.data()[i]);
         if (!(disparity_px > 0.0) || !(true_z_m > 0.0)) continue;
-        if (depth.outlier_probability.data()[i] > kDoubtful) {
-            ++doubtful_;
+        if (depth.outlier_probability.data()[i] > kOutlier) {
+            ++outliers_;
             continue;
         }
         const double error_px = std::abs(disparity_px - fb_px_m / true_z_m);
@@ -209,7 +209,7 @@ std::optional<TruthFigures> SimTruth::figures(const pipeline::Pipeline& pipeline
     figures.depth.median_abs_error_px = median_of(error_histogram_, compared_);
     figures.depth.sigma_at_1_m_m = near_.sum_m / static_cast<double>(near_.count);
     figures.depth.sigma_at_2_m_m = far_.sum_m / static_cast<double>(far_.count);
-    figures.depth.doubtful_share = share(doubtful_, doubtful_ + compared_);
+    figures.depth.outlier_share = share(outliers_, outliers_ + compared_);
     return figures;
 }
 

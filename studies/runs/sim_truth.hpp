@@ -21,7 +21,7 @@ struct DepthFigures {
     double median_abs_error_px = 0.0;  ///< error of the disparity
     double sigma_at_1_m_m = 0.0;       ///< mean reported sigma_z at 0.95-1.05 m
     double sigma_at_2_m_m = 0.0;       ///< at 1.9-2.1 m
-    double doubtful_share = 0.0;       ///< pixels with an outlier probability above one half
+    double outlier_share = 0.0;        ///< pixels with an outlier probability above one half
 };
 
 /// Errors of a simulated run. Nothing is aligned before the comparison.
@@ -64,7 +64,7 @@ class SimTruth {
     const sim::SceneSource* scene_ = nullptr;
     std::deque<std::pair<int, Image<float>>> depths_;  ///< frame index, exact depth
     std::int64_t compared_ = 0;
-    std::int64_t doubtful_ = 0;
+    std::int64_t outliers_ = 0;
     std::int64_t within_3_sigma_ = 0;
     std::int64_t within_1_sigma_ = 0;
     RangeMean near_;

@@ -15,8 +15,8 @@
 namespace surefoot::app {
 namespace {
 
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 
 Json classes_json(const stairs::GroundClasses& classes, double resolution_m) {
     const auto counts = stairs::count_classes(classes);
@@ -27,7 +27,7 @@ Json classes_json(const stairs::GroundClasses& classes, double resolution_m) {
     return json;
 }
 
-constexpr wire::JsonLimits kFileLimits{.max_bytes = 64U << 20U};
+constexpr gate_process::JsonLimits kFileLimits{.max_bytes = 64U << 20U};
 
 /// Reads the objects of a list and keeps the first error.
 class ListReader {
@@ -177,7 +177,7 @@ Json kind_json(const eval::KindErrors& errors, const char* height) {
 }  // namespace
 
 Result<ListedFeatures> parse_stairs(std::string_view text, const std::string& file) {
-    const auto all = wire::parse_json(text, kFileLimits);
+    const auto all = gate_process::parse_json(text, kFileLimits);
     if (!all) return input_error(fmt::format("{}: {}", file, all.error().message));
     if (!all->is_object())
         return input_error(fmt::format("{}: holds no JSON object, as stairs.json does", file));
@@ -257,10 +257,10 @@ template <typename Feature>
 void add_marks(const std::vector<Feature>& features, bool gravity_assumed, Json& list) {
     for (std::size_t i = 0; i < features.size(); ++i) {
         add_evidence(features[i], list[i]);
-        const stairs::Followed& followed = features[i].followed;
-        if (followed.in_final_map) {
-            list[i]["looks"] = followed.looks;
-            list[i]["in_final_map"] = *followed.in_final_map;
+        const stairs::Tracked& tracked = features[i].tracked;
+        if (tracked.in_final_map) {
+            list[i]["looks"] = tracked.looks;
+            list[i]["in_final_map"] = *tracked.in_final_map;
         }
         if (gravity_assumed) list[i]["gravity_assumed"] = true;
     }

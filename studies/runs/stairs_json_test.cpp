@@ -151,16 +151,16 @@ TEST(StairsJson, DropsAndKerbsHavePositiveHeights) {
 }
 
 TEST(StairsJson, WhatWasFollowedHasAnIdAndHowOftenAndHowLongAgoItWasSeen) {
-    const stairs::Followed followed{
+    const stairs::Tracked tracked{
         .id = 7, .looks = 12, .last_seen_ns = 1'500'000'000, .seen_now = false};
     stairs::TerrainFeatures features;
     features.time_ns = 4'000'000'000;
-    features.flights.emplace_back().followed = followed;
-    features.drops.emplace_back().followed = followed;
-    features.kerbs.emplace_back().followed = followed;
-    features.sills.emplace_back().followed = followed;
-    features.doors.emplace_back().followed = followed;
-    features.edges.emplace_back().followed = followed;
+    features.flights.emplace_back().tracked = tracked;
+    features.drops.emplace_back().tracked = tracked;
+    features.kerbs.emplace_back().tracked = tracked;
+    features.sills.emplace_back().tracked = tracked;
+    features.doors.emplace_back().tracked = tracked;
+    features.edges.emplace_back().tracked = tracked;
     const std::string json = packed(json_of(features, {}));
     const std::string said = R"("id":7,"looks":12,"last_seen_s":2.5)";
     int times = 0;
@@ -237,24 +237,24 @@ TEST(StairsJson, WhereGravityWasAssumedEachFeatureSaysSo) {
 stairs::LineFeature seen(double x_m, int looks) {
     stairs::LineFeature drop = line(-0.5);
     drop.pose.p_m.x() = x_m;
-    drop.followed = {.id = 3, .looks = looks, .last_seen_ns = 0, .seen_now = true};
+    drop.tracked = {.id = 3, .looks = looks, .last_seen_ns = 0, .seen_now = true};
     return drop;
 }
 
 TEST(RunFeatures, WhatWasSeenOnceIsUnconfirmedAndTheFinalMapIsToldApart) {
-    stairs::TerrainFeatures followed;
-    followed.drops = {seen(1.0, 5), seen(3.0, 4), seen(5.0, 1)};
+    stairs::TerrainFeatures tracked;
+    tracked.drops = {seen(1.0, 5), seen(3.0, 4), seen(5.0, 1)};
     stairs::TerrainFeatures final_map;
     final_map.drops = {seen(1.05, 1), seen(9.0, 1)};
-    for (stairs::LineFeature& drop : final_map.drops) drop.followed = {};
-    const RunFeatures said = compare_with_final_map(followed, final_map);
+    for (stairs::LineFeature& drop : final_map.drops) drop.tracked = {};
+    const RunFeatures said = compare_with_final_map(tracked, final_map);
     ASSERT_EQ(said.confirmed.drops.size(), 2U);
-    EXPECT_EQ(said.confirmed.drops[0].followed.in_final_map, true);
-    EXPECT_EQ(said.confirmed.drops[1].followed.in_final_map, false) << "remembered, not in the map";
+    EXPECT_EQ(said.confirmed.drops[0].tracked.in_final_map, true);
+    EXPECT_EQ(said.confirmed.drops[1].tracked.in_final_map, false) << "remembered, not in the map";
     ASSERT_EQ(said.unconfirmed.drops.size(), 2U) << "no drop is left out";
-    EXPECT_EQ(said.unconfirmed.drops[0].followed.in_final_map, false);
-    EXPECT_EQ(said.unconfirmed.drops[1].followed.looks, 0) << "the final map alone has it";
-    EXPECT_EQ(said.unconfirmed.drops[1].followed.in_final_map, true);
+    EXPECT_EQ(said.unconfirmed.drops[0].tracked.in_final_map, false);
+    EXPECT_EQ(said.unconfirmed.drops[1].tracked.looks, 0) << "the final map alone has it";
+    EXPECT_EQ(said.unconfirmed.drops[1].tracked.in_final_map, true);
     const std::string json = packed(
         stairs_json(said.confirmed, {}, {.resolution_m = 0.025, .unconfirmed = &said.unconfirmed}));
     EXPECT_NE(json.find(R"("unconfirmed":{"flights":[],"drops":[{)"), std::string::npos) << json;

@@ -228,7 +228,7 @@ Vector2d nearest_to_border(const TerrainMap& map) {
     return nearest_m;
 }
 
-Status stand_as_told(const std::string& from, TerrainMap& map) {
+Status stand_as_given(const std::string& from, TerrainMap& map) {
     const auto stance = parse_two_numbers("--from", from, "x,y (m)");
     if (!stance) return stance.error();
     map.stance_m = {(*stance)[0], (*stance)[1]};
@@ -292,7 +292,7 @@ Result<TerrainMap> load_terrain(const TerrainRequest& request) {
     if (auto status = check_cells(request.map, *map); !status) return status.error();
     if (request.from.empty()) {
         stand_somewhere(*map);
-    } else if (auto status = stand_as_told(request.from, *map); !status) {
+    } else if (auto status = stand_as_given(request.from, *map); !status) {
         return status.error();
     }
     return map;

@@ -7,7 +7,7 @@
 namespace surefoot::app {
 namespace {
 
-using wire::Json;
+using gate_process::Json;
 
 constexpr int kIndent = 2;
 

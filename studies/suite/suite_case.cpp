@@ -153,7 +153,7 @@ sim::CarriedBy carried_by(const std::string& name) {
 }
 
 std::string SuiteCase::name() const {
-    return fmt::format("{}/{}/seed {}/noise {:g}", scene, carrier, seed, noise);
+    return fmt::format("{}/{}/seed {}/noise {:g}", scene, motion_model, seed, noise);
 }
 
 const std::vector<SuiteFigure>& suite_figures() {
@@ -227,7 +227,7 @@ Result<SuiteResult> run_suite_case(const SuiteCase& which, const SuiteConditions
     SourceRequest request{
         which.scene, "", which.rate_hz, which.max_frames, which.seed, settings.sim};
     request.sim.noise *= which.noise;
-    request.sim.carrier = carried_by(which.carrier);
+    request.sim.motion_model = carried_by(which.motion_model);
     Serial serial;
     auto source = open_simulation(request, serial);
     if (!source) return source.error();

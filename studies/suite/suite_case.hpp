@@ -19,10 +19,10 @@ namespace surefoot::app {
 struct SuiteCase {
     std::string scene;
     std::uint64_t seed = 1;
-    double noise = 1.0;               ///< factor on the camera's noise amplitudes
-    int max_frames = 0;               ///< 0 = the whole path
-    double rate_hz = 10.0;            ///< frame rate of the camera
-    std::string carrier = "trolley";  ///< motion model, one of sim::kCarrierNames
+    double noise = 1.0;                    ///< factor on the camera's noise amplitudes
+    int max_frames = 0;                    ///< 0 = the whole path
+    double rate_hz = 10.0;                 ///< frame rate of the camera
+    std::string motion_model = "trolley";  ///< motion model, one of sim::kMotionModelNames
 
     /// Unique name of the case, such as "demo_stairs/trolley/seed 3/noise 2".
     [[nodiscard]] std::string name() const;

@@ -37,7 +37,7 @@ void DepthOrder::after_frame(const FrameReport& frame,
     const bool straight = seen_ >= static_cast<int>(pipeline::Pipeline::kAlignmentFrames);
     const bool wanted = straight && seen_ % kEvery == 0 && frame.work == Work::full;
     const Image<float>& truth_m = source.last_depth_m();
-    const camera::DepthImage& depth = pipeline.depth();
+    const DepthImage& depth = pipeline.depth();
     // In a raw image the true depth belongs to other pixels than the rectified disparity.
     if (!wanted || !source.rig().rectified || depth.disparity_px.size() != truth_m.size()) return;
     const auto errors_px = disparity_errors(truth_m, pipeline);

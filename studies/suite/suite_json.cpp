@@ -14,8 +14,8 @@ namespace surefoot::app {
 namespace {
 
 // Keys keep the order in which they are written, so the same run gives the same bytes.
-using wire::Json;
-using wire::number;
+using gate_process::Json;
+using gate_process::number;
 constexpr int kIndent = 2;
 
 Json suite_figures_json(const std::vector<double>& figures) {
@@ -79,7 +79,7 @@ std::string suite_json(std::span<const SuiteResult> results) {
                          {"seed", result.which.seed},
                          {"noise", result.which.noise},
                          {"max_frames", result.which.max_frames},
-                         {"carrier", result.which.carrier},
+                         {"carrier", result.which.motion_model},
                          {"rate_hz", result.which.rate_hz},
                          {"figures", suite_figures_json(result.figures)},
                          {"steps", suite_steps_json(result.steps)},
@@ -88,7 +88,7 @@ std::string suite_json(std::span<const SuiteResult> results) {
     const auto rows_json = [](const std::vector<SuiteRow>& rows, bool by_scene) {
         Json list = Json::array();
         for (const SuiteRow& row : rows) {
-            Json object = {{"carrier", row.carrier},
+            Json object = {{"carrier", row.motion_model},
                            {"noise", row.noise},
                            {"cases", row.cases},
                            {"median", suite_figures_json(row.median)},
@@ -100,7 +100,7 @@ std::string suite_json(std::span<const SuiteResult> results) {
     };
     return Json{{"cases", cases},
                 {"scenes", rows_json(summarise(results), true)},
-                {"carriers", rows_json(summarise_by_carrier(results), false)},
+                {"carriers", rows_json(summarise_by_motion_model(results), false)},
                 {"bins", suite_bins_json(pooled_by_noise(results))}}
         .dump(kIndent);
 }

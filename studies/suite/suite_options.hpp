@@ -16,7 +16,7 @@ struct EvalSuiteOptions {
     std::string camera = "zed";       ///< one of sim::kCameraProfileNames
     std::vector<std::string> scenes;  ///< empty = all
     /// Motion models: names of sim::kCarriedByNames.
-    std::vector<std::string> carriers = {"scene"};
+    std::vector<std::string> motion_models = {"scene"};
     int seeds = 1;                           ///< variants of each scene
     std::vector<double> noise = {1.0, 2.0};  ///< factors on the noise amplitude of the camera
     bool quick = false;

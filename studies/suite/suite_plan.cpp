@@ -41,7 +41,7 @@ constexpr double kWalkRate_hz = 4.0;
 /// A scene with its motion model.
 struct SuiteScene {
     std::string name;
-    sim::Carrier carrier = sim::Carrier::trolley;
+    sim::MotionModel motion_model = sim::MotionModel::trolley;
     double duration_s = 0.0;  ///< of the first seed; paths of other seeds differ
 };
 
@@ -82,12 +82,12 @@ Status check_name(const std::string& name) {
 
 /// Adds the scene once for each motion model that can follow its path. Two names for the same
 /// motion model count once.
-Status add_carriers(const std::string& name,
-                    const EvalSuiteOptions& options,
-                    std::vector<SuiteScene>& scenes) {
-    std::set<sim::Carrier> carriers;
-    for (const std::string& word : options.carriers) {
-        const auto asked = sim::carrier_of(carried_by(word));
+Status add_motion_models(const std::string& name,
+                         const EvalSuiteOptions& options,
+                         std::vector<SuiteScene>& scenes) {
+    std::set<sim::MotionModel> motion_models;
+    for (const std::string& word : options.motion_models) {
+        const auto asked = sim::motion_model_of(carried_by(word));
         const auto scene = sim::make_scene(name, options.common.seed, asked);
         if (!scene && asked && sim::make_scene(name, options.common.seed)) {
             log_warning(
@@ -95,8 +95,8 @@ Status add_carriers(const std::string& name,
             continue;
         }
         if (!scene) return usage_error(scene.error().message);
-        if (carriers.insert(scene->script.carrier).second)
-            scenes.push_back({name, scene->script.carrier, scene->motion->duration_s()});
+        if (motion_models.insert(scene->script.motion_model).second)
+            scenes.push_back({name, scene->script.motion_model, scene->motion->duration_s()});
     }
     return {};
 }
@@ -108,7 +108,7 @@ Result<std::vector<SuiteScene>> open_scenes(const EvalSuiteOptions& options) {
         if (auto status = check_name(name); !status) return status.error();
         if (!names.insert(name).second)
             return usage_error(fmt::format("--scenes: {} is named twice", name));
-        if (auto status = add_carriers(name, options, scenes); !status) return status.error();
+        if (auto status = add_motion_models(name, options, scenes); !status) return status.error();
     }
     if (scenes.empty()) return usage_error("--carriers: none of them can go any of these ways");
     return scenes;
@@ -129,16 +129,16 @@ double quick_time_s(const SuiteScene& scene) {
     for (const QuickScene& quick : kQuickScenes) {
         if (scene.name == quick.name) return std::min(quick.time_s, scene.duration_s);
     }
-    return scene.carrier == sim::Carrier::rex ? kQuickWalk_s : kQuickTime_s;
+    return scene.motion_model == sim::MotionModel::rex ? kQuickWalk_s : kQuickTime_s;
 }
 
 PlannedCase planned(const SuiteScene& scene,
                     const EvalSuiteOptions& options,
                     const Settings& settings) {
-    const bool walks = scene.carrier == sim::Carrier::rex;
+    const bool walks = scene.motion_model == sim::MotionModel::rex;
     PlannedCase plan;
     plan.which.scene = scene.name;
-    plan.which.carrier = sim::kCarrierNames[static_cast<std::size_t>(scene.carrier)];
+    plan.which.motion_model = sim::kMotionModelNames[static_cast<std::size_t>(scene.motion_model)];
     plan.which.rate_hz =
         walks ? std::min(kWalkRate_hz, settings.sim.rate_hz) : settings.sim.rate_hz;
     const auto frames_in = [&](double time_s) {

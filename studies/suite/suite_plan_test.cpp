@@ -36,7 +36,7 @@ TEST(SuitePlan, SeedBySeedAndTheLongScenesFirst) {
                                         "floor/trolley/seed 6/noise 1",
                                         "floor/trolley/seed 6/noise 2"}));
     EXPECT_GT((*plan)[0].frames, (*plan)[2].frames);
-    EXPECT_EQ((*plan)[0].which.carrier, "trolley");
+    EXPECT_EQ((*plan)[0].which.motion_model, "trolley");
     EXPECT_EQ((*plan)[0].which.max_frames, 0);
 }
 
@@ -53,7 +53,7 @@ TEST(SuitePlan, EverySceneOnceByDefaultAndAFewShortOnesWhenQuick) {
     std::int64_t walks = 0;
     for (const PlannedCase& planned : *quick) {
         EXPECT_GT(planned.which.max_frames, 0);
-        walks += planned.which.carrier == "rex" ? 1 : 0;
+        walks += planned.which.motion_model == "rex" ? 1 : 0;
     }
     EXPECT_GE(walks, 1);
     options.frames = 3;
@@ -64,13 +64,13 @@ TEST(SuitePlan, EverySceneOnceByDefaultAndAFewShortOnesWhenQuick) {
 
 TEST(SuitePlan, EveryCarrierThatCanGoTheSceneSWayGoesItOnce) {
     EvalSuiteOptions options = choice({"floor", "walk_floor"}, 1, {1.0});
-    options.carriers = {"scene", "rex", "hand"};
+    options.motion_models = {"scene", "rex", "hand"};
     const auto plan = plan_suite(options, {});
     ASSERT_TRUE(plan.ok());
     std::set<std::string> names;
     for (const PlannedCase& planned : *plan) {
         names.insert(planned.which.name());
-        EXPECT_EQ(planned.which.rate_hz, planned.which.carrier == "rex" ? 4.0 : 10.0);
+        EXPECT_EQ(planned.which.rate_hz, planned.which.motion_model == "rex" ? 4.0 : 10.0);
     }
     EXPECT_EQ(names,
               (std::set<std::string>{"floor/trolley/seed 5/noise 1",
@@ -82,7 +82,7 @@ TEST(SuitePlan, EveryCarrierThatCanGoTheSceneSWayGoesItOnce) {
 
 TEST(SuitePlan, AWayThatACarrierCannotGoIsLeftOut) {
     EvalSuiteOptions options = choice({"walk_descend_backwards", "floor"}, 1, {1.0});
-    options.carriers = {"trolley"};  // no trolley goes down a step
+    options.motion_models = {"trolley"};  // no trolley goes down a step
     const auto plan = plan_suite(options, {});
     ASSERT_TRUE(plan.ok()) << plan.error().message;
     for (const PlannedCase& planned : *plan) EXPECT_EQ(planned.which.scene, "floor");

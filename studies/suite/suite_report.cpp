@@ -123,7 +123,7 @@ void add_key_figures(std::span<const SuiteResult> results, eval::ReportContent& 
     }
 }
 
-eval::ReportTable carrier_table(std::span<const SuiteResult> results) {
+eval::ReportTable motion_model_table(std::span<const SuiteResult> results) {
     static constexpr const char* kShown[] = {"healthy",
                                              "ate_rmse_m",
                                              "height_median_m",
@@ -148,8 +148,9 @@ eval::ReportTable carrier_table(std::span<const SuiteResult> results) {
         columns.push_back(static_cast<std::size_t>(at - all.begin()));
         table.header.push_back(heading_of(*at));
     }
-    for (const SuiteRow& row : summarise_by_carrier(results)) {
-        std::vector<std::string> words = {row.carrier, times(row.noise), std::to_string(row.cases)};
+    for (const SuiteRow& row : summarise_by_motion_model(results)) {
+        std::vector<std::string> words = {
+            row.motion_model, times(row.noise), std::to_string(row.cases)};
         for (const std::size_t column : columns) words.push_back(median_and_worst(row, column));
         table.rows.push_back(std::move(words));
     }
@@ -267,7 +268,7 @@ std::vector<eval::ReportTable> group_tables(std::span<const SuiteRow> rows) {
             table.wide = true;
             for (const SuiteRow& row : rows) {
                 table.rows.push_back(
-                    {row.scene, row.carrier, times(row.noise), std::to_string(row.cases)});
+                    {row.scene, row.motion_model, times(row.noise), std::to_string(row.cases)});
             }
             tables.push_back(std::move(table));
         }
@@ -286,7 +287,7 @@ eval::ReportTable case_table(std::span<const SuiteResult> results) {
     table.header = {"case", "carrier"};
     for (const SuiteFigure& figure : suite_figures()) table.header.push_back(heading_of(figure));
     for (const SuiteResult& result : results) {
-        std::vector<std::string> row = {result.which.name(), result.which.carrier};
+        std::vector<std::string> row = {result.which.name(), result.which.motion_model};
         for (std::size_t i = 0; i < suite_figures().size(); ++i)
             row.push_back(shown(suite_figures()[i].kind, result.figures[i]));
         table.rows.push_back(std::move(row));
@@ -353,7 +354,7 @@ std::string suite_html(std::span<const SuiteResult> results, const std::string& 
     content.details_title = "Figures";
     for (eval::ReportBars& bars : refusal_bars(results)) content.bars.push_back(std::move(bars));
     content.bars.push_back(step_bars(results));
-    content.tables.push_back(carrier_table(results));
+    content.tables.push_back(motion_model_table(results));
     content.tables.push_back(refusal_table(results));
     for (eval::ReportTable& table : group_tables(rows)) content.tables.push_back(std::move(table));
     for (const BinView& view : kBinViews) content.tables.push_back(bin_table(levels, view));

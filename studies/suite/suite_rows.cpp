@@ -33,13 +33,13 @@ std::vector<SuiteRow> grouped(std::span<const SuiteResult> results, bool by_scen
         const SuiteCase& c = result.which;
         const std::string scene = by_scene ? c.scene : "";
         const auto at = std::find_if(rows.begin(), rows.end(), [&](const SuiteRow& row) {
-            return row.scene == scene && row.carrier == c.carrier && row.noise == c.noise;
+            return row.scene == scene && row.motion_model == c.motion_model && row.noise == c.noise;
         });
         const auto place = static_cast<std::size_t>(at - rows.begin());
         if (at == rows.end()) {
             SuiteRow row;
             row.scene = scene;
-            row.carrier = c.carrier;
+            row.motion_model = c.motion_model;
             row.noise = c.noise;
             rows.push_back(std::move(row));
             members.emplace_back();
@@ -55,7 +55,7 @@ std::vector<SuiteRow> grouped(std::span<const SuiteResult> results, bool by_scen
 std::vector<SuiteResult> sorted(std::vector<SuiteResult> results) {
     const auto place_of = [](const SuiteResult& result) {
         const SuiteCase& c = result.which;
-        return std::tie(c.scene, c.carrier, c.noise, c.seed, c.max_frames);
+        return std::tie(c.scene, c.motion_model, c.noise, c.seed, c.max_frames);
     };
     std::sort(results.begin(), results.end(), [&](const SuiteResult& a, const SuiteResult& b) {
         return place_of(a) < place_of(b);
@@ -67,10 +67,10 @@ std::vector<SuiteRow> summarise(std::span<const SuiteResult> results) {
     return grouped(results, true);
 }
 
-std::vector<SuiteRow> summarise_by_carrier(std::span<const SuiteResult> results) {
+std::vector<SuiteRow> summarise_by_motion_model(std::span<const SuiteResult> results) {
     std::vector<SuiteRow> rows = grouped(results, false);
     std::sort(rows.begin(), rows.end(), [](const SuiteRow& a, const SuiteRow& b) {
-        return std::tie(a.carrier, a.noise) < std::tie(b.carrier, b.noise);
+        return std::tie(a.motion_model, a.noise) < std::tie(b.motion_model, b.noise);
     });
     return rows;
 }

@@ -16,7 +16,7 @@ namespace surefoot::app {
 /// Median and worst case of every figure over the cases of one group at one noise level.
 struct SuiteRow {
     std::string scene;  ///< empty in rows of a motion model
-    std::string carrier;
+    std::string motion_model;
     double noise = 1.0;
     int cases = 0;
     std::vector<double> median;  ///< one per suite_figures(); NaN = measured in no case
@@ -25,7 +25,7 @@ struct SuiteRow {
 /// One row per scene and noise level, in the order of their first appearance.
 [[nodiscard]] std::vector<SuiteRow> summarise(std::span<const SuiteResult> results);
 /// One row per motion model and noise level, over all scenes.
-[[nodiscard]] std::vector<SuiteRow> summarise_by_carrier(std::span<const SuiteResult> results);
+[[nodiscard]] std::vector<SuiteRow> summarise_by_motion_model(std::span<const SuiteResult> results);
 
 /// Map errors of all cases at one noise level, summed.
 struct NoiseBins {

@@ -37,7 +37,7 @@ double level_radius_m(const sim::Scene& scene, const Eigen::Vector3d& body_m, do
     return radius_m;
 }
 
-bool inside(const gate::VouchedArea& area, const gate::Query& query) {
+bool inside(const gate::AttestedArea& area, const gate::Query& query) {
     const auto dx = static_cast<double>(query.x_tenth_mm - area.center_x_tenth_mm);
     const auto dy = static_cast<double>(query.y_tenth_mm - area.center_y_tenth_mm);
     return std::hypot(dx, dy) <= area.radius_tenth_mm;
@@ -83,15 +83,15 @@ bool StepQuestions::due(std::int64_t frame_ns) const {
 gate::Query StepQuestions::query_of(const sim::StepEvent& step, const grid::MapSnapshot& map) {
     gate::Query query = gate::query_at_body(static_cast<std::uint8_t>(step.command), map);
     if (steps_.empty()) {
-        const double limit_m = kTenthMm_m * machine_.limits.vouch_radius_tenth_mm;
+        const double limit_m = kTenthMm_m * machine_.limits.attestation_radius_tenth_mm;
         const double radius_m =
             level_radius_m(truth_.scene, step.T_world_before.translation_m, limit_m);
         std::vector<std::string> assumed;
-        const auto area = vouch_for_start(machine_, query, map, radius_m, assumed);
-        if (area && radius_m > 0.0) vouched_ = *area;
+        const auto area = attest_start(machine_, query, map, radius_m, assumed);
+        if (area && radius_m > 0.0) attested_ = *area;
     }
-    if (vouched_ && !inside(*vouched_, query)) vouched_.reset();
-    if (vouched_) query.vouched = *vouched_;
+    if (attested_ && !inside(*attested_, query)) attested_.reset();
+    if (attested_) query.attested = *attested_;
     return query;
 }
 

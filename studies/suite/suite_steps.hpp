@@ -54,7 +54,7 @@ class StepQuestions {
 
     const sim::SceneTruth& truth_;
     const Machine& machine_;
-    std::optional<gate::VouchedArea> vouched_;
+    std::optional<gate::AttestedArea> attested_;
     std::vector<SuiteStep> steps_;
 };
 

@@ -20,7 +20,7 @@ constexpr double kRate_hz = 3.7;  // steps begin between frames
 sim::SceneTruth walk_on(const std::string& scene, double distance_m) {
     sim::SceneTruth truth;
     truth.scene = sim::make_scene(scene, 1).value().scene;
-    const auto way = sim::make_motion(sim::approach_script(sim::Carrier::rex, distance_m), 1);
+    const auto way = sim::make_motion(sim::approach_script(sim::MotionModel::rex, distance_m), 1);
     EXPECT_TRUE(way.ok()) << way.error().message;
     truth.start_ns = kNanosecondsPerSecond;
     truth.steps = way->steps;

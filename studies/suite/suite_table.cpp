@@ -23,7 +23,7 @@ constexpr std::size_t kTallyColumns = kKeyColumns + 4;
 using Words = std::vector<std::string_view>;
 
 std::string key_of(const SuiteCase& c) {
-    return fmt::format("{},{},{},{},{}", c.scene, c.carrier, c.seed, c.noise, c.max_frames);
+    return fmt::format("{},{},{},{},{}", c.scene, c.motion_model, c.seed, c.noise, c.max_frames);
 }
 
 /// A column must not be empty, because the reader merges adjacent separators.
@@ -104,7 +104,7 @@ std::optional<SuiteCase> parse_key(const Words& words) {
     if (!seed || !noise || !frames) return std::nullopt;
     SuiteCase which;
     which.scene = words[0];
-    which.carrier = words[1];
+    which.motion_model = words[1];
     which.seed = static_cast<std::uint64_t>(*seed);
     which.noise = *noise;
     which.max_frames = static_cast<int>(*frames);

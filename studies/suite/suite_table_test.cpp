@@ -163,7 +163,7 @@ TEST(SuiteRows, SummariseBySceneNoiseAndCarrier) {
         for (std::uint64_t seed = 3; seed >= 1; --seed)
             results.push_back(result_of("floor", seed, noise, noise * static_cast<double>(seed)));
     }
-    results[0].which.carrier = "hand";
+    results[0].which.motion_model = "hand";
     results = sorted(std::move(results));
     EXPECT_EQ(results[1].which.name(), "floor/rex/seed 2/noise 1");
     const auto rows = summarise(results);
@@ -176,11 +176,11 @@ TEST(SuiteRows, SummariseBySceneNoiseAndCarrier) {
         EXPECT_EQ(rows[1].worst[i], suite_figures()[i].lower_is_better ? 6.0 : 2.0);
         EXPECT_TRUE(std::isnan(rows[2].worst[i]));
     }
-    const auto carriers = summarise_by_carrier(results);
-    ASSERT_EQ(carriers.size(), 3U);
-    EXPECT_EQ(carriers[0].carrier, "hand");
-    EXPECT_EQ(carriers[2].carrier, "rex");
-    EXPECT_EQ(carriers[2].cases, 3);
+    const auto motion_models = summarise_by_motion_model(results);
+    ASSERT_EQ(motion_models.size(), 3U);
+    EXPECT_EQ(motion_models[0].motion_model, "hand");
+    EXPECT_EQ(motion_models[2].motion_model, "rex");
+    EXPECT_EQ(motion_models[2].cases, 3);
 
     const auto levels = pooled_by_noise(results);
     ASSERT_EQ(levels.size(), 2U);

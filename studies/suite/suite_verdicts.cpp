@@ -67,8 +67,7 @@ gate::Verdict ask(const Machine& machine,
                                          std::cos(stance.yaw_odom_rad),
                                          std::sin(stance.yaw_odom_rad));
     std::vector<std::string> assumed;
-    if (const auto area = vouch_for_start(machine, query, map, -1.0, assumed))
-        query.vouched = *area;
+    if (const auto area = attest_start(machine, query, map, -1.0, assumed)) query.attested = *area;
     return decide_offline(machine, query, map);
 }
 

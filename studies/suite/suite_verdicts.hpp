@@ -73,7 +73,7 @@ struct AroundAnswers {
 
 /// Asks the gate about every movement of the machine at its present pose, and at reachable poses
 /// around it: 0.2 m apart, within `reach_m`, with the present yaw. An operator attestation covers
-/// unmeasured ground under the standing feet, as in vouch_for_start().
+/// unmeasured ground under the standing feet, as in attest_start().
 [[nodiscard]] AroundAnswers compare_verdicts(const sim::SceneTruth& truth,
                                              const Pose& T_world_body_true,
                                              const Machine& machine,

@@ -95,12 +95,12 @@ std::vector<ViewFit> view_fits(const BoardBundle& bundle,
                                std::span<const std::size_t> kept,
                                std::span<const Sight> all,
                                const RobustFit& fit) {
-    std::vector<EyeFit> eyes = eye_fits(bundle, all, fit.outliers, 0);
+    std::vector<CameraFit> cameras = camera_fits(bundle, all, fit.outliers, 0);
     const std::vector<double> rms = view_rms_px(bundle);
     std::vector<ViewFit> views;
     for (std::size_t v = 0; v < kept.size(); ++v)
         if (!std::isnan(rms[v]))
-            views.push_back({kept[v], bundle.T_left_board[v], std::move(eyes[v])});
+            views.push_back({kept[v], bundle.T_left_board[v], std::move(cameras[v])});
     return views;
 }
 

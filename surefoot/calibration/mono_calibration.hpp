@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "surefoot/calibration/boards/board.hpp"
-#include "surefoot/calibration/bundle/eye_fit.hpp"
+#include "surefoot/calibration/bundle/camera_fit.hpp"
 #include "surefoot/calibration/bundle/robust_bundle.hpp"
 #include "surefoot/calibration/bundle/view_selection.hpp"
 #include "surefoot/calibration/lenses/lens.hpp"
@@ -32,7 +32,7 @@ struct CalibrationOptions {
 struct ViewFit {
     std::size_t index = 0;  ///< into the views given
     Pose T_camera_board;
-    EyeFit eye;
+    CameraFit camera;
 };
 
 struct MonoCalibration {

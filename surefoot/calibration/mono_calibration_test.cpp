@@ -156,7 +156,7 @@ TEST(MonoCalibration, FewViewsDoNotLookBetterThanTheyAre) {
         ASSERT_TRUE(result) << "seed " << seed << ": " << result.error().message;
         double points = 0.0;
         for (const ViewFit& view : result->views)
-            points += static_cast<double>(view.eye.ids.size() - view.eye.outliers.size());
+            points += static_cast<double>(view.camera.ids.size() - view.camera.outliers.size());
         const double own = 2.0 * points - 9.0 - 6.0 * static_cast<double>(result->views.size());
         square += own * result->sigma_px * result->sigma_px;
         freedom += own;
@@ -196,7 +196,7 @@ TEST(MonoCalibration, LeavesOutWhatDoesNotBelong) {
         EXPECT_FALSE(view.reason.empty()) << view.index;
     }
     EXPECT_EQ(rejected, (std::vector<std::size_t>{4, 6, 7, 8, 9, 10, 12}));
-    EXPECT_EQ(result->views[2].eye.outliers, std::vector<int>{views.left[2].ids[5]});
+    EXPECT_EQ(result->views[2].camera.outliers, std::vector<int>{views.left[2].ids[5]});
     EXPECT_NEAR(result->sigma_px, kNoise_px, 0.01);
 }
 

@@ -35,7 +35,7 @@ struct Pair {
 /// What the corners' noise, as each camera alone shows it, makes of a pair's rms together: over all
 /// points of both images, whatever each camera alone made of single ones. Alone two poses of the
 /// board followed the noise, together one does: of a board of eight points a seventh of it.
-double alone_rms(const EyeFit& left, const EyeFit& right) {
+double alone_rms(const CameraFit& left, const CameraFit& right) {
     constexpr double kPose = 6.0;
     double square = 0.0;
     for (const Eigen::Vector2d& r : left.residuals_px) square += r.squaredNorm();
@@ -56,7 +56,7 @@ std::vector<Pair> pairs_of(const MonoCalibration& left, const MonoCalibration& r
                          &l,
                          &*r,
                          l.T_camera_board * r->T_camera_board.inverse(),
-                         alone_rms(l.eye, r->eye)});
+                         alone_rms(l.camera, r->camera)});
     }
     return pairs;
 }
@@ -91,17 +91,17 @@ std::vector<BoardView> chosen(std::span<const BoardView> views,
 
 /// One camera from the views of the pairs; its indices become those of the pairs, and views that it
 /// leaves out take their pair along.
-Result<MonoCalibration> calibrate_eye(const char* name,
-                                      const Board& board,
-                                      std::span<const BoardView> views,
-                                      std::span<const std::size_t> indices,
-                                      ImageSize size,
-                                      LensKind kind,
-                                      const StereoOptions& options,
-                                      std::vector<RejectedView>& rejected) {
-    CalibrationOptions eye = options.eye;
-    eye.selection = {0.0, indices.size()};  // pairs are selected, not single views
-    auto result = calibrate_mono(board, chosen(views, indices), size, kind, eye);
+Result<MonoCalibration> calibrate_camera(const char* name,
+                                         const Board& board,
+                                         std::span<const BoardView> views,
+                                         std::span<const std::size_t> indices,
+                                         ImageSize size,
+                                         LensKind kind,
+                                         const StereoOptions& options,
+                                         std::vector<RejectedView>& rejected) {
+    CalibrationOptions this_camera = options.camera;
+    this_camera.selection = {0.0, indices.size()};  // pairs are selected, not single views
+    auto result = calibrate_mono(board, chosen(views, indices), size, kind, this_camera);
     if (!result) {
         std::string text = fmt::format("{} camera: {}", name, result.error().message);
         if (!rejected.empty()) text += fmt::format(" ({})", summary_of(rejected, views.size()));
@@ -144,12 +144,12 @@ void drop_gross(std::vector<Pair>& pairs, const Pose& middle, std::vector<Reject
 
 void add_sights(std::span<const Eigen::Vector3d> points,
                 const BoardView& view,
-                int eye,
+                int this_camera,
                 int index,
                 std::vector<Sight>& sights) {
     for (std::size_t i = 0; i < view.ids.size(); ++i) {
         const auto id = static_cast<std::size_t>(view.ids[i]);
-        sights.push_back({eye, index, view.ids[i], points[id], view.pixels[i]});
+        sights.push_back({this_camera, index, view.ids[i], points[id], view.pixels[i]});
     }
 }
 
@@ -183,7 +183,7 @@ RobustLimits limits_of(std::span<const Pair> pairs, const StereoOptions& options
     std::vector<double> alone;
     for (const Pair& pair : pairs) alone.push_back(pair.alone_rms_px);
     const double usual_px = median(alone);
-    RobustLimits limits = options.eye.limits;
+    RobustLimits limits = options.camera.limits;
     limits.least_views = options.least_pairs;
     for (const double rms : alone)
         limits.view_limits_px.push_back(options.pair_factor * std::max(rms, usual_px));
@@ -214,8 +214,8 @@ void describe(const BoardBundle& bundle,
               std::span<const Pair> pairs,
               const RobustFit& fit,
               StereoCalibration& result) {
-    std::vector<EyeFit> left = eye_fits(bundle, all, fit.outliers, 0);
-    std::vector<EyeFit> right = eye_fits(bundle, all, fit.outliers, 1);
+    std::vector<CameraFit> left = camera_fits(bundle, all, fit.outliers, 0);
+    std::vector<CameraFit> right = camera_fits(bundle, all, fit.outliers, 1);
     const std::vector<double> rms = view_rms_px(bundle);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (std::isnan(rms[i])) continue;
@@ -234,7 +234,7 @@ void describe(const BoardBundle& bundle,
 /// solution sees them, and as far beside it as their centres of gravity were found.
 BoardView used_points(const Board& board,
                       const BoardView& view,
-                      const EyeFit& fit,
+                      const CameraFit& fit,
                       const camera::Camera& camera,
                       const Pose& T_camera_board) {
     const std::vector<Eigen::Vector3d> points = board.points_m();
@@ -320,12 +320,12 @@ Result<StereoCalibration> calibrate_stereo(const Board& board,
     result.kind = kind;
     if (const auto found = board.problem()) return usage_error(*found);
     const std::vector<std::size_t> usable =
-        usable_pairs(board, left_views, right_views, size, options.eye, result.rejected);
+        usable_pairs(board, left_views, right_views, size, options.camera, result.rejected);
     const auto left =
-        calibrate_eye("left", board, left_views, usable, size, kind, options, result.rejected);
+        calibrate_camera("left", board, left_views, usable, size, kind, options, result.rejected);
     if (!left) return left.error();
     const auto right =
-        calibrate_eye("right", board, right_views, usable, size, kind, options, result.rejected);
+        calibrate_camera("right", board, right_views, usable, size, kind, options, result.rejected);
     if (!right) return right.error();
     const auto pairs =
         agreeing_pairs(*left, *right, left_views.size(), options.least_pairs, result.rejected);

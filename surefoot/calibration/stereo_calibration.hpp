@@ -11,7 +11,7 @@
 namespace surefoot::calibration {
 
 struct StereoOptions {
-    CalibrationOptions eye;
+    CalibrationOptions camera;
     /// A pair whose rms in the joint solution exceeds this many times what its two images show
     /// alone was not taken at one moment (or the rig bent): most of its error is not noise.
     double pair_factor = 1.5;
@@ -22,8 +22,8 @@ struct StereoOptions {
 struct PairFit {
     std::size_t index = 0;  ///< into the views given
     Pose T_left_board;
-    EyeFit left;
-    EyeFit right;
+    CameraFit left;
+    CameraFit right;
     double rms_px = 0.0;  ///< both images
 };
 

@@ -60,8 +60,9 @@ double depth_error_m(const camera::StereoRig& truth, const camera::StereoRig& fo
     config.max_view_deg = 105.0;
     const camera::Rectification plan = camera::plan_rectification(found, config, 0.08);
     const Eigen::Vector3d p_left = plan.left.R_rectified_raw.transpose() * Eigen::Vector3d::UnitZ();
-    const auto on_plane = [](const camera::RectifiedEye& eye, const Eigen::Vector2d& raw) {
-        const Eigen::Vector3d p = eye.R_rectified_raw * *camera::unproject(eye.camera.model, raw);
+    const auto on_plane = [](const camera::RectifiedCamera& camera, const Eigen::Vector2d& raw) {
+        const Eigen::Vector3d p =
+            camera.R_rectified_raw * *camera::unproject(camera.camera.model, raw);
         return p.x() / p.z();
     };
     const auto left = camera::project(truth.left.model, p_left);

@@ -28,7 +28,7 @@ struct View {
 
 /// Turns of Bouguet's method: each camera takes half of the relative rotation, then both turn so
 /// that x runs along the baseline and z stays as near as possible to the mean viewing direction.
-void turn_eyes(const Pose& T_left_right, RectifiedEye& left, RectifiedEye& right) {
+void turn_cameras(const Pose& T_left_right, RectifiedCamera& left, RectifiedCamera& right) {
     const Eigen::Vector3d half = 0.5 * log_so3(T_left_right.rotation);
     const Eigen::Matrix3d R_middle_left = exp_so3(-half).toRotationMatrix();
     const Eigen::Vector3d x = (R_middle_left * T_left_right.translation_m).normalized();
@@ -41,20 +41,20 @@ void turn_eyes(const Pose& T_left_right, RectifiedEye& left, RectifiedEye& right
 }
 
 /// Direction of a raw pixel on the plane z = 1; nothing beyond 90 deg.
-std::optional<Eigen::Vector2d> on_plane(const RectifiedEye& eye, double u, double v) {
-    const auto ray = unproject(eye.camera.model, Eigen::Vector2d(u, v));
+std::optional<Eigen::Vector2d> on_plane(const RectifiedCamera& this_camera, double u, double v) {
+    const auto ray = unproject(this_camera.camera.model, Eigen::Vector2d(u, v));
     if (!ray) return std::nullopt;
-    const Eigen::Vector3d p = eye.R_rectified_raw * *ray;
+    const Eigen::Vector3d p = this_camera.R_rectified_raw * *ray;
     if (!(p.z() > 1e-6)) return std::nullopt;
     return Eigen::Vector2d(p.x() / p.z(), p.y() / p.z());
 }
 
 /// Shrinks `view` to the largest upright rectangle inside the border of the eye's image. Border
 /// points outside the view so far do not limit it (corners of a fisheye look sideways).
-void shrink_to(const RectifiedEye& eye, View& view) {
+void shrink_to(const RectifiedCamera& this_camera, View& view) {
     const View limit = view;
-    const double right = eye.camera.width - 1;
-    const double bottom = eye.camera.height - 1;
+    const double right = this_camera.camera.width - 1;
+    const double bottom = this_camera.camera.height - 1;
     for (int i = 0; i <= kBorderSamples; ++i) {
         const double s = static_cast<double>(i) / kBorderSamples;
         const auto inside_y = [&](const auto& p) {
@@ -63,16 +63,16 @@ void shrink_to(const RectifiedEye& eye, View& view) {
         const auto inside_x = [&](const auto& p) {
             return p && p->x() > limit.x_min && p->x() < limit.x_max;
         };
-        if (const auto p = on_plane(eye, 0.0, s * bottom); inside_y(p)) {
+        if (const auto p = on_plane(this_camera, 0.0, s * bottom); inside_y(p)) {
             view.x_min = std::max(view.x_min, p->x());
         }
-        if (const auto p = on_plane(eye, right, s * bottom); inside_y(p)) {
+        if (const auto p = on_plane(this_camera, right, s * bottom); inside_y(p)) {
             view.x_max = std::min(view.x_max, p->x());
         }
-        if (const auto p = on_plane(eye, s * right, 0.0); inside_x(p)) {
+        if (const auto p = on_plane(this_camera, s * right, 0.0); inside_x(p)) {
             view.y_min = std::max(view.y_min, p->y());
         }
-        if (const auto p = on_plane(eye, s * right, bottom); inside_x(p)) {
+        if (const auto p = on_plane(this_camera, s * right, bottom); inside_x(p)) {
             view.y_max = std::min(view.y_max, p->y());
         }
     }
@@ -87,19 +87,21 @@ void set_intrinsics(const View& view, RectifiedRig& rig) {
     rig.cy_px = 0.5 * (rig.height - 1) - focal_px * 0.5 * (view.y_min + view.y_max);
 }
 
-bool has_source(const RectifiedRig& rig, const RectifiedEye& eye, double u, double v) {
+bool has_source(const RectifiedRig& rig, const RectifiedCamera& this_camera, double u, double v) {
     const Eigen::Vector3d ray((u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0);
-    const auto raw = raw_from_ray(eye, ray);
-    return raw && raw->x() >= 0.0 && raw->y() >= 0.0 && raw->x() <= eye.camera.width - 1 &&
-           raw->y() <= eye.camera.height - 1;
+    const auto raw = raw_from_ray(this_camera, ray);
+    return raw && raw->x() >= 0.0 && raw->y() >= 0.0 && raw->x() <= this_camera.camera.width - 1 &&
+           raw->y() <= this_camera.camera.height - 1;
 }
 
-bool border_has_source(const RectifiedRig& rig, const RectifiedEye& eye) {
+bool border_has_source(const RectifiedRig& rig, const RectifiedCamera& this_camera) {
     for (int u = 0; u < rig.width; ++u) {
-        if (!has_source(rig, eye, u, 0) || !has_source(rig, eye, u, rig.height - 1)) return false;
+        if (!has_source(rig, this_camera, u, 0) || !has_source(rig, this_camera, u, rig.height - 1))
+            return false;
     }
     for (int v = 0; v < rig.height; ++v) {
-        if (!has_source(rig, eye, 0, v) || !has_source(rig, eye, rig.width - 1, v)) return false;
+        if (!has_source(rig, this_camera, 0, v) || !has_source(rig, this_camera, rig.width - 1, v))
+            return false;
     }
     return true;
 }
@@ -210,7 +212,7 @@ Rectification plan_rectification(const StereoRig& rig,
     plan.rig.height = config.rectified_height_px > 0 ? config.rectified_height_px : rig.left.height;
     plan.rig.baseline_m = rig.right ? rig.T_left_right.translation_m.norm() : virtual_baseline_m;
     if (rig.right)
-        plan.right = RectifiedEye{.camera = *rig.right, .offset_x_m = plan.rig.baseline_m};
+        plan.right = RectifiedCamera{.camera = *rig.right, .offset_x_m = plan.rig.baseline_m};
 
     const auto* pinhole = std::get_if<PinholeRadTan>(&rig.left.model);
     const bool ideal_rgbd = !rig.right && pinhole != nullptr && !pinhole->has_distortion();
@@ -219,7 +221,7 @@ Rectification plan_rectification(const StereoRig& rig,
     if (plan.identity) {
         keep_intrinsics(*pinhole, plan.rig);
     } else {
-        if (plan.right) turn_eyes(rig.T_left_right, plan.left, *plan.right);
+        if (plan.right) turn_cameras(rig.T_left_right, plan.left, *plan.right);
         fill_image(plan, config.max_view_deg);
         if (config.rectified_focal_px > 0.0) zoom_to(config.rectified_focal_px, plan.rig);
     }
@@ -229,8 +231,9 @@ Rectification plan_rectification(const StereoRig& rig,
     return plan;
 }
 
-std::optional<Eigen::Vector2d> raw_from_ray(const RectifiedEye& eye, const Eigen::Vector3d& ray) {
-    return project(eye.camera.model, eye.R_rectified_raw.transpose() * ray);
+std::optional<Eigen::Vector2d> raw_from_ray(const RectifiedCamera& this_camera,
+                                            const Eigen::Vector3d& ray) {
+    return project(this_camera.camera.model, this_camera.R_rectified_raw.transpose() * ray);
 }
 
 }  // namespace surefoot::camera

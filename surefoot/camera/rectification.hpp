@@ -25,7 +25,7 @@ struct RectificationConfig {
 };
 
 /// One real camera behind a rectified image.
-struct RectifiedEye {
+struct RectifiedCamera {
     Camera camera;
     Eigen::Matrix3d R_rectified_raw = Eigen::Matrix3d::Identity();  ///< optical frames
     double offset_x_m = 0.0;  ///< its centre on the x axis of the rectified left frame
@@ -34,8 +34,8 @@ struct RectifiedEye {
 /// The geometry of a rectification: how to turn each eye, and the ideal rig that results.
 struct Rectification {
     RectifiedRig rig;
-    RectifiedEye left;
-    std::optional<RectifiedEye> right;
+    RectifiedCamera left;
+    std::optional<RectifiedCamera> right;
     bool identity = false;  ///< raw and rectified images are the same
 };
 
@@ -47,7 +47,7 @@ struct Rectification {
                                                double virtual_baseline_m);
 
 /// Raw pixel that shows the direction `ray` of the rectified frame; nothing outside the lens.
-[[nodiscard]] std::optional<Eigen::Vector2d> raw_from_ray(const RectifiedEye& eye,
+[[nodiscard]] std::optional<Eigen::Vector2d> raw_from_ray(const RectifiedCamera& this_camera,
                                                           const Eigen::Vector3d& ray);
 
 }  // namespace surefoot::camera

@@ -16,13 +16,13 @@ Eigen::Vector3d ray_of(const RectifiedRig& rig, int u, int v) {
     return {(u - rig.cx_px) / rig.fx_px, (v - rig.cy_px) / rig.fy_px, 1.0};
 }
 
-RemapTable make_table(const RectifiedRig& rig, const RectifiedEye& eye) {
-    RemapTable table(rig.width, rig.height, eye.camera.width, eye.camera.height);
-    const double u_max = eye.camera.width - 1;
-    const double v_max = eye.camera.height - 1;
+RemapTable make_table(const RectifiedRig& rig, const RectifiedCamera& this_camera) {
+    RemapTable table(rig.width, rig.height, this_camera.camera.width, this_camera.camera.height);
+    const double u_max = this_camera.camera.width - 1;
+    const double v_max = this_camera.camera.height - 1;
     for (int v = 0; v < rig.height; ++v) {
         for (int u = 0; u < rig.width; ++u) {
-            const auto raw = raw_from_ray(eye, ray_of(rig, u, v));
+            const auto raw = raw_from_ray(this_camera, ray_of(rig, u, v));
             const bool seen =
                 raw && raw->x() >= 0.0 && raw->y() >= 0.0 && raw->x() <= u_max && raw->y() <= v_max;
             if (seen) table.set(u, v, static_cast<float>(raw->x()), static_cast<float>(raw->y()));
@@ -39,7 +39,7 @@ struct Rectifier::Impl {
     RemapTable right;
     double readout_s = 0.0;
 
-    [[nodiscard]] const RectifiedEye& eye(Side side) const {
+    [[nodiscard]] const RectifiedCamera& camera(Side side) const {
         SUREFOOT_ASSERT(side == Side::left || plan.right.has_value());
         return side == Side::left ? plan.left : *plan.right;
     }
@@ -120,10 +120,10 @@ void Rectifier::rectify_depth(const Image<float>& raw_depth_m, Image<float>& out
 std::optional<Eigen::Vector2d> Rectifier::rectified_from_raw(Side side,
                                                              const Eigen::Vector2d& raw) const {
     if (impl_->plan.identity) return raw;
-    const RectifiedEye& eye = impl_->eye(side);
-    const auto ray = unproject(eye.camera.model, raw);
+    const RectifiedCamera& this_camera = impl_->camera(side);
+    const auto ray = unproject(this_camera.camera.model, raw);
     if (!ray) return std::nullopt;
-    const Eigen::Vector3d p = eye.R_rectified_raw * *ray;
+    const Eigen::Vector3d p = this_camera.R_rectified_raw * *ray;
     if (!(p.z() > 0.0)) return std::nullopt;
     const RectifiedRig& rig = impl_->plan.rig;
     return Eigen::Vector2d(rig.fx_px * p.x() / p.z() + rig.cx_px,
@@ -132,8 +132,8 @@ std::optional<Eigen::Vector2d> Rectifier::rectified_from_raw(Side side,
 
 std::optional<Eigen::Vector2d> Rectifier::raw_from_point(Side side,
                                                          const Eigen::Vector3d& p_camera) const {
-    const RectifiedEye& eye = impl_->eye(side);
-    return raw_from_ray(eye, p_camera - Eigen::Vector3d(eye.offset_x_m, 0.0, 0.0));
+    const RectifiedCamera& this_camera = impl_->camera(side);
+    return raw_from_ray(this_camera, p_camera - Eigen::Vector3d(this_camera.offset_x_m, 0.0, 0.0));
 }
 
 }  // namespace surefoot::camera

@@ -30,16 +30,16 @@ Rectifier make(const StereoRig& rig) {
 }
 
 /// Image of the plane n . p = 1 (rig's raw left frame) with a smooth pattern, seen by one raw eye.
-GreyImage render_plane(const Camera& camera, const Pose& T_left_eye, const Eigen::Vector3d& n) {
+GreyImage render_plane(const Camera& camera, const Pose& T_left_camera, const Eigen::Vector3d& n) {
     GreyImage image(camera.width, camera.height, 0);
     for (int v = 0; v < camera.height; ++v) {
         for (int u = 0; u < camera.width; ++u) {
             const auto ray = unproject(camera.model, Eigen::Vector2d(u, v));
             if (!ray) continue;
-            const Eigen::Vector3d direction = T_left_eye.rotation * *ray;
-            const double range_m = (1.0 - n.dot(T_left_eye.translation_m)) / n.dot(direction);
+            const Eigen::Vector3d direction = T_left_camera.rotation * *ray;
+            const double range_m = (1.0 - n.dot(T_left_camera.translation_m)) / n.dot(direction);
             if (!(range_m > 0.0)) continue;
-            const Eigen::Vector3d p = T_left_eye.translation_m + range_m * direction;
+            const Eigen::Vector3d p = T_left_camera.translation_m + range_m * direction;
             const double checker = std::sin(24.0 * p.x()) * std::sin(24.0 * p.y());
             image.at(u, v) = static_cast<std::uint8_t>(std::lround(128.0 + 100.0 * checker));
         }

@@ -35,7 +35,7 @@ enum class HealthReason : std::uint8_t {
     time_gap,              ///< the source skipped frames, or its stamps do not grow
     repeated_image,        ///< the same image once more: nothing was seen at this instant
     torn_image,            ///< parts of two images in one
-    eyes_exchanged,        ///< each eye shows what the other one should
+    cameras_swapped,       ///< each eye shows what the other one should
     imu_disagreement,      ///< the IMU contradicts what is seen; vision goes on alone
     machine_disagreement,  ///< what the machine says of its motion contradicts what is seen
     beyond_machine,        ///< faster than the machine can move: not believed
@@ -67,7 +67,7 @@ struct MachineMotion {
 
 /// How a frame came in, apart from what it shows: the evidence for a stopped, frozen or torn camera
 /// (hazards H1 and H2 of the gate). Counts are since the previous frame of the source.
-struct FrameArrival {
+struct FrameStatus {
     int dropped = 0;      ///< lost before they reached us, by the device's own frame counter
     int skipped = 0;      ///< given up because newer ones were waiting already
     int damaged = 0;      ///< too short, or impossible to decode
@@ -94,7 +94,7 @@ struct StereoFrame {
     std::optional<DepthImage> known_depth;  ///< of the rig, whose images are rectified
     /// Its odom begins at the source's first base_link.
     std::optional<MotionEstimate> known_motion;
-    FrameArrival arrival;
+    FrameStatus frame_status;
 };
 
 }  // namespace surefoot

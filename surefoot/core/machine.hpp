@@ -90,9 +90,9 @@ struct GateLimits {
     std::int32_t tread_overhang_tenth_mm = 0;
     std::int64_t frame_age_ns = 0;
     std::int64_t pose_age_ns = 0;
-    std::int64_t future_tolerance_ns = 0;    ///< stamps later than now by more are refused
-    std::int64_t verdict_ttl_ns = 0;         ///< life of an OK
-    std::int32_t vouch_radius_tenth_mm = 0;  ///< largest area that an operator may vouch for
+    std::int64_t future_tolerance_ns = 0;          ///< stamps later than now by more are refused
+    std::int64_t verdict_ttl_ns = 0;               ///< life of an OK
+    std::int32_t attestation_radius_tenth_mm = 0;  ///< largest area that an operator may vouch for
 };
 
 /// A walking machine as the step gate sees it: an immutable value, read from a machine file.
@@ -189,7 +189,7 @@ constexpr const char* problem_of(const GateLimits& limits) noexcept {
         !within(limits.verdict_ttl_ns, std::int64_t{1}, kSecondNs) ||
         !within(limits.future_tolerance_ns, std::int64_t{0}, kSecondNs / 10))
         return "a time limit is outside its range";
-    if (!within(limits.vouch_radius_tenth_mm, 0, 20'000))
+    if (!within(limits.attestation_radius_tenth_mm, 0, 20'000))
         return "the vouched radius is outside 0-2 m";
     return nullptr;
 }

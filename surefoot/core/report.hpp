@@ -33,8 +33,8 @@ struct FusionCounts {
     FusionCounts& operator+=(const FusionCounts& other) noexcept;
 };
 
-/// How the frames of a run came in; see FrameArrival.
-struct ArrivalCounts {
+/// How the frames of a run came in; see FrameStatus.
+struct FrameStatusCounts {
     std::int64_t repeated_frames = 0;        ///< their image had been there before
     std::int64_t longest_freeze_frames = 0;  ///< most of these in a row
     std::int64_t torn_frames = 0;
@@ -42,7 +42,7 @@ struct ArrivalCounts {
     std::int64_t skipped_frames = 0;
     std::int64_t damaged_frames = 0;
     std::int64_t reconnections = 0;
-    ArrivalCounts& operator+=(const FrameArrival& frame) noexcept;
+    FrameStatusCounts& operator+=(const FrameStatus& frame) noexcept;
 };
 
 /// The ground plane as seen in one frame, in the frame named by its producer.
@@ -59,7 +59,7 @@ struct FrameReport {
     std::int64_t time_ns = 0;
     int index = 0;
     Work work = Work::odometry;
-    FrameArrival arrival;
+    FrameStatus frame_status;
     CameraState camera = CameraState::unknown;  ///< what the arrivals up to this one say
     /// Of a repeated or torn frame: the last pose again, lost, with the covariance of unseen
     /// motion.

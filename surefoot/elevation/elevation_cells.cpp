@@ -20,8 +20,8 @@ constexpr int kOverheadSure = 4;
 constexpr int kOverheadMost = 8;
 
 /// Weight of a new look in confidence and density ratio, and the confidence in a first look.
-constexpr float kNewLook = 0.25F;
-constexpr float kFirstLook = 0.5F;
+constexpr float kNewObservation = 0.25F;
+constexpr float kFirstObservation = 0.5F;
 /// Evidence that a surface is gone, per frame, for one that every look showed.
 constexpr int kGone = 16;
 
@@ -83,8 +83,8 @@ ElevationCells::Memory ElevationCells::memory_of_row(int iy) noexcept {
 }
 
 void ElevationCells::update(std::size_t cell,
-                            const Seen& seen,
-                            const Look& look,
+                            const CellObservation& seen,
+                            const FrameObservation& look,
                             FusionCounts& counts) {
     const CellMeasurement& measured = seen.measured;
     ++counts.cells_measured;
@@ -108,7 +108,7 @@ void ElevationCells::update(std::size_t cell,
         return;
     }
     ++counts.cells_inflated;
-    layers_.confidence.data()[cell] *= 1.0F - kNewLook;
+    layers_.confidence.data()[cell] *= 1.0F - kNewObservation;
     const auto hangs = static_cast<float>(config_.min_overhead_m);
     if (result.outcome == FusionOutcome::replaced) {
         const float before_m = bottom_m(cell);
@@ -188,7 +188,7 @@ void ElevationCells::recall(std::size_t cell, const grid::MapRegion& region, std
     layers_.highest_m.data()[cell] = region.highest_m.data()[from];
     layers_.lowest_m.data()[cell] = region.lowest_m.data()[from];
     const float confidence = region.confidence.data()[from];
-    set_confidence(cell, confidence >= 0.0F && confidence <= 1.0F ? confidence : kFirstLook);
+    set_confidence(cell, confidence >= 0.0F && confidence <= 1.0F ? confidence : kFirstObservation);
     layers_.density_ratio.data()[cell] = region.density_ratio.data()[from];
     layers_.free_above_m.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
@@ -276,7 +276,9 @@ bool ElevationCells::is_same_scan(std::int64_t since_seen_ns) const {
     return duration_s > 0.0 && since_seen_ns <= ns_from_seconds(duration_s);
 }
 
-void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look) {
+void ElevationCells::start(std::size_t cell,
+                           const CellObservation& seen,
+                           const FrameObservation& look) {
     const CellMeasurement& measured = seen.measured;
     const auto floor_m2 = static_cast<float>(config_.fusion.min_height_var_m2);
     layers_.height_m.data()[cell] = measured.z_m;
@@ -286,7 +288,7 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
     layers_.horizontal_drift_m.data()[cell] = 0.0F;
     layers_.highest_m.data()[cell] = measured.highest_m;
     layers_.lowest_m.data()[cell] = measured.lowest_m;
-    set_confidence(cell, kFirstLook);
+    set_confidence(cell, kFirstObservation);
     layers_.density_ratio.data()[cell] = seen.density_ratio;
     layers_.free_above_m.data()[cell] = kNan;
     settled_var_m2_.data()[cell] = layers_.height_var_m2.data()[cell];
@@ -301,8 +303,8 @@ void ElevationCells::start(std::size_t cell, const Seen& seen, const Look& look)
 
 void ElevationCells::agree(std::size_t cell,
                            const Height& fused,
-                           const Seen& seen,
-                           const Look& look) {
+                           const CellObservation& seen,
+                           const FrameObservation& look) {
     const CellMeasurement& measured = seen.measured;
     if (look.views.is_new_since(viewpoint_.data()[cell])) {
         layers_.height_m.data()[cell] = static_cast<float>(fused.z_m);
@@ -321,7 +323,7 @@ void ElevationCells::agree(std::size_t cell,
     highest_m = std::max(highest_m, measured.highest_m);
     lowest_m = std::min(lowest_m, measured.lowest_m);
     const float confidence = layers_.confidence.data()[cell];
-    set_confidence(cell, confidence + kNewLook * (1.0F - confidence));
+    set_confidence(cell, confidence + kNewObservation * (1.0F - confidence));
     remember_density(cell, seen.density_ratio);
     bottom_m_.data()[cell] = std::min(bottom_m_.data()[cell], seen.bottom_m);
     seen_through_.data()[cell] = 0;
@@ -343,10 +345,13 @@ void ElevationCells::set_confidence(std::size_t cell, float confidence) {
 void ElevationCells::remember_density(std::size_t cell, float ratio) {
     float& remembered = layers_.density_ratio.data()[cell];
     if (std::isnan(ratio)) return;
-    remembered = std::isnan(remembered) ? ratio : remembered + kNewLook * (ratio - remembered);
+    remembered =
+        std::isnan(remembered) ? ratio : remembered + kNewObservation * (ratio - remembered);
 }
 
-void ElevationCells::repeat(std::size_t cell, const CellMeasurement& measured, const Look& look) {
+void ElevationCells::repeat(std::size_t cell,
+                            const CellMeasurement& measured,
+                            const FrameObservation& look) {
     // The cell and the measurement share an unknown part of their errors. Covariance intersection
     // (Julier and Uhlmann 1997) in one dimension: keep whichever is surer, gain nothing.
     float& var_m2 = layers_.height_var_m2.data()[cell];

@@ -15,14 +15,14 @@
 namespace surefoot::elevation {
 
 /// What the looks of one frame share.
-struct Look {
+struct FrameObservation {
     const ViewpointHistory& views;
     ViewpointHistory::Id view = ViewpointHistory::kNever;  ///< where it was taken from
     std::int64_t time_ns = 0;
 };
 
 /// What one frame says about one cell.
-struct Seen {
+struct CellObservation {
     CellMeasurement measured;
     float density_ratio = 0.0F;  ///< see ElevationLayers; NaN = not known
     /// Where what has the height begins: a face that is seen from the side reaches down to its
@@ -59,7 +59,10 @@ class ElevationCells {
     void lift(std::size_t cell, double offset_m, double var_m2);
 
     /// Fuses a measurement; its height and variance are finite.
-    void update(std::size_t cell, const Seen& seen, const Look& look, FusionCounts& counts);
+    void update(std::size_t cell,
+                const CellObservation& seen,
+                const FrameObservation& look,
+                FusionCounts& counts);
     /// The height of the cell is clearly above a line of sight over it.
     [[nodiscard]] bool is_above(std::size_t cell, float line_z_m) const;
     /// A line of sight passes through the surface of the cell: often enough, without a look that
@@ -97,9 +100,12 @@ class ElevationCells {
     void for_each_layer_of_known(const F& f);
 
     [[nodiscard]] bool is_same_scan(std::int64_t since_seen_ns) const;
-    void start(std::size_t cell, const Seen& seen, const Look& look);
-    void agree(std::size_t cell, const Height& fused, const Seen& seen, const Look& look);
-    void repeat(std::size_t cell, const CellMeasurement& measured, const Look& look);
+    void start(std::size_t cell, const CellObservation& seen, const FrameObservation& look);
+    void agree(std::size_t cell,
+               const Height& fused,
+               const CellObservation& seen,
+               const FrameObservation& look);
+    void repeat(std::size_t cell, const CellMeasurement& measured, const FrameObservation& look);
     void set_confidence(std::size_t cell, float confidence);
     void remember_density(std::size_t cell, float ratio);
     /// In the height of a cell, should it turn out to hang over ground.

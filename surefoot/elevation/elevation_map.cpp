@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "surefoot/elevation/cell_row_blocks.hpp"
 #include "surefoot/elevation/fusion/reduce_cells.hpp"
-#include "surefoot/elevation/region/map_region.hpp"
-#include "surefoot/elevation/row_blocks.hpp"
+#include "surefoot/elevation/region/region_transfer.hpp"
 #include "surefoot/elevation/sampling/depth_points.hpp"
 
 namespace surefoot::elevation {
@@ -82,7 +82,7 @@ void ElevationMap::inflate(const MotionNoise& noise, const Eigen::Vector3d& body
 
 FusionCounts ElevationMap::add(const camera::RectifiedRig& rig,
                                const Pose& T_odom_body,
-                               const camera::DepthImage& depth,
+                               const DepthImage& depth,
                                std::int64_t time_ns,
                                Executor& executor) {
     FusionCounts counts;
@@ -183,7 +183,7 @@ void ElevationMap::fuse_samples(const Pose& T_odom_body,
     struct Job {
         ElevationMap& map;
         const ExpectedPoints* expected = nullptr;
-        Look look;
+        FrameObservation look;
     } job{*this, expected, {views_, views_.look_from(T_odom_body), time_ns}};
     // One reference, so that std::function needs no memory for it.
     executor.parallel_for(rows.count(),
@@ -252,7 +252,9 @@ CellMeasurement* ElevationMap::measurements_of_row(int iy) {
     return measured_.data() + static_cast<std::ptrdiff_t>(row) * geometry().nx;
 }
 
-void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const Look& look) {
+void ElevationMap::fuse_block(int block,
+                              const ExpectedPoints* expected,
+                              const FrameObservation& look) {
     const int nx = geometry().nx;
     const RowBlocks rows(geometry());
     FusionCounts& counts = block_counts_[static_cast<std::size_t>(block)];
@@ -272,7 +274,7 @@ void ElevationMap::fuse_block(int block, const ExpectedPoints* expected, const L
                     cells_.see_over(cell, std::max(lowest_z_m_, not_above_m));
                 continue;
             }
-            Seen seen{measured[ix], kNan, measured[ix].z_m};
+            CellObservation seen{measured[ix], kNan, measured[ix].z_m};
             if (expected != nullptr) {
                 const auto points = static_cast<float>(begin[ix + 1] - begin[ix]);
                 const float level = expected->at(ix, iy, measured[ix].z_m);

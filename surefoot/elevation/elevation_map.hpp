@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/report.hpp"
@@ -20,8 +20,8 @@
 #include "surefoot/elevation/sampling/depth_samples.hpp"
 #include "surefoot/elevation/sampling/expected_points.hpp"
 #include "surefoot/elevation/sampling/prefilter.hpp"
-#include "surefoot/elevation/visibility/sight_check.hpp"
 #include "surefoot/elevation/visibility/viewpoint_history.hpp"
+#include "surefoot/elevation/visibility/visibility_cleanup.hpp"
 #include "surefoot/grid/map_region.hpp"
 #include "surefoot/grid/moving_window.hpp"
 
@@ -48,7 +48,7 @@ class ElevationMap {
     /// most.
     FusionCounts add(const camera::RectifiedRig& rig,
                      const Pose& T_odom_body,
-                     const camera::DepthImage& depth,
+                     const DepthImage& depth,
                      std::int64_t time_ns,
                      Executor& executor = serial());
     /// Fuses a cloud in the same way. Points that are not finite are not counted.
@@ -100,7 +100,7 @@ class ElevationMap {
     void reduce_row(int iy, CellMeasurement* measured) const;
     /// Where a row is reduced to: its own place where heights are aligned, else its block's.
     CellMeasurement* measurements_of_row(int iy);
-    void fuse_block(int block, const ExpectedPoints* expected, const Look& look);
+    void fuse_block(int block, const ExpectedPoints* expected, const FrameObservation& look);
 
     ElevationConfig config_;
     grid::MovingWindow window_;
@@ -113,7 +113,7 @@ class ElevationMap {
     CellGroups groups_;
     /// A row of cells per block; all cells where heights are aligned.
     std::vector<CellMeasurement> measured_;
-    SightCheck sight_;
+    VisibilityCleanup sight_;
     float lowest_z_m_ = 0.0F;                 ///< of this frame: the lower height cut in odom
     std::vector<FusionCounts> block_counts_;  ///< per block
     HeightResiduals residuals_;

@@ -344,7 +344,7 @@ class Overhead : public ::testing::Test {
     /// At a patch of ground, and at one where the lines of sight through the patch at `through_m`
     /// end.
     void look(double z_m, std::optional<double> through_m = {}) {
-        const Pose T_odom_body = body_at(0.1 * looks_ - 0.5, 0.0);
+        const Pose T_odom_body = body_at(0.1 * observations_ - 0.5, 0.0);
         const Eigen::Vector3d& camera_m = T_odom_body.translation_m;
         map_.follow(T_odom_body, 1e-9 * Matrix6::Identity());
         auto points = flat_patch(T_odom_body, 1.0, 0.0, z_m);
@@ -355,13 +355,13 @@ class Overhead : public ::testing::Test {
                 for (const MeasuredPoint& p : flat_patch(T_odom_body, x_m + 0.1 * i, 0.0, 0.0))
                     points.push_back(p);
         }
-        map_.add_points(points, Pose{}, T_odom_body, (looks_ + 1) * kFrame_ns);
-        ++looks_;
+        map_.add_points(points, Pose{}, T_odom_body, (observations_ + 1) * kFrame_ns);
+        ++observations_;
     }
     [[nodiscard]] float clearance() const { return at(map_, map_.layers().clearance_m, 1.0, 0.0); }
 
     ElevationMap map_{exact_config()};
-    int looks_ = 0;
+    int observations_ = 0;
 };
 
 TEST_F(Overhead, TwoSightingsOfATableTopBoundTheClearance) {
@@ -407,7 +407,7 @@ TEST_F(Overhead, WhatTheHeightWasStaysAboveTheGroundThatReplacesIt) {
     look(0.7);
     look(0.7);
     while (!(height_at(map_, 1.0, 0.0) < 0.5F)) {  // also while it is unknown
-        ASSERT_LT(looks_, 40);
+        ASSERT_LT(observations_, 40);
         look(0.0);
     }
     EXPECT_NEAR(clearance(), 0.7F, 0.005F);
@@ -418,7 +418,7 @@ TEST_F(Overhead, WhatTheHeightWasStaysAboveTheGroundThatReplacesIt) {
 TEST_F(Overhead, WhatOneLookAloneShowedHangsOverNothing) {
     look(0.7);
     while (!(height_at(map_, 1.0, 0.0) < 0.5F)) {
-        ASSERT_LT(looks_, 40);
+        ASSERT_LT(observations_, 40);
         look(0.0);
     }
     EXPECT_TRUE(std::isnan(clearance())) << "it may have been a wrong match";

@@ -160,11 +160,11 @@ constexpr auto kGroundFaults = std::to_array<Fault>({
              s.map.height_tenth_mm[i] = -limits.drop_tenth_mm - 1;
              s.map.source[i] = grid::EvidenceSource::unknown;
          });
-         s.query.vouched = {limits.vouch_radius_tenth_mm > 0,
-                            s.query.x_tenth_mm,
-                            s.query.y_tenth_mm,
-                            limits.vouch_radius_tenth_mm,
-                            0};
+         s.query.attested = {limits.attestation_radius_tenth_mm > 0,
+                             s.query.x_tenth_mm,
+                             s.query.y_tenth_mm,
+                             limits.attestation_radius_tenth_mm,
+                             0};
      }},
     {Reason::not_resolvable,
      [](const Setting& s) {

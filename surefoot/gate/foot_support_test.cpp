@@ -416,9 +416,9 @@ TEST(FootSupport, ground_that_is_not_known_or_not_joined_carries_no_foot) {
     on.map->component[at] = 1;
     on.map->source[at] = grid::EvidenceSource::unknown;
     EXPECT_EQ(on.reasons(), ReasonSet(Reason::unknown_cells));
-    on.query.vouched = {true, 0, 0, 10'000, 0};
+    on.query.attested = {true, 0, 0, 10'000, 0};
     EXPECT_TRUE(on.reasons().empty()) << "vouched ground is of no surface";
-    on.query.vouched.active = false;
+    on.query.attested.active = false;
     on.query.x_tenth_mm = 28'000;
     EXPECT_EQ(on.reasons(), ReasonSet(Reason::outside_map));
 }

@@ -49,13 +49,14 @@ void check_numbers(const Query& query, const GateLimits& limits, Findings& findi
     const bool stance = query.stance_source == StanceHeight::map ||
                         (query.stance_source == StanceHeight::given &&
                          within(query.stance_height_tenth_mm, kHighestTenthMm));
-    const VouchedArea& area = query.vouched;
-    const bool vouched = !area.active || (within(area.center_x_tenth_mm, kFarthestTenthMm) &&
-                                          within(area.center_y_tenth_mm, kFarthestTenthMm) &&
-                                          area.radius_tenth_mm > 0 &&
-                                          area.radius_tenth_mm <= limits.vouch_radius_tenth_mm &&
-                                          within(area.height_tenth_mm, kHighestTenthMm));
-    if (!(pose && stance && vouched)) findings.deny(Reason::bad_number);
+    const AttestedArea& area = query.attested;
+    const bool attested =
+        !area.active ||
+        (within(area.center_x_tenth_mm, kFarthestTenthMm) &&
+         within(area.center_y_tenth_mm, kFarthestTenthMm) && area.radius_tenth_mm > 0 &&
+         area.radius_tenth_mm <= limits.attestation_radius_tenth_mm &&
+         within(area.height_tenth_mm, kHighestTenthMm));
+    if (!(pose && stance && attested)) findings.deny(Reason::bad_number);
 }
 
 /// Both ends of the age: too old, and from the future. Unsigned differences cannot overflow.

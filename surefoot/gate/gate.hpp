@@ -19,7 +19,7 @@ enum class StanceHeight : std::uint8_t {
 /// flat ground at `height`. Measured cells keep what was measured: a word never covers an obstacle.
 /// It holds only while base_link is inside; the caller forgets it for good after leaving, logs it
 /// and shows it. Off by default.
-struct VouchedArea {
+struct AttestedArea {
     bool active = false;
     std::int64_t center_x_tenth_mm = 0;  ///< odom
     std::int64_t center_y_tenth_mm = 0;
@@ -36,7 +36,7 @@ struct Query {
     double sin_yaw = 0.0;
     StanceHeight stance_source = StanceHeight::map;
     std::int32_t stance_height_tenth_mm = 0;  ///< odom z, for StanceHeight::given
-    VouchedArea vouched;
+    AttestedArea attested;
     /// Who asks, and which question of theirs this is: returned in the verdict, which answers no
     /// other question.
     std::uint64_t connection = 0;

@@ -45,17 +45,17 @@ TEST(GateBounds, places_are_within_100_km_and_heights_within_1_km) {
         {"x of the vouched area",
          1'000'000'000,
          [](Query& q, std::int64_t v) {
-             q.vouched = {true, v, 0, 100, 0};
+             q.attested = {true, v, 0, 100, 0};
          }},
         {"y of the vouched area",
          1'000'000'000,
          [](Query& q, std::int64_t v) {
-             q.vouched = {true, 0, v, 100, 0};
+             q.attested = {true, 0, v, 100, 0};
          }},
         {"height of the vouched area",
          10'000'000,
          [](Query& q, std::int64_t v) {
-             q.vouched = {true, 0, 0, 100, static_cast<std::int32_t>(v)};
+             q.attested = {true, 0, 0, 100, static_cast<std::int32_t>(v)};
          }},
     };
     for (const Case& c : cases) {
@@ -73,7 +73,7 @@ TEST(GateBounds, a_vouched_area_has_a_radius_up_to_the_limit_of_the_machine) {
     Terrain floor;
     const auto map = floor.snapshot();
     const auto refused = [&](std::int32_t radius, bool active = true) {
-        return is_bad_number(*map, [&](Query& q) { q.vouched = {active, 0, 0, radius, 0}; });
+        return is_bad_number(*map, [&](Query& q) { q.attested = {active, 0, 0, radius, 0}; });
     };
     EXPECT_TRUE(refused(0));
     EXPECT_FALSE(refused(1));
@@ -190,7 +190,7 @@ TEST(GateBounds, a_query_at_the_body_has_its_place_and_heading) {
     EXPECT_EQ(query.cos_yaw, 0.6);
     EXPECT_EQ(query.sin_yaw, -0.8);
     EXPECT_EQ(query.stance_source, StanceHeight::map);
-    EXPECT_FALSE(query.vouched.active);
+    EXPECT_FALSE(query.attested.active);
 }
 
 TEST(GateBounds, a_verdict_says_which_question_on_which_map_it_answers) {

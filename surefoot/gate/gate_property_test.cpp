@@ -182,7 +182,7 @@ TEST(GateProperty, decide_allocates_nothing) {
     const auto map = random_map(rng);
     for (int code = 0; code < 30; ++code) {
         Query query = query_at_body(static_cast<std::uint8_t>(code), *map);
-        query.vouched = {true, 0, 0, 8000, 0};
+        query.attested = {true, 0, 0, 8000, 0};
         const std::int64_t before = heap::allocations;
         const Verdict verdict = decide(machine, query, *map, kReady, kNowNs);
         EXPECT_EQ(heap::allocations, before) << words(verdict);
@@ -238,11 +238,11 @@ TEST(GateProperty, random_bytes_never_crash_and_never_pass) {
             Query query = make_query(random_command(rng), 0.0, 0.0, std::cos(yaw), std::sin(yaw));
             query.x_tenth_mm = i == 0 ? any(1'000'000'000) : map->origin_x_tenth_mm + any(70'000);
             query.y_tenth_mm = i == 0 ? any(1'000'000'000) : map->origin_y_tenth_mm + any(70'000);
-            query.vouched = {rng.below(2) == 0,
-                             query.x_tenth_mm,
-                             query.y_tenth_mm,
-                             static_cast<std::int32_t>(1 + rng.below(10'000)),
-                             0};
+            query.attested = {rng.below(2) == 0,
+                              query.x_tenth_mm,
+                              query.y_tenth_mm,
+                              static_cast<std::int32_t>(1 + rng.below(10'000)),
+                              0};
             const Verdict verdict = decide(machine, query, *map, kReady, kNowNs);
             EXPECT_NE(verdict.decision, Decision::ok) << "round " << round;
         }

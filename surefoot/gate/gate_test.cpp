@@ -53,7 +53,7 @@ TEST(Gate, what_nobody_filled_in_names_no_movement_nobody_and_no_area) {
     EXPECT_EQ(query.command, 0);
     EXPECT_EQ(query.connection, 0U);
     EXPECT_EQ(query.sequence, 0U);
-    const VouchedArea& area = query.vouched;
+    const AttestedArea& area = query.attested;
     EXPECT_FALSE(area.active);
     EXPECT_EQ(area.center_x_tenth_mm, 0);
     EXPECT_EQ(area.center_y_tenth_mm, 0);
@@ -68,7 +68,7 @@ TEST(Gate, given_a_flat_known_floor_then_every_configured_movement_is_ok) {
         const Verdict verdict = ask(*map, static_cast<std::uint8_t>(code));
         expect_ok(verdict);
         EXPECT_EQ(verdict.evidence.known_cells, verdict.evidence.cells);
-        EXPECT_EQ(verdict.evidence.vouched_cells, 0);
+        EXPECT_EQ(verdict.evidence.attested_cells, 0);
         EXPECT_EQ(verdict.evidence.height_delta_tenth_mm, 0);
         EXPECT_EQ(verdict.map_version, 42U);
         EXPECT_EQ(verdict.config_hash, 4711U);
@@ -672,7 +672,7 @@ TEST(Gate, the_height_of_the_stance_comes_from_the_map_or_from_the_caller) {
 
 // ---- the vouched start area ---------------------------------------------------------------------
 
-struct VouchedStart : ::testing::Test {
+struct AttestedStart : ::testing::Test {
     Terrain floor;
     Query query;
     std::unique_ptr<grid::MapSnapshot> map;
@@ -682,39 +682,39 @@ struct VouchedStart : ::testing::Test {
         floor.box(-3.0, 0.6, -3.0, 3.0, static_cast<double>(kNaN));
         rebuild();
         query = query_at_body(kForward, *map);
-        query.vouched = {true, 0, 0, 8500, 0};
+        query.attested = {true, 0, 0, 8500, 0};
     }
     void rebuild() { map = floor.snapshot(); }
     [[nodiscard]] Verdict ask_now() const { return decide(rex(), query, *map, kReady, kNowNs); }
 };
 
-TEST_F(VouchedStart, is_off_by_default_and_the_first_step_is_then_refused) {
-    query.vouched.active = false;
+TEST_F(AttestedStart, is_off_by_default_and_the_first_step_is_then_refused) {
+    query.attested.active = false;
     expect_refused(ask_now(), Reason::unknown_cells);
 }
 
-TEST_F(VouchedStart, lets_the_first_step_go_onto_remembered_floor_and_says_so) {
+TEST_F(AttestedStart, lets_the_first_step_go_onto_remembered_floor_and_says_so) {
     const Verdict verdict = ask_now();
     expect_ok(verdict);
-    EXPECT_GT(verdict.evidence.vouched_cells, 0);
-    EXPECT_LT(verdict.evidence.vouched_cells, verdict.evidence.known_cells);
+    EXPECT_GT(verdict.evidence.attested_cells, 0);
+    EXPECT_LT(verdict.evidence.attested_cells, verdict.evidence.known_cells);
 }
 
-TEST_F(VouchedStart, is_void_outside_and_too_small_where_it_does_not_reach) {
+TEST_F(AttestedStart, is_void_outside_and_too_small_where_it_does_not_reach) {
     // All that is unknown lies in the area, but base_link has just left it.
     Terrain spot;
     spot.box(-0.35, -0.25, -0.05, 0.05, static_cast<double>(kNaN));
     map = spot.snapshot();
-    query.vouched = {true, -6000, 0, 6000, 0};
+    query.attested = {true, -6000, 0, 6000, 0};
     expect_ok(ask_now());
-    query.vouched = {true, -6001, 0, 6000, 0};
+    query.attested = {true, -6001, 0, 6000, 0};
     expect_refused(ask_now(), Reason::unknown_cells);
     rebuild();
-    query.vouched = {true, 0, 0, 3000, 0};
+    query.attested = {true, 0, 0, 3000, 0};
     expect_refused(ask_now(), Reason::unknown_cells);
 }
 
-TEST_F(VouchedStart, never_covers_what_was_measured) {
+TEST_F(AttestedStart, never_covers_what_was_measured) {
     floor.box(0.40, 0.45, 0.15, 0.20, 0.3);
     rebuild();
     EXPECT_TRUE(ask_now().reasons.contains(Reason::corridor_blocked)) << words(ask_now());
@@ -723,7 +723,7 @@ TEST_F(VouchedStart, never_covers_what_was_measured) {
     EXPECT_TRUE(ask_now().reasons.contains(Reason::drop_off)) << words(ask_now());
 }
 
-TEST_F(VouchedStart, stands_for_a_measurement_that_is_unsure_and_agrees) {
+TEST_F(AttestedStart, stands_for_a_measurement_that_is_unsure_and_agrees) {
     // The row of cells at the lower border of the image: seen by few points, from one place.
     const auto row_with = [&](double height_m, std::uint16_t sigma_tenth_mm, double x_m) {
         floor = Terrain();
@@ -737,9 +737,9 @@ TEST_F(VouchedStart, stands_for_a_measurement_that_is_unsure_and_agrees) {
     constexpr std::uint16_t kUnsure = 150;
     row_with(0.0, kUnsure, 0.6);
     expect_ok(ask_now());
-    query.vouched.radius_tenth_mm = 6000;  // the row lies outside
+    query.attested.radius_tenth_mm = 6000;  // the row lies outside
     EXPECT_TRUE(ask_now().reasons.contains(Reason::not_resolvable)) << words(ask_now());
-    query.vouched.radius_tenth_mm = 8500;
+    query.attested.radius_tenth_mm = 8500;
     row_with(0.015, kUnsure, 0.6);
     expect_ok(ask_now());
     row_with(0.0151, kUnsure, 0.6);
@@ -748,12 +748,12 @@ TEST_F(VouchedStart, stands_for_a_measurement_that_is_unsure_and_agrees) {
     EXPECT_TRUE(ask_now().reasons.contains(Reason::not_resolvable)) << words(ask_now());
     // One that is surer counts as measured, whatever the word says.
     row_with(0.0, 79, 0.5);
-    const std::int64_t measured = ask_now().evidence.vouched_cells;
+    const std::int64_t measured = ask_now().evidence.attested_cells;
     row_with(0.0, 80, 0.5);
-    EXPECT_GT(ask_now().evidence.vouched_cells, measured);
+    EXPECT_GT(ask_now().evidence.attested_cells, measured);
 }
 
-TEST_F(VouchedStart, leaves_what_hangs_over_an_unsure_cell_and_evidence_of_a_drop) {
+TEST_F(AttestedStart, leaves_what_hangs_over_an_unsure_cell_and_evidence_of_a_drop) {
     constexpr std::uint16_t kUnsure = 150;
     const auto unsure_cell = [&] {
         floor = Terrain();
@@ -776,14 +776,14 @@ TEST_F(VouchedStart, leaves_what_hangs_over_an_unsure_cell_and_evidence_of_a_dro
     EXPECT_TRUE(ask_now().reasons.contains(Reason::drop_off)) << words(ask_now());
 }
 
-TEST_F(VouchedStart, does_not_tie_in_a_floor_at_another_height) {
-    query.vouched.height_tenth_mm = 450;
+TEST_F(AttestedStart, does_not_tie_in_a_floor_at_another_height) {
+    query.attested.height_tenth_mm = 450;
     const Verdict verdict = ask_now();
     EXPECT_EQ(verdict.decision, Decision::not_traversable);
     EXPECT_TRUE(verdict.reasons.contains(Reason::disconnected)) << words(verdict);
 }
 
-TEST_F(VouchedStart, a_proven_drop_beats_the_word) {
+TEST_F(AttestedStart, a_proven_drop_beats_the_word) {
     floor.input.drop_evidence = {};
     const std::size_t at = cell_at(*map, 0.4, 0.18);
     map->drop_evidence[at] = 255;
@@ -791,12 +791,12 @@ TEST_F(VouchedStart, a_proven_drop_beats_the_word) {
     expect_refused(ask_now(), Reason::drop_off);
 }
 
-TEST_F(VouchedStart, must_be_bounded) {
-    query.vouched.radius_tenth_mm = 10001;
+TEST_F(AttestedStart, must_be_bounded) {
+    query.attested.radius_tenth_mm = 10001;
     expect_error(ask_now(), Reason::bad_number);
-    query.vouched.radius_tenth_mm = 0;
+    query.attested.radius_tenth_mm = 0;
     expect_error(ask_now(), Reason::bad_number);
-    query.vouched = {true, std::numeric_limits<std::int64_t>::min(), 0, 8500, 0};
+    query.attested = {true, std::numeric_limits<std::int64_t>::min(), 0, 8500, 0};
     expect_error(ask_now(), Reason::bad_number);
 }
 
@@ -936,7 +936,7 @@ TEST(GateReadiness, no_verdict_is_made_of_a_changed_cell) {
     const auto map = floor.snapshot();
     for (const std::uint8_t command : {kForward, kBackward, kLeft, kTurnRight}) {
         Query query = query_at_body(command, *map);
-        query.vouched = {true, 0, 0, 6000, 0};
+        query.attested = {true, 0, 0, 6000, 0};
         const Verdict before = decide(rex(), query, *map, kReady, kNowNs);
         expect_ok(before);
         for (std::size_t i = 0; i < 240UL * 240UL; i += 37) {
@@ -948,7 +948,8 @@ TEST(GateReadiness, no_verdict_is_made_of_a_changed_cell) {
             if (after.decision == Decision::error) continue;
             ASSERT_EQ(after.decision, Decision::ok) << "cell " << i << ": " << words(after);
             ASSERT_EQ(after.evidence.known_cells, before.evidence.known_cells) << "cell " << i;
-            ASSERT_EQ(after.evidence.vouched_cells, before.evidence.vouched_cells) << "cell " << i;
+            ASSERT_EQ(after.evidence.attested_cells, before.evidence.attested_cells)
+                << "cell " << i;
         }
     }
 }

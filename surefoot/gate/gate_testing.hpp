@@ -77,7 +77,7 @@ inline Machine rex() {
     l.pose_age_ns = 200 * kMs;
     l.future_tolerance_ns = 5 * kMs;
     l.verdict_ttl_ns = 300 * kMs;
-    l.vouch_radius_tenth_mm = 10000;
+    l.attestation_radius_tenth_mm = 10000;
     return m;
 }
 

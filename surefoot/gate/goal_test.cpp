@@ -81,10 +81,10 @@ TEST(Goal, vouched_ground_belongs_to_where_the_machine_stands) {
     blind.box(-0.9, 0.9, -0.9, 0.9, static_cast<double>(kNaN));
     const auto map = blind.snapshot();
     Query here = query_at_body(0, *map);
-    here.vouched = {true, 0, 0, 10'000, 0};
+    here.attested = {true, 0, 0, 10'000, 0};
     const GoalPose near{500, -300, 1.0, 0.0};
     EXPECT_EQ(judge_goal(rex(), here, near, *map, kReady, kNowNs).decision, Decision::ok);
-    here.vouched.active = false;
+    here.attested.active = false;
     EXPECT_EQ(judge_goal(rex(), here, near, *map, kReady, kNowNs).primary, Reason::unknown_cells);
 }
 

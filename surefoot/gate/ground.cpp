@@ -17,15 +17,15 @@ constexpr std::int64_t magnitude(std::int64_t x) noexcept {
 Ground::Ground(const grid::MapSnapshot& map, const Query& query, const GateLimits& limits) noexcept
     : map_(map),
       grid_{map.origin_x_tenth_mm, map.origin_y_tenth_mm, map.resolution_tenth_mm},
-      vouched_(query.vouched.active ? query.vouched : VouchedArea{}),
+      attested_(query.attested.active ? query.attested : AttestedArea{}),
       vertical_bound_tan_(gate::vertical_bound_tan(map, limits)),
       drop_tenth_mm_(limits.drop_tenth_mm) {
     // The word is void as soon as base_link is outside of the area.
-    const std::int64_t dx = query.x_tenth_mm - vouched_.center_x_tenth_mm;
-    const std::int64_t dy = query.y_tenth_mm - vouched_.center_y_tenth_mm;
-    const std::int64_t radius = vouched_.radius_tenth_mm;
-    vouching_ = vouched_.active && magnitude(dx) <= radius && magnitude(dy) <= radius &&
-                dx * dx + dy * dy <= radius * radius;
+    const std::int64_t dx = query.x_tenth_mm - attested_.center_x_tenth_mm;
+    const std::int64_t dy = query.y_tenth_mm - attested_.center_y_tenth_mm;
+    const std::int64_t radius = attested_.radius_tenth_mm;
+    attestation_ = attested_.active && magnitude(dx) <= radius && magnitude(dy) <= radius &&
+                   dx * dx + dy * dy <= radius * radius;
 }
 
 std::span<const grid::SnapshotEdge> Ground::edges() const noexcept {
@@ -38,35 +38,35 @@ void Ground::take_word(std::size_t at,
                        std::int64_t iy,
                        GroundCell& cell) const noexcept {
     const bool measured = cell.knowledge == Knowledge::measured;
-    if ((measured && !is_unsure_but_agrees(cell)) || !is_vouched(ix, iy)) return;
+    if ((measured && !is_unsure_but_agrees(cell)) || !is_attested(ix, iy)) return;
     if (!measured && is_proven_lower(at)) {
         cell.drop_evidence = UINT8_MAX;
         return;
     }
-    cell.knowledge = Knowledge::vouched;
-    cell.height_tenth_mm = vouched_.height_tenth_mm;
+    cell.knowledge = Knowledge::attested;
+    cell.height_tenth_mm = attested_.height_tenth_mm;
     cell.sigma_tenth_mm = 0;
 }
 
 bool Ground::is_unsure_but_agrees(const GroundCell& cell) const noexcept {
     constexpr std::int32_t kUnsureTenthMm = 79;
     constexpr std::int64_t kAgreesTenthMm = 150;
-    const std::int64_t off = cell.height_tenth_mm - vouched_.height_tenth_mm;
+    const std::int64_t off = cell.height_tenth_mm - attested_.height_tenth_mm;
     return cell.sigma_tenth_mm > kUnsureTenthMm && off >= -kAgreesTenthMm && off <= kAgreesTenthMm;
 }
 
 bool Ground::is_proven_lower(std::size_t at) const noexcept {
     const std::int64_t bound = map_.height_tenth_mm[at];
     return bound != grid::MapSnapshot::kUnknownHeight &&
-           bound < std::int64_t{vouched_.height_tenth_mm} - drop_tenth_mm_;
+           bound < std::int64_t{attested_.height_tenth_mm} - drop_tenth_mm_;
 }
 
-bool Ground::is_vouched(std::int64_t ix, std::int64_t iy) const noexcept {
-    const std::int64_t x = grid_.origin_x + ix * grid_.side - vouched_.center_x_tenth_mm;
-    const std::int64_t y = grid_.origin_y + iy * grid_.side - vouched_.center_y_tenth_mm;
+bool Ground::is_attested(std::int64_t ix, std::int64_t iy) const noexcept {
+    const std::int64_t x = grid_.origin_x + ix * grid_.side - attested_.center_x_tenth_mm;
+    const std::int64_t y = grid_.origin_y + iy * grid_.side - attested_.center_y_tenth_mm;
     const std::int64_t far_x = std::max(magnitude(x), magnitude(x + grid_.side));
     const std::int64_t far_y = std::max(magnitude(y), magnitude(y + grid_.side));
-    const std::int64_t radius = vouched_.radius_tenth_mm;
+    const std::int64_t radius = attested_.radius_tenth_mm;
     return far_x * far_x + far_y * far_y <= radius * radius;
 }
 
@@ -74,10 +74,10 @@ Extent Ground::zone_of(const Sweep& sweep) const noexcept {
     Extent zone = extent_of(sweep);
     zone = {{zone.low.x - grid_.side, zone.low.y - grid_.side},
             {zone.high.x + grid_.side, zone.high.y + grid_.side}};
-    if (vouching_) {
-        const std::int64_t reach = std::int64_t{vouched_.radius_tenth_mm} + grid_.side;
-        const std::int64_t x = vouched_.center_x_tenth_mm;
-        const std::int64_t y = vouched_.center_y_tenth_mm;
+    if (attestation_) {
+        const std::int64_t reach = std::int64_t{attested_.radius_tenth_mm} + grid_.side;
+        const std::int64_t x = attested_.center_x_tenth_mm;
+        const std::int64_t y = attested_.center_y_tenth_mm;
         zone.include({x - reach, y - reach});
         zone.include({x + reach, y + reach});
     }
@@ -107,10 +107,10 @@ bool ReachableSurfaces::contains(std::uint16_t component) const noexcept {
            (bits_[component / 64U] >> (component % 64U) & 1U) != 0;
 }
 
-void ReachableSurfaces::add_beside_vouched(const Ground& ground,
-                                           std::int32_t step_tenth_mm) noexcept {
-    if (!ground.is_vouching()) return;
-    const VouchedArea& area = ground.vouched();
+void ReachableSurfaces::add_beside_attested(const Ground& ground,
+                                            std::int32_t step_tenth_mm) noexcept {
+    if (!ground.is_attesting()) return;
+    const AttestedArea& area = ground.attested();
     const grid::FixedGrid& grid = ground.grid();
     const std::int64_t reach = area.radius_tenth_mm + grid.side;
     const auto index = [&grid](std::int64_t p, std::int64_t origin) {

@@ -13,7 +13,7 @@
 namespace surefoot::gate {
 
 /// What speaks for the ground in a cell. Only `vouched` and `measured` are knowledge.
-enum class Knowledge : std::uint8_t { outside, unknown, vouched, measured };
+enum class Knowledge : std::uint8_t { outside, unknown, attested, measured };
 
 /// One cell as the gate sees it. The numbers mean something only when `known()`, but for the
 /// evidence of a drop, which an unknown cell may have too.
@@ -27,7 +27,7 @@ struct GroundCell {
     std::int64_t height_tenth_mm = 0;  ///< odom z
 
     [[nodiscard]] bool known() const noexcept {
-        return knowledge == Knowledge::vouched || knowledge == Knowledge::measured;
+        return knowledge == Knowledge::attested || knowledge == Knowledge::measured;
     }
 };
 
@@ -60,7 +60,7 @@ class Ground {
             cell.clearance_tenth_mm = map_.clearance_tenth_mm[at];
             cell.height_tenth_mm = map_.height_tenth_mm[at];
         }
-        if (vouching_) take_word(at, ix, iy, cell);
+        if (attestation_) take_word(at, ix, iy, cell);
         return cell;
     }
     /// The eight cells around one are known, and each passes `test(cell)`.
@@ -79,16 +79,16 @@ class Ground {
     [[nodiscard]] grid::FixedPoint doubled_center(std::int64_t ix,
                                                   std::int64_t iy,
                                                   grid::FixedPoint origin) const noexcept;
-    [[nodiscard]] bool is_vouching() const noexcept { return vouching_; }
+    [[nodiscard]] bool is_attesting() const noexcept { return attestation_; }
     /// Tangent of the largest angle between the map's z axis and the vertical (tilt.hpp).
     [[nodiscard]] double vertical_bound_tan() const noexcept { return vertical_bound_tan_; }
     /// What a verdict about `sweep` may read: the sweep and the vouched area, with a ring of cells
-    /// beside both (`all_around`, `ReachableSurfaces::add_beside_vouched`).
+    /// beside both (`all_around`, `ReachableSurfaces::add_beside_attested`).
     [[nodiscard]] Extent zone_of(const Sweep& sweep) const noexcept;
     /// Nobody changed a cell of the rows of a zone since the map was sealed. Precondition:
     /// grid::is_sealed().
     [[nodiscard]] bool is_intact(const Extent& zone) const noexcept;
-    [[nodiscard]] const VouchedArea& vouched() const noexcept { return vouched_; }
+    [[nodiscard]] const AttestedArea& attested() const noexcept { return attested_; }
 
   private:
     /// What an operator's word makes of a cell; not in the header, because few verdicts have one.
@@ -101,14 +101,14 @@ class Ground {
     /// Of an unknown cell: there is no ground where somebody vouched for it.
     [[nodiscard]] bool is_proven_lower(std::size_t at) const noexcept;
     /// Whole, in the area.
-    [[nodiscard]] bool is_vouched(std::int64_t ix, std::int64_t iy) const noexcept;
+    [[nodiscard]] bool is_attested(std::int64_t ix, std::int64_t iy) const noexcept;
 
     const grid::MapSnapshot& map_;
     grid::FixedGrid grid_;
-    VouchedArea vouched_;
+    AttestedArea attested_;
     double vertical_bound_tan_;
     std::int32_t drop_tenth_mm_;
-    bool vouching_ = false;
+    bool attestation_ = false;
 };
 
 /// The connected surfaces that the machine stands on.
@@ -118,7 +118,7 @@ class ReachableSurfaces {
     [[nodiscard]] bool contains(std::uint16_t component) const noexcept;
     /// Surfaces that begin in the vouched area or beside it, no more than `step_tenth_mm` above or
     /// below it: an operator's word reaches as far as the floor it touches.
-    void add_beside_vouched(const Ground& ground, std::int32_t step_tenth_mm) noexcept;
+    void add_beside_attested(const Ground& ground, std::int32_t step_tenth_mm) noexcept;
 
   private:
     std::array<std::uint64_t, 1024> bits_{};  // one for each of 65536 labels

@@ -13,13 +13,13 @@
 namespace surefoot::gate::testing {
 namespace {
 
-Query vouching(double x_m, double y_m, double radius_m, double center_x_m, double center_y_m) {
+Query attestation(double x_m, double y_m, double radius_m, double center_x_m, double center_y_m) {
     Query query = make_query(kForward, x_m, y_m, 1.0, 0.0);
-    query.vouched = {true,
-                     std::llround(center_x_m * 1e4),
-                     std::llround(center_y_m * 1e4),
-                     static_cast<std::int32_t>(std::lround(radius_m * 1e4)),
-                     -123};
+    query.attested = {true,
+                      std::llround(center_x_m * 1e4),
+                      std::llround(center_y_m * 1e4),
+                      static_cast<std::int32_t>(std::lround(radius_m * 1e4)),
+                      -123};
     return query;
 }
 
@@ -35,21 +35,22 @@ TEST(Ground, an_unknown_cell_is_vouched_only_when_it_lies_wholly_in_the_circle) 
     const auto map = nothing.snapshot();
     Rng rng(6);
     for (int round = 0; round < 20; ++round) {
-        const Query query = vouching(0.0, 0.0, rng.uniform(0.2, 0.9), 0.1, rng.uniform(-0.1, 0.1));
+        const Query query =
+            attestation(0.0, 0.0, rng.uniform(0.2, 0.9), 0.1, rng.uniform(-0.1, 0.1));
         const Ground ground(*map, query, rex().limits);
         for (std::int64_t iy = 0; iy < 240; ++iy) {
             for (std::int64_t ix = 0; ix < 240; ++ix) {
                 double farthest = 0.0;  // of the four corners from the centre, squared, 0.1 mm
                 for (const std::int64_t corner : {0, 1, 2, 3}) {
                     const auto x = static_cast<double>(-30000 + 250 * (ix + corner % 2) -
-                                                       query.vouched.center_x_tenth_mm);
+                                                       query.attested.center_x_tenth_mm);
                     const auto y = static_cast<double>(-30000 + 250 * (iy + corner / 2) -
-                                                       query.vouched.center_y_tenth_mm);
+                                                       query.attested.center_y_tenth_mm);
                     farthest = std::max(farthest, x * x + y * y);
                 }
-                const double radius = query.vouched.radius_tenth_mm;
+                const double radius = query.attested.radius_tenth_mm;
                 const GroundCell cell = ground.cell(ix, iy);
-                ASSERT_EQ(cell.knowledge == Knowledge::vouched, farthest <= radius * radius)
+                ASSERT_EQ(cell.knowledge == Knowledge::attested, farthest <= radius * radius)
                     << ix << " " << iy;
                 if (cell.known()) {
                     ASSERT_EQ(cell.height_tenth_mm, -123);
@@ -63,13 +64,13 @@ TEST(Ground, nobodys_word_holds_where_lines_of_sight_passed_below_it_by_a_drop) 
     Terrain nothing;
     nothing.height.fill(kNaN);
     const auto map = nothing.snapshot();
-    const Query query = vouching(0.0, 0.0, 0.5, 0.0, 0.0);  // of ground at -123
+    const Query query = attestation(0.0, 0.0, 0.5, 0.0, 0.0);  // of ground at -123
     const Ground ground(*map, query, rex().limits);
     const Ground nobody(*map, make_query(kForward, 0.0, 0.0, 1.0, 0.0), rex().limits);
     const std::size_t at = cell_at(*map, 0.1, 0.1);
     for (const std::int32_t bound : {-623, -100, 5'000}) {
         map->height_tenth_mm[at] = bound;
-        EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).knowledge, Knowledge::vouched) << bound;
+        EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).knowledge, Knowledge::attested) << bound;
         EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).height_tenth_mm, -123) << bound;
         EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).drop_evidence, 0) << bound;
         EXPECT_EQ(cell_of(nobody, *map, 0.1, 0.1).knowledge, Knowledge::unknown) << bound;
@@ -84,13 +85,13 @@ TEST(Ground, a_word_stands_for_an_unsure_measurement_within_15_mm_of_its_own_hei
     Terrain unsure;
     unsure.variance.fill(0.008F * 0.008F);
     const auto map = unsure.snapshot();
-    const Ground ground(*map, vouching(0.0, 0.0, 0.5, 0.0, 0.0), rex().limits);  // at -123
+    const Ground ground(*map, attestation(0.0, 0.0, 0.5, 0.0, 0.0), rex().limits);  // at -123
     const std::size_t at = cell_at(*map, 0.1, 0.1);
     for (const auto& [height, stands] :
          {std::pair{27, true}, {28, false}, {-273, true}, {-274, false}, {-123, true}}) {
         map->height_tenth_mm[at] = height;
         EXPECT_EQ(cell_of(ground, *map, 0.1, 0.1).knowledge,
-                  stands ? Knowledge::vouched : Knowledge::measured)
+                  stands ? Knowledge::attested : Knowledge::measured)
             << height;
     }
 }
@@ -111,13 +112,14 @@ TEST(Ground, the_word_is_void_once_base_link_is_outside_of_the_circle) {
                           {0.4, 0.4, false},
                           {90'000.0, 0.0, false}};
     for (const Case& c : cases)
-        EXPECT_EQ(Ground(*map, vouching(c.x_m, c.y_m, 0.5, 0.0, 0.0), rex().limits).is_vouching(),
-                  c.holds)
+        EXPECT_EQ(
+            Ground(*map, attestation(c.x_m, c.y_m, 0.5, 0.0, 0.0), rex().limits).is_attesting(),
+            c.holds)
             << c.x_m << " " << c.y_m;
-    Query inactive = vouching(0.0, 0.0, 0.5, 0.0, 0.0);
-    inactive.vouched.active = false;
-    EXPECT_FALSE(Ground(*map, inactive, rex().limits).is_vouching() &&
-                 Ground(*map, inactive, rex().limits).vouched().radius_tenth_mm > 0);
+    Query inactive = attestation(0.0, 0.0, 0.5, 0.0, 0.0);
+    inactive.attested.active = false;
+    EXPECT_FALSE(Ground(*map, inactive, rex().limits).is_attesting() &&
+                 Ground(*map, inactive, rex().limits).attested().radius_tenth_mm > 0);
 }
 
 TEST(Ground, cells_are_known_by_measurement_only_and_outside_is_not_unknown) {
@@ -127,7 +129,7 @@ TEST(Ground, cells_are_known_by_measurement_only_and_outside_is_not_unknown) {
     EXPECT_EQ(ground.cell(0, 0).knowledge, Knowledge::measured);
     for (const auto& [ix, iy] : {std::pair{-1, 0}, {0, -1}, {240, 0}, {0, 240}})
         EXPECT_EQ(ground.cell(ix, iy).knowledge, Knowledge::outside) << ix << " " << iy;
-    map->source[0] = grid::EvidenceSource::vouched;  // nobody vouches inside a map
+    map->source[0] = grid::EvidenceSource::attested;  // nobody vouches inside a map
     EXPECT_EQ(ground.cell(0, 0).knowledge, Knowledge::unknown);
     map->source[0] = static_cast<grid::EvidenceSource>(9);
     EXPECT_EQ(ground.cell(0, 0).knowledge, Knowledge::unknown);
@@ -160,10 +162,10 @@ TEST(Ground, a_zone_is_the_sweep_and_the_vouched_area_with_a_cell_beside_both) {
     const Extent sweep = extent_of(sweep_of(rex(), FixedPose{}, rex().movements[kForward]));
     EXPECT_EQ(without.low, (grid::FixedPoint{sweep.low.x - 250, sweep.low.y - 250}));
     EXPECT_EQ(without.high, (grid::FixedPoint{sweep.high.x + 250, sweep.high.y + 250}));
-    const Extent with = zone_with(vouching(0.0, 0.0, 1.0, 0.1, -0.2));
+    const Extent with = zone_with(attestation(0.0, 0.0, 1.0, 0.1, -0.2));
     EXPECT_EQ(with.low, (grid::FixedPoint{1000 - 10'250, -2000 - 10'250}));
     EXPECT_EQ(with.high, (grid::FixedPoint{1000 + 10'250, -2000 + 10'250}));
-    const Extent void_word = zone_with(vouching(2.0, 0.0, 1.0, 0.0, 0.0));
+    const Extent void_word = zone_with(attestation(2.0, 0.0, 1.0, 0.0, 0.0));
     EXPECT_EQ(void_word.low, without.low);
     EXPECT_EQ(void_word.high, without.high);
 }
@@ -253,7 +255,7 @@ TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
     const auto map = floor.snapshot();
     for (std::size_t i = 0; i < 240UL * 240UL; ++i)
         map->component[i] = static_cast<std::uint16_t>(i % 60'000 + 1);  // each cell its own
-    const Query query = vouching(0.31, -0.42, 0.5, 0.3, -0.4);
+    const Query query = attestation(0.31, -0.42, 0.5, 0.3, -0.4);
     std::size_t lower = cell_at(*map, 0.3, -0.3);
     map->height_tenth_mm.fill(-123);
     map->height_tenth_mm[lower] = -123 - 401;
@@ -262,7 +264,7 @@ TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
     map->height_tenth_mm[lower + 3] = -123 + 401;
     map->source[lower + 4] = grid::EvidenceSource::unknown;
     ReachableSurfaces surfaces;
-    surfaces.add_beside_vouched(Ground(*map, query, rex().limits), 400);
+    surfaces.add_beside_attested(Ground(*map, query, rex().limits), 400);
     for (std::size_t i = 0; i < 240UL * 240UL; ++i) {
         const double x = -3.0 + 0.025 * (static_cast<double>(i % 240) + 0.5) - 0.3;
         const double y = -3.0 + 0.025 * (static_cast<double>(i / 240) + 0.5) + 0.4;
@@ -271,15 +273,15 @@ TEST(ReachableSurfaces, beside_a_vouched_area_reach_a_cell_and_a_step) {
         ASSERT_EQ(surfaces.contains(map->component[i]), near && !excluded) << i;
     }
     // The middle of a cell lies as far away as is reached: on all four sides.
-    const Query centred = vouching(0.3125, -0.4125, 0.5, 0.3125, -0.4125);
+    const Query centred = attestation(0.3125, -0.4125, 0.5, 0.3125, -0.4125);
     ReachableSurfaces rim;
-    rim.add_beside_vouched(Ground(*map, centred, rex().limits), 400);
+    rim.add_beside_attested(Ground(*map, centred, rex().limits), 400);
     for (const auto& [x, y] : {std::pair{0.525, 0.0}, {-0.525, 0.0}, {0.0, 0.525}, {0.0, -0.525}})
         EXPECT_TRUE(rim.contains(map->component[cell_at(*map, 0.3125 + x, -0.4125 + y)]))
             << x << " " << y;
     ReachableSurfaces none;
-    none.add_beside_vouched(Ground(*map, make_query(kForward, 0.3, -0.4, 1.0, 0.0), rex().limits),
-                            400);
+    none.add_beside_attested(Ground(*map, make_query(kForward, 0.3, -0.4, 1.0, 0.0), rex().limits),
+                             400);
     EXPECT_FALSE(none.contains(map->component[lower + 1]));
 }
 
@@ -291,10 +293,10 @@ TEST(ReachableSurfaces, of_a_vouched_area_are_those_that_it_touches_at_its_heigh
     islands.box(-0.3, -0.2, -0.05, 0.05, 0.3);  // inside, but a box of 0.3 m
     islands.box(-0.05, 0.05, 0.2, 0.3, 0.02);   // inside
     const auto map = islands.snapshot();
-    Query query = vouching(0.0, 0.0, 0.5, 0.0, 0.0);
-    query.vouched.height_tenth_mm = 0;
+    Query query = attestation(0.0, 0.0, 0.5, 0.0, 0.0);
+    query.attested.height_tenth_mm = 0;
     ReachableSurfaces surfaces;
-    surfaces.add_beside_vouched(Ground(*map, query, rex().limits), 400);
+    surfaces.add_beside_attested(Ground(*map, query, rex().limits), 400);
     const auto contains = [&](double x, double y) {
         return surfaces.contains(map->component[cell_at(*map, x, y)]);
     };

@@ -103,7 +103,7 @@ TEST(Verdict, says_nothing_before_it_is_made) {
                                       evidence.stance_height_tenth_mm,
                                       evidence.cells,
                                       evidence.known_cells,
-                                      evidence.vouched_cells,
+                                      evidence.attested_cells,
                                       evidence.height_delta_tenth_mm,
                                       evidence.max_drift_tenth_mm})
         EXPECT_EQ(number, 0);

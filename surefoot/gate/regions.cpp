@@ -23,7 +23,7 @@ struct Place {
     ++evidence.cells;
     if (!cell.known()) return;
     ++evidence.known_cells;
-    if (cell.knowledge == Knowledge::vouched) ++evidence.vouched_cells;
+    if (cell.knowledge == Knowledge::attested) ++evidence.attested_cells;
     evidence.max_drift_tenth_mm =
         std::max<std::int64_t>(evidence.max_drift_tenth_mm, cell.drift_tenth_mm);
     evidence.min_clearance_tenth_mm =
@@ -295,7 +295,7 @@ ReachableSurfaces surfaces_of_stance(const Scene& scene) noexcept {
                 return true;
             });
     }
-    reachable.add_beside_vouched(scene.ground, scene.machine.limits.swing_clearance_tenth_mm);
+    reachable.add_beside_attested(scene.ground, scene.machine.limits.swing_clearance_tenth_mm);
     return reachable;
 }
 

@@ -134,11 +134,11 @@ TEST(SurfacesOfStance, vouched_cells_are_of_none_and_the_area_ties_in_what_it_to
     floor.map->component.fill(3);
     floor.map->source.fill(grid::EvidenceSource::unknown);
     floor.map->source[floor.at(0.5, 0.0)] = grid::EvidenceSource::measured;
-    floor.query.vouched = {true, 0, 0, 6000, 0};
+    floor.query.attested = {true, 0, 0, 6000, 0};
     static_cast<void>(floor.look([&](const Scene& scene, Findings&) {
         EXPECT_TRUE(surfaces_of_stance(scene).contains(3));
     }));
-    floor.query.vouched.active = false;
+    floor.query.attested.active = false;
     static_cast<void>(floor.look([&](const Scene& scene, Findings&) {
         EXPECT_FALSE(surfaces_of_stance(scene).contains(3));
     }));
@@ -338,7 +338,7 @@ TEST(Regions, count_what_they_ask_and_keep_the_worst_numbers) {
     const std::int64_t cells = known.evidence.cells;
     EXPECT_GT(cells, 200);
     EXPECT_EQ(known.evidence.known_cells, cells);
-    EXPECT_EQ(known.evidence.vouched_cells, 0);
+    EXPECT_EQ(known.evidence.attested_cells, 0);
     EXPECT_EQ(known.evidence.max_drift_tenth_mm, 77);
     EXPECT_EQ(known.evidence.min_clearance_tenth_mm, 30'000);
 
@@ -349,11 +349,11 @@ TEST(Regions, count_what_they_ask_and_keep_the_worst_numbers) {
     EXPECT_EQ(one_less.evidence.cells, cells);
     EXPECT_EQ(one_less.evidence.known_cells, cells - 1);
     EXPECT_EQ(one_less.evidence.max_drift_tenth_mm, 10) << "of an unknown cell nothing counts";
-    floor.query.vouched = {true, 0, 0, 6000, 0};
-    const Findings vouched = floor.look(check_stance);
-    EXPECT_TRUE(vouched.reasons().empty());
-    EXPECT_EQ(vouched.evidence.known_cells, cells);
-    EXPECT_EQ(vouched.evidence.vouched_cells, 1);
+    floor.query.attested = {true, 0, 0, 6000, 0};
+    const Findings attested = floor.look(check_stance);
+    EXPECT_TRUE(attested.reasons().empty());
+    EXPECT_EQ(attested.evidence.known_cells, cells);
+    EXPECT_EQ(attested.evidence.attested_cells, 1);
 }
 
 TEST(Regions, one_cell_beyond_the_map_ends_a_region) {

@@ -285,7 +285,7 @@ struct PlainBand {
             return;
         }
         ++evidence.known_cells;
-        evidence.vouched_cells += cell.knowledge == Knowledge::vouched ? 1 : 0;
+        evidence.attested_cells += cell.knowledge == Knowledge::attested ? 1 : 0;
         evidence.max_drift_tenth_mm =
             std::max<std::int64_t>(evidence.max_drift_tenth_mm, cell.drift_tenth_mm);
         evidence.min_clearance_tenth_mm =
@@ -376,7 +376,7 @@ TEST(TreadBounds, the_band_of_a_tread_asks_each_cell_what_a_plain_reckoning_asks
         for (const Reason reason : plain.reasons) ++said[static_cast<std::size_t>(reason)];
         ASSERT_EQ(findings.evidence.cells, plain.evidence.cells);
         ASSERT_EQ(findings.evidence.known_cells, plain.evidence.known_cells);
-        ASSERT_EQ(findings.evidence.vouched_cells, plain.evidence.vouched_cells);
+        ASSERT_EQ(findings.evidence.attested_cells, plain.evidence.attested_cells);
         ASSERT_EQ(findings.evidence.max_drift_tenth_mm, plain.evidence.max_drift_tenth_mm);
         ASSERT_EQ(findings.evidence.min_clearance_tenth_mm, plain.evidence.min_clearance_tenth_mm);
         on.map->height_tenth_mm[at] = stance;
@@ -452,20 +452,20 @@ TEST(TreadBounds, a_band_counts_what_an_operator_answers_for_and_ends_where_the_
     OnTreads on;
     on.map->height_tenth_mm.fill(0);
     const Treads level{Tread{true, 0, kNone, kNone, 0}, Tread{true, 0, kNone, kNone, 0}};
-    on.query.vouched = {true, 0, 0, 10'000, 0};
+    on.query.attested = {true, 0, 0, 10'000, 0};
     on.map->source.fill(grid::EvidenceSource::unknown);
     on.look();
-    Findings vouched;
-    check_tread_bands(on.scene(), level, vouched);
-    EXPECT_TRUE(vouched.reasons().empty());
-    EXPECT_GT(vouched.evidence.cells, 100);
-    EXPECT_EQ(vouched.evidence.vouched_cells, vouched.evidence.cells);
+    Findings attested;
+    check_tread_bands(on.scene(), level, attested);
+    EXPECT_TRUE(attested.reasons().empty());
+    EXPECT_GT(attested.evidence.cells, 100);
+    EXPECT_EQ(attested.evidence.attested_cells, attested.evidence.cells);
     on.map->source[cell_at(*on.map, 0.45, 0.18)] = grid::EvidenceSource::measured;
     Findings all_but_one;
     check_tread_bands(on.scene(), level, all_but_one);
-    EXPECT_EQ(all_but_one.evidence.vouched_cells, vouched.evidence.cells - 1);
+    EXPECT_EQ(all_but_one.evidence.attested_cells, attested.evidence.cells - 1);
     // Half a cell of the band lies beyond the last row of the map: one cell is enough.
-    on.query.vouched = {};
+    on.query.attested = {};
     on.map->source.fill(grid::EvidenceSource::measured);
     on.place(26'000, 0, 0.0);
     Findings beyond;

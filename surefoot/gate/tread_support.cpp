@@ -171,7 +171,7 @@ struct BandCell {
         }
         Evidence& evidence = findings.evidence;
         ++evidence.known_cells;
-        if (cell.knowledge == Knowledge::vouched) ++evidence.vouched_cells;
+        if (cell.knowledge == Knowledge::attested) ++evidence.attested_cells;
         evidence.max_drift_tenth_mm =
             std::max<std::int64_t>(evidence.max_drift_tenth_mm, cell.drift_tenth_mm);
         evidence.min_clearance_tenth_mm =

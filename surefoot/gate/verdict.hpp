@@ -54,7 +54,7 @@ struct Evidence {
     std::int64_t stance_height_tenth_mm = 0;  ///< odom z of the ground under the present feet
     std::int64_t cells = 0;                   ///< cells asked, those of several tests counted again
     std::int64_t known_cells = 0;             ///< of these measured or vouched
-    std::int64_t vouched_cells = 0;           ///< of these on an operator's word
+    std::int64_t attested_cells = 0;          ///< of these on an operator's word
     std::int64_t height_delta_tenth_mm = 0;   ///< of the landing foot that differs most from stance
     /// Squared tangent of the steeper foot plane's tilt, at worst: the uncertainty of the vertical
     /// is added.

@@ -11,7 +11,7 @@
 namespace surefoot::grid {
 
 /// What supports the height of a cell.
-enum class EvidenceSource : std::uint8_t { unknown = 0, measured = 1, vouched = 2 };
+enum class EvidenceSource : std::uint8_t { unknown = 0, measured = 1, attested = 2 };
 
 /// How the direction of gravity was found; `assumed` makes the gate answer ERROR.
 enum class GravitySource : std::uint8_t { assumed = 0, plane = 1, imu = 2 };

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surefoot/ground/settle_plane.hpp"
+#include "surefoot/ground/refine_plane.hpp"
 
 namespace surefoot::ground {
 namespace {

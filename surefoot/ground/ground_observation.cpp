@@ -13,7 +13,7 @@
 #include "surefoot/geometry/ransac_plane.hpp"
 #include "surefoot/ground/cloud.hpp"
 #include "surefoot/ground/near_side.hpp"
-#include "surefoot/ground/settle_plane.hpp"
+#include "surefoot/ground/refine_plane.hpp"
 #include "surefoot/ground/thinning.hpp"
 
 namespace surefoot::ground {
@@ -121,25 +121,25 @@ void keep(const NearSide& side, Cloud& cloud) {
     cloud.keep_if([&](std::size_t i) { return side.contains(cloud.points[i]); });
 }
 
-geometry::Plane settle(const Cloud& cloud, const geometry::Plane& start) {
-    return settle_plane(cloud.points, cloud.inverse_range_sigma, start, cloud.band_m)
+geometry::Plane refine(const Cloud& cloud, const geometry::Plane& start) {
+    return refine_plane(cloud.points, cloud.inverse_range_sigma, start, cloud.band_m)
         .value_or(start);
 }
 
 /// The plane at the points about it, by what is known of their noise. Where it lies across several
 /// levels, the nearest one: `sides` says where that is, and the other points are left out.
-geometry::Plane settled(const GroundConfig& config,
+geometry::Plane refined(const GroundConfig& config,
                         const geometry::Plane& found,
                         Cloud& cloud,
                         std::vector<NearSide>& sides) {
     if (!cloud.knows_noise()) return narrowed(cloud.points, found, config.tolerance_m);
-    geometry::Plane plane = settle(cloud, found);
+    geometry::Plane plane = refine(cloud, found);
     for (int level = 1; level < kMaxLevels; ++level) {
         const auto side = near_side(cloud.points, cloud.inverse_range_sigma, plane, cloud.band_m);
         if (!side) break;
         sides.push_back(*side);
         keep(*side, cloud);
-        plane = settle(cloud, side->plane);
+        plane = refine(cloud, side->plane);
     }
     return plane;
 }
@@ -150,7 +150,7 @@ Candidate measured(const GroundConfig& config,
                    const geometry::Plane& found,
                    const Eigen::Vector3d& up) {
     Candidate candidate;
-    candidate.plane = settled(config, found, cloud, candidate.sides);
+    candidate.plane = refined(config, found, cloud, candidate.sides);
     const Points& points = cloud.points;
     Points inliers;
     int fringe = 0;
@@ -277,7 +277,7 @@ GroundSighting sight(const GroundConfig& config,
         Cloud whole = cloud_of(points, inverse_range_sigma, sensor, all);
         whole.band_m = cloud.band_m;
         for (const NearSide& side : best->sides) keep(side, whole);
-        best->plane = settle(whole, best->plane);
+        best->plane = refine(whole, best->plane);
         best->height_m = best->plane.signed_distance_m(cloud.base);
         sighting.uncertainty = plane_uncertainty(
             best->plane,

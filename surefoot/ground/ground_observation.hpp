@@ -56,7 +56,7 @@ struct GroundSighting {
 
 /// The same for what a frame saw, with the height of base_link. The noise of the points is known:
 /// levels closer together than `tolerance_m` are told apart, and the plane is as true as all points
-/// together (`settle_plane`).
+/// together (`refine_plane`).
 [[nodiscard]] GroundSighting observe_ground(const GroundConfig& config,
                                             const FramePoints& seen,
                                             const Eigen::Vector3d& up_hint_body,

@@ -17,7 +17,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/ground/cloud.hpp"
 #include "surefoot/ground/near_side.hpp"
-#include "surefoot/ground/settle_plane.hpp"
+#include "surefoot/ground/refine_plane.hpp"
 #include "surefoot/ground/thinning.hpp"
 
 namespace surefoot::ground {
@@ -333,10 +333,10 @@ std::optional<Candidate> within_band(const GroundConfig& config,
     Candidate candidate;
     candidate.band_m = band_m;
     View view = rest;
-    const auto settle = [&](const Plane& from) {
-        return settle_plane(view.points, view.inverse_range_sigma, from, band_m);
+    const auto refine = [&](const Plane& from) {
+        return refine_plane(view.points, view.inverse_range_sigma, from, band_m);
     };
-    auto plane = settle(start);
+    auto plane = refine(start);
     for (int level = 1; plane && level < kMaxLevels; ++level) {
         const auto side = near_side(view.points, view.inverse_range_sigma, *plane, band_m);
         if (!side) break;
@@ -345,7 +345,7 @@ std::optional<Candidate> within_band(const GroundConfig& config,
             if (side->contains(view.points[i])) kept.push_back(i);
         const View near = select(view, kept);
         const auto nearer =
-            settle_plane(near.points, near.inverse_range_sigma, side->plane, band_m);
+            refine_plane(near.points, near.inverse_range_sigma, side->plane, band_m);
         // Rough ground is as rough on one side as on the whole.
         constexpr double kMostOfScatter = 0.6;
         if (!nearer ||
@@ -444,7 +444,7 @@ std::optional<Candidate> best_of(const GroundConfig& config, const Scene& scene,
         const View rest = without(all, used);
         const double narrow_m = 0.5 * config.tolerance_m * all.scale;
         const Plane plane =
-            settle_plane(rest.points, rest.inverse_range_sigma, *found, narrow_m).value_or(*found);
+            refine_plane(rest.points, rest.inverse_range_sigma, *found, narrow_m).value_or(*found);
         double band_m = narrow_m;
         if (is_possible(config, plane)) {
             const auto candidate = measured(config, scene, rest, plane);

@@ -14,7 +14,7 @@ namespace surefoot::ground {
 ///
 /// Planes are drawn through three points near each other, because a floor that fills a tenth of the
 /// image holds one triple of a thousand; what is near the best one settles by its noise
-/// (`settle_plane`), is taken away, and the search goes on. A plane is the ground when
+/// (`refine_plane`), is taken away, and the search goes on. A plane is the ground when
 /// * it fills `min_image_share` of the image,
 /// * it is a surface: few points lie just beyond its roughness (`max_search_rms_m`),
 /// * nothing lies farther below it than a high step: table tops, beds, seats and tilted backs have

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/ground/views_testing.hpp"
+#include "surefoot/ground/ground_views_testing.hpp"
 
 namespace surefoot::ground {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "surefoot/core/checked_index.hpp"
-#include "surefoot/ground/settle_plane.hpp"
+#include "surefoot/ground/refine_plane.hpp"
 
 namespace surefoot::ground {
 namespace {
@@ -22,7 +22,7 @@ constexpr double kLeastLength_m = 0.3;  ///< of the side that is kept
 /// times the noise of a point leaves a third; what the lens bends leaves less. ASSUMPTION.
 constexpr double kLeastGain = 0.25;
 
-/// Least squares of m in w = m . r about a plane, see `settle_plane`: its normal equations.
+/// Least squares of m in w = m . r about a plane, see `refine_plane`: its normal equations.
 struct Sums {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();

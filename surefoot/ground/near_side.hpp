@@ -28,7 +28,7 @@ struct NearSide {
 /// view or along it, where two planes fit them best, and returns the one on the side of the sensor
 /// (the origin), if two are clearly better than one.
 ///
-/// Points and sigmas as for `settle_plane`. Nothing where the plane is one.
+/// Points and sigmas as for `refine_plane`. Nothing where the plane is one.
 [[nodiscard]] std::optional<NearSide> near_side(std::span<const Eigen::Vector3d> points,
                                                 std::span<const double> inverse_range_sigma,
                                                 const geometry::Plane& plane,

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "surefoot/ground/frames_testing.hpp"
-#include "surefoot/ground/settle_plane.hpp"
+#include "surefoot/ground/refine_plane.hpp"
 
 namespace surefoot::ground {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kBand_m = 0.04;
 
 /// The one plane that all points agree with best.
 geometry::Plane across(const FramePoints& frame, double height_m) {
-    return settle_plane(frame.points_body_m,
+    return refine_plane(frame.points_body_m,
                         frame.inverse_range_sigma,
                         {Eigen::Vector3d::UnitZ(), height_m},
                         0.2)

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "surefoot/core/checked_index.hpp"
-#include "surefoot/ground/settle_plane.hpp"
+#include "surefoot/ground/refine_plane.hpp"
 
 namespace surefoot::ground {
 namespace {

@@ -8,7 +8,7 @@
 
 namespace surefoot::ground {
 
-/// Covariance of m = -n / h (see `settle_plane`) [1/m^2], of a plane n . p + h = 0 that was settled
+/// Covariance of m = -n / h (see `refine_plane`) [1/m^2], of a plane n . p + h = 0 that was settled
 /// on points seen from the origin.
 ///
 /// Neighbouring pixels err together: matching errors reach over some 40 px, and a bump of the
@@ -16,7 +16,7 @@ namespace surefoot::ground {
 /// therefore one measurement. How far tiles lie off the plane is measured; where there are few
 /// tiles, 0.6 of the scatter of single pixels counts as prior.
 ///
-/// Points as for `settle_plane`; zero where none is near the plane.
+/// Points as for `refine_plane`; zero where none is near the plane.
 [[nodiscard]] Eigen::Matrix3d covariance_of_m(std::span<const Eigen::Vector3d> points,
                                               std::span<const double> inverse_range_sigma,
                                               const geometry::Plane& plane,

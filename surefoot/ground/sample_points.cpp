@@ -27,7 +27,7 @@ Eigen::Matrix3d calibration_covariance(const camera::RectifiedRig& rig) {
 }  // namespace
 
 void sample_points(const camera::RectifiedRig& rig,
-                   const camera::DepthImage& depth,
+                   const DepthImage& depth,
                    int step_px,
                    FramePoints& seen,
                    float max_outlier_probability) {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/depth_image.hpp"
 
 namespace surefoot::ground {
 
@@ -15,11 +15,11 @@ struct FramePoints {
     Eigen::Vector3d camera_body_m = Eigen::Vector3d::Zero();  ///< optical centre
     std::vector<Eigen::Vector3d> points_body_m;
     /// One sigma [1/m] of the inverse of the distance between each point and the camera. In it the
-    /// disparity's noise is linear, and so is a plane (`settle_plane`).
+    /// disparity's noise is linear, and so is a plane (`refine_plane`).
     std::vector<double> inverse_range_sigma;
     std::size_t pixels = 0;  ///< looked at, with and without depth
     /// What an imperfect calibration does to every plane alike: covariance of m = -n / h
-    /// (`settle_plane`) [1/m^2]. An error of all disparities that grows by the place in the image
+    /// (`refine_plane`) [1/m^2]. An error of all disparities that grows by the place in the image
     /// adds a constant to m.
     Eigen::Matrix3d calibration_covariance = Eigen::Matrix3d::Zero();
 };
@@ -27,7 +27,7 @@ struct FramePoints {
 /// Replaces `seen` by every `step_px`-th pixel of every `step_px`-th row whose disparity and its
 /// sigma are known and whose outlier probability is at most `max_outlier_probability`.
 void sample_points(const camera::RectifiedRig& rig,
-                   const camera::DepthImage& depth,
+                   const DepthImage& depth,
                    int step_px,
                    FramePoints& seen,
                    float max_outlier_probability = 0.2F);

@@ -32,8 +32,8 @@ camera::RectifiedRig tilted_rig() {
 }
 
 /// Exact disparity of the floor z = 0; NaN above the horizon.
-camera::DepthImage floor_depth(const camera::RectifiedRig& rig) {
-    camera::DepthImage depth;
+DepthImage floor_depth(const camera::RectifiedRig& rig) {
+    DepthImage depth;
     depth.resize(rig.width, rig.height);
     depth.sigma_px.fill(0.2F);
     depth.outlier_probability.fill(0.05F);
@@ -67,8 +67,8 @@ TEST(SamplePoints, FloorPixelsLieOnTheFloorOfTheBody) {
 
 TEST(SamplePoints, SigmaIsThatOfTheInverseRangeByTheDisparity) {
     const camera::RectifiedRig rig = tilted_rig();
-    const camera::DepthImage depth = floor_depth(rig);
-    camera::DepthImage wrong = depth;
+    const DepthImage depth = floor_depth(rig);
+    DepthImage wrong = depth;
     for (std::size_t i = 0; i < wrong.disparity_px.size(); ++i)
         wrong.disparity_px.data()[i] += depth.sigma_px.data()[i];
     FramePoints seen;
@@ -102,7 +102,7 @@ TEST(SamplePoints, MatchingNoiseLeavesTheGroundAccurate) {
     // m.
     const camera::RectifiedRig rig = tilted_rig();
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-        camera::DepthImage depth = floor_depth(rig);
+        DepthImage depth = floor_depth(rig);
         Rng rng(seed);
         for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
             depth.disparity_px.data()[i] += static_cast<float>(0.06 * rng.normal());
@@ -119,7 +119,7 @@ TEST(SamplePoints, MatchingNoiseLeavesTheGroundAccurate) {
 
 TEST(SamplePoints, UnknownUnlikelyAndImpossiblePixelsAreLeftOut) {
     const camera::RectifiedRig rig = tilted_rig();
-    camera::DepthImage depth;
+    DepthImage depth;
     depth.resize(9, 1);
     depth.disparity_px.fill(10.0F);
     depth.sigma_px.fill(0.2F);
@@ -138,7 +138,7 @@ TEST(SamplePoints, UnknownUnlikelyAndImpossiblePixelsAreLeftOut) {
     EXPECT_EQ(seen.inverse_range_sigma.size(), 1U);
     sample_points(rig, depth, 1, seen, 1.0F);
     EXPECT_EQ(seen.points_body_m.size(), 2U);
-    sample_points(rig, camera::DepthImage{}, 1, seen);
+    sample_points(rig, DepthImage{}, 1, seen);
     EXPECT_TRUE(seen.points_body_m.empty());
     EXPECT_TRUE(seen.inverse_range_sigma.empty());
 }

@@ -72,7 +72,7 @@ std::map<std::string, SetLimit> setters() {
         {"limits.pose_age_ms", scaled(&GateLimits::pose_age_ns, 1e6)},
         {"limits.future_tolerance_ms", scaled(&GateLimits::future_tolerance_ns, 1e6)},
         {"limits.verdict_ttl_ms", scaled(&GateLimits::verdict_ttl_ns, 1e6)},
-        {"limits.vouch_radius_m", scaled(&GateLimits::vouch_radius_tenth_mm, 1e4)},
+        {"limits.vouch_radius_m", scaled(&GateLimits::attestation_radius_tenth_mm, 1e4)},
     };
 }
 
@@ -202,8 +202,8 @@ Case random_case(std::uint64_t seed) {
     }
     one.query = gate::query_at_body(command, *one.map);
     if (attested_m > 0.0) {
-        one.query.vouched.active = true;
-        one.query.vouched.radius_tenth_mm = static_cast<std::int32_t>(attested_m * 1e4);
+        one.query.attested.active = true;
+        one.query.attested.radius_tenth_mm = static_cast<std::int32_t>(attested_m * 1e4);
     }
     return one;
 }

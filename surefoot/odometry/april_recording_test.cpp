@@ -42,9 +42,9 @@ std::set<std::int64_t> frame_stamps(const std::string& archive) {
 
 /// Rows of ts, tag_rows, tag_cols, tag_size, tag_spacing, kp_x, kp_y, p_x, p_y, p_z, tag_id,
 /// corner_idx. The points' places on the grid (p) are none of our business.
-Corners read_corners(const std::string& archive, const char* eye) {
+Corners read_corners(const std::string& archive, const char* camera) {
     Corners corners;
-    std::istringstream rows(output_of("tar -xJOf '" + archive + "' " + eye));
+    std::istringstream rows(output_of("tar -xJOf '" + archive + "' " + camera));
     for (std::string row; std::getline(rows, row);) {
         if (row.empty() || row[0] == '#') continue;
         std::replace(row.begin(), row.end(), ',', ' ');

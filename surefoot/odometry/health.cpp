@@ -33,7 +33,7 @@ HealthVerdict judge(const OdometryConfig& config, const HealthEvidence& e) {
     const double weakness =
         std::max(e.translation_sigma_m / (kDegradedDepthShare * e.scene_depth_m),
                  e.rotation_sigma_rad / kDegradedRotation_rad);
-    if (e.eyes_exchanged) return {Health::lost, HealthReason::eyes_exchanged};
+    if (e.cameras_swapped) return {Health::lost, HealthReason::cameras_swapped};
     if (!e.pose_found || e.inliers < config.min_inliers)
         return {Health::lost, because(HealthReason::few_tracks)};
     if (e.beyond_machine) return {Health::lost, HealthReason::beyond_machine};
@@ -67,14 +67,14 @@ Matrix6 lost_covariance(const OdometryConfig& config, double before_s, double af
 MotionEstimate unseen_motion(const OdometryConfig& config,
                              const MotionEstimate& last,
                              std::int64_t time_ns,
-                             const FrameArrival& arrival) {
+                             const FrameStatus& frame_status) {
     MotionEstimate motion = last;
     motion.time_ns = time_ns;
     motion.T_previous_body = Pose{};
     motion.relative_covariance =
         lost_covariance(config, 0.0, seconds_from_ns(time_ns - last.time_ns));
     motion.health = Health::lost;
-    motion.reason = arrival.torn ? HealthReason::torn_image : HealthReason::repeated_image;
+    motion.reason = frame_status.torn ? HealthReason::torn_image : HealthReason::repeated_image;
     motion.tracks = motion.inliers = 0;
     motion.residual_px = 0.0;
     return motion;

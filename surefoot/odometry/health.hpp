@@ -15,7 +15,7 @@ struct HealthEvidence {
     /// Inliers of which the depth was measured in this frame: seen by both eyes.
     int depth_inliers = 0;
     bool right_shows_something = false;  ///< the right image is neither missing nor dark
-    bool eyes_exchanged = false;         ///< each eye shows what the other one should
+    bool cameras_swapped = false;        ///< each eye shows what the other one should
     /// Points that disagree with the pose, but agree among each other on another one.
     int other_motion = 0;
     double gap_s = 0.0;        ///< since the previous frame
@@ -59,6 +59,6 @@ struct HealthVerdict {
 [[nodiscard]] MotionEstimate unseen_motion(const OdometryConfig& config,
                                            const MotionEstimate& last,
                                            std::int64_t time_ns,
-                                           const FrameArrival& arrival);
+                                           const FrameStatus& frame_status);
 
 }  // namespace surefoot::odometry

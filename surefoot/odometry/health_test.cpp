@@ -67,8 +67,8 @@ TEST(Health, EveryReasonHasItsCause) {
     e.beyond_machine = true;
     expect(e, Health::lost, HealthReason::beyond_machine);
     e = good();
-    e.eyes_exchanged = true;
-    expect(e, Health::lost, HealthReason::eyes_exchanged);
+    e.cameras_swapped = true;
+    expect(e, Health::lost, HealthReason::cameras_swapped);
     e = good();
     e.sharpness_ratio = 0.2;
     expect(e, Health::degraded, HealthReason::blur);

@@ -38,10 +38,10 @@ std::optional<CameraFix> MachineTracker::reckoned() const {
 }
 
 CameraFix MachineTracker::improved(const CameraFix& seen) {
-    const std::optional<CameraFix> told = reckoned();
-    if (!told) return seen;
-    const Vector6 off = difference(seen.T_odom_camera, told->T_odom_camera);
-    const auto expected = Matrix6(seen.covariance + told->covariance).ldlt();
+    const std::optional<CameraFix> known = reckoned();
+    if (!known) return seen;
+    const Vector6 off = difference(seen.T_odom_camera, known->T_odom_camera);
+    const auto expected = Matrix6(seen.covariance + known->covariance).ldlt();
     if (!(off.dot(expected.solve(off)) <= kChi2Limit)) {  // not so for NaN
         ++contradictions_;
         return seen;

@@ -13,10 +13,10 @@ const Pose kT_body_camera{exp_so3({-1.2, 0.1, -1.5}), {0.1, 0.2, 0.05}};
 const Pose kT_odom_camera{exp_so3({0.3, -0.2, 0.5}), {1.0, 2.0, 3.0}};
 
 MachineMotion motion() {
-    MachineMotion told{{exp_so3({0.01, 0.02, -0.01}), {0.02, -0.01, 0.005}}, Matrix6::Zero()};
-    told.covariance.diagonal() << 1e-6, 2e-6, 3e-6, 4e-6, 5e-6, 6e-6;
-    told.covariance(0, 4) = told.covariance(4, 0) = 1e-6;
-    return told;
+    MachineMotion known{{exp_so3({0.01, 0.02, -0.01}), {0.02, -0.01, 0.005}}, Matrix6::Zero()};
+    known.covariance.diagonal() << 1e-6, 2e-6, 3e-6, 4e-6, 5e-6, 6e-6;
+    known.covariance(0, 4) = known.covariance(4, 0) = 1e-6;
+    return known;
 }
 
 TEST(MachineTracker, CarriesTheCameraWithItsCovariance) {
@@ -26,29 +26,29 @@ TEST(MachineTracker, CarriesTheCameraWithItsCovariance) {
     machine.place(kT_odom_camera);
     machine.advance(motion());
     machine.advance(motion());
-    const auto told = machine.reckoned();
-    ASSERT_TRUE(told);
+    const auto known = machine.reckoned();
+    ASSERT_TRUE(known);
     const Pose T_body = kT_odom_camera * kT_body_camera.inverse();
     const Pose T_body_then = T_body * motion().T_previous_body * motion().T_previous_body;
-    EXPECT_LT(difference(T_body_then * kT_body_camera, told->T_odom_camera).norm(), 1e-12);
+    EXPECT_LT(difference(T_body_then * kT_body_camera, known->T_odom_camera).norm(), 1e-12);
     const Matrix6 twice =
         compose_covariance(motion().covariance, motion().T_previous_body, motion().covariance);
-    EXPECT_LT((camera_to_body_covariance(told->covariance, kT_body_camera) - twice).norm(), 1e-15);
+    EXPECT_LT((camera_to_body_covariance(known->covariance, kT_body_camera) - twice).norm(), 1e-15);
 }
 
 TEST(MachineTracker, WeighsByCovariance) {
     MachineTracker machine(kT_body_camera);
     machine.place(kT_odom_camera);
     machine.advance(motion());
-    const CameraFix told = *machine.reckoned();
+    const CameraFix known = *machine.reckoned();
     Vector6 off;
     off << 1e-4, -1e-4, 2e-4, 1e-4, 2e-4, -1e-4;
-    CameraFix seen{perturbed(told.T_odom_camera, -off), Matrix6::Zero()};
+    CameraFix seen{perturbed(known.T_odom_camera, -off), Matrix6::Zero()};
     seen.covariance.diagonal() << 4e-6, 1e-6, 2e-6, 1e-6, 8e-6, 2e-6;
     const CameraFix both = machine.improved(seen);
-    const Matrix6 information = seen.covariance.inverse() + told.covariance.inverse();
+    const Matrix6 information = seen.covariance.inverse() + known.covariance.inverse();
     EXPECT_LT((both.covariance.inverse() - information).norm(), 1e-6 * information.norm());
-    const Vector6 expected = information.inverse() * told.covariance.inverse() * off;
+    const Vector6 expected = information.inverse() * known.covariance.inverse() * off;
     EXPECT_LT((difference(seen.T_odom_camera, both.T_odom_camera) - expected).norm(), 1e-7);
 }
 
@@ -72,9 +72,9 @@ TEST(MachineTracker, AMotionThatIsMissingOrNoneEndsIt) {
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -1.0}) {
         MachineTracker machine(kT_body_camera);
         machine.place(kT_odom_camera);
-        MachineMotion told = motion();
-        told.covariance(1, 1) = bad;
-        machine.advance(told);
+        MachineMotion known = motion();
+        known.covariance(1, 1) = bad;
+        machine.advance(known);
         EXPECT_FALSE(machine.reckoned());
         machine.advance(motion());
         EXPECT_FALSE(machine.reckoned());  // until the next place

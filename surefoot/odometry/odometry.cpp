@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "surefoot/camera/frame_watch.hpp"
+#include "surefoot/camera/frame_integrity_check.hpp"
 #include "surefoot/core/time.hpp"
 #include "surefoot/odometry/health.hpp"
 #include "surefoot/odometry/inertial/inertial_tracker.hpp"
@@ -118,7 +118,7 @@ struct Odometry::Impl {
 
     OdometryConfig config;
     const camera::Rectifier& rectifier;
-    camera::FrameWatch watch;
+    camera::FrameIntegrityCheck watch;
     FrontEnd images;
     PointFrontEnd points;
     Tracks* front = nullptr;  ///< the one of these two that the odometry is fed by
@@ -162,10 +162,10 @@ void Odometry::start_at(const Pose& T_odom_body) {
 }
 
 MotionEstimate Odometry::update(const StereoFrame& frame, Executor& executor) {
-    const FrameArrival arrival = impl_->watch.look(frame);
-    if (arrival.is_new_and_whole()) return update_whole(frame, executor);
-    skip(frame, arrival);
-    return unseen_motion(impl_->config, impl_->last, frame.time_ns, arrival);
+    const FrameStatus frame_status = impl_->watch.look(frame);
+    if (frame_status.is_new_and_whole()) return update_whole(frame, executor);
+    skip(frame, frame_status);
+    return unseen_motion(impl_->config, impl_->last, frame.time_ns, frame_status);
 }
 
 MotionEstimate Odometry::update_whole(const StereoFrame& frame, Executor& executor) {
@@ -182,11 +182,11 @@ MotionEstimate Odometry::update(const PointFrame& frame) {
     return impl_->update(frame.time_ns, frame.imu, serial());
 }
 
-void Odometry::skip(const StereoFrame& frame, const FrameArrival& arrival) {
+void Odometry::skip(const StereoFrame& frame, const FrameStatus& frame_status) {
     if (impl_->inertial) impl_->inertial->keep(frame.imu);
     impl_->machine.advance(frame.machine_motion);
     impl_->was_unsure = impl_->started;
-    if (arrival.torn) impl_->torn_ns = frame.time_ns;
+    if (frame_status.torn) impl_->torn_ns = frame.time_ns;
 }
 
 /// The landmarks of another source mean nothing to this one.
@@ -239,10 +239,10 @@ MotionEstimate Odometry::Impl::begin(std::int64_t now_ns, Executor& executor) {
     MotionEstimate estimate = publish(T_odom_camera, Matrix6::Zero(), Matrix6::Zero());
     estimate.tracks = front->kept();
     estimate.health = seeded ? Health::degraded : Health::lost;
-    estimate.reason = seeded                    ? HealthReason::first_frame
-                      : front->eyes_exchanged() ? HealthReason::eyes_exchanged
-                      : front == &images        ? HealthReason::blur
-                                                : HealthReason::few_tracks;
+    estimate.reason = seeded                     ? HealthReason::first_frame
+                      : front->cameras_swapped() ? HealthReason::cameras_swapped
+                      : front == &images         ? HealthReason::blur
+                                                 : HealthReason::few_tracks;
     return estimate;
 }
 
@@ -264,7 +264,7 @@ bool Odometry::Impl::seed_landmarks(Executor& executor) {
 Pose Odometry::Impl::predict(double dt_s) const {
     if (inertial)
         if (const auto predicted = inertial->predicted()) return *predicted;
-    if (const auto told = machine.reckoned()) return told->T_odom_camera;
+    if (const auto known = machine.reckoned()) return known->T_odom_camera;
     if (!(dt_s > 0.0 && dt_s <= config.max_gap_s)) return T_odom_camera;
     return perturbed(T_odom_camera, velocity * dt_s);
 }
@@ -314,7 +314,7 @@ HealthEvidence Odometry::Impl::examine(std::int64_t now_ns, const PoseSolution& 
     evidence.was_unsure = was_unsure || is_shortly_after(shallow_ns, now_ns, kDepthAgain_s);
     evidence.torn_lately = is_shortly_after(torn_ns, now_ns, kTearing_s);
     evidence.right_shows_something = front->right_shows_something();
-    evidence.eyes_exchanged = front->eyes_exchanged();
+    evidence.cameras_swapped = front->cameras_swapped();
     evidence.sharpness_ratio = front->sharpness() / std::max(sharpness, 1e-9);
     evidence.imu_disagrees = inertial && inertial->disagrees();
     evidence.imu_gap = inertial && inertial->gap();
@@ -478,7 +478,7 @@ MotionEstimate Odometry::Impl::lost(std::int64_t now_ns,
     estimate.inliers = evidence.inliers;
     if ((after_s > config.bridge_s || map.empty()) && front->loaded()) {
         seed_landmarks(executor);
-        if (front->eyes_exchanged()) estimate.reason = HealthReason::eyes_exchanged;
+        if (front->cameras_swapped()) estimate.reason = HealthReason::cameras_swapped;
     }
     return estimate;
 }

@@ -80,7 +80,8 @@ class Odometry {
     /// Pose of base_link at the first frame (gravity aligned); call before the first update.
     void start_at(const Pose& T_odom_body);
     /// Follows the frame. Never throws, never jumps; health and reason say what happened. A frame
-    /// whose images were there before, or are torn, is LOST and skipped (camera::FrameWatch).
+    /// whose images were there before, or are torn, is LOST and skipped
+    /// (camera::FrameIntegrityCheck).
     [[nodiscard]] MotionEstimate update(const StereoFrame& frame, Executor& executor);
     /// The same for a frame that was found to be new and whole already.
     [[nodiscard]] MotionEstimate update_whole(const StereoFrame& frame, Executor& executor);
@@ -89,7 +90,7 @@ class Odometry {
     [[nodiscard]] MotionEstimate update(const PointFrame& frame);
     /// Instead of `update_whole` for a frame whose images are not worth it, as its `arrival` says:
     /// keeps its inertial samples for the next one.
-    void skip(const StereoFrame& frame, const FrameArrival& arrival);
+    void skip(const StereoFrame& frame, const FrameStatus& frame_status);
 
   private:
     struct Impl;

@@ -46,15 +46,17 @@ void expect_valid(const MotionEstimate& m) {
 /// camera.
 void step_in_front(const camera::StereoRig& rig, double share, StereoFrame& frame) {
     constexpr double kAway_m = 0.9;
-    const auto paint = [&](const camera::Camera& eye, const Pose& T_left_eye, GreyImage& image) {
-        const std::vector<Eigen::Vector3d>& rays = testing::rays_of(eye);
-        for (int v = 0; v < eye.height; ++v) {
-            for (int u = 0; u < eye.width; ++u) {
+    const auto paint = [&](const camera::Camera& camera,
+                           const Pose& T_left_camera,
+                           GreyImage& image) {
+        const std::vector<Eigen::Vector3d>& rays = testing::rays_of(camera);
+        for (int v = 0; v < camera.height; ++v) {
+            for (int u = 0; u < camera.width; ++u) {
                 const Eigen::Vector3d along =
-                    T_left_eye.rotation * rays[static_cast<std::size_t>(v * eye.width + u)];
+                    T_left_camera.rotation * rays[static_cast<std::size_t>(v * camera.width + u)];
                 const Eigen::Vector3d p =
-                    T_left_eye.translation_m +
-                    (kAway_m - T_left_eye.translation_m.z()) / along.z() * along;
+                    T_left_camera.translation_m +
+                    (kAway_m - T_left_camera.translation_m.z()) / along.z() * along;
                 const auto seen = camera::project(rig.left.model, p);
                 if (!seen || seen->x() > share * rig.left.width) continue;
                 image.at(u, v) =
@@ -90,7 +92,7 @@ TEST(Odometry, SomebodyWhoStepsInIsNamedAndNotFollowed) {
 }
 
 TEST(Odometry, ExchangedEyesAreLostAndADarkRightEyeIsDegraded) {
-    for (const bool exchanged : {true, false}) {
+    for (const bool swapped : {true, false}) {
         Follower run(testing::small_rig());
         Serial serial;
         std::int64_t last_wrong_ns = 0;
@@ -98,23 +100,23 @@ TEST(Odometry, ExchangedEyesAreLostAndADarkRightEyeIsDegraded) {
             StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
             const bool wrong = i >= 10 && i < 14;
             if (wrong) last_wrong_ns = frame.time_ns;
-            if (wrong && exchanged) std::swap(frame.left, frame.right);
-            if (wrong && !exchanged) frame.right.fill(3);
+            if (wrong && swapped) std::swap(frame.left, frame.right);
+            if (wrong && !swapped) frame.right.fill(3);
             const auto m = run.odometry.update(frame, serial);
             expect_valid(m);
             if (wrong) {
-                EXPECT_EQ(m.health, exchanged ? Health::lost : Health::degraded) << i;
-                EXPECT_STREQ(to_string(m.reason), exchanged ? "eyes_exchanged" : "poor_geometry")
+                EXPECT_EQ(m.health, swapped ? Health::lost : Health::degraded) << i;
+                EXPECT_STREQ(to_string(m.reason), swapped ? "eyes_exchanged" : "poor_geometry")
                     << i;
             }
             // A motion that began at a pose that was not sure; depth must come again for some time.
             const bool unsure =
-                exchanged ? i == 14 : seconds_from_ns(frame.time_ns - last_wrong_ns) <= 0.5;
+                swapped ? i == 14 : seconds_from_ns(frame.time_ns - last_wrong_ns) <= 0.5;
             if (i >= 14) {
-                EXPECT_EQ(m.health, unsure ? Health::degraded : Health::ok) << exchanged << i;
-                EXPECT_STREQ(to_string(m.reason), unsure ? "recovered" : "none") << exchanged << i;
+                EXPECT_EQ(m.health, unsure ? Health::degraded : Health::ok) << swapped << i;
+                EXPECT_STREQ(to_string(m.reason), unsure ? "recovered" : "none") << swapped << i;
             }
-            if (!exchanged || i > 14) {
+            if (!swapped || i > 14) {
                 EXPECT_LT((run.left_camera(m).translation_m - truth_at(i).translation_m).norm(),
                           0.010)
                     << i;
@@ -227,8 +229,8 @@ Pose from_rest(double index) {
 }
 
 /// Rms position error on the way of a camera that reads its rows out in 30 ms.
-double rolling_error_m(const camera::StereoRig& camera_rig, const camera::StereoRig& told_rig) {
-    Follower run(told_rig);
+double rolling_error_m(const camera::StereoRig& camera_rig, const camera::StereoRig& known_rig) {
+    Follower run(known_rig);
     Serial serial;
     double sum_m2 = 0.0;
     constexpr int kFrames = 40;
@@ -246,16 +248,16 @@ TEST(Odometry, RowsOfARollingShutterAreBroughtToTheStamp) {
     camera::StereoRig rolling = global;
     rolling.readout_s = 0.03;
     const double global_m = rolling_error_m(global, global);
-    const double told_m = rolling_error_m(rolling, rolling);
-    const double untold_m = rolling_error_m(rolling, global);
+    const double known_m = rolling_error_m(rolling, rolling);
+    const double unknown_m = rolling_error_m(rolling, global);
     std::printf(
         "rms position error: global shutter %.2f mm, rolling %.2f mm, rolling and not told "
         "%.2f mm\n",
         1e3 * global_m,
-        1e3 * told_m,
-        1e3 * untold_m);
-    EXPECT_LT(told_m, 2.0 * global_m);
-    EXPECT_GT(untold_m, 3.0 * told_m);
+        1e3 * known_m,
+        1e3 * unknown_m);
+    EXPECT_LT(known_m, 2.0 * global_m);
+    EXPECT_GT(unknown_m, 3.0 * known_m);
 }
 
 TEST(Odometry, FollowsDepthImages) {
@@ -364,7 +366,7 @@ TEST(Odometry, LongLossStartsANewMapWithoutAJump) {
 }
 
 /// What the joints say of the motion from one frame of the curve to the next.
-MachineMotion told_motion(const Follower& run, int index, double sigma_m, double sigma_rad) {
+MachineMotion known_motion(const Follower& run, int index, double sigma_m, double sigma_rad) {
     const Pose T_left_body = run.rig.body_from_left().inverse();
     MachineMotion motion;
     motion.T_previous_body =
@@ -380,7 +382,7 @@ TEST(Odometry, TheMachineCarriesThePoseInTheDark) {
     Matrix6 dark = Matrix6::Zero();
     for (int i = 0; i < 40; ++i) {
         StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
-        frame.machine_motion = told_motion(run, i, 2e-3, 1e-3);
+        frame.machine_motion = known_motion(run, i, 2e-3, 1e-3);
         const bool black = i >= 8 && i < 28;  // a second, in full motion
         if (black) {
             frame.left.fill(0);
@@ -407,7 +409,7 @@ TEST(Odometry, AMachineThatSlipsIsNamedAndLeftOut) {
     double worst_m = 0.0;
     for (int i = 0; i < 20; ++i) {
         StereoFrame frame = render_frame(run.rig, truth_at(i), i, kNoise_grey);
-        frame.machine_motion = told_motion(run, i, 5e-4, 1e-3);
+        frame.machine_motion = known_motion(run, i, 5e-4, 1e-3);
         if (i >= 10) frame.machine_motion->T_previous_body.translation_m *= 0.3;
         const auto m = run.odometry.update(frame, serial);
         worst_m = std::max(worst_m,

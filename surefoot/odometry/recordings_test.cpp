@@ -29,10 +29,10 @@ camera::Camera pinhole(int width, int height, double fx, double fy, double cx, d
     return {model, width, height};
 }
 
-camera::StereoRig rectified_rig(const camera::Camera& eye, double baseline_m) {
+camera::StereoRig rectified_rig(const camera::Camera& this_camera, double baseline_m) {
     camera::StereoRig rig;
-    rig.left = eye;
-    rig.right = eye;
+    rig.left = this_camera;
+    rig.right = this_camera;
     rig.T_left_right.translation_m = {baseline_m, 0.0, 0.0};
     rig.rectified = true;
     return rig;
@@ -83,7 +83,7 @@ std::string data_folder() {
 }
 
 camera::StereoRig euroc_rig() {
-    const auto eye =
+    const auto this_camera =
         [](double fx, double fy, double cx, double cy, double k1, double k2, double p1, double p2) {
             camera::Camera camera = pinhole(752, 480, fx, fy, cx, cy);
             auto& model = std::get<camera::PinholeRadTan>(camera.model);
@@ -102,10 +102,10 @@ camera::StereoRig euroc_rig() {
         0.999598781151, 0.0130119051815, 0.0251588363115, 0.0453689425024,         //
         -0.0253898008918, 0.0179005838253, 0.999517347078, 0.00786212447038, 0.0, 0.0, 0.0, 1.0;
     camera::StereoRig rig;
-    rig.left = eye(
+    rig.left = this_camera(
         458.654, 457.296, 367.215, 248.375, -0.28340811, 0.07395907, 0.00019359, 1.76187114e-05);
-    rig.right =
-        eye(457.587, 456.134, 379.999, 255.238, -0.28368365, 0.07451284, -0.00010473, -3.555e-05);
+    rig.right = this_camera(
+        457.587, 456.134, 379.999, 255.238, -0.28368365, 0.07451284, -0.00010473, -3.555e-05);
     rig.T_body_left = Pose::from_matrix(left);
     rig.T_left_right = rig.T_body_left->inverse() * Pose::from_matrix(right);
     rig.imu = camera::ImuMount{Pose{}, 200.0};

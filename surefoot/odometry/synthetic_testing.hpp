@@ -104,36 +104,36 @@ inline camera::StereoRig small_depth_rig() {
 }
 
 /// Unit rays of all pixels, row by row; computed once per lens.
-inline const std::vector<Eigen::Vector3d>& rays_of(const camera::Camera& eye) {
+inline const std::vector<Eigen::Vector3d>& rays_of(const camera::Camera& camera) {
     static std::vector<std::pair<double, std::vector<Eigen::Vector3d>>> cache;  // by cx
-    const double key = std::get<camera::PinholeRadTan>(eye.model).cx_px;
+    const double key = std::get<camera::PinholeRadTan>(camera.model).cx_px;
     for (const auto& [cx, rays] : cache)
         if (cx == key) return rays;
     std::vector<Eigen::Vector3d> rays;
-    for (int v = 0; v < eye.height; ++v)
-        for (int u = 0; u < eye.width; ++u)
-            rays.push_back(*camera::unproject(eye.model, Eigen::Vector2d(u, v)));
+    for (int v = 0; v < camera.height; ++v)
+        for (int u = 0; u < camera.width; ++u)
+            rays.push_back(*camera::unproject(camera.model, Eigen::Vector2d(u, v)));
     cache.emplace_back(key, std::move(rays));
     return cache.back().second;
 }
 
-/// `T_world_eye_at_row` of every row; depth, where asked for, is along z of the eye.
+/// `T_world_camera_at_row` of every row; depth, where asked for, is along z of the eye.
 template <typename PoseOfRow>
-GreyImage render_rows(const camera::Camera& eye,
-                      const PoseOfRow& T_world_eye_at_row,
+GreyImage render_rows(const camera::Camera& camera,
+                      const PoseOfRow& T_world_camera_at_row,
                       double noise_grey,
                       Rng& rng,
                       Image<float>* depth_m = nullptr) {
-    const auto& rays = rays_of(eye);
-    GreyImage image(eye.width, eye.height);
-    if (depth_m != nullptr) *depth_m = Image<float>(eye.width, eye.height);
-    for (int v = 0; v < eye.height; ++v) {
-        const Pose T_world_eye = T_world_eye_at_row(v);
-        const Eigen::Matrix3d R = T_world_eye.R();
-        for (int u = 0; u < eye.width; ++u) {
-            const Eigen::Vector3d& ray = rays[static_cast<std::size_t>(v * eye.width + u)];
+    const auto& rays = rays_of(camera);
+    GreyImage image(camera.width, camera.height);
+    if (depth_m != nullptr) *depth_m = Image<float>(camera.width, camera.height);
+    for (int v = 0; v < camera.height; ++v) {
+        const Pose T_world_camera = T_world_camera_at_row(v);
+        const Eigen::Matrix3d R = T_world_camera.R();
+        for (int u = 0; u < camera.width; ++u) {
+            const Eigen::Vector3d& ray = rays[static_cast<std::size_t>(v * camera.width + u)];
             double grey = 0.0;
-            const double along = cast_ray(T_world_eye.translation_m, R * ray, grey);
+            const double along = cast_ray(T_world_camera.translation_m, R * ray, grey);
             if (noise_grey > 0.0) grey += noise_grey * rng.normal();
             image.at(u, v) = static_cast<std::uint8_t>(std::clamp(grey + 0.5, 0.0, 255.0));
             if (depth_m != nullptr)
@@ -144,13 +144,13 @@ GreyImage render_rows(const camera::Camera& eye,
     return image;
 }
 
-inline GreyImage render_eye(const camera::Camera& eye,
-                            const Pose& T_world_eye,
-                            double noise_grey,
-                            Rng& rng,
-                            Image<float>* depth_m = nullptr) {
+inline GreyImage render_camera(const camera::Camera& camera,
+                               const Pose& T_world_camera,
+                               double noise_grey,
+                               Rng& rng,
+                               Image<float>* depth_m = nullptr) {
     return render_rows(
-        eye, [&](int) { return T_world_eye; }, noise_grey, rng, depth_m);
+        camera, [&](int) { return T_world_camera; }, noise_grey, rng, depth_m);
 }
 
 /// Frame of the rig at a pose of its left camera.
@@ -163,10 +163,10 @@ inline StereoFrame render_frame(const camera::StereoRig& rig,
     frame.index = index;
     frame.time_ns = 1'000'000'000LL + index * 50'000'000LL;
     if (rig.right) {
-        frame.left = render_eye(rig.left, T_world_left, noise_grey, rng);
-        frame.right = render_eye(*rig.right, T_world_left * rig.T_left_right, noise_grey, rng);
+        frame.left = render_camera(rig.left, T_world_left, noise_grey, rng);
+        frame.right = render_camera(*rig.right, T_world_left * rig.T_left_right, noise_grey, rng);
     } else {
-        frame.left = render_eye(rig.left, T_world_left, noise_grey, rng, &frame.depth_m);
+        frame.left = render_camera(rig.left, T_world_left, noise_grey, rng, &frame.depth_m);
     }
     return frame;
 }

@@ -40,7 +40,7 @@ const char* obstacle(ground::GroundReason reason) {
 }
 
 /// Why there is no plane, and what helps.
-std::string without_plane(ground::CalibrationReason reason, const GroundLook& look) {
+std::string without_plane(ground::CalibrationReason reason, const GroundView& look) {
     if (reason == ground::CalibrationReason::disagreement)
         return fmt::format(
             "ground plane: {}: hold the camera still over one level floor while the first frames "
@@ -70,7 +70,7 @@ std::string sightings(const ground::GroundAlignment& ground) {
 Direction find_up(const AlignmentConfig& config,
                   const ground::GroundAlignment& ground,
                   const std::optional<Direction>& up_imu,
-                  const GroundLook& look,
+                  const GroundView& look,
                   Alignment& alignment) {
     const Direction normal{ground.normal_body, ground.uncertainty.normal_covariance};
     Direction up{assumed_up(config), {}};
@@ -188,7 +188,7 @@ Alignment place_odom(const AlignmentConfig& config,
                      const ground::GroundAlignment& ground,
                      const std::optional<Direction>& up_imu,
                      double expected_height_m,
-                     const GroundLook& look) {
+                     const GroundView& look) {
     Alignment alignment;
     const Direction up = find_up(config, ground, up_imu, look, alignment);
     alignment.T_odom_body.rotation = level(up.unit_body);

@@ -51,7 +51,7 @@ struct Alignment {
 };
 
 /// How the ground was looked for, for the words of `Alignment::reason`.
-struct GroundLook {
+struct GroundView {
     bool searched = false;  ///< the mount is not known: `ground.search_down_deg` says how far
     double search_down_deg = 0.0;
     double image_share = 0.0;  ///< of the best plane in any frame
@@ -73,6 +73,6 @@ struct GroundLook {
                                    const ground::GroundAlignment& ground,
                                    const std::optional<Direction>& up_imu,
                                    double expected_height_m = 0.0,
-                                   const GroundLook& look = {});
+                                   const GroundView& look = {});
 
 }  // namespace surefoot::pipeline

@@ -75,7 +75,7 @@ TEST(Alignment, says_how_sure_the_vertical_is) {
 }
 
 TEST(Alignment, a_search_says_what_it_saw_and_what_to_do) {
-    GroundLook look{true, 60.0, 0.09, ground::GroundReason::few_inliers};
+    GroundView look{true, 60.0, 0.09, ground::GroundReason::few_inliers};
     const Alignment failed = place_odom({}, {}, std::nullopt, 0.0, look);
     for (const char* words : {"tilt 0-60 deg is searched",
                               "9 % of the image looks like floor",

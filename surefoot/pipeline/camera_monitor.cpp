@@ -3,19 +3,19 @@
 
 namespace surefoot::pipeline {
 
-CameraState CameraMonitor::add(const FrameArrival& arrival, Light light) noexcept {
-    const bool arrived = arrival.is_new_and_whole();
-    const bool good = arrived && light == Light::lit;
+CameraState CameraMonitor::add(const FrameStatus& frame_status, ExposureState light) noexcept {
+    const bool arrived = frame_status.is_new_and_whole();
+    const bool good = arrived && light == ExposureState::well_exposed;
     // Damaged images never became a frame: they lie between the previous one and this one.
-    const int bad_now = arrival.damaged + (good ? 0 : 1);
+    const int bad_now = frame_status.damaged + (good ? 0 : 1);
     if (bad_now > 0) {
         bad_ += bad_now;
         fresh_ = 0;
         if (bad_ >= kBadFrames) {
-            state_ = arrival.repeated > 0              ? CameraState::frozen
-                     : !arrived || arrival.damaged > 0 ? CameraState::corrupt
-                     : light == Light::dark            ? CameraState::dark
-                                                       : CameraState::overexposed;
+            state_ = frame_status.repeated > 0              ? CameraState::frozen
+                     : !arrived || frame_status.damaged > 0 ? CameraState::corrupt
+                     : light == ExposureState::dark         ? CameraState::dark
+                                                            : CameraState::overexposed;
         }
     }
     if (!good) return state_;

@@ -3,7 +3,7 @@
 
 #include "surefoot/core/camera_state.hpp"
 #include "surefoot/core/frame.hpp"
-#include "surefoot/pipeline/light.hpp"
+#include "surefoot/pipeline/exposure_state.hpp"
 
 namespace surefoot::pipeline {
 
@@ -21,7 +21,8 @@ class CameraMonitor {
     static constexpr int kFreshFrames = 3;
 
     /// Frames in the order in which they came; returns the state after this one.
-    CameraState add(const FrameArrival& arrival, Light light = Light::lit) noexcept;
+    CameraState add(const FrameStatus& frame_status,
+                    ExposureState light = ExposureState::well_exposed) noexcept;
     [[nodiscard]] CameraState state() const noexcept { return state_; }
 
   private:

@@ -17,15 +17,15 @@ std::string states(std::string_view script) {
     std::string result;
     int repeated = 0;
     for (const char frame : script) {
-        FrameArrival arrival;
+        FrameStatus frame_status;
         repeated = frame == 'r' ? repeated + 1 : 0;
-        arrival.repeated = repeated;
-        arrival.torn = frame == 't';
-        arrival.damaged = frame == 'd' ? 1 : frame == 'D' ? 2 : 0;
-        const Light light = frame == 'l'   ? Light::overexposed
-                            : frame == 'x' ? Light::dark
-                                           : Light::lit;
-        const CameraState state = monitor.add(arrival, light);
+        frame_status.repeated = repeated;
+        frame_status.torn = frame == 't';
+        frame_status.damaged = frame == 'd' ? 1 : frame == 'D' ? 2 : 0;
+        const ExposureState light = frame == 'l'   ? ExposureState::overexposed
+                                    : frame == 'x' ? ExposureState::dark
+                                                   : ExposureState::well_exposed;
+        const CameraState state = monitor.add(frame_status, light);
         EXPECT_EQ(state, monitor.state());
         result += "ufcolx"[static_cast<std::size_t>(state)];
     }

@@ -9,7 +9,7 @@
 #include "surefoot/ground/ground_search.hpp"
 #include "surefoot/ground/sample_points.hpp"
 #include "surefoot/odometry/health.hpp"
-#include "surefoot/pipeline/light.hpp"
+#include "surefoot/pipeline/exposure_state.hpp"
 #include "surefoot/pipeline/rgbd_depth.hpp"
 #include "surefoot/traversability/reachability.hpp"
 
@@ -17,9 +17,9 @@ namespace surefoot::pipeline {
 namespace {
 
 /// The second round takes away what interpolated rows hide from the first.
-constexpr int kTrimRounds = 2;
-constexpr int kTrimRows_px = 6;           ///< farthest that rows are looked for
-constexpr std::uint64_t kGroundSeed = 1;  ///< the same points always give the same plane
+constexpr int kSelfCalibrationRounds = 2;
+constexpr int kSelfCalibrationRows_px = 6;  ///< farthest that rows are looked for
+constexpr std::uint64_t kGroundSeed = 1;    ///< the same points always give the same plane
 
 /// Measures the stages of one frame; without a clock all times are zero.
 class StageTimer {
@@ -125,19 +125,19 @@ Pipeline::Pipeline(const PipelineConfig& config,
       mirror_watch_(config.specular),
       rater_(config.traversability.widened_to(config.elevation.resolution_m)),
       feature_finder_(config.stairs),
-      feature_follower_(config.stairs),
+      feature_tracker_(config.stairs),
       imu_mount_(rig.imu),
       mount_monitor_(config.mount),
-      level_keeper_(config.level) {}
+      tilt_drift_correction_(config.level) {}
 
 const Alignment& Pipeline::align(std::span<const StereoFrame> first_frames,
                                  const std::optional<Pose>& T_odom_first_body) {
     first_frames = first_frames.first(std::min(first_frames.size(), kAlignmentFrames));
-    trim_right_eye(first_frames);
+    correct_right_camera(first_frames);
     alignment_ = T_odom_first_body ? told(*T_odom_first_body) : measure_alignment(first_frames);
     odometry_.start_at(alignment_.T_odom_body);
-    level_keeper_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
-    feature_follower_.forget();  // odom is another one
+    tilt_drift_correction_.start_at(alignment_.T_odom_body, alignment_.ground_lean_rad);
+    feature_tracker_.forget();  // odom is another one
     mirror_watch_.forget();
     last_motion_.T_odom_body = alignment_.T_odom_body;
     if (!first_frames.empty()) last_motion_.time_ns = first_frames.front().time_ns;
@@ -152,7 +152,7 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
                                     T_body_imu,
                                     first_frames);
     const Eigen::Vector3d up_hint_body = up_imu ? up_imu->unit_body : assumed_up(config_.mount);
-    GroundLook look{!up_imu && is_mount_unknown(), config_.ground.search_down_deg, 0.0, {}};
+    GroundView look{!up_imu && is_mount_unknown(), config_.ground.search_down_deg, 0.0, {}};
 
     // A scout odometry brings all sightings into the first body frame: the machine may move
     // already.
@@ -163,7 +163,9 @@ Alignment Pipeline::measure_alignment(std::span<const StereoFrame> first_frames)
     wanted.min_agreeing = std::clamp(static_cast<int>(first_frames.size()), 1, wanted.min_agreeing);
     ground::GroundCalibration calibration(wanted);
     for (const StereoFrame& frame : first_frames) {
-        if (!frame.arrival.is_new_and_whole() || light_of(frame) != Light::lit) continue;
+        if (!frame.frame_status.is_new_and_whole() ||
+            exposure_state_of(frame) != ExposureState::well_exposed)
+            continue;
         const MotionEstimate motion = track(frame, scout, Pose{});
         rectify(frame);
         measure_depth(frame);
@@ -189,10 +191,13 @@ std::vector<stereo::CornerShift> Pipeline::corners_of(std::span<const StereoFram
     const std::size_t step = std::max<std::size_t>(1, (frames.size() - 1) / 2);
     for (std::size_t i = 0; i < frames.size(); i += step) {
         const StereoFrame& frame = frames[std::min(i, frames.size() - 1)];
-        if (frame.known_depth || frame.right.empty() || !frame.arrival.is_new_and_whole()) continue;
+        if (frame.known_depth || frame.right.empty() || !frame.frame_status.is_new_and_whole())
+            continue;
         rectify(frame);
-        const auto found = stereo::match_corners(
-            pair_.left.view(), pair_.right.view(), {config_.stereo.disparities, kTrimRows_px});
+        const auto found =
+            stereo::match_corners(pair_.left.view(),
+                                  pair_.right.view(),
+                                  {config_.stereo.disparities, kSelfCalibrationRows_px});
         corners.insert(corners.end(), found.matched.begin(), found.matched.end());
     }
     return corners;
@@ -206,23 +211,24 @@ bool Pipeline::see_with(const camera::StereoRig& rig) {
     return true;
 }
 
-void Pipeline::trim_right_eye(std::span<const StereoFrame> frames) {
-    if (trim_) {  // of an earlier alignment
+void Pipeline::correct_right_camera(std::span<const StereoFrame> frames) {
+    if (self_calibration_) {  // of an earlier alignment
         see_with(nominal_rig_);
-        trim_.reset();
+        self_calibration_.reset();
     }
-    if (!config_.trim.enabled || !nominal_rig_.right) return;
-    for (int round = 0; round < kTrimRounds; ++round) {
-        auto found = stereo::estimate_trim(config_.trim, rig(), corners_of(frames));
+    if (!config_.self_calibration.enabled || !nominal_rig_.right) return;
+    for (int round = 0; round < kSelfCalibrationRounds; ++round) {
+        auto found =
+            stereo::estimate_self_calibration(config_.self_calibration, rig(), corners_of(frames));
         if (!found || !found->significant()) return;
-        if (trim_) {
-            found->eye.roll_rad += trim_->eye.roll_rad;
-            found->eye.pitch_rad += trim_->eye.pitch_rad;
-            found->eye.focal_share += trim_->eye.focal_share;
-            found->row_error_px = trim_->row_error_px;
+        if (self_calibration_) {
+            found->camera.roll_rad += self_calibration_->camera.roll_rad;
+            found->camera.pitch_rad += self_calibration_->camera.pitch_rad;
+            found->camera.focal_share += self_calibration_->camera.focal_share;
+            found->row_error_px = self_calibration_->row_error_px;
         }
-        if (!see_with(with_right_eye(nominal_rig_, found->eye))) return;
-        trim_ = found;
+        if (!see_with(with_right_camera(nominal_rig_, found->camera))) return;
+        self_calibration_ = found;
     }
 }
 
@@ -231,25 +237,26 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
     report.time_ns = frame.time_ns;
     report.index = frame.index;
     report.work = work;
-    report.arrival = watch_.look(frame);
-    const Light light = light_of(frame);
-    camera_monitor_.add(report.arrival, light);
+    report.frame_status = watch_.look(frame);
+    const ExposureState light = exposure_state_of(frame);
+    camera_monitor_.add(report.frame_status, light);
     report.camera = camera_state();
-    if (!report.arrival.is_new_and_whole()) {
+    if (!report.frame_status.is_new_and_whole()) {
         report.work = Work::odometry;
-        odometry_.skip(frame, report.arrival);
-        report.motion =
-            odometry::unseen_motion(config_.odometry, last_motion_, frame.time_ns, report.arrival);
+        odometry_.skip(frame, report.frame_status);
+        report.motion = odometry::unseen_motion(
+            config_.odometry, last_motion_, frame.time_ns, report.frame_status);
         report.known_cells = map_.known_cells();
         return report;
     }
     StageTimer timer(clock_, report);
 
     report.motion = track(frame, odometry_, alignment_.T_odom_body);
-    if (!frame.known_motion) report.motion = level_keeper_.level(report.motion);
+    if (!frame.known_motion) report.motion = tilt_drift_correction_.level(report.motion);
     follow(report.motion);
     timer.finished(Stage::odometry);  // with the move of the map, which follows every frame
-    if (light != Light::lit) report.work = Work::odometry;  // flat grey matches anything
+    if (light != ExposureState::well_exposed)
+        report.work = Work::odometry;  // flat grey matches anything
     if (report.work == Work::full) {
         rectify(frame);
         timer.finished(Stage::rectify);
@@ -257,7 +264,7 @@ FrameReport Pipeline::process(const StereoFrame& frame, Work work) {
         timer.finished(Stage::stereo);
         report.ground =
             observe_ground(report.motion.T_odom_body, Eigen::Vector3d::UnitZ()).observation;
-        level_keeper_.see(report.ground);
+        tilt_drift_correction_.see(report.ground);
         watch_mount(report);
         watch_mirrors(report.motion, report.ground);
         timer.finished(Stage::ground);
@@ -357,7 +364,7 @@ void Pipeline::hide_mirrored_ground() {
 void Pipeline::follow(const MotionEstimate& motion) {
     map_.follow(motion.T_odom_body, motion.relative_covariance);
     feature_drift_.add(motion.relative_covariance, motion.T_odom_body.R());
-    if (motion.health == Health::lost) feature_follower_.forget();
+    if (motion.health == Health::lost) feature_tracker_.forget();
     last_motion_ = motion;
 }
 
@@ -412,7 +419,7 @@ stairs::Terrain Pipeline::terrain() const {
 void Pipeline::find_features() {
     const stairs::Terrain now = terrain();
     feature_finder_.find(now, found_features_);
-    feature_follower_.follow(
+    feature_tracker_.follow(
         found_features_, now, {last_motion_.time_ns, feature_drift_}, features_);
     feature_drift_ = {};
 }

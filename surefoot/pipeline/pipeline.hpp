@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/camera/depth_image.hpp"
-#include "surefoot/camera/frame_watch.hpp"
+#include "surefoot/camera/frame_integrity_check.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/report.hpp"
 #include "surefoot/core/result.hpp"
@@ -20,15 +20,15 @@
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
 #include "surefoot/pipeline/camera_monitor.hpp"
-#include "surefoot/pipeline/level_keeper.hpp"
 #include "surefoot/pipeline/mount_monitor.hpp"
 #include "surefoot/pipeline/pipeline_config.hpp"
+#include "surefoot/pipeline/tilt_drift_correction.hpp"
 #include "surefoot/specular/mirror_watch.hpp"
 #include "surefoot/stairs/classes/ground_classes.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
-#include "surefoot/stairs/tracking/feature_follower.hpp"
+#include "surefoot/stairs/tracking/feature_tracker.hpp"
 #include "surefoot/stereo/matcher.hpp"
-#include "surefoot/stereo/pair_trim.hpp"
+#include "surefoot/stereo/rig_self_calibration.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
 namespace surefoot::pipeline {
@@ -38,10 +38,10 @@ using Clock = std::int64_t (*)();
 
 /// Stereo frames in, rated map of the ground out: one frame is one call of `process`. Frames that
 /// bring depth or motion with them (`known_depth`, on a rectified rig, `known_motion`) keep them.
-/// Frames with a repeated or torn image (camera::FrameWatch) are reported, and nothing else:
-/// the odometry would take a frozen picture for a machine that stands still. The snapshot keeps the
-/// stamps of the last good frame, so that the gate sees it grow old, and says what is wrong with
-/// the camera when there are several in a row.
+/// Frames with a repeated or torn image (camera::FrameIntegrityCheck) are reported, and nothing
+/// else: the odometry would take a frozen picture for a machine that stands still. The snapshot
+/// keeps the stamps of the last good frame, so that the gate sees it grow old, and says what is
+/// wrong with the camera when there are several in a row.
 ///
 /// Frames too bright or too dark get odometry only; several in a row are said likewise. A frame
 /// whose depth measures nothing of the map leaves the stamp of the last one that did.
@@ -76,7 +76,10 @@ class Pipeline {
     /// Neither rig nor settings say how the camera is mounted.
     [[nodiscard]] bool is_mount_unknown() const;
     /// What was corrected; nothing where the calibration fits or nothing could be said.
-    [[nodiscard]] const std::optional<stereo::PairTrim>& trim() const noexcept { return trim_; }
+    [[nodiscard]] const std::optional<stereo::RigSelfCalibration>& self_calibration()
+        const noexcept {
+        return self_calibration_;
+    }
     [[nodiscard]] const elevation::ElevationMap& map() const noexcept { return map_; }
     [[nodiscard]] const traversability::TraversabilityLayers& rating() const noexcept {
         return rating_;
@@ -95,7 +98,7 @@ class Pipeline {
     [[nodiscard]] stairs::View view() const;
     /// Rectified pair (empty without images) and depth of the last full frame.
     [[nodiscard]] const camera::RectifiedPair& pair() const noexcept { return pair_; }
-    [[nodiscard]] const camera::DepthImage& depth() const noexcept { return depth_; }
+    [[nodiscard]] const DepthImage& depth() const noexcept { return depth_; }
 
     /// base_link at the last frame.
     [[nodiscard]] const Pose& T_odom_body() const noexcept { return last_motion_.T_odom_body; }
@@ -119,7 +122,7 @@ class Pipeline {
     [[nodiscard]] Alignment measure_alignment(std::span<const StereoFrame> first_frames);
     /// False, and nothing changed, when the rig cannot be rectified.
     bool see_with(const camera::StereoRig& rig);
-    void trim_right_eye(std::span<const StereoFrame> frames);
+    void correct_right_camera(std::span<const StereoFrame> frames);
     [[nodiscard]] std::vector<stereo::CornerShift> corners_of(std::span<const StereoFrame> frames);
     /// The frame's own motion, or what the odometry says; `T_odom_first`: the first base_link.
     [[nodiscard]] MotionEstimate track(const StereoFrame& frame,
@@ -147,9 +150,9 @@ class Pipeline {
     Executor* executor_;
     Clock clock_;
     camera::StereoRig nominal_rig_;
-    std::optional<stereo::PairTrim> trim_;
+    std::optional<stereo::RigSelfCalibration> self_calibration_;
     std::unique_ptr<camera::Rectifier> rectifier_;  // the odometry refers to it: address must stay
-    camera::FrameWatch watch_;
+    camera::FrameIntegrityCheck watch_;
     odometry::Odometry odometry_;
     std::unique_ptr<stereo::Matcher> matcher_;
     elevation::ElevationMap map_;
@@ -159,7 +162,7 @@ class Pipeline {
     grid::Layer surface_m_;  ///< of the map, as rated last
     traversability::TraversabilityLayers rating_;
     stairs::FeatureFinder feature_finder_;
-    stairs::FeatureFollower feature_follower_;
+    stairs::FeatureTracker feature_tracker_;
     stairs::TerrainFeatures found_features_;  ///< by the last look alone
     stairs::TerrainFeatures features_;
     stairs::Drift feature_drift_;                           ///< of the body, since that look
@@ -168,12 +171,12 @@ class Pipeline {
 
     std::optional<camera::ImuMount> imu_mount_;
     camera::RectifiedPair pair_;
-    camera::DepthImage depth_;
+    DepthImage depth_;
     ground::FramePoints ground_points_;
     MotionEstimate last_motion_;
     CameraMonitor camera_monitor_;
     MountMonitor mount_monitor_;
-    LevelKeeper level_keeper_;
+    TiltDriftCorrection tilt_drift_correction_;
     std::int64_t last_fused_ns_ = 0;
     std::uint64_t version_ = 0;  ///< counts fused frames
 };

@@ -10,11 +10,11 @@
 #include "surefoot/ground/ground_config.hpp"
 #include "surefoot/odometry/odometry.hpp"
 #include "surefoot/pipeline/alignment.hpp"
-#include "surefoot/pipeline/level_keeper.hpp"
+#include "surefoot/pipeline/tilt_drift_correction.hpp"
 #include "surefoot/specular/specular_config.hpp"
 #include "surefoot/stairs/stairs_config.hpp"
 #include "surefoot/stereo/matcher.hpp"
-#include "surefoot/stereo/pair_trim.hpp"
+#include "surefoot/stereo/rig_self_calibration.hpp"
 #include "surefoot/traversability/foothold.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
@@ -26,7 +26,7 @@ struct PipelineConfig {
     LevelConfig level;
     camera::RectificationConfig camera;
     stereo::MatcherConfig stereo;
-    stereo::TrimConfig trim;
+    stereo::SelfCalibrationConfig self_calibration;
     odometry::OdometryConfig odometry;
     ground::GroundConfig ground;
     elevation::ElevationConfig elevation;

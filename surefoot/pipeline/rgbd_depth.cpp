@@ -9,7 +9,7 @@ namespace surefoot::pipeline {
 void depth_from_rgbd(const camera::Rectifier& rectifier,
                      const elevation::SensorConfig& sensor,
                      const Image<float>& depth_m,
-                     camera::DepthImage& out) {
+                     DepthImage& out) {
     constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
     elevation::SensorConfig kinect = sensor;
     kinect.model = elevation::SensorModel::kinect;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/camera/rectifier.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/elevation/fusion/sensor_variance.hpp"
 
 namespace surefoot::pipeline {
@@ -14,6 +14,6 @@ namespace surefoot::pipeline {
 void depth_from_rgbd(const camera::Rectifier& rectifier,
                      const elevation::SensorConfig& sensor,
                      const Image<float>& depth_m,
-                     camera::DepthImage& out);
+                     DepthImage& out);
 
 }  // namespace surefoot::pipeline

@@ -25,7 +25,7 @@ TEST(RgbdDepth, GivesBackTheMeasuredDepthWithTheKinectsSigma) {
     depth_m.at(10, 20) = 1.0F;
     depth_m.at(11, 20) = kNaN;
     depth_m.at(12, 20) = 0.0F;
-    camera::DepthImage out;
+    DepthImage out;
     depth_from_rgbd(rectifier, {}, depth_m, out);
 
     const double fb_px_m = rectifier.rig().depth_to_disparity_px_m();

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "surefoot/core/time.hpp"
-#include "surefoot/pipeline/light.hpp"
+#include "surefoot/pipeline/exposure_state.hpp"
 
 namespace surefoot::pipeline {
 namespace {
@@ -23,8 +23,8 @@ StartUp::StartUp(const Pipeline& pipeline, const std::optional<Pose>& T_odom_fir
 bool StartUp::add(Pipeline& pipeline, StereoFrame frame) {
     last_ns_ = frame.time_ns;
     if (!first_ns_) first_ns_ = frame.time_ns;
-    frame.arrival = watch_.look(frame);
-    lit_in_a_row_ = light_of(frame) == Light::lit ? lit_in_a_row_ + 1 : 0;
+    frame.frame_status = watch_.look(frame);
+    lit_in_a_row_ = exposure_state_of(frame) == ExposureState::well_exposed ? lit_in_a_row_ + 1 : 0;
     if (window().size() == Pipeline::kAlignmentFrames) let_go(1);
     frames_.push_back(std::move(frame));
     return is_full() && try_alignment(pipeline, true);

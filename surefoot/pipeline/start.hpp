@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/camera/frame_watch.hpp"
+#include "surefoot/camera/frame_integrity_check.hpp"
 #include "surefoot/core/frame.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/pipeline/pipeline.hpp"
@@ -62,7 +62,7 @@ class StartUp {
     bool ground_is_there_;
     bool searches_;
     std::optional<Pose> T_odom_first_body_;
-    camera::FrameWatch watch_;
+    camera::FrameIntegrityCheck watch_;
     std::vector<StereoFrame> frames_;
     std::size_t kept_ = 0;  ///< number of `frames_` before the window
     bool keeps_ = false;    ///< frames before the window stay, so that it can go back

@@ -118,7 +118,7 @@ TEST(Start, AnOldImageIsMarked) {
     const Outcome outcome = start_of({30, mid_grey, always, noise}, {});
     ASSERT_EQ(outcome.start.frames.size(), Pipeline::kAlignmentFrames);
     for (const StereoFrame& frame : outcome.start.frames) {
-        EXPECT_EQ(frame.arrival.repeated,
+        EXPECT_EQ(frame.frame_status.repeated,
                   frame.index == 3   ? 1
                   : frame.index == 4 ? 2
                                      : 0)

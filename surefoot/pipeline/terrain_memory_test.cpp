@@ -14,7 +14,7 @@
 #include "surefoot/core/allocations_testing.hpp"
 #include "surefoot/elevation/elevation_map.hpp"
 #include "surefoot/elevation/fusion/height_bounds.hpp"
-#include "surefoot/stairs/tracking/feature_follower.hpp"
+#include "surefoot/stairs/tracking/feature_tracker.hpp"
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/traversability.hpp"
 
@@ -73,7 +73,7 @@ class Terrain {
     void frame(int k) {
         const std::int64_t time_ns = k * kFrame_ns;
         const Pose T_odom_body{Eigen::Quaterniond::Identity(), {0.03 * k, -0.01 * k, 1.0}};
-        map_.follow(T_odom_body, 1e-8 * Matrix6::Identity());
+        map_.update(T_odom_body, 1e-8 * Matrix6::Identity());
         const DepthImage& depth = depths_[k % 30 < 20 ? 0 : 1];
         const FusionCounts counts = map_.add(rig_, T_odom_body, depth, time_ns);
         cleared_ += counts.cells_cleared;
@@ -194,19 +194,19 @@ TEST(TerrainMemory, FollowingFeaturesAllocatesNothingOnceWarm) {
     std::vector<stairs::TerrainFeatures> found;
     for (int k = 0; k < 8; ++k) found.push_back(stairs_found(k % 5, 0.01 * k));
     found.emplace_back();
-    stairs::FeatureFollower follower{stairs::FollowConfig{}};
+    stairs::FeatureTracker tracker{stairs::TrackingConfig{}};
     stairs::TerrainFeatures told;
     std::size_t flights = 0;
-    const auto look = [&](int k) {
+    const auto observation = [&](int k) {
         // Long enough without any that they go and come back.
         const auto i = static_cast<std::size_t>(k % 60 < 40 ? k % 8 : 8);
-        follower.follow(found[i], terrain, {k * kFrame_ns, {}}, told);
+        tracker.update(found[i], terrain, {k * kFrame_ns, {}}, told);
         flights += told.flights.size();
     };
-    for (int k = 0; k < 120; ++k) look(k);
+    for (int k = 0; k < 120; ++k) observation(k);
     EXPECT_GT(flights, 0U);
     const std::int64_t before = allocations;
-    for (int k = 120; k < 600; ++k) look(k);
+    for (int k = 120; k < 600; ++k) observation(k);
     EXPECT_EQ(allocations - before, 0);
 }
 

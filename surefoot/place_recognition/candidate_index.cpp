@@ -8,7 +8,7 @@
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/rng.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr std::size_t kTables = 8;
@@ -92,4 +92,4 @@ std::vector<Candidate> CandidateIndex::find(std::span<const Feature> features, i
     return candidates;
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

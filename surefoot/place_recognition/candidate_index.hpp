@@ -8,7 +8,7 @@
 
 #include "surefoot/place_recognition/place.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 /// A keyframe that may show what a view shows.
 struct Candidate {
@@ -43,4 +43,4 @@ class CandidateIndex {
     std::vector<Chunk> chunks_;
 };
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

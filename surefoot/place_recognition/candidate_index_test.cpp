@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "surefoot/place_recognition/views_testing.hpp"
+#include "surefoot/place_recognition/place_views_testing.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 std::vector<Feature> features_of(int place, int flips) {
@@ -65,4 +65,4 @@ TEST(CandidateIndex, WhatEveryKeyframeShowsTellsNothing) {
 }
 
 }  // namespace
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

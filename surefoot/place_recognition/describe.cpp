@@ -9,7 +9,7 @@
 #include "surefoot/core/assert.hpp"
 #include "surefoot/core/nearest_pixel.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr double kScale = 1.2;  ///< between two levels of the pyramid
@@ -95,4 +95,4 @@ std::vector<Feature> describe(const DescribeConfig& config,
     return features;
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

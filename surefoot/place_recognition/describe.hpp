@@ -7,7 +7,7 @@
 #include "surefoot/core/views.hpp"
 #include "surefoot/place_recognition/place.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 struct DescribeConfig {
     int fast_threshold = 7;  ///< grey steps; low, because walls have little contrast
@@ -34,4 +34,4 @@ struct DescribeConfig {
                                             ImageView<const std::uint8_t> left,
                                             const DepthImage& depth);
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -9,7 +9,7 @@
 #include "surefoot/core/rng.hpp"
 #include "surefoot/place_recognition/feature_matching.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr int kWidth = 320;
@@ -100,4 +100,4 @@ TEST(Describe, AnImageWithoutStructureHasNoFeatures) {
 }
 
 }  // namespace
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

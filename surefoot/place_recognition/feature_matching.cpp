@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr int kNone = 257;  ///< more than any distance
@@ -56,4 +56,4 @@ std::vector<FeatureMatch> match_features(const MatchConfig& config,
     return matches;
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -6,7 +6,7 @@
 
 #include "surefoot/place_recognition/place.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 /// Two features that look like one corner, by their numbers.
 struct FeatureMatch {
@@ -28,4 +28,4 @@ struct MatchConfig {
                                                        std::span<const Feature> candidate,
                                                        std::span<const Feature> query);
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

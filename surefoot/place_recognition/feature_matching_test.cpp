@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "surefoot/place_recognition/views_testing.hpp"
+#include "surefoot/place_recognition/place_views_testing.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 std::vector<Feature> random_features(int count, std::uint64_t seed) {
@@ -54,4 +54,4 @@ TEST(FeatureMatching, WhatIsThereTwiceTellsNothingUnlessItIsTheSameCornerOnceMor
 }
 
 }  // namespace
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

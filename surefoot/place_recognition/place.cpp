@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr double kUnitTolerance = 1e-6;  ///< of a quaternion's norm
@@ -63,4 +63,4 @@ std::optional<std::string> Place::problem() const {
     return std::nullopt;
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

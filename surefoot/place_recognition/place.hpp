@@ -11,7 +11,7 @@
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/pose.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 /// How the surroundings of a corner look: 256 comparisons of two grey values each.
 struct Descriptor {
@@ -72,4 +72,4 @@ inline constexpr int kMostFeatures = 400;  ///< of a view
 inline constexpr double kMostImage_px = 16384.0;
 inline constexpr double kMostDistance_m = 1e4;  ///< of a keyframe from the origin
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

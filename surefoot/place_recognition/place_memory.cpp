@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
@@ -99,4 +99,4 @@ Answer PlaceMemory::recognise(const View& view, const Eigen::Vector3d& up_body, 
     return answer;
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -6,7 +6,7 @@
 #include "surefoot/place_recognition/candidate_index.hpp"
 #include "surefoot/place_recognition/view_comparison.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 struct MemoryConfig {
     ComparisonConfig comparison;
@@ -57,4 +57,4 @@ class PlaceMemory {
 /// Distance [m] and angle [rad] between two poses are both within limits.
 [[nodiscard]] bool is_near(const Pose& a, const Pose& b, double limit_m, double limit_rad);
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "surefoot/place_recognition/views_testing.hpp"
+#include "surefoot/place_recognition/place_views_testing.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 using testing::random_corners;
@@ -76,4 +76,4 @@ TEST(PlaceMemory, KnowsWhatItCovers) {
 }
 
 }  // namespace
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

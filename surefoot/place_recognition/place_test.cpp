@@ -6,9 +6,9 @@
 #include <bit>
 #include <limits>
 
-#include "surefoot/place_recognition/views_testing.hpp"
+#include "surefoot/place_recognition/place_views_testing.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 Place small_place() {
@@ -58,4 +58,4 @@ TEST(Place, SaysWhatIsWrongWithIt) {
 }
 
 }  // namespace
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
@@ -205,4 +205,4 @@ Place PlaceTracker::place() const {
     return place;
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

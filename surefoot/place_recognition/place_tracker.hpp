@@ -11,7 +11,7 @@
 #include "surefoot/place_recognition/place_memory.hpp"
 #include "surefoot/place_recognition/pose_graph.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 struct TrackerConfig {
     DescribeConfig describe;
@@ -115,4 +115,4 @@ class PlaceTracker {
     bool lost_ = false;                     ///< in between
 };
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -8,16 +8,16 @@
 
 #include "surefoot/odometry/synthetic_testing.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
-using odometry::testing::render_eye;
+using odometry::testing::render_camera;
 
 constexpr double kNoise_grey = 1.0;
 constexpr double kStep_m = 0.26;
 
 /// A lens without distortion, whose images are rectified.
-camera::Camera eye() {
+camera::Camera camera() {
     camera::PinholeRadTan lens;
     lens.fx_px = lens.fy_px = 220.0;
     lens.cx_px = 176.0;
@@ -50,7 +50,7 @@ class Walker {
         const Pose T_world_camera = T_body_optical().inverse() * T_map_body * T_body_optical();
         Rng rng(mix_seed(7, static_cast<std::uint64_t>(frames_)));
         Image<float> depth_m;
-        GreyImage left = render_eye(eye(), T_world_camera, kNoise_grey, rng, &depth_m);
+        GreyImage left = render_camera(camera(), T_world_camera, kNoise_grey, rng, &depth_m);
         DepthImage depth;
         depth.resize(left.width(), left.height());
         for (std::size_t i = 0; i < left.size(); ++i) {
@@ -208,4 +208,4 @@ TEST(PlaceTracker, TheSameRunGivesTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

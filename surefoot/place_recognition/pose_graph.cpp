@@ -8,7 +8,7 @@
 
 #include "surefoot/core/assert.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr int kIterations = 20;
@@ -180,4 +180,4 @@ bool PoseGraph::solve() {
     return false;
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -5,7 +5,7 @@
 
 #include "surefoot/core/pose.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 /// Where the keyframes of a run were in the map: odometry between neighbours, recognitions between
 /// any two or with a place whose keyframes do not move. Gauss-Newton over all poses at once
@@ -61,4 +61,4 @@ class PoseGraph {
     std::vector<Edge> recognitions_;
 };
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -7,7 +7,7 @@
 
 #include "surefoot/core/rng.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 constexpr double kSigma_m = 0.01;
@@ -155,4 +155,4 @@ TEST(PoseGraph, TheSolutionIsTheLowestPlace) {
 }
 
 }  // namespace
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/place_recognition/refusal.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 const char* to_string(Refusal refusal) noexcept {
     switch (refusal) {
@@ -22,4 +22,4 @@ const char* to_string(Refusal refusal) noexcept {
     return "unknown";
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 /// Why a view was not taken for a place that is remembered; the first that applies.
 enum class Refusal : std::uint8_t {
@@ -24,4 +24,4 @@ enum class Refusal : std::uint8_t {
 inline constexpr int kRefusals = 13;
 [[nodiscard]] const char* to_string(Refusal refusal) noexcept;
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -9,7 +9,7 @@
 #include "surefoot/core/checked_index.hpp"
 #include "surefoot/odometry/visual/pose_solver.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 using odometry::PointMatch;
@@ -277,4 +277,4 @@ Comparison compare(const ComparisonConfig& config,
     return out;
 }
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -6,7 +6,7 @@
 #include "surefoot/place_recognition/place.hpp"
 #include "surefoot/place_recognition/refusal.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 
 struct ComparisonConfig {
     MatchConfig matching;
@@ -70,4 +70,4 @@ struct Comparison {
                                  const View& query,
                                  const Eigen::Vector3d& up_query);
 
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

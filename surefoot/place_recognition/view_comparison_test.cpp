@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "surefoot/place_recognition/views_testing.hpp"
+#include "surefoot/place_recognition/place_views_testing.hpp"
 
-namespace surefoot::places {
+namespace surefoot::place_recognition {
 namespace {
 
 using testing::Corner;
@@ -180,4 +180,4 @@ TEST(ViewComparison, SurvivesEmptyViews) {
 }
 
 }  // namespace
-}  // namespace surefoot::places
+}  // namespace surefoot::place_recognition

@@ -122,19 +122,19 @@ bool needs_images(const ImageFaultConfig& faults) {
 
 }  // namespace
 
-std::optional<Carrier> carrier_of(CarriedBy carried_by) {
+std::optional<MotionModel> motion_model_of(CarriedBy carried_by) {
     switch (carried_by) {
         case CarriedBy::scene: return std::nullopt;
-        case CarriedBy::trolley: return Carrier::trolley;
-        case CarriedBy::rex: return Carrier::rex;
-        case CarriedBy::hand: return Carrier::hand;
+        case CarriedBy::trolley: return MotionModel::trolley;
+        case CarriedBy::rex: return MotionModel::rex;
+        case CarriedBy::hand: return MotionModel::hand;
     }
     return std::nullopt;
 }
 
 void SceneOptions::describe(ConfigVisitor& visitor) {
     visitor.enumeration("sensor", sensor, kSensorNames, "what looks; analytic makes no images");
-    visitor.enumeration("carrier", carrier, kCarriedByNames, "who goes the scene's way");
+    visitor.enumeration("carrier", motion_model, kCarriedByNames, "who goes the scene's way");
     visitor.boolean("known_motion",
                     known_motion,
                     "the start, and the motion but for analytic.drift, are known");
@@ -172,7 +172,7 @@ void SceneOptions::describe(ConfigVisitor& visitor) {
 
 Result<std::unique_ptr<SceneSource>> open_scene(const SceneOptions& options, Executor* executor) {
     if (auto error = problem(options)) return *std::move(error);
-    auto script = make_scene(options.scene, options.seed, carrier_of(options.carrier));
+    auto script = make_scene(options.scene, options.seed, motion_model_of(options.motion_model));
     if (!script) return script.error();
     auto rig =
         options.rig ? Result<camera::StereoRig>(*options.rig) : rig_preset(options.rig_preset);

@@ -37,14 +37,14 @@ inline constexpr const char* kSensorNames[] = {"stereo", "depth_camera", "analyt
 enum class CarriedBy : std::uint8_t { scene, trolley, rex, hand };
 inline constexpr const char* kCarriedByNames[] = {"scene", "trolley", "rex", "hand"};
 /// Nothing for `CarriedBy::scene`.
-[[nodiscard]] std::optional<Carrier> carrier_of(CarriedBy carried_by);
+[[nodiscard]] std::optional<MotionModel> motion_model_of(CarriedBy carried_by);
 
 struct SceneOptions {
     std::string scene = "demo_stairs";
-    std::string rig_preset = "zed_vga";    ///< ignored if `rig` is set
-    std::optional<camera::StereoRig> rig;  ///< any stereo rig; T_body_left as it says
-    std::uint64_t seed = 1;                ///< textures, noise, centimetres of the path
-    CarriedBy carrier = CarriedBy::scene;  ///< an error where it cannot go the scene's way
+    std::string rig_preset = "zed_vga";         ///< ignored if `rig` is set
+    std::optional<camera::StereoRig> rig;       ///< any stereo rig; T_body_left as it says
+    std::uint64_t seed = 1;                     ///< textures, noise, centimetres of the path
+    CarriedBy motion_model = CarriedBy::scene;  ///< an error where it cannot go the scene's way
     /// A REX that stands where the scene's way begins, and goes where `SceneSource::commanded` is
     /// told to, instead of that way. It has no end but `frames`.
     bool commanded = false;

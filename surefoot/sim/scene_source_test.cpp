@@ -178,11 +178,11 @@ TEST(SceneSourceTest, ATornFrameContainsBothHalves) {
     const auto whole = all_frames(moving_with({}));
     const auto frames = all_frames(moving_with({{6, ImageFault::torn, kRow}}));
     ASSERT_EQ(frames.size(), 8U);
-    for (const auto eye : {&StereoFrame::left, &StereoFrame::right}) {
-        const GreyImage& torn = frames[6].*eye;
-        EXPECT_NE((whole[5].*eye), (whole[6].*eye));
+    for (const auto camera : {&StereoFrame::left, &StereoFrame::right}) {
+        const GreyImage& torn = frames[6].*camera;
+        EXPECT_NE((whole[5].*camera), (whole[6].*camera));
         for (int v = 0; v < torn.height(); ++v) {
-            const GreyImage& origin = v < kRow ? whole[6].*eye : whole[5].*eye;
+            const GreyImage& origin = v < kRow ? whole[6].*camera : whole[5].*camera;
             EXPECT_TRUE(std::equal(torn.row(v), torn.row(v) + torn.width(), origin.row(v))) << v;
         }
     }
@@ -403,10 +403,10 @@ TEST(SceneSourceTest, WrongOptionsGetASentence) {
     no_image.sensor = Sensor::analytic;
     no_image.faults.tear_probability = 0.1;
     EXPECT_NE(message(no_image).find("no images that could be torn"), std::string::npos);
-    SceneOptions one_eye = small("floor");
-    one_eye.sensor = Sensor::analytic;
-    one_eye.rig->right.reset();
-    EXPECT_NE(message(one_eye).find("sim.sensor = analytic models stereo"), std::string::npos);
+    SceneOptions one_camera = small("floor");
+    one_camera.sensor = Sensor::analytic;
+    one_camera.rig->right.reset();
+    EXPECT_NE(message(one_camera).find("sim.sensor = analytic models stereo"), std::string::npos);
     SceneOptions preset;
     preset.rig_preset = "zed_42k";
     EXPECT_NE(message(preset).find("zed_42k"), std::string::npos);

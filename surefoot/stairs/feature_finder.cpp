@@ -222,11 +222,11 @@ void FeatureFinder::weigh_one(const Terrain& terrain, Edge& edge) {
     constexpr double kBeside_m = 0.05;  ///< the next riser is spread so far over its tread
     constexpr double kLeast_m = 0.15;
     constexpr double kMost_m = 1.2;
-    const auto looked_at_m = [&](double depth_m) {
+    const auto observed_at_m = [&](double depth_m) {
         return std::clamp(depth_m - kBeside_m, kLeast_m, kMost_m);
     };
     const StepEvidence evidence = evidence_.weigh(
-        terrain, edge, looked_at_m(edge.upper_depth_m), looked_at_m(edge.lower_depth_m));
+        terrain, edge, observed_at_m(edge.upper_depth_m), observed_at_m(edge.lower_depth_m));
     // What the last look saw of it may say more than the map.
     if (!(edge.log_step_ratio >= evidence.log_ratio)) edge.log_step_ratio = evidence.log_ratio;
     edge.hidden = evidence.is_hidden;

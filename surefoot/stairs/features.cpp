@@ -22,7 +22,7 @@ LineFeature line_feature(const Edge& edge, bool goes_down) {
     feature.across_sigma_m = edge.across_sigma_m;
     feature.bottom_seen = edge.lower_seen;
     feature.log_step_ratio = edge.log_step_ratio;
-    feature.followed = edge.followed;
+    feature.tracked = edge.tracked;
     return feature;
 }
 

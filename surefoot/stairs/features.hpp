@@ -9,10 +9,10 @@
 
 namespace surefoot::stairs {
 
-/// What is known of a feature over several looks (FeatureFollower). One look alone gives no id.
-struct Followed {
+/// What is known of a feature over several looks (FeatureTracker). One look alone gives no id.
+struct Tracked {
     std::uint32_t id = 0;           ///< the same as long as it is followed; 0 = was not followed
-    int looks = 1;                  ///< that found it
+    int observations = 1;           ///< that found it
     std::int64_t last_seen_ns = 0;  ///< stamp of the last of them
     bool seen_now = true;           ///< by the last look of all
     /// The map that a run left shows it by itself, looked at without images (`surefoot stairs` of
@@ -20,7 +20,7 @@ struct Followed {
     std::optional<bool> in_final_map = std::nullopt;
 
     /// One look alone may be a wrong match.
-    [[nodiscard]] bool is_confirmed() const { return looks >= 2; }
+    [[nodiscard]] bool is_confirmed() const { return observations >= 2; }
 };
 
 /// A straight piece of a line at which the ground changes its height. Frame of the map [m].
@@ -46,7 +46,7 @@ struct Edge {
 
     bool upper_walkable = false;  ///< one comes to it from the stance without taking a step
     bool lower_walkable = false;
-    Followed followed;
+    Tracked tracked;
 
     [[nodiscard]] double height_m() const { return upper_m - lower_m; }
     [[nodiscard]] double length_m() const { return (to_m - from_m).norm(); }
@@ -79,7 +79,7 @@ struct LineFeature {
     double across_sigma_m = 0.0;  ///< one sigma of its place, along the yaw
     bool bottom_seen = true;      ///< false: the ground behind it lies at least so deep
     double log_step_ratio = std::numeric_limits<double>::quiet_NaN();  ///< of its edge
-    Followed followed;  ///< drops and kerbs: that of their edge
+    Tracked tracked;  ///< drops and kerbs: that of their edge
 };
 
 /// An edge as met by who goes down or up over it.
@@ -120,7 +120,7 @@ struct Flight {
     bool open = false;      ///< boards without risers, as far as half of its steps or more show it
     FlightSide left;        ///< as seen from the stance, along the way that it leads
     FlightSide right;
-    Followed followed;
+    Tracked tracked;
 };
 
 /// An opening between two walls through which the ground leads.
@@ -131,7 +131,7 @@ struct Door {
     double sill_m = 0.0;  ///< highest across the opening above the ground before it; 0 = none
     double sill_sigma_m = 0.0;
     double clearance_m = 0.0;  ///< least free height; NaN = nothing was seen above it
-    Followed followed;
+    Tracked tracked;
 };
 
 /// What the ground is.

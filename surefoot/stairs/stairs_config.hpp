@@ -8,7 +8,7 @@
 #include "surefoot/stairs/classes/class_config.hpp"
 #include "surefoot/stairs/classes/planar_patches.hpp"
 #include "surefoot/stairs/doors/doors.hpp"
-#include "surefoot/stairs/tracking/follow_config.hpp"
+#include "surefoot/stairs/tracking/tracking_config.hpp"
 
 namespace surefoot::stairs {
 
@@ -52,7 +52,7 @@ struct StairsConfig {
     DoorConfig doors;
     PatchConfig patches;
     ClassConfig classes;
-    FollowConfig follow;
+    TrackingConfig update;
 
     void describe(ConfigVisitor& visitor);
     /// First reason why this cannot be used, or nothing.

@@ -53,7 +53,7 @@ struct Terrain {
     /// Empty or NaN = nothing is known.
     ImageView<const float> density_ratio;
     /// Looks that agree on the height; empty = more than one.
-    ImageView<const std::uint32_t> looks;
+    ImageView<const std::uint32_t> observations;
     /// Where the machine stands: what goes down from there is a drop, what goes up is not.
     Eigen::Vector2d stance_m = Eigen::Vector2d::Zero();
     /// Where ground that goes on would be seen; without it nothing is said of ground that ends.

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "surefoot/stereo/clipped.hpp"
+#include "surefoot/stereo/disparity_selection.hpp"
 #include "surefoot/stereo/finisher.hpp"
 #include "surefoot/stereo/matcher.hpp"
-#include "surefoot/stereo/settle.hpp"
 #include "surefoot/stereo/speckles.hpp"
 
 namespace surefoot::stereo {
@@ -19,29 +19,29 @@ SemiGlobalConfig search_config(const MatcherConfig& config) {
 class CensusMatcher final : public Matcher {
   public:
     explicit CensusMatcher(const MatcherConfig& config)
-        : settle_{config.uniqueness_percent,
-                  // in range: MatcherConfig::problem() keeps it in 0-16
-                  static_cast<int>(std::lround(config.left_right_tolerance_px))},
+        : selection_{config.uniqueness_percent,
+                     // in range: MatcherConfig::problem() keeps it in 0-16
+                     static_cast<int>(std::lround(config.left_right_tolerance_px))},
           search_(search_config(config)),
           finisher_({.lag_rows = kSearchLag_rows}) {}
 
     void match(ImageView<const std::uint8_t> left,
                ImageView<const std::uint8_t> right,
                Executor& executor,
-               camera::DepthImage& depth) override {
+               DepthImage& depth) override {
         depth.resize(left.width, left.height);
         search_.search(left, right, executor, winners_);
-        settle(settle_, winners_, executor, settled_px_);
-        clipped_.remove(left, executor, settled_px_);
-        speckles_.remove(executor, kSpeckleSize_px, kSpeckleRange_px, settled_px_);
-        finisher_.finish(left, right, settled_px_, Filter::median, executor, depth);
+        select_disparities(selection_, winners_, executor, selected_px_);
+        clipped_.remove(left, executor, selected_px_);
+        speckles_.remove(executor, kSpeckleSize_px, kSpeckleRange_px, selected_px_);
+        finisher_.finish(left, right, selected_px_, Filter::median, executor, depth);
     }
 
   private:
-    SettleConfig settle_;
+    SelectionConfig selection_;
     SemiGlobalSearch search_;
     Winners winners_;
-    Image<float> settled_px_;
+    Image<float> selected_px_;
     ClippedFilter clipped_;
     SpeckleFilter speckles_;
     Finisher finisher_;

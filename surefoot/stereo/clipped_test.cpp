@@ -87,7 +87,7 @@ TEST(ClippedFilter, MatchersSayNothingInsideAWhiteWindow) {
     for (const Algorithm algorithm : {Algorithm::census, Algorithm::sgbm, Algorithm::bm}) {
         MatcherConfig config;
         config.algorithm = algorithm;
-        camera::DepthImage depth;
+        DepthImage depth;
         make_matcher(config)->match(pair.left.view(), pair.right.view(), serial(), depth);
         int inside = 0;
         int known_outside = 0;

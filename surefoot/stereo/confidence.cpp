@@ -48,7 +48,7 @@ void rate_matches(int v,
                   const RefinedRow& refined,
                   const Image<std::uint8_t>& jump_distance_px,
                   const UnknownCounts& unknown,
-                  camera::DepthImage& depth) {
+                  DepthImage& depth) {
     rows::RateRow row;
     row.disparity_px = depth.disparity_px.row(v);
     row.residual_grey = refined.residual_grey;

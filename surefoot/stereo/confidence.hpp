@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/refine.hpp"
 
@@ -64,6 +64,6 @@ void rate_matches(int v,
                   const RefinedRow& refined,
                   const Image<std::uint8_t>& jump_distance_px,
                   const UnknownCounts& unknown,
-                  camera::DepthImage& depth);
+                  DepthImage& depth);
 
 }  // namespace surefoot::stereo

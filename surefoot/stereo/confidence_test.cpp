@@ -59,7 +59,7 @@ TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
     constexpr int kHeight = 2;
     constexpr int kRadius = 4;
     Rng rng(4);
-    camera::DepthImage depth;
+    DepthImage depth;
     depth.resize(kWidth, kHeight);
     depth.disparity_px.fill(12.0F);
     std::vector<float> residual(kWidth);
@@ -103,7 +103,7 @@ TEST(RateMatches, IsTheDefinitionOnEveryProcessor) {
 }
 
 TEST(RateMatches, UnknownHasNoSigmaAndIsNoInlier) {
-    camera::DepthImage depth;
+    DepthImage depth;
     depth.resize(2, 1);
     depth.disparity_px.at(0, 0) = 12.0F;
     depth.disparity_px.at(1, 0) = std::numeric_limits<float>::quiet_NaN();

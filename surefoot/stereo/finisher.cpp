@@ -18,7 +18,7 @@ void Finisher::finish(ImageView<const std::uint8_t> left,
                       const Image<float>& found_px,
                       Filter filter,
                       Executor& executor,
-                      camera::DepthImage& depth) {
+                      DepthImage& depth) {
     mark_jumps(executor, found_px, kJump_px, jumps_);
     distance_to_marks(executor, jumps_, jump_distance_px_);
     count_unknown(executor, found_px, kNeighbourhoodRadius_px, unknown_);

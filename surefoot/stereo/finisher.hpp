@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "surefoot/camera/depth_image.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/stereo/consistency.hpp"
 #include "surefoot/stereo/refine.hpp"
 
@@ -20,7 +20,7 @@ class Finisher {
                 const Image<float>& found_px,
                 Filter filter,
                 Executor& executor,
-                camera::DepthImage& depth);
+                DepthImage& depth);
 
   private:
     SubpixelRefiner refiner_;

@@ -130,7 +130,7 @@ void claim_row(const std::uint8_t* HWY_RESTRICT disparity,
         offer[u] = static_cast<std::uint16_t>(256 * cost[u] + disparity[u]);
 }
 
-void settle_row(const SettleRow& row) {
+void select_row(const SelectionRow& row) {
     constexpr int kNoCost = 255;
     const std::uint8_t* HWY_RESTRICT disparity = row.disparity;
     const std::uint8_t* HWY_RESTRICT least = row.cost;
@@ -335,7 +335,7 @@ namespace surefoot::stereo::rows {
 HWY_EXPORT(link_row);
 HWY_EXPORT(median_row);
 HWY_EXPORT(claim_row);
-HWY_EXPORT(settle_row);
+HWY_EXPORT(select_row);
 HWY_EXPORT(mark_along_row);
 HWY_EXPORT(mark_ramps_row);
 HWY_EXPORT(mark_down_row);
@@ -361,8 +361,8 @@ void claim(const std::uint8_t* disparity,
            std::uint16_t* offer) {
     HWY_DYNAMIC_DISPATCH(claim_row)(disparity, cost, width, place, offer);
 }
-void settle(const SettleRow& row) {
-    HWY_DYNAMIC_DISPATCH(settle_row)(row);
+void select(const SelectionRow& row) {
+    HWY_DYNAMIC_DISPATCH(select_row)(row);
 }
 void mark_along(const float* disparity_px, int width, JumpRule rule, std::uint8_t* mark) {
     HWY_DYNAMIC_DISPATCH(mark_along_row)(disparity_px, width, rule, mark);

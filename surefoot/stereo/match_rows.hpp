@@ -28,7 +28,7 @@ void claim(const std::uint8_t* disparity,
            std::int32_t* place,
            std::uint16_t* offer);
 
-struct SettleRow {
+struct SelectionRow {
     const std::uint8_t* disparity = nullptr;
     const std::uint8_t* cost = nullptr;
     const std::uint8_t* cost_below = nullptr;
@@ -41,8 +41,8 @@ struct SettleRow {
     int left_right_px = 0;
     float* disparity_px = nullptr;  ///< out
 };
-/// See stereo::settle.
-void settle(const SettleRow& row);
+/// See stereo::select_disparities.
+void select(const SelectionRow& row);
 
 /// What counts as a jump between known pixels: a difference above step_px + slope * distance.
 struct JumpRule {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/core/config.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/views.hpp"
 
@@ -52,7 +52,7 @@ class Matcher {
     virtual void match(ImageView<const std::uint8_t> left,
                        ImageView<const std::uint8_t> right,
                        Executor& executor,
-                       camera::DepthImage& depth) = 0;
+                       DepthImage& depth) = 0;
 };
 
 /// OpenCV's semi-global matcher with our left-right check, sub-pixel refinement, sigma and outlier

@@ -22,11 +22,9 @@
 namespace surefoot::stereo {
 namespace {
 
-camera::DepthImage match(const GreyImage& left,
-                         const GreyImage& right,
-                         const MatcherConfig& config = {}) {
+DepthImage match(const GreyImage& left, const GreyImage& right, const MatcherConfig& config = {}) {
     Serial serial;
-    camera::DepthImage depth;
+    DepthImage depth;
     make_matcher(config)->match(left.view(), right.view(), serial, depth);
     return depth;
 }
@@ -173,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(Algorithms,
 
 TEST_P(EveryMatcher, AGreyWallGivesNoTrustedDepth) {
     const GreyImage grey(160, 120, 128);
-    const camera::DepthImage depth = match(grey, grey, config());
+    const DepthImage depth = match(grey, grey, config());
     for (std::size_t i = 0; i < depth.disparity_px.size(); ++i) {
         const bool unknown = std::isnan(depth.disparity_px.data()[i]);
         EXPECT_TRUE(unknown || depth.sigma_px.data()[i] == kMaxSigma_px);
@@ -185,7 +183,7 @@ TEST_P(EveryMatcher, AGreyWallGivesNoTrustedDepth) {
 
 TEST_P(EveryMatcher, ImagesNarrowerThanTheSearchWork) {
     const GreyImage grey(20, 10, 128);
-    const camera::DepthImage depth = match(grey, grey, config());
+    const DepthImage depth = match(grey, grey, config());
     EXPECT_EQ(depth.disparity_px.width(), 20);
     EXPECT_EQ(depth.disparity_px.height(), 10);
 }
@@ -197,7 +195,7 @@ TEST(BlockMatcher, WindowsLargerThanTheImageWork) {
     config.bm_prefilter_cap = 63;
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 60}, {60, 1}, {40, 30}}) {
         const GreyImage grey(width, height, 128);
-        const camera::DepthImage depth = match(grey, grey, config);
+        const DepthImage depth = match(grey, grey, config);
         EXPECT_EQ(depth.disparity_px.width(), width);
         EXPECT_EQ(depth.disparity_px.height(), height);
     }
@@ -205,12 +203,12 @@ TEST(BlockMatcher, WindowsLargerThanTheImageWork) {
 
 TEST(SgbmMatcher, ModesDiffer) {
     const test::SyntheticPair& pair = scene();
-    std::vector<camera::DepthImage> found;
+    std::vector<DepthImage> found;
     for (const SgbmMode mode : {SgbmMode::three_way, SgbmMode::hh4, SgbmMode::hh}) {
         MatcherConfig config;
         config.algorithm = Algorithm::sgbm;
         config.sgbm_mode = mode;
-        const camera::DepthImage depth = match(pair.left, pair.right, config);
+        const DepthImage depth = match(pair.left, pair.right, config);
         const Score s =
             score(depth.disparity_px, &depth.sigma_px, pair.disparity_px, [&](int u, int v) {
                 return pair.near_edge.at(u, v) == 0;
@@ -219,7 +217,7 @@ TEST(SgbmMatcher, ModesDiffer) {
         std::printf("%s: rms %.3f px, density %.1f %%\n", name, s.rms_px, 100 * s.density);
         EXPECT_LT(s.rms_px, 0.13) << name;
         EXPECT_GT(s.density, 0.99) << name;
-        for (const camera::DepthImage& other : found)
+        for (const DepthImage& other : found)
             EXPECT_FALSE(same(depth.disparity_px, other.disparity_px)) << name;
         found.push_back(depth);
     }
@@ -228,7 +226,7 @@ TEST(SgbmMatcher, ModesDiffer) {
 TEST_P(EveryMatcher, FloorIsExactToATenthOfAPixel) {
     const test::SyntheticPair& pair = scene();
     const double start_ms = cpu_ms();
-    const camera::DepthImage depth = match(pair.left, pair.right, config());
+    const DepthImage depth = match(pair.left, pair.right, config());
     const double ours_ms = cpu_ms() - start_ms;
     const auto away_from_edges = [&](int u, int v) { return pair.near_edge.at(u, v) == 0; };
     const Score ours =
@@ -272,7 +270,7 @@ TEST(CensusMatcher, IsNotLateOnWeakFloor) {
                 flip(pair.right);
                 flip(pair.disparity_px);
             }
-            const camera::DepthImage depth = match(pair.left, pair.right, MatcherConfig{});
+            const DepthImage depth = match(pair.left, pair.right, MatcherConfig{});
             sum_px += score(depth.disparity_px, nullptr, pair.disparity_px, [](int, int) {
                           return true;
                       }).mean_px;
@@ -285,7 +283,7 @@ TEST(CensusMatcher, IsNotLateOnWeakFloor) {
 
 TEST_P(EveryMatcher, ThreeSigmaCoverTheErrors) {
     const test::SyntheticPair& pair = scene();
-    const camera::DepthImage depth = match(pair.left, pair.right, config());
+    const DepthImage depth = match(pair.left, pair.right, config());
     const Score all = score(
         depth.disparity_px, &depth.sigma_px, pair.disparity_px, [](int, int) { return true; });
     const Score trusted =
@@ -301,7 +299,7 @@ TEST_P(EveryMatcher, ThreeSigmaCoverTheErrors) {
 
 TEST_P(EveryMatcher, WrongMatchesAreSuspectedAndTrustedOnesAreRight) {
     const test::SyntheticPair& pair = scene();
-    const camera::DepthImage depth = match(pair.left, pair.right, config());
+    const DepthImage depth = match(pair.left, pair.right, config());
     int wrong = 0, suspected = 0, trusted = 0, trusted_wrong = 0;
     double expected_wrong = 0.0;
     for (int v = 0; v < pair.left.height(); ++v) {
@@ -335,7 +333,7 @@ TEST_P(EveryMatcher, SameBytesForEveryExecutorThreadCountAndCall) {
     const int threads = cv::getNumThreads();
     Serial serial;
     Threads two(2);
-    camera::DepthImage a, b;
+    DepthImage a, b;
     const auto matcher = make_matcher(config());
     cv::setNumThreads(1);
     matcher->match(pair.left.view(), pair.right.view(), serial, a);
@@ -413,7 +411,7 @@ TEST_P(EveryMatcher, MiddleburyBesidePlainSgbm) {
         const auto everywhere = [](int, int) { return true; };
         MatcherConfig wide = config();
         wide.disparities = pair.disparities;
-        const camera::DepthImage depth = match(left, right, wide);
+        const DepthImage depth = match(left, right, wide);
         const Score ours = score(depth.disparity_px, &depth.sigma_px, truth_px, everywhere);
         const Score plain =
             score(plain_sgbm(left, right, pair.disparities), nullptr, truth_px, everywhere);

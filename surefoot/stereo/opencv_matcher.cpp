@@ -31,7 +31,7 @@ class OpenCvMatcher final : public Matcher {
     void match(ImageView<const std::uint8_t> left,
                ImageView<const std::uint8_t> right,
                Executor& executor,
-               camera::DepthImage& depth) override {
+               DepthImage& depth) override {
         SUREFOOT_ASSERT(left.width == right.width && left.height == right.height && !left.empty());
         depth.resize(left.width, left.height);
         pad(left, padded_left_);

@@ -82,7 +82,7 @@ Corners match_corners(ImageView<const std::uint8_t> left,
         const cv::Point corner(place);
         const auto whole = whole_shift_of(left_mat, right_mat, corner, search);
         if (!whole) continue;
-        if (const auto shift = settle_shift(left, right, corner.x, corner.y, *whole)) {
+        if (const auto shift = refine_shift(left, right, corner.x, corner.y, *whole)) {
             corners.matched.push_back({static_cast<double>(corner.x),
                                        static_cast<double>(corner.y),
                                        shift->columns_px,

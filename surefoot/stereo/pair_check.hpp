@@ -22,7 +22,7 @@ struct PairCheck {
     [[nodiscard]] bool enough() const noexcept { return matched >= kEnough; }
     /// The right image is the left one: four of five corners moved the wrong way. Real pairs move
     /// that way only where the eyes squint.
-    [[nodiscard]] bool exchanged() const noexcept { return enough() && 5 * backward > 4 * matched; }
+    [[nodiscard]] bool swapped() const noexcept { return enough() && 5 * backward > 4 * matched; }
 };
 
 /// Farthest that corners are looked for [px].

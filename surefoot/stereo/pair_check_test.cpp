@@ -45,16 +45,16 @@ TEST(PairCheck, MeasuresRowsToAFractionOfAPixel) {
         // left of the absolute value.
         EXPECT_NEAR(found.row_offset_px, rows_px, 0.05);
         EXPECT_NEAR(found.row_error_px, std::abs(rows_px), 0.1);
-        EXPECT_FALSE(found.exchanged());
+        EXPECT_FALSE(found.swapped());
     }
 }
 
 TEST(PairCheck, NoticesExchangedEyes) {
     const PairCheck found = check(blobs(-12.3, 0), blobs(0, 0));
     ASSERT_TRUE(found.enough());
-    EXPECT_TRUE(found.exchanged());
+    EXPECT_TRUE(found.swapped());
     // Far away there is no disparity: no reason to complain.
-    EXPECT_FALSE(check(blobs(0, 0), blobs(0, 0)).exchanged());
+    EXPECT_FALSE(check(blobs(0, 0), blobs(0, 0)).swapped());
 }
 
 TEST(PairCheck, KnowsWhenItCannotTell) {

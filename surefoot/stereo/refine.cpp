@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
+#include "surefoot/stereo/disparity_selection.hpp"
 #include "surefoot/stereo/refine_rows.hpp"
 #include "surefoot/stereo/row_blocks.hpp"
-#include "surefoot/stereo/settle.hpp"
 
 namespace surefoot::stereo {
 namespace {

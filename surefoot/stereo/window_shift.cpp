@@ -15,7 +15,7 @@ constexpr int kSide = 2 * kHalf + 1;
 constexpr int kTaps = 6;    ///< of the interpolation, from 2 before to 3 behind
 constexpr int kBefore = 2;  ///< of them
 constexpr int kMaxRounds = 20;
-constexpr double kSettled_px = 0.003;
+constexpr double kRefined_px = 0.003;
 constexpr double kFarthest_px = 1.0;  ///< from the whole-pixel match
 constexpr double kMostSlant = 0.5;    ///< px per px: a wall seen at 80 deg
 constexpr double kLeastGain = 0.2;
@@ -74,7 +74,7 @@ std::optional<Row> project(
     constexpr int kReach =
         kHalf + static_cast<int>(2 * kMostSlant * kHalf) + 1;  // in range: constants
     constexpr int kWide = 2 * kReach + kTaps;
-    // in range: settle_shift() keeps the warp within kFarthest_px of a start that it has checked
+    // in range: refine_shift() keeps the warp within kFarthest_px of a start that it has checked
     const auto u0 = u_px + static_cast<int>(std::floor(warp.columns_px));
     const auto v0 = v_px + static_cast<int>(std::floor(warp.rows_px));  // in range: the same
     if (v0 - kHalf - kBefore < 0 || v0 + kHalf + kTaps - kBefore > right.height) return {};
@@ -111,7 +111,7 @@ std::optional<Row> project(
 
 }  // namespace
 
-std::optional<WindowShift> settle_shift(ImageView<const std::uint8_t> left,
+std::optional<WindowShift> refine_shift(ImageView<const std::uint8_t> left,
                                         ImageView<const std::uint8_t> right,
                                         int u_px,
                                         int v_px,
@@ -140,7 +140,7 @@ std::optional<WindowShift> settle_shift(ImageView<const std::uint8_t> left,
             !(std::abs(warp.rows_px - start.rows_px) <= kFarthest_px) ||
             !(std::abs(warp.slant_x) + std::abs(warp.slant_y) <= kMostSlant))
             return {};
-        if (std::abs(step[0]) + std::abs(step[3]) < kSettled_px * gain)
+        if (std::abs(step[0]) + std::abs(step[3]) < kRefined_px * gain)
             return WindowShift{warp.columns_px, warp.rows_px};
     }
     return {};

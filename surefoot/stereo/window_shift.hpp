@@ -29,7 +29,7 @@ inline constexpr int kShiftHalf_px = 7;
 ///
 /// Nothing where the window leaves an image, has no texture in some direction, or settles farther
 /// than a pixel from `start`.
-[[nodiscard]] std::optional<WindowShift> settle_shift(ImageView<const std::uint8_t> left,
+[[nodiscard]] std::optional<WindowShift> refine_shift(ImageView<const std::uint8_t> left,
                                                       ImageView<const std::uint8_t> right,
                                                       int u_px,
                                                       int v_px,

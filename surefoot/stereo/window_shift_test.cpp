@@ -86,7 +86,7 @@ TEST(WindowShift, FindsFractionsOfAPixelAsTheyAre) {
                             rows_px,
                             rng.uniform(0.7, 1.3),
                             rng.uniform(-10.0, 10.0)};
-            const auto found = settle_shift(
+            const auto found = refine_shift(
                 left.view(), picture(waves, view, rng).view(), kMiddle, kMiddle, whole(view));
             ASSERT_TRUE(found);
             EXPECT_NEAR(found->rows_px, view.rows_px, 0.012);
@@ -109,7 +109,7 @@ TEST(WindowShift, NoiseOfBothEyesPullsToNoSide) {
         view.columns_px = rng.uniform(-0.5, 0.5);
         view.rows_px = kTrue_px;
         const auto found =
-            settle_shift(left.view(), picture(waves, view, rng).view(), kMiddle, kMiddle, {});
+            refine_shift(left.view(), picture(waves, view, rng).view(), kMiddle, kMiddle, {});
         ASSERT_TRUE(found);
         const double off_px = found->rows_px - kTrue_px;
         sum += off_px;
@@ -125,24 +125,24 @@ TEST(WindowShift, SaysNothingWhereItCannotTell) {
     Rng rng(3);
     const Waves waves(3);
     const GreyImage left = picture(waves, {}, rng);
-    const auto settled = [&](const GreyImage& from, const GreyImage& to, int u, int v) {
-        return settle_shift(from.view(), to.view(), u, v, {}).has_value();
+    const auto refined = [&](const GreyImage& from, const GreyImage& to, int u, int v) {
+        return refine_shift(from.view(), to.view(), u, v, {}).has_value();
     };
-    EXPECT_TRUE(settled(left, left, kMiddle, kMiddle));
+    EXPECT_TRUE(refined(left, left, kMiddle, kMiddle));
     for (const int rim : {0, kShiftHalf_px, kSide - 1 - kShiftHalf_px, kSide - 1}) {
-        EXPECT_FALSE(settled(left, left, rim, kMiddle));
-        EXPECT_FALSE(settled(left, left, kMiddle, rim));
+        EXPECT_FALSE(refined(left, left, rim, kMiddle));
+        EXPECT_FALSE(refined(left, left, kMiddle, rim));
     }
     const GreyImage grey(kSide, kSide, 90);
-    EXPECT_FALSE(settled(grey, left, kMiddle, kMiddle));
-    EXPECT_FALSE(settled(left, grey, kMiddle, kMiddle));
+    EXPECT_FALSE(refined(grey, left, kMiddle, kMiddle));
+    EXPECT_FALSE(refined(left, grey, kMiddle, kMiddle));
     GreyImage stripes(kSide, kSide);  // nothing tells how far along them it moved
     for (int v = 0; v < kSide; ++v) {
         for (int u = 0; u < kSide; ++u) stripes.at(u, v) = left.at(kMiddle, v);
     }
-    EXPECT_FALSE(settled(stripes, stripes, kMiddle, kMiddle));
+    EXPECT_FALSE(refined(stripes, stripes, kMiddle, kMiddle));
     // Two pixels away from where it was told to look.
-    EXPECT_FALSE(settled(left, picture(waves, {0.0, 0.0, 0.0, 2.0}, rng), kMiddle, kMiddle));
+    EXPECT_FALSE(refined(left, picture(waves, {0.0, 0.0, 0.0, 2.0}, rng), kMiddle, kMiddle));
 }
 
 }  // namespace

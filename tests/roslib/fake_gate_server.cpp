@@ -10,7 +10,7 @@
 #include "service/gate_process/wire_testing.hpp"
 
 int main() {
-    using namespace surefoot::wire;
+    using namespace surefoot::gate_process;
     testing::ScriptedGate gate;
     ServerConfig config;
     config.port = 0;

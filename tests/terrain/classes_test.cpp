@@ -14,7 +14,7 @@
 #include "surefoot/sim/scenes/truth.hpp"
 #include "surefoot/stairs/classes/ground_classes.hpp"
 #include "surefoot/stairs/feature_finder.hpp"
-#include "tests/terrain/scene_eyes.hpp"
+#include "tests/terrain/scene_cameras.hpp"
 
 namespace surefoot::terrain {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "surefoot/sim/scenes/truth.hpp"
-#include "tests/terrain/scene_eyes.hpp"
+#include "tests/terrain/scene_cameras.hpp"
 
 namespace surefoot::terrain {
 namespace {
@@ -158,13 +158,13 @@ constexpr int kCheckEvery = 4;
 
 TEST(Climb, TwentyStepsUpKeepACorrectMap) {
     const Climb climb("flight_20_up");
-    SceneEyes eyes(climb.scene());
+    SceneCameras cameras(climb.scene());
     elevation::ElevationMap map{elevation::ElevationConfig{}};
     std::set<int> passed;
     for (int look = 0; look < climb.looks(); ++look) {
         const double s_m = climb.way_m(look);
         const Pose T_world_body = climb.T_world_body(s_m);
-        add_look(eyes, eyes.look_from(T_world_body), T_world_body, map);
+        add_look(cameras, cameras.look_from(T_world_body), T_world_body, map);
         if (look % kCheckEvery == 0) check_treads(climb, map, s_m, {}, passed);
     }
     for (int number = 0; number < 20; ++number) EXPECT_EQ(passed.count(number), 1U) << number;
@@ -203,7 +203,7 @@ TEST(Climb, TwentyStepsDownKeepACorrectMapAndWhatIsBelowTheCutADrop) {
     const Climb climb("flight_20_down");
     sim::AnalyticStereoConfig errors;
     errors.invented_share = 0.0;
-    SceneEyes eyes(climb.scene(), errors);
+    SceneCameras cameras(climb.scene(), errors);
     elevation::ElevationConfig narrow;
     narrow.prefilter.min_height_m = -1.9;
     elevation::ElevationMap map{elevation::ElevationConfig{}};
@@ -217,9 +217,9 @@ TEST(Climb, TwentyStepsDownKeepACorrectMapAndWhatIsBelowTheCutADrop) {
     for (int look = 0; look < climb.looks(); ++look) {
         const double s_m = climb.way_m(look);
         const Pose T_world_body = climb.T_world_body(s_m);
-        const camera::DepthImage& depth = eyes.look_from(T_world_body);
-        add_look(eyes, depth, T_world_body, map);
-        add_look(eyes, depth, T_world_body, cut);
+        const DepthImage& depth = cameras.look_from(T_world_body);
+        add_look(cameras, depth, T_world_body, map);
+        add_look(cameras, depth, T_world_body, cut);
         if (look % kCheckEvery != 0) continue;
         check_treads(climb, map, s_m, wanted, passed);
         check_treads(climb, cut, s_m, near, passed_cut);

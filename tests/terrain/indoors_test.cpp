@@ -10,7 +10,7 @@
 #include "surefoot/traversability/footprint.hpp"
 #include "surefoot/traversability/reachability.hpp"
 #include "surefoot/traversability/traversability.hpp"
-#include "tests/terrain/scene_eyes.hpp"
+#include "tests/terrain/scene_cameras.hpp"
 
 namespace surefoot::terrain {
 namespace {
@@ -27,11 +27,11 @@ class Drive {
   public:
     explicit Drive(const std::string& name)
         : scene_(sim::make_scene(name, 5).value()),
-          eyes_(scene_.scene),
+          cameras_(scene_.scene),
           map_(elevation::ElevationConfig{}) {
         for (double time_s = 0.0; time_s <= scene_.motion->duration_s(); time_s += kLook_s) {
             T_odom_body_ = scene_.motion->at(time_s).T_world_body;
-            add_look(eyes_, eyes_.look_from(T_odom_body_), T_odom_body_, map_);
+            add_look(cameras_, cameras_.look_from(T_odom_body_), T_odom_body_, map_);
         }
         const traversability::TraversabilityConfig config;
         const double resolution_m = grid().resolution_m;
@@ -74,7 +74,7 @@ class Drive {
 
   private:
     sim::ScriptedScene scene_;
-    SceneEyes eyes_;
+    SceneCameras cameras_;
     elevation::ElevationMap map_;
     Pose T_odom_body_;
     traversability::TraversabilityLayers rating_;

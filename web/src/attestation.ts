@@ -23,7 +23,7 @@ const kTenthMm_m = 1e-4;
 
 const tenthMm = (value_m: number) => Math.round(value_m / kTenthMm_m);
 
-/// The least radius [0.1 mm] that holds both soles: `least_vouched_radius_sq` of surefoot/gate/vouching.cpp.
+/// The least radius [0.1 mm] that holds both soles: `least_vouched_radius_sq` of surefoot/gate/attestation.cpp.
 function leastRadius_tenth_mm({ left, right }: Machine["feet"]): number {
   const reach = (center_m: number, size_m: number) =>
     Math.abs(tenthMm(center_m)) + Math.floor((tenthMm(size_m) + 1) / 2);

@@ -12,7 +12,7 @@
 #include "surefoot/gate/reason.hpp"
 
 /// How the audit log stores fields: little-endian, one after the other, without gaps.
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 // Layers are copied row by row as they lie in memory.
 static_assert(std::endian::native == std::endian::little);
@@ -95,4 +95,4 @@ class ByteReader {
     bool ok_ = true;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -15,7 +15,7 @@
 
 #include "surefoot/core/fnv1a.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 Error system_error(const std::string& what, int error) {
@@ -104,4 +104,4 @@ std::uint64_t new_run_id() {
     return fnv1a(fmt::format("{} {} {}", boot, now, ::getpid()));
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -10,7 +10,7 @@
 
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// A folder that takes one growing file at a time: all that the audit log asks of a disk, so that
 /// tests can put a bad one in its place. Every call may fail and may take long. One thread.
@@ -51,4 +51,4 @@ class AuditDisk {
 /// the steady clock and the process.
 [[nodiscard]] std::uint64_t new_run_id();
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 #include "service/gate_process/audit/audit_bytes.hpp"
 #include "surefoot/core/fnv1a.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::size_t kCheckedBytes = kFrameHeaderBytes - 4;
@@ -184,4 +184,4 @@ bool parse_audit_file_name(std::string_view name, std::uint64_t& number) noexcep
     return error == std::errc{} && rest == end;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -13,7 +13,7 @@
 ///
 ///     magic+version  kind  encoding  0  stored  plain  sequence  previous  check | payload | hash
 ///     4              1     1         2  4       4      8         8         4     | stored  | 8
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 enum class FrameKind : std::uint8_t { file = 1, verdict = 2, gap = 3, act = 4 };
 enum class FrameEncoding : std::uint8_t { plain = 0, zstd = 1 };
@@ -72,4 +72,4 @@ void write_act(const Act& act, char* out) noexcept;
 /// The number of such a name; false for every other name.
 [[nodiscard]] bool parse_audit_file_name(std::string_view name, std::uint64_t& number) noexcept;
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

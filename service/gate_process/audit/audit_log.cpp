@@ -9,7 +9,7 @@
 
 #include "service/gate_process/steady_clock.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 /// What an entry of the ring begins with; the record follows.
@@ -205,4 +205,4 @@ void AuditLog::write_last_gap() {
         static_cast<void>(succeeded(writer_.sync()));
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

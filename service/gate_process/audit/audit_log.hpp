@@ -16,7 +16,7 @@
 #include "service/gate_process/audit/byte_ring.hpp"
 #include "service/gate_process/sockets/acts.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 struct AuditConfig {
     AuditFiles files;
@@ -97,4 +97,4 @@ class AuditLog {
     std::thread thread_;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

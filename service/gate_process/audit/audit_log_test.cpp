@@ -16,7 +16,7 @@
 #include "service/gate_process/audit/memory_disk_testing.hpp"
 #include "surefoot/core/allocation_counts_testing.hpp"
 
-namespace surefoot::wire::testing {
+namespace surefoot::gate_process::testing {
 namespace {
 
 AuditConfig small_config() {
@@ -309,4 +309,4 @@ TEST(AuditLog, goes_on_after_a_limit_of_the_system_itself) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire::testing
+}  // namespace surefoot::gate_process::testing

@@ -12,7 +12,7 @@
 #include "surefoot/core/fnv1a.hpp"
 #include "surefoot/files/input_file.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 namespace fs = std::filesystem;
@@ -242,4 +242,4 @@ Result<AuditSummary> read_audit(const std::string& path,
     return reader.summary();
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -11,7 +11,7 @@
 #include "service/gate_process/audit/audit_frame.hpp"
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// The first thing in a log that cannot be right. Nothing after it was read.
 struct AuditDamage {
@@ -100,4 +100,4 @@ class AuditReader {
                                               AuditReader::OnVerdict on_verdict,
                                               AuditReader::OnAct on_act = {});
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

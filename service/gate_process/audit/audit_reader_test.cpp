@@ -16,7 +16,7 @@
 #include "service/gate_process/audit/memory_disk_testing.hpp"
 #include "surefoot/core/fnv1a.hpp"
 
-namespace surefoot::wire::testing {
+namespace surefoot::gate_process::testing {
 namespace {
 
 /// Nine verdicts of one run in three files, a gap after each.
@@ -358,4 +358,4 @@ TEST(AuditFrame, names_of_files_are_told_from_all_others) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire::testing
+}  // namespace surefoot::gate_process::testing

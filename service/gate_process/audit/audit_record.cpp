@@ -7,7 +7,7 @@
 #include "service/gate_process/audit/audit_fields.hpp"
 #include "surefoot/core/fnv1a.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 using grid::MapSnapshot;
@@ -259,4 +259,4 @@ std::uint64_t hash_of(const Machine& machine) {
     return fnv1a(format_machine(machine));
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

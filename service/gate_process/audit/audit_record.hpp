@@ -12,7 +12,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/gate/gate.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// A verdict of decide() and what it was made from, as the gate had it. `map` must hold the bytes
 /// that were decided on.
@@ -83,4 +83,4 @@ struct FieldDifference {
 /// FNV-1a of format_machine().
 [[nodiscard]] std::uint64_t hash_of(const Machine& machine);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 
 #include "service/gate_process/audit/audit_testing.hpp"
 
-namespace surefoot::wire::testing {
+namespace surefoot::gate_process::testing {
 namespace {
 
 /// Writes, reads, decides again; the differences to the verdict of the whole snapshot.
@@ -215,13 +215,13 @@ TEST(AuditRecord, no_record_is_longer_than_promised) {
 TEST(AuditRecord, a_machine_comes_back_whole) {
     Machine machine = rex();
     machine.movements[9].name = {'N', '\0'};
-    machine.limits.vouch_radius_tenth_mm = 4321;
+    machine.limits.attestation_radius_tenth_mm = 4321;
     Machine again;
     ASSERT_TRUE(parse_machine(format_machine(machine), again));
     EXPECT_EQ(format_machine(again), format_machine(machine));
     EXPECT_EQ(again.problem(), nullptr);
     EXPECT_STREQ(again.movements[9].name.data(), "N");
-    EXPECT_EQ(again.limits.vouch_radius_tenth_mm, 4321);
+    EXPECT_EQ(again.limits.attestation_radius_tenth_mm, 4321);
     EXPECT_EQ(hash_of(again), hash_of(machine));
     again.limits.drop_tenth_mm += 1;
     EXPECT_NE(hash_of(again), hash_of(machine));
@@ -231,4 +231,4 @@ TEST(AuditRecord, a_machine_comes_back_whole) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire::testing
+}  // namespace surefoot::gate_process::testing

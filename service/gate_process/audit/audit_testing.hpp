@@ -10,7 +10,7 @@
 #include "surefoot/gate/gate_testing.hpp"
 
 /// Random ground and questions for the tests of the audit log.
-namespace surefoot::wire::testing {
+namespace surefoot::gate_process::testing {
 
 using gate::testing::kNowNs;
 using gate::testing::kReady;
@@ -79,11 +79,11 @@ inline gate::Query random_query(Rng& rng) {
     query.sequence = rng.next_u64();
     if (rng.below(2) == 0) {
         const auto off = [&rng] { return static_cast<std::int64_t>(rng.uniform(-2500.0, 2500.0)); };
-        query.vouched = {true,
-                         query.x_tenth_mm + off(),
-                         query.y_tenth_mm + off(),
-                         static_cast<std::int32_t>(2000 + rng.below(8000)),
-                         static_cast<std::int32_t>(rng.uniform(-300.0, 300.0))};
+        query.attested = {true,
+                          query.x_tenth_mm + off(),
+                          query.y_tenth_mm + off(),
+                          static_cast<std::int32_t>(2000 + rng.below(8000)),
+                          static_cast<std::int32_t>(rng.uniform(-300.0, 300.0))};
     }
     if (rng.below(4) == 0) {
         query.stance_source = gate::StanceHeight::given;
@@ -132,7 +132,7 @@ inline Case random_case(Rng& rng, const Machine& machine = rex()) {
     c.machine = machine;
     c.map = random_ground(rng);
     c.query = random_query(rng);
-    if (c.query.vouched.active) blind(*c.map, c.query, static_cast<std::int64_t>(rng.below(5000)));
+    if (c.query.attested.active) blind(*c.map, c.query, static_cast<std::int64_t>(rng.below(5000)));
     c.decide();
     return c;
 }
@@ -176,4 +176,4 @@ inline std::string words(const std::vector<FieldDifference>& differences) {
     return text;
 }
 
-}  // namespace surefoot::wire::testing
+}  // namespace surefoot::gate_process::testing

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// zstd at its fastest level: cells of a floor shrink tenfold, and the rest of the machine needs
 /// the processor more.
@@ -159,4 +159,4 @@ void AuditWriter::remove_oldest() {
     }
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -10,7 +10,7 @@
 #include "service/gate_process/audit/audit_disk.hpp"
 #include "service/gate_process/audit/audit_frame.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 struct AuditFiles {
     std::uint64_t run_id = 0;  ///< of this process; names its files
@@ -66,4 +66,4 @@ class AuditWriter {
     std::string frame_;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

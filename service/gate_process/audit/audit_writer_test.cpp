@@ -7,7 +7,7 @@
 #include "service/gate_process/audit/audit_testing.hpp"
 #include "service/gate_process/audit/memory_disk_testing.hpp"
 
-namespace surefoot::wire::testing {
+namespace surefoot::gate_process::testing {
 namespace {
 
 struct Bench {
@@ -157,4 +157,4 @@ TEST(AuditWriter, a_folder_that_cannot_be_written_is_an_error_and_no_more) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire::testing
+}  // namespace surefoot::gate_process::testing

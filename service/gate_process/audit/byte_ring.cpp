@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::uint64_t kLengthBytes = 8;
@@ -70,4 +70,4 @@ void ByteRing::pop() noexcept {
                 std::memory_order_release);
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

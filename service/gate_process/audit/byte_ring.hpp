@@ -7,7 +7,7 @@
 #include <memory>
 #include <string_view>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Entries of any length from one thread to one other, without a lock and without allocating: what
 /// has no room is refused. The writing thread calls `reserve`, `commit` and `oldest`, the reading
@@ -46,4 +46,4 @@ class ByteRing {
     std::atomic<std::uint64_t> read_{0};
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -10,7 +10,7 @@
 
 #include "surefoot/core/rng.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 bool push(ByteRing& ring, const std::string& entry) {
@@ -83,4 +83,4 @@ TEST(ByteRing, carries_entries_from_one_thread_to_another) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -15,7 +15,7 @@
 #include "service/gate_process/audit/audit_disk.hpp"
 #include "service/gate_process/audit/audit_reader.hpp"
 
-namespace surefoot::wire::testing {
+namespace surefoot::gate_process::testing {
 
 /// A folder in memory that can be full, broken, slow or stubborn. Test and log look at it together.
 struct Platter {
@@ -127,4 +127,4 @@ class MemoryDisk final : public AuditDisk {
     std::string open_;
 };
 
-}  // namespace surefoot::wire::testing
+}  // namespace surefoot::gate_process::testing

@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 /// A pipe of this name must not make the caller wait.
@@ -140,4 +140,4 @@ bool ChannelFile::is_at(const std::string& path) const noexcept {
            ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

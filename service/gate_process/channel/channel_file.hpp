@@ -9,7 +9,7 @@
 
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// How every channel begins.
 struct ChannelBegin {
@@ -55,4 +55,4 @@ class ChannelFile {
 /// An error of a channel.
 [[nodiscard]] Error channel_error(const std::string& path, const std::string& what);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -13,7 +13,7 @@
 #include <charconv>
 #include <cstring>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "words are read as they lie in memory");
@@ -140,4 +140,4 @@ std::uint64_t KeyedChecksum::finish() noexcept {
     return v0_ ^ v1_ ^ v2_ ^ v3_;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// 128 secret bits that two processes share.
 struct ChecksumKey {
@@ -52,4 +52,4 @@ class KeyedChecksum {
     std::uint64_t length_ = 0;  ///< bytes so far
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 /// The key 00 01 .. 0f of the published vectors.
@@ -121,4 +121,4 @@ TEST_F(KeyFile, that_is_missing_or_no_file_is_refused_at_once) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstring>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 __extension__ using Wide = unsigned __int128;
@@ -72,4 +72,4 @@ std::uint64_t memory_checksum(const ChecksumKey& key,
     return checksum.finish();
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -7,7 +7,7 @@
 
 #include "service/gate_process/channel/keyed_checksum.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// A keyed checksum of a large piece of memory, several times as fast as KeyedChecksum alone: each
 /// block of 1024 bytes is hashed to 16 bytes with secret numbers (NH with words of 64 bits: Black,
@@ -20,4 +20,4 @@ namespace surefoot::wire {
                                             std::initializer_list<std::uint64_t> labels,
                                             std::span<const unsigned char> bytes) noexcept;
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

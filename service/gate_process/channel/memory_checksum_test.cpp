@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr ChecksumKey kKey{0x0706050403020100ULL, 0x0f0e0d0c0b0a0908ULL};
@@ -99,4 +99,4 @@ TEST(MemoryChecksum, key_labels_length_and_order_count) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -13,7 +13,7 @@
 
 #include "service/gate_process/channel/memory_checksum.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x4c4e484354465253;  // "SRFTCHNL"
@@ -291,4 +291,4 @@ void SnapshotReader::want_restart() noexcept {
     if (read_head(file_, head)) write_number(file_, offsetof(Head, restart_wanted), head.writer);
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

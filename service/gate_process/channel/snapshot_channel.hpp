@@ -12,7 +12,7 @@
 #include "surefoot/core/result.hpp"
 #include "surefoot/grid/map_snapshot.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Where a channel is, and the key of its checksums. Who has the key can publish maps.
 struct ChannelAddress {
@@ -100,4 +100,4 @@ class SnapshotReader {
     std::uint64_t forged_ = 0;  ///< publication of this writer that was found forged; 0 = none
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

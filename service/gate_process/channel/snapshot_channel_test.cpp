@@ -16,7 +16,7 @@
 #include <tuple>
 #include <vector>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 using Read = SnapshotReader::Read;
@@ -459,4 +459,4 @@ TEST_F(SnapshotChannel, a_writer_that_is_killed_while_writing_harms_nobody) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 const Json* member(const Json& object, const char* name) {
@@ -103,4 +103,4 @@ Result<GoalQuestion> read_goal(const Json& message) {
     return goal;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -11,7 +11,7 @@
 
 /// Foreign values into typed ones. Nothing is guessed: a number in quotes, a fraction where a whole
 /// number belongs, null and true are no numbers.
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// 2^53 - 1: the largest whole number that every JSON reader keeps exactly.
 inline constexpr std::uint64_t kMaxExact = (std::uint64_t{1} << 53U) - 1;
@@ -41,4 +41,4 @@ struct StepRequest {
 /// connection is left for the caller.
 [[nodiscard]] Result<GoalQuestion> read_goal(const Json& message);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

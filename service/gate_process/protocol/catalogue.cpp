@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 bool names(std::string_view ours, std::string_view theirs) noexcept {
@@ -37,4 +37,4 @@ bool same_type(std::string_view ours, std::string_view theirs) noexcept {
            theirs.ends_with(name);
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Everything that has a name on the wire. Closed: a name that is not here is not served.
 enum class Topic : std::uint8_t { verdict, health, diagnostics, outlook, goal_marker, goal };
@@ -32,7 +32,7 @@ enum class Service : std::uint8_t {
     step_with_reasons,
     authenticate,
     rearm,
-    vouch,
+    attest,
     health,
     list_topics,
     list_services,
@@ -64,7 +64,7 @@ inline constexpr std::array<ServiceEntry, 23> kServices{{
     {Service::step_with_reasons, "/surefoot/step", "surefoot/Step"},
     {Service::authenticate, "/surefoot/authenticate", "surefoot/Authenticate"},
     {Service::rearm, "/surefoot/rearm", "std_srvs/Trigger"},
-    {Service::vouch, "/surefoot/vouch", "surefoot/Vouch"},
+    {Service::attest, "/surefoot/vouch", "surefoot/Vouch"},
     {Service::health, "/surefoot/health", "surefoot/GetHealth"},
     {Service::list_topics, "/rosapi/topics", "rosapi/Topics"},
     {Service::list_services, "/rosapi/services", "rosapi/Services"},
@@ -91,4 +91,4 @@ inline constexpr std::array<ServiceEntry, 23> kServices{{
 /// Do the two name one type? "pkg/Name" and "pkg/msg/Name" do.
 [[nodiscard]] bool same_type(std::string_view ours, std::string_view theirs) noexcept;
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

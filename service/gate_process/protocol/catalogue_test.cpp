@@ -5,7 +5,7 @@
 
 #include "service/gate_process/sockets/token_bucket.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 TEST(Catalogue, NamesWithAndWithoutTheirSlash) {
@@ -47,4 +47,4 @@ TEST(TokenBucket, BurstThenRate) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 /// Reads a text without keeping it, and stops at the first thing that is not allowed. The names are
@@ -94,4 +94,4 @@ std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -8,7 +8,7 @@
 
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Keys keep the order in which they are written: the same answer gives the same bytes.
 using Json = nlohmann::ordered_json;
@@ -30,4 +30,4 @@ struct JsonLimits {
 /// On one line. Bytes that are no UTF-8 become U+FFFD: an answer is never lost for its text.
 [[nodiscard]] std::string dump(const Json& json);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 std::string problem_of(const std::string& text, const JsonLimits& limits = {}) {
@@ -51,4 +51,4 @@ TEST(JsonText, DeepNestingIsNoStackOverflow) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

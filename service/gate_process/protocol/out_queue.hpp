@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Texts that wait for a socket. Replies leave before messages of topics, each kind in order.
 class OutQueue {
@@ -41,4 +41,4 @@ class OutQueue {
     std::deque<std::string> topics_;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

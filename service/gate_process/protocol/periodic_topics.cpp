@@ -5,7 +5,7 @@
 
 #include "service/gate_process/protocol/topic_json.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kNsPerMs = 1'000'000;
@@ -13,7 +13,7 @@ constexpr std::int64_t kHealthNs = 400 * kNsPerMs;
 constexpr std::int64_t kChangedHealthNs = 20 * kNsPerMs;  // a state that flickers is no flood
 constexpr std::int64_t kDiagnosticsNs = 1000 * kNsPerMs;
 
-bool same_area(const gate::VouchedArea& a, const gate::VouchedArea& b) {
+bool same_area(const gate::AttestedArea& a, const gate::AttestedArea& b) {
     return a.active == b.active && a.center_x_tenth_mm == b.center_x_tenth_mm &&
            a.center_y_tenth_mm == b.center_y_tenth_mm && a.radius_tenth_mm == b.radius_tenth_mm &&
            a.height_tenth_mm == b.height_tenth_mm;
@@ -21,7 +21,7 @@ bool same_area(const gate::VouchedArea& a, const gate::VouchedArea& b) {
 
 bool same_state(const GateReport& a, const GateReport& b) {
     return a.health.state == b.health.state && a.health.faults == b.health.faults &&
-           a.why == b.why && a.vouching == b.vouching && same_area(a.vouched, b.vouched);
+           a.why == b.why && a.attestation == b.attestation && same_area(a.attested, b.attested);
 }
 
 }  // namespace
@@ -54,4 +54,4 @@ std::vector<TopicMessage> PeriodicTopics::due(StepGate& gate, std::int64_t now_n
     return messages;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -8,7 +8,7 @@
 #include "service/gate_process/protocol/subscriptions.hpp"
 #include "service/gate_process/step_gate.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// When health and diagnostics are published: at once when the state changes, else health every
 /// 400 ms (a listener that hears none for a second knows that the gate is gone) and diagnostics
@@ -27,4 +27,4 @@ class PeriodicTopics {
     std::optional<std::int64_t> last_diagnostics_ns_;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

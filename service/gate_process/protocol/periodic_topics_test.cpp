@@ -10,7 +10,7 @@
 #include "service/gate_process/protocol/topic_json.hpp"
 #include "service/gate_process/wire_testing.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 using testing::kMs;
@@ -56,7 +56,7 @@ TEST(PeriodicTopics, EachOfTheFourPartsOfAStateCounts) {
          {Change([](GateReport& r) { r.health.state = gate::GateState::degraded; }),
           Change([](GateReport& r) { r.health.faults.add(gate::Reason::blind); }),
           Change([](GateReport& r) { r.why = gate::Reason::warmup; }),
-          Change([](GateReport& r) { r.vouching = true; })}) {
+          Change([](GateReport& r) { r.attestation = true; })}) {
         ScriptedGate gate;
         PeriodicTopics topics;
         (void)topics.due(gate, 0);
@@ -68,8 +68,8 @@ TEST(PeriodicTopics, EachOfTheFourPartsOfAStateCounts) {
 TEST(PeriodicTopics, HealthHasTheAttestedArea) {
     ScriptedGate gate;
     EXPECT_TRUE(health_object(gate.report_)["vouched"].is_null());
-    gate.report_.vouching = true;
-    gate.report_.vouched = {true, 12'340, -5'000, 6'000, -9'900};
+    gate.report_.attestation = true;
+    gate.report_.attested = {true, 12'340, -5'000, 6'000, -9'900};
     const Json area = health_object(gate.report_)["vouched"];
     EXPECT_NEAR(area["x_m"].get<double>(), 1.234, 1e-9);
     EXPECT_NEAR(area["y_m"].get<double>(), -0.5, 1e-9);
@@ -80,10 +80,10 @@ TEST(PeriodicTopics, HealthHasTheAttestedArea) {
 TEST(PeriodicTopics, ANewAttestationOverAnOldOneIsSaidAtOnce) {
     ScriptedGate gate;
     PeriodicTopics topics;
-    gate.report_.vouching = true;
-    gate.report_.vouched = {true, 0, 0, 6'000, 0};
+    gate.report_.attestation = true;
+    gate.report_.attested = {true, 0, 0, 6'000, 0};
     (void)topics.due(gate, 0);
-    gate.report_.vouched.radius_tenth_mm = 8'000;
+    gate.report_.attested.radius_tenth_mm = 8'000;
     EXPECT_EQ(topics.due(gate, 20 * kMs).size(), 1U);
 }
 
@@ -92,7 +92,7 @@ TEST(PeriodicTopics, AFlickeringStateIsNoFlood) {
     PeriodicTopics topics;
     std::size_t messages = 0;
     for (std::int64_t now_ns = 0; now_ns < 1000 * kMs; now_ns += kMs) {
-        gate.report_.vouching = !gate.report_.vouching;
+        gate.report_.attestation = !gate.report_.attestation;
         messages += topics.due(gate, now_ns).size();
     }
     EXPECT_LE(messages, 51U);
@@ -127,4 +127,4 @@ TEST(PeriodicTopics, DiagnosticsSayLevelAndValues) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

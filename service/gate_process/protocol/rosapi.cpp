@@ -5,7 +5,7 @@
 
 #include "service/gate_process/protocol/arguments.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::string_view kNode = "/surefoot_gate";
@@ -117,4 +117,4 @@ Json rosapi_answer(Service service, const Json& args) {
     }
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -4,7 +4,7 @@
 #include "service/gate_process/protocol/catalogue.hpp"
 #include "service/gate_process/protocol/json_text.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Answers of the services of rosapi about what is in the catalogue, as roslib reads them. An
 /// unknown topic or service has the type ""; an unknown parameter is {value: "null", successful:
@@ -12,4 +12,4 @@ namespace surefoot::wire {
 /// `service` is one of list_topics ... has_param; `args` an object, a list or null.
 [[nodiscard]] Json rosapi_answer(Service service, const Json& args);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -10,7 +10,7 @@
 #include "service/gate_process/protocol/topic_json.hpp"
 #include "service/gate_process/protocol/verdict_json.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 /// `step_forward` asks for the joystick's outer ring, ahead (machines/rex.yaml: N).
@@ -242,7 +242,7 @@ void RosbridgeSession::serve(const ServiceEntry& entry, const Call& call, const 
     switch (entry.service) {
         case Service::authenticate: return authenticate_by_service(call, args);
         case Service::rearm: return rearm(call);
-        case Service::vouch: return vouch(call, args);
+        case Service::attest: return attest(call, args);
         case Service::health: return respond(call, health_object(gate_.report(call.now_ns)), true);
         default: return respond(call, rosapi_answer(entry.service, args), true);
     }
@@ -322,12 +322,12 @@ void RosbridgeSession::rearm(const Call& call) {
     respond_done(call, done);
 }
 
-void RosbridgeSession::vouch(const Call& call, const Json& args) {
+void RosbridgeSession::attest(const Call& call, const Json& args) {
     if (!has_right(call, Role::operator_, ActKind::attest))
         return respond_done(call, usage_error(no_right_text(Role::operator_)));
     const auto radius_m = read_radius(args);
     if (!radius_m) return respond(call, radius_m.error().message, false);
-    const Status done = gate_.vouch(connection_, *radius_m, call.now_ns);
+    const Status done = gate_.attest(connection_, *radius_m, call.now_ns);
     gate_.note(act_of(ActKind::attest, role_, connection_, done, call.now_ns, *radius_m));
     respond_done(call, done);
 }
@@ -386,4 +386,4 @@ void RosbridgeSession::respond_done(const Call& call, const Status& done) const 
     respond(call, {{"success", done.ok()}, {"message", done ? "" : done.error().message}}, true);
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

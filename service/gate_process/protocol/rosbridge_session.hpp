@@ -12,7 +12,7 @@
 #include "service/gate_process/sockets/token_bucket.hpp"
 #include "service/gate_process/step_gate.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 struct ServiceEntry;
 struct StepRequest;
@@ -96,7 +96,7 @@ class RosbridgeSession {
     [[nodiscard]] Answer answer_to(const StepRequest& request, const Call& call);
     void rearm(const Call& call);
     void authenticate_by_service(const Call& call, const Json& args);
-    void vouch(const Call& call, const Json& args);
+    void attest(const Call& call, const Json& args);
     void respond_done(const Call& call, const Status& done) const;
 
     [[nodiscard]] Answer ask(const Call& call, const StepQuestion& question);
@@ -118,4 +118,4 @@ class RosbridgeSession {
     std::uint64_t last_sequence_ = 0;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

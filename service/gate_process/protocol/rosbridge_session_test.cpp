@@ -11,7 +11,7 @@
 
 #include "service/gate_process/wire_testing.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 using testing::kMs;
@@ -169,7 +169,7 @@ TEST(RosbridgeSession, NothingElseIsDoneUnderOverload) {
         EXPECT_TRUE(reaction.published.empty());
     }
     EXPECT_TRUE(gate.rearmed.empty());
-    EXPECT_TRUE(gate.vouched.empty());
+    EXPECT_TRUE(gate.attested.empty());
     EXPECT_TRUE(
         session.on_topic({Topic::verdict, std::make_shared<std::string>("1")}, kNowNs).empty());
 }
@@ -386,7 +386,7 @@ TEST(RosbridgeSession, OnlyTheOperatorAttestsAndRearms) {
             EXPECT_EQ(gate.acts.back().role, role);
             EXPECT_EQ(gate.acts.back().connection, 7U);
         }
-        EXPECT_TRUE(gate.vouched.empty());
+        EXPECT_TRUE(gate.attested.empty());
         EXPECT_TRUE(gate.rearmed.empty());
     }
 }
@@ -490,4 +490,4 @@ TEST(RosbridgeSession, WhoeverGuessesTokensIsDropped) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 /// The name is one of ours, so that nothing in it needs escaping.
@@ -92,4 +92,4 @@ std::vector<std::string> Subscriptions::due(std::int64_t now_ns) {
     return texts;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

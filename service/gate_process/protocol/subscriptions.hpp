@@ -11,7 +11,7 @@
 #include "service/gate_process/protocol/catalogue.hpp"
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// A message of a topic. The JSON of its body is shared by all connections that it waits in.
 struct TopicMessage {
@@ -65,4 +65,4 @@ class Subscriptions {
     std::vector<Stream> streams_;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

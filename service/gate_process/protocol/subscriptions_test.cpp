@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 TopicMessage message(const char* body) {
@@ -83,4 +83,4 @@ TEST(Subscriptions, AWishOfTheSameIdReplacesTheOneBefore) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

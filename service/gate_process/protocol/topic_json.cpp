@@ -7,7 +7,7 @@
 #include "service/gate_process/protocol/verdict_json.hpp"
 #include "surefoot/core/time.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr double kNsPerMs = 1e6;
@@ -47,7 +47,7 @@ Json age_ms(std::int64_t age_ns) {
 }
 
 /// The attested area in odom; null if no attestation is in force.
-Json vouched_object(const gate::VouchedArea& area) {
+Json attested_object(const gate::AttestedArea& area) {
     if (!area.active) return nullptr;
     constexpr double kTenthMm_m = 1e-4;
     return {{"x_m", static_cast<double>(area.center_x_tenth_mm) * kTenthMm_m},
@@ -117,8 +117,8 @@ Json health_object(const GateReport& report) {
             {"map_version", report.map_version},
             {"frame_age_ms", age_ms(report.frame_age_ns)},
             {"pose_age_ms", age_ms(report.pose_age_ns)},
-            {"vouching", report.vouching},
-            {"vouched", vouched_object(report.vouched)},
+            {"vouching", report.attestation},
+            {"vouched", attested_object(report.attested)},
             {"asked", report.asked},
             {"allowed", report.allowed}};
 }
@@ -178,4 +178,4 @@ std::array<Json, 2> no_goal_markers() {
     return both_markers(kDelete);
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 #include "service/gate_process/step_gate.hpp"
 
 /// The messages of all topics but the verdicts.
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// {state, why, faults, map_version, frame_age_ms, pose_age_ms, vouching, vouched, asked, allowed}.
 /// An age is null before the first snapshot came. `vouched` is the attested area in odom {x_m, y_m,
@@ -34,4 +34,4 @@ namespace surefoot::wire {
 /// The same two markers taken away: the last goal could not be read.
 [[nodiscard]] std::array<Json, 2> no_goal_markers();
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
@@ -85,7 +85,7 @@ Json evidence_object(const gate::Verdict& verdict) {
                                                      : Json(nullptr)},
             {"cells", e.cells},
             {"known_cells", e.known_cells},
-            {"vouched_cells", e.vouched_cells},
+            {"vouched_cells", e.attested_cells},
             {"unproven", unproven_array(e)}};
 }
 
@@ -108,4 +108,4 @@ Json verdict_object(const gate::Verdict& verdict, const std::string& text) {
             {"valid_for_ms", life_ns > 0 ? life_ns / kNsPerMs : 0}};
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

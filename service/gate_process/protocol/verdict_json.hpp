@@ -7,7 +7,7 @@
 #include "surefoot/gate/verdict.hpp"
 
 /// How a verdict is written as JSON: the one place for services, topics, logs and tools.
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// The answer of the thesis' service `step`: 0 OK, 1 NOT_TRAVERSABLE, -1 ERROR. Never 0 while a
 /// reason stands against it.
@@ -24,4 +24,4 @@ namespace surefoot::wire {
 /// JavaScript number holds are strings: the hash in hexadecimal digits, times in decimal ones.
 [[nodiscard]] Json verdict_object(const gate::Verdict& verdict, const std::string& text);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -6,7 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 TEST(VerdictJson, ADefaultVerdictIsAnError) {
@@ -78,4 +78,4 @@ TEST(VerdictJson, EvidenceIsInMetresAndUnknownIsNull) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::array<Role, 3> kTokenRoles{Role::observer, Role::rider, Role::operator_};
@@ -151,4 +151,4 @@ std::string format_tokens(const Access& access) {
     return text;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

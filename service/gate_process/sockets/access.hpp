@@ -9,7 +9,7 @@
 #include "surefoot/core/result.hpp"
 
 /// Who may do what at the sockets of the gate and of the page. SECURITY.md has the reasons.
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Each role may do everything that the roles before it may do.
 enum class Role : std::uint8_t {
@@ -52,4 +52,4 @@ struct Access {
 [[nodiscard]] bool equal_in_constant_time(std::string_view given,
                                           std::string_view expected) noexcept;
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

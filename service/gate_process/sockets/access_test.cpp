@@ -5,7 +5,7 @@
 
 #include "service/gate_process/sockets/admission.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 Access three_tokens() {
@@ -111,4 +111,4 @@ TEST(Admission, APageThatIsRefusedHearsWhichOptionLetsItIn) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

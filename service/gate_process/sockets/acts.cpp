@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 /// Any number may come from a client.
@@ -53,4 +53,4 @@ Act act_of(ActKind kind,
             done ? "" : done.error().message};
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

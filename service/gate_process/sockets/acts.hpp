@@ -7,7 +7,7 @@
 #include "service/gate_process/sockets/access.hpp"
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 // The numbers stand in audit logs (docs/reference/audit_format.md): never give one a new meaning.
 enum class ActKind : std::uint8_t { connect = 1, authenticate, ask, attest, rearm };
@@ -43,4 +43,4 @@ struct Act {
 /// Longer texts are cut in the log.
 inline constexpr std::size_t kMaxActText_bytes = 200;
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

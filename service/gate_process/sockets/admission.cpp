@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 std::string_view path_of(std::string_view target) noexcept {
     return target.substr(0, target.find('?'));
@@ -98,4 +98,4 @@ Admission admit(const std::string& token,
     return Admission::welcome;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 
 #include "service/gate_process/sockets/access.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 enum class Admission : std::uint8_t { welcome, wrong_token, wrong_origin };
 
@@ -47,4 +47,4 @@ struct Entrance {
 [[nodiscard]] std::string_view query_value(std::string_view target, std::string_view name) noexcept;
 /// http://localhost, 127.0.0.1 or [::1], at any port, or https.
 [[nodiscard]] bool is_loopback_origin(std::string_view origin) noexcept;
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -7,7 +7,7 @@
 #include "service/gate_process/sockets/server_config.hpp"
 #include "service/gate_process/wire_testing.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 const std::string kToken = "0123456789abcdef";
@@ -160,4 +160,4 @@ TEST(OutQueue, HoldsNoMoreThanItsBytes) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -4,7 +4,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <string>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// The address of the other computer; empty when the client runs on this one (it comes from
 /// loopback, or from the very address that it connected to).
@@ -17,4 +17,4 @@ namespace surefoot::wire {
     return there.to_string();
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

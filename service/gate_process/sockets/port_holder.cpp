@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 namespace fs = std::filesystem;
@@ -85,4 +85,4 @@ std::string words_of(const PortHolder& holder) {
     return "process " + std::to_string(holder.process) + " (" + holder.name + ")";
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

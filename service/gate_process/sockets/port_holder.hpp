@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// A process that listens at a TCP port.
 struct PortHolder {
@@ -20,4 +20,4 @@ struct PortHolder {
 /// "process 1234 (surefoot-gate)".
 [[nodiscard]] std::string words_of(const PortHolder& holder);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

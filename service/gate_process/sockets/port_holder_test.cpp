@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 TEST(PortHolder, names_the_process_that_listens) {
@@ -38,4 +38,4 @@ TEST(PortHolder, names_the_process_that_listens) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -8,7 +8,7 @@
 
 #include "service/gate_process/protocol/arguments.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 using AddressBytes = std::array<std::uint8_t, sizeof(in6_addr)>;
@@ -81,4 +81,4 @@ std::optional<std::string> ServerConfig::problem() const {
     return std::nullopt;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

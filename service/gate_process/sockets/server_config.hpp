@@ -12,7 +12,7 @@
 #include "service/gate_process/sockets/slots.hpp"
 #include "service/gate_process/sockets/tls_door.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Whoever serves a network without TLS must give this sentence word by word.
 inline constexpr const char* kInsecureSentence =
@@ -63,4 +63,4 @@ struct ServerConfig {
 /// An IP address that nothing outside of this machine reaches.
 [[nodiscard]] bool is_loopback_address(const std::string& address);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

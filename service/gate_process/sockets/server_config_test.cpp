@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 TEST(ServerAddress, LoopbackIsTheWholeNetAndOneAddress) {
@@ -27,4 +27,4 @@ TEST(ServerAddress, AnAddressIsTheWholeText) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

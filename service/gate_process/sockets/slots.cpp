@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kForgetHalf_ns = 1'000'000'000;
@@ -153,4 +153,4 @@ std::optional<Slots::Id> Slots::least_useful(Rank newcomer, std::int64_t now_ns)
     return found;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

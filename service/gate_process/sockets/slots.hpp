@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// How many connections a service keeps, and for whom.
 struct SlotLimits {
@@ -95,4 +95,4 @@ class Slots {
     Map held_;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

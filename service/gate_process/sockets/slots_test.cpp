@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -200,4 +200,4 @@ TEST(SlotLimits, NoneCanBeSwitchedOff) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -11,7 +11,7 @@
 #include "service/gate_process/sockets/slots.hpp"
 #include "service/gate_process/sockets/tls_door.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// A TLS door whose connections arrive on the thread of `io`, which outlives it.
 [[nodiscard]] inline Result<std::unique_ptr<TlsDoor>> open_tls_door(
@@ -37,4 +37,4 @@ namespace surefoot::wire {
         });
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -25,7 +25,7 @@
 #include "service/gate_process/sockets/slots.hpp"
 #include "service/gate_process/steady_clock.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 namespace net = boost::asio;
@@ -323,4 +323,4 @@ void TlsDoor::stop() {
     listener_->stop();
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

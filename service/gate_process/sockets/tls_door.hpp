@@ -12,7 +12,7 @@
 
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// Certificate chain and private key, both PEM.
 struct TlsFiles {
@@ -83,4 +83,4 @@ class TlsDoor {
     std::unique_ptr<TlsListener> listener_;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

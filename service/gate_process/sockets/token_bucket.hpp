@@ -6,7 +6,7 @@
 
 #include "surefoot/core/time.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// How many things may happen: `burst` at once, `per_s` in the long run.
 struct RateLimit {
@@ -36,4 +36,4 @@ class TokenBucket {
     std::int64_t full_ns_ = 0;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

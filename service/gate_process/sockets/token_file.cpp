@@ -16,7 +16,7 @@
 
 #include "service/gate_process/sockets/server_config.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,4 +172,4 @@ Role guest_role(const std::string& wished, const std::string& bind_address) {
     return is_loopback_address(bind_address) ? Role::rider : Role::none;
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

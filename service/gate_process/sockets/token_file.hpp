@@ -6,7 +6,7 @@
 #include "service/gate_process/sockets/access.hpp"
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 /// `$XDG_STATE_HOME/surefoot/tokens`, or `~/.local/state/surefoot/tokens`. Empty where neither
 /// variable is set.
@@ -43,4 +43,4 @@ struct LoadedAccess {
 /// address: a rider on loopback, nobody beyond.
 [[nodiscard]] Role guest_role(const std::string& wished, const std::string& bind_address);
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ TEST(GuestRole, OnLoopbackARiderBeyondNobody) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

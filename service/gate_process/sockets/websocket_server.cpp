@@ -25,7 +25,7 @@
 #include "service/gate_process/sockets/tls_arrivals.hpp"
 #include "service/gate_process/steady_clock.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 namespace beast = boost::beast;
@@ -756,4 +756,4 @@ ServerCounts WebsocketServer::counts() const {
     return server_->counts();
 }
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

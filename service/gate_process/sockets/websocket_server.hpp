@@ -9,7 +9,7 @@
 #include "service/gate_process/step_gate.hpp"
 #include "surefoot/core/result.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 
 struct ServerCounts {
     std::size_t clients = 0;     ///< that speak rosbridge now
@@ -56,4 +56,4 @@ class WebsocketServer {
     std::unique_ptr<SocketServer> server_;
 };
 
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -22,7 +22,7 @@
 #include "service/gate_process/protocol/json_text.hpp"
 #include "service/gate_process/wire_testing.hpp"
 
-namespace surefoot::wire {
+namespace surefoot::gate_process {
 namespace {
 
 namespace beast = boost::beast;
@@ -791,4 +791,4 @@ TEST(WebsocketServer, ServesInALoopOfItsOwner) {
 }
 
 }  // namespace
-}  // namespace surefoot::wire
+}  // namespace surefoot::gate_process

@@ -127,9 +127,9 @@ TEST(BoardMeasures, WhatIsNotSeenIsNotMeasured) {
     BoardView right =
         testing::view_of(kBoard, *rig.right, rig.T_left_right.inverse() * T, 0.0, rng);
     EXPECT_TRUE(measure_board(kBoard, left, right, rig));
-    camera::StereoRig one_eye = rig;
-    one_eye.right.reset();
-    EXPECT_FALSE(measure_board(kBoard, left, right, one_eye));
+    camera::StereoRig one_camera = rig;
+    one_camera.right.reset();
+    EXPECT_FALSE(measure_board(kBoard, left, right, one_camera));
     EXPECT_FALSE(measure_board(kBoard, right, left, rig)) << "exchanged: behind the camera";
     BoardView discs = left;
     discs.disc_radius_m = 0.01;

@@ -22,7 +22,7 @@ constexpr double kLeastBlur_px = 0.3;  ///< of the area of a pixel alone
 constexpr double kMostBlur_px = 5.0;
 constexpr int kParameters = 7;
 constexpr int kMostSteps = 30;
-constexpr double kSettled_px = 1e-4;
+constexpr double kRefined_px = 1e-4;
 /// Half of black beside white; noise alone has less.
 constexpr double kLeastContrast_dn = 4.0;
 /// Rms of what the model does not explain, of the contrast: an edge alone, half a blot and a bright
@@ -167,7 +167,7 @@ std::optional<System> settle(const std::vector<Sample>& samples,
         next[kLogBlur] =
             std::clamp(next[kLogBlur], std::log(kLeastBlur_px), std::log(kMostBlur_px));
         const System there = system_at(samples, guess, next);
-        const bool settled = change.head<2>().norm() < kSettled_px;
+        const bool settled = change.head<2>().norm() < kRefined_px;
         if (there.cost <= system.cost) {
             p = next;
             system = there;

@@ -118,7 +118,7 @@ GrownChessboard grown_corners(const Board& board,
 }
 
 /// The board from where its corners roughly lie.
-BoardSighting settled_chessboard(const Board& board,
+BoardSighting refined_chessboard(const Board& board,
                                  const Points& corners,
                                  ImageView<const std::uint8_t> view) {
     const auto points = ordered_points(board, corners, view);
@@ -135,7 +135,7 @@ BoardSighting find_chessboard(const Board& board,
                               ImageView<const std::uint8_t> view) {
     std::string problem;
     const auto tried = [&](const Points& corners) {
-        BoardSighting sighting = settled_chessboard(board, corners, view);
+        BoardSighting sighting = refined_chessboard(board, corners, view);
         if (!sighting.found() && problem.empty()) problem = sighting.problem;
         return sighting;
     };

@@ -13,7 +13,7 @@
 namespace surefoot::calibration {
 namespace {
 
-using testing::WideLook;
+using testing::WideImagingConditions;
 using testing::WideProfile;
 
 const Board kBoard{.columns = 9, .rows = 6, .spacing_m = 0.025};

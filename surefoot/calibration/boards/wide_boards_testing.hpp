@@ -58,7 +58,7 @@ inline camera::Camera wide_camera(WideProfile profile, double fov_deg, ImageSize
 }
 
 /// Light, focus and noise of a picture. Grey values are linear in light.
-struct WideLook {
+struct WideImagingConditions {
     const char* name = "clean";
     double paper_dn = 210.0;
     double ink_dn = 30.0;
@@ -70,7 +70,7 @@ struct WideLook {
     double margin = 1.4;        ///< white paper around the squares, in squares
     double shown = 1.0;         ///< share of the outer squares that must be in the image
 };
-inline constexpr std::array<WideLook, 9> kWideLooks{
+inline constexpr std::array<WideImagingConditions, 9> kWideLooks{
     {{},
      {.name = "noise", .blur_px = 0.8, .blur_right_px = 0.8, .noise_dn = 8.0},
      {.name = "blur", .blur_px = 1.8, .blur_right_px = 1.8},
@@ -183,7 +183,7 @@ inline cv::Mat clutter(ImageSize size, Rng& rng) {
 inline GreyImage wide_picture(const Board& board,
                               const camera::Camera& camera,
                               const Pose& T_camera_board,
-                              const WideLook& look,
+                              const WideImagingConditions& look,
                               std::uint64_t seed) {
     constexpr int kSamples = 4;
     Rng rng(seed);

@@ -128,7 +128,7 @@ ceres::CostFunction* cost_of(const Sight& sight, double disc_radius_m) {
     using Functor = Reprojection<kIsFisheye>;
     // The cost function owns it.
     auto* functor = new Functor{sight.point_board_m, sight.pixel, disc_radius_m};
-    if (sight.eye == 0) return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6>(functor);
+    if (sight.camera == 0) return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6>(functor);
     return new ceres::AutoDiffCostFunction<Functor, 2, kLens, 6, 6>(functor);
 }
 
@@ -158,9 +158,9 @@ class Graph {
             auto* cost = fisheye ? cost_of<true>(sight, bundle.disc_radius_m)
                                  : cost_of<false>(sight, bundle.disc_radius_m);
             auto* loss = options.huber_px > 0.0 ? new ceres::HuberLoss(options.huber_px) : nullptr;
-            double* lens = lenses_[static_cast<std::size_t>(sight.eye)].data();
+            double* lens = lenses_[static_cast<std::size_t>(sight.camera)].data();
             double* pose = poses_[static_cast<std::size_t>(sight.view)].data();
-            if (sight.eye == 0)
+            if (sight.camera == 0)
                 problem_.AddResidualBlock(cost, loss, lens, pose);
             else
                 problem_.AddResidualBlock(cost, loss, lens, T_left_right_.data(), pose);
@@ -340,13 +340,13 @@ std::vector<Eigen::Vector2d> residuals_of(const BoardBundle& bundle) {
     std::vector<Eigen::Vector2d> residuals;
     for (const Sight& sight : bundle.sights) {
         const Pose& T_left_board = bundle.T_left_board[static_cast<std::size_t>(sight.view)];
-        const Pose T_eye_board = sight.eye == 1 ? T_right_left * T_left_board : T_left_board;
-        const double* lens = lenses[static_cast<std::size_t>(sight.eye)].data();
+        const Pose T_camera_board = sight.camera == 1 ? T_right_left * T_left_board : T_left_board;
+        const double* lens = lenses[static_cast<std::size_t>(sight.camera)].data();
         const Reprojection<kIsFisheye> sighting{
             sight.point_board_m, sight.pixel, bundle.disc_radius_m};
         const auto seen = [&](const double* p_board, double* predicted) {
             const Eigen::Vector3d p =
-                T_eye_board * Eigen::Vector3d(p_board[0], p_board[1], p_board[2]);
+                T_camera_board * Eigen::Vector3d(p_board[0], p_board[1], p_board[2]);
             return sighting.project(lens, p.data(), predicted);
         };
         Eigen::Vector2d residual;

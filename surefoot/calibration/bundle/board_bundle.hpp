@@ -11,9 +11,9 @@ namespace surefoot::calibration {
 
 /// One board point in one image.
 struct Sight {
-    int eye = 0;   ///< 0 = left or only camera, 1 = right
-    int view = 0;  ///< index into BoardBundle::T_left_board
-    int id = 0;    ///< of the point on its board
+    int camera = 0;  ///< 0 = left or only camera, 1 = right
+    int view = 0;    ///< index into BoardBundle::T_left_board
+    int id = 0;      ///< of the point on its board
     Eigen::Vector3d point_board_m = Eigen::Vector3d::Zero();
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };

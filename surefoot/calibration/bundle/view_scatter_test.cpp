@@ -53,7 +53,7 @@ Stated baseline_of(const camera::StereoRig& rig, const testing::SyntheticViews& 
     const ImageSize size{rig.left.width, rig.left.height};
     StereoOptions options;
     options.pair_factor = 1e3;  // all pairs stay: their errors are the question
-    options.eye.limits.least_px = 10.0;
+    options.camera.limits.least_px = 10.0;
     const auto result =
         calibrate_stereo(kBoard, views.left, views.right, size, LensKind::pinhole4, options);
     EXPECT_TRUE(result) << result.error().message;

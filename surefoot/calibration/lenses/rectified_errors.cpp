@@ -17,11 +17,12 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Central differences over this share of a standard deviation: depth is straight that far.
 constexpr double kStep = 0.1;
 
-std::optional<Eigen::Vector2d> seen(const camera::RectifiedEye& eye,
+std::optional<Eigen::Vector2d> seen(const camera::RectifiedCamera& camera,
                                     const Eigen::Vector3d& p_rectified) {
-    auto raw = camera::raw_from_ray(eye, p_rectified - eye.offset_x_m * Eigen::Vector3d::UnitX());
-    if (!raw || raw->x() < -0.5 || raw->y() < -0.5 || raw->x() > eye.camera.width - 0.5 ||
-        raw->y() > eye.camera.height - 0.5) {
+    auto raw =
+        camera::raw_from_ray(camera, p_rectified - camera.offset_x_m * Eigen::Vector3d::UnitX());
+    if (!raw || raw->x() < -0.5 || raw->y() < -0.5 || raw->x() > camera.camera.width - 0.5 ||
+        raw->y() > camera.camera.height - 0.5) {
         return std::nullopt;
     }
     return raw;
@@ -66,11 +67,11 @@ Eigen::VectorXd depths_m(const StereoParameters& parameters, std::span<const Pix
 
 }  // namespace
 
-std::optional<Eigen::Vector2d> rectified_direction(const camera::RectifiedEye& eye,
+std::optional<Eigen::Vector2d> rectified_direction(const camera::RectifiedCamera& camera,
                                                    const Eigen::Vector2d& raw) {
-    const auto ray = camera::unproject(eye.camera.model, raw);
+    const auto ray = camera::unproject(camera.camera.model, raw);
     if (!ray) return std::nullopt;
-    const Eigen::Vector3d p = eye.R_rectified_raw * *ray;
+    const Eigen::Vector3d p = camera.R_rectified_raw * *ray;
     if (!(p.z() > 0.0)) return std::nullopt;
     return Eigen::Vector2d(p.x() / p.z(), p.y() / p.z());
 }
@@ -93,13 +94,13 @@ double row_rms_px(const camera::Rectification& plan,
 }
 
 camera::StereoRig rig_of(const StereoParameters& parameters) {
-    const auto eye = [&](const Eigen::VectorXd& lens) {
+    const auto camera = [&](const Eigen::VectorXd& lens) {
         return camera::Camera{
             model_of(parameters.kind, lens), parameters.size.width, parameters.size.height};
     };
     camera::StereoRig rig;
-    rig.left = eye(parameters.left);
-    rig.right = eye(parameters.right);
+    rig.left = camera(parameters.left);
+    rig.right = camera(parameters.right);
     rig.T_left_right = parameters.T_left_right;
     return rig;
 }

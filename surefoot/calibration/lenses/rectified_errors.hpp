@@ -13,8 +13,8 @@
 namespace surefoot::calibration {
 
 /// Direction of a raw pixel on the plane z = 1 of the rectified frame; nothing outside the lens.
-[[nodiscard]] std::optional<Eigen::Vector2d> rectified_direction(const camera::RectifiedEye& eye,
-                                                                 const Eigen::Vector2d& raw);
+[[nodiscard]] std::optional<Eigen::Vector2d> rectified_direction(
+    const camera::RectifiedCamera& camera, const Eigen::Vector2d& raw);
 
 /// Calls f(id, left pixel, right pixel) for the points that both views show. Ids ascend in a view.
 template <typename F>

@@ -63,10 +63,10 @@ double cast(const StepScene& scene, const Eigen::Vector3d& from_m, const Eigen::
     return std::isinf(nearest) ? static_cast<double>(kNan) : nearest;
 }
 
-camera::DepthImage render(const StepScene& scene,
+DepthImage render(const StepScene& scene,
                           const camera::RectifiedRig& rig,
                           const Pose& T_odom_body) {
-    camera::DepthImage depth;
+    DepthImage depth;
     depth.resize(rig.width, rig.height);
     const Pose T_odom_camera = T_odom_body * rig.T_body_camera;
     for (int v = 0; v < rig.height; ++v) {
@@ -84,7 +84,7 @@ camera::DepthImage render(const StepScene& scene,
 }
 
 /// Normal noise that is the same within blocks of `block_px` (1 = independent pixels).
-void add_noise(camera::DepthImage& depth, Rng& rng, int block_px) {
+void add_noise(DepthImage& depth, Rng& rng, int block_px) {
     const int columns = depth.disparity_px.width() / block_px + 1;
     std::vector<double> row_px(static_cast<std::size_t>(columns));
     for (int v = 0; v < depth.disparity_px.height(); ++v) {
@@ -147,7 +147,7 @@ TEST(DepthFusion, FloorWithoutNoiseIsExact) {
 TEST(DepthFusion, IndependentNoiseAveragesAndSigmaCoversIt) {
     const StepScene floor;
     Rng rng(21);
-    camera::DepthImage depth = render(floor, zed(), body_at(0));
+    DepthImage depth = render(floor, zed(), body_at(0));
     add_noise(depth, rng, 1);
     ElevationMap map({});
     map.add(zed(), body_at(0), depth, 0);
@@ -165,7 +165,7 @@ TEST(DepthFusion, SharedErrorsOfAMatcherAreNotTakenForIndependent) {
     constexpr int kSeeds = 5;
     for (int seed = 0; seed < kSeeds; ++seed) {
         Rng rng(mix_seed(31, static_cast<std::uint64_t>(seed)));
-        camera::DepthImage depth = render(floor, zed(), body_at(0));
+        DepthImage depth = render(floor, zed(), body_at(0));
         add_noise(depth, rng, 40);
         ElevationMap map({});
         map.add(zed(), body_at(0), depth, 0);
@@ -195,7 +195,7 @@ Border lower_border(double border_share) {
         config.reduction.border_share = border_share;
         ElevationMap map(config);
         for (int view = 0; view < 10; ++view) {
-            camera::DepthImage depth = render(floor, zed(), T_odom_body);
+            DepthImage depth = render(floor, zed(), T_odom_body);
             add_noise(depth, rng, 12);
             map.add(zed(), T_odom_body, depth, view);
         }
@@ -249,7 +249,7 @@ TEST(DepthFusion, ManyViewsImproveHeightsAndStayHonest) {
     double first_median_m = 0.0;
     for (int view = 0; view < 12; ++view) {
         const Pose T_odom_body = body_at(0.02 * view);
-        camera::DepthImage depth = render(floor, zed(), T_odom_body);
+        DepthImage depth = render(floor, zed(), T_odom_body);
         add_noise(depth, rng, 40);
         map.follow(T_odom_body, Matrix6::Zero());
         map.add(zed(), T_odom_body, depth, view);
@@ -260,7 +260,7 @@ TEST(DepthFusion, ManyViewsImproveHeightsAndStayHonest) {
     EXPECT_LT(errors.nees, 1.2);
     // Seen while standing: the same picture again and again must change nothing.
     const Pose T_odom_body = body_at(0.3);
-    camera::DepthImage depth = render(floor, zed(), T_odom_body);
+    DepthImage depth = render(floor, zed(), T_odom_body);
     add_noise(depth, rng, 40);
     map.add(zed(), T_odom_body, depth, 100);
     const ElevationLayers once = map.layers();
@@ -276,7 +276,7 @@ TEST(DepthFusion, ManyViewsImproveHeightsAndStayHonest) {
 TEST(DepthFusion, StepUpHasBothLevelsAndTheEdgeCellTakesTheUpper) {
     const StepScene step{1.2125, 0.18};  // the edge in the middle of a cell
     Rng rng(51);
-    camera::DepthImage depth = render(step, zed(), body_at(0));
+    DepthImage depth = render(step, zed(), body_at(0));
     add_noise(depth, rng, 1);
     ElevationMap map({});
     map.add(zed(), body_at(0), depth, 0);
@@ -298,8 +298,8 @@ TEST(DepthFusion, StepUpHasBothLevelsAndTheEdgeCellTakesTheUpper) {
 }
 
 /// What a matcher makes of a drop: the disparities on both sides joined by a ramp across the edge.
-void smear_columns(camera::DepthImage& depth, int half_px) {
-    const camera::DepthImage sharp = depth;
+void smear_columns(DepthImage& depth, int half_px) {
+    const DepthImage sharp = depth;
     const Image<float>& d = sharp.disparity_px;
     for (int u = 0; u < d.width(); ++u) {
         for (int v = 1; v < d.height(); ++v) {
@@ -325,7 +325,7 @@ int cells_between_the_levels(const ElevationMap& map, const StepScene& drop) {
 
 TEST(DepthFusion, RampsThatMatchersInventBehindDropsAreNotFused) {
     const StepScene drop{1.3, -0.18};
-    camera::DepthImage depth = render(drop, zed(), body_at(0));
+    DepthImage depth = render(drop, zed(), body_at(0));
     smear_columns(depth, 4);
     ElevationConfig config;
     config.pixels.surface_check = false;
@@ -341,9 +341,9 @@ TEST(DepthFusion, RampsThatMatchersInventBehindDropsAreNotFused) {
 
 TEST(DepthFusion, PixelsWithoutATrueDisparitySigmaOrTrustAreNotFused) {
     const camera::RectifiedRig rig = zed();
-    const camera::DepthImage good = render({}, rig, body_at(0));
+    const DepthImage good = render({}, rig, body_at(0));
     const auto cells_after = [&](auto spoil) {
-        camera::DepthImage depth = good;
+        DepthImage depth = good;
         spoil(depth);
         ElevationMap map({});
         map.add(rig, body_at(0), depth, 0);
@@ -366,7 +366,7 @@ TEST(DepthFusion, PixelsWithoutATrueDisparitySigmaOrTrustAreNotFused) {
 
 TEST(DepthFusion, EverySensorModelGivesFiniteHeightsAndPositiveVariances) {
     const camera::RectifiedRig rig = zed(168, 94);
-    const camera::DepthImage depth = render({}, rig, body_at(0));
+    const DepthImage depth = render({}, rig, body_at(0));
     for (int model = 0; model <= static_cast<int>(SensorModel::basic); ++model) {
         ElevationConfig config;
         config.sensor.model = static_cast<SensorModel>(model);
@@ -420,7 +420,7 @@ TEST(DepthFusion, HeightVarianceOfACellIsThatOfItsPixels) {
 
 TEST(DepthFusion, SameInputGivesTheSameBytes) {
     Rng rng(61);
-    camera::DepthImage depth = render({1.2, 0.1}, zed(), body_at(0));
+    DepthImage depth = render({1.2, 0.1}, zed(), body_at(0));
     add_noise(depth, rng, 1);
     ElevationMap first({});
     ElevationMap second({});
@@ -439,8 +439,8 @@ TEST(DepthFusion, NothingIsAllocatedOnceWarm) {
     config.prefilter.outlier_removal = true;
     ElevationMap map(config);
     const camera::RectifiedRig rig = zed(168, 94);
-    const std::vector<camera::DepthImage> depths{render({}, rig, body_at(0)),
-                                                 render({1.2, 0.1}, rig, body_at(0))};
+    const std::vector<DepthImage> depths{render({}, rig, body_at(0)),
+                                         render({1.2, 0.1}, rig, body_at(0))};
     const std::vector<MeasuredPoint> cloud(500, {{1.0F, 0.0F, -1.0F}, 1e-4F, 1e-4F});
     Matrix6 covariance = Matrix6::Identity() * 1e-8;
     const auto frame = [&](int k) {
@@ -463,8 +463,8 @@ TEST(DepthFusion, NothingIsAllocatedWhenHeightsAreAlignedEither) {
     config.height_drift.min_drift_m = 0.0;
     config.height_drift.motion_sigmas = 1e9;
     ElevationMap map(config);
-    const std::vector<camera::DepthImage> depths{render({}, rig, body_at(0)),
-                                                 render({1.2, 0.1}, rig, body_at(0))};
+    const std::vector<DepthImage> depths{render({}, rig, body_at(0)),
+                                         render({1.2, 0.1}, rig, body_at(0))};
     int moved = 0;
     const auto frame = [&](int k) {
         Pose T_odom_body = body_at(0.011 * k);

@@ -15,7 +15,7 @@ class DepthWalk {
     DepthWalk(const ElevationConfig& config,
               const camera::RectifiedRig& rig,
               const Pose& T_odom_body,
-              const camera::DepthImage& depth,
+              const DepthImage& depth,
               const Eigen::Vector2d& grid_origin_m)
         : config_(config),
           rig_(rig),
@@ -124,7 +124,7 @@ class DepthWalk {
 
     const ElevationConfig& config_;
     const camera::RectifiedRig& rig_;
-    const camera::DepthImage& depth_;
+    const DepthImage& depth_;
     SurfaceCheck check_;
     Eigen::Matrix3d R_odom_camera_;
     Eigen::Vector3d camera_in_grid_m_;
@@ -140,7 +140,7 @@ class DepthWalk {
 void points_from_depth(const ElevationConfig& config,
                        const camera::RectifiedRig& rig,
                        const Pose& T_odom_body,
-                       const camera::DepthImage& depth,
+                       const DepthImage& depth,
                        const Eigen::Vector2d& grid_origin_m,
                        std::vector<GridPoint>& points,
                        FusionCounts& counts) {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/report.hpp"
 #include "surefoot/elevation/elevation_config.hpp"
@@ -18,7 +18,7 @@ namespace surefoot::elevation {
 void points_from_depth(const ElevationConfig& config,
                        const camera::RectifiedRig& rig,
                        const Pose& T_odom_body,
-                       const camera::DepthImage& depth,
+                       const DepthImage& depth,
                        const Eigen::Vector2d& grid_origin_m,
                        std::vector<GridPoint>& points,
                        FusionCounts& counts);

@@ -59,7 +59,7 @@ bool DepthSampler::can(const ElevationConfig& config) noexcept {
 void DepthSampler::sample(const ElevationConfig& config,
                           const camera::RectifiedRig& rig,
                           const Pose& T_odom_body,
-                          const camera::DepthImage& depth,
+                          const DepthImage& depth,
                           const grid::GridGeometry& geometry,
                           Executor& executor,
                           CellSamples& samples,
@@ -81,7 +81,7 @@ void DepthSampler::sample(const ElevationConfig& config,
 
     struct Job {
         DepthSampler& sampler;
-        const camera::DepthImage& depth;
+        const DepthImage& depth;
         CellSamples& samples;
     } job{*this, depth, samples};
     // One reference, so that std::function needs no memory for it.
@@ -96,7 +96,7 @@ void DepthSampler::sample(const ElevationConfig& config,
     }
 }
 
-void DepthSampler::sample_block(int block, const camera::DepthImage& depth, CellSamples& samples) {
+void DepthSampler::sample_block(int block, const DepthImage& depth, CellSamples& samples) {
     const int first = block * kBlockRows;
     const int last = std::min(first + kBlockRows, depth.disparity_px.height());
     const std::size_t padded = padded_px_.size() / counts_.size();
@@ -118,7 +118,7 @@ void DepthSampler::sample_block(int block, const camera::DepthImage& depth, Cell
     samples.set_count(block, sum.samples);
 }
 
-DepthRow DepthSampler::row_at(int v, const camera::DepthImage& depth, float* padded) const {
+DepthRow DepthSampler::row_at(int v, const DepthImage& depth, float* padded) const {
     const Image<float>& disparity_px = depth.disparity_px;
     const int width = disparity_px.width();
     std::copy_n(disparity_px.row(v), width, padded + reach_px_);

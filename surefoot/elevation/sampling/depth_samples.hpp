@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/pose.hpp"
 #include "surefoot/core/report.hpp"
@@ -27,7 +27,7 @@ class DepthSampler {
     void sample(const ElevationConfig& config,
                 const camera::RectifiedRig& rig,
                 const Pose& T_odom_body,
-                const camera::DepthImage& depth,
+                const DepthImage& depth,
                 const grid::GridGeometry& geometry,
                 Executor& executor,
                 CellSamples& samples,
@@ -36,8 +36,8 @@ class DepthSampler {
   private:
     static constexpr int kBlockRows = 16;
 
-    void sample_block(int block, const camera::DepthImage& depth, CellSamples& samples);
-    [[nodiscard]] DepthRow row_at(int v, const camera::DepthImage& depth, float* padded) const;
+    void sample_block(int block, const DepthImage& depth, CellSamples& samples);
+    [[nodiscard]] DepthRow row_at(int v, const DepthImage& depth, float* padded) const;
 
     DepthFrame frame_;
     int reach_px_ = 0;

@@ -34,8 +34,8 @@ camera::RectifiedRig rig() {
 }
 
 /// A tilted plane with steps, holes, wild values and doubtful pixels.
-camera::DepthImage depth_image(Rng& rng) {
-    camera::DepthImage depth;
+DepthImage depth_image(Rng& rng) {
+    DepthImage depth;
     depth.resize(kWidth, kHeight);
     for (int v = 0; v < kHeight; ++v) {
         for (int u = 0; u < kWidth; ++u) {
@@ -76,7 +76,7 @@ void collect(const CellSamples& samples, Result& result) {
 
 Result fast(const ElevationConfig& config,
             const Pose& T_odom_body,
-            const camera::DepthImage& depth,
+            const DepthImage& depth,
             const grid::GridGeometry& geometry) {
     DepthSampler sampler;
     CellSamples samples;
@@ -88,7 +88,7 @@ Result fast(const ElevationConfig& config,
 
 Result plain(const ElevationConfig& config,
              const Pose& T_odom_body,
-             const camera::DepthImage& depth,
+             const DepthImage& depth,
              const grid::GridGeometry& geometry) {
     std::vector<GridPoint> points;
     CellSamples samples;
@@ -112,7 +112,7 @@ const Pose kBody{Eigen::Quaterniond::Identity(), {10.0, 0.0, 3.4}};
 
 TEST(DepthSamples, AgreeWithThePointsInDoubles) {
     Rng rng(3);
-    const camera::DepthImage depth = depth_image(rng);
+    const DepthImage depth = depth_image(rng);
     ElevationConfig switched_off;
     switched_off.prefilter.range = false;
     switched_off.prefilter.height = false;
@@ -148,7 +148,7 @@ TEST(DepthSamples, AgreeWithThePointsInDoubles) {
 
 TEST(DepthSamples, SameBytesOnEveryInstructionSet) {
     Rng rng(4);
-    const camera::DepthImage depth = depth_image(rng);
+    const DepthImage depth = depth_image(rng);
     const Result all = fast({}, kBody, depth, geometry());
     for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
         hwy::SetSupportedTargetsForTest(targets & -targets);
@@ -160,7 +160,7 @@ TEST(DepthSamples, SameBytesOnEveryInstructionSet) {
 
 TEST(DepthSamples, ImagesOfAnySize) {
     for (const auto& [width, height] : {std::pair{1, 1}, {0, 0}, {3, 40}, {65, 2}}) {
-        camera::DepthImage depth;
+        DepthImage depth;
         depth.resize(width, height);
         depth.disparity_px.fill(20.0F);
         depth.sigma_px.fill(0.2F);

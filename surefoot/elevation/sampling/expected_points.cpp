@@ -32,13 +32,13 @@ ExpectedPoints::ExpectedPoints(const camera::RectifiedRig& rig,
         Eigen::Vector3d(0.0, rig.fy_px, top),
         Eigen::Vector3d(0.0, -rig.fy_px, rig.height - top)};
     const double radius_m = std::sqrt(0.5) * geometry.resolution_m;
-    const auto side = [&](const Eigen::Vector3d& inwards_camera, double eye_x_m) {
+    const auto side = [&](const Eigen::Vector3d& inwards_camera, double camera_x_m) {
         const Eigen::Vector3d n = inwards_camera / std::sqrt(inwards_camera.squaredNorm());
         const Eigen::Vector3d n_odom = T_odom_camera.R() * n;
         return Side{static_cast<float>(n_odom.x()),
                     static_cast<float>(n_odom.y()),
                     static_cast<float>(n_odom.z()),
-                    static_cast<float>(-n.x() * eye_x_m - radius_m)};
+                    static_cast<float>(-n.x() * camera_x_m - radius_m)};
     };
     for (std::size_t i = 0; i < inwards.size(); ++i) sides_[i] = side(inwards[i], 0.0);
     sides_[4] = side(inwards[0], rig.baseline_m);

@@ -61,28 +61,29 @@ double meet(const Box& box, const Eigen::Vector3d& from_m, const Eigen::Vector3d
     return enter < leave ? enter : std::numeric_limits<double>::infinity();
 }
 
-camera::DepthImage look(const camera::RectifiedRig& eye,
+DepthImage look(const camera::RectifiedRig& camera,
                         const std::vector<Box>& boxes,
                         const Pose& T_odom_body,
                         Rng& rng) {
     constexpr double kSigma_px = 0.1;
-    const Pose T_odom_camera = T_odom_body * eye.T_body_camera;
+    const Pose T_odom_camera = T_odom_body * camera.T_body_camera;
     const Eigen::Vector3d from_m = T_odom_camera.translation_m;
-    camera::DepthImage depth;
-    depth.resize(eye.width, eye.height);
+    DepthImage depth;
+    depth.resize(camera.width, camera.height);
     depth.sigma_px.fill(static_cast<float>(kSigma_px));
     depth.outlier_probability.fill(0.05F);
-    for (int v = 0; v < eye.height; ++v) {
-        for (int u = 0; u < eye.width; ++u) {
+    for (int v = 0; v < camera.height; ++v) {
+        for (int u = 0; u < camera.width; ++u) {
             const Eigen::Vector3d ray =
-                T_odom_camera.R() *
-                Eigen::Vector3d((u - eye.cx_px) / eye.fx_px, (v - eye.cy_px) / eye.fy_px, 1.0);
+                T_odom_camera.R() * Eigen::Vector3d((u - camera.cx_px) / camera.fx_px,
+                                                    (v - camera.cy_px) / camera.fy_px,
+                                                    1.0);
             double depth_m =
                 ray.z() < 0.0 ? -from_m.z() / ray.z() : std::numeric_limits<double>::infinity();
             for (const Box& box : boxes) depth_m = std::min(depth_m, meet(box, from_m, ray));
             depth.disparity_px.at(u, v) =
                 std::isfinite(depth_m)
-                    ? static_cast<float>(eye.depth_to_disparity_px_m() / depth_m +
+                    ? static_cast<float>(camera.depth_to_disparity_px_m() / depth_m +
                                          kSigma_px * rng.normal())
                     : kNan;
         }
@@ -123,7 +124,8 @@ class CleanUp : public ::testing::Test {
         for (int i = 0; i < count; ++i) {
             x_m_ += step_m;
             map_.follow(body_at(x_m_), Matrix6::Zero());
-            sum += map_.add(eye_, body_at(x_m_), look(eye_, boxes, body_at(x_m_), rng_), time_ns_);
+            sum += map_.add(
+                camera_, body_at(x_m_), look(camera_, boxes, body_at(x_m_), rng_), time_ns_);
             time_ns_ += kFrame_ns;
         }
         return sum;
@@ -134,14 +136,14 @@ class CleanUp : public ::testing::Test {
         config.length_m = 5.0;
         return config;
     }()};
-    camera::RectifiedRig eye_ = rig(336);
+    camera::RectifiedRig camera_ = rig(336);
     Rng rng_{1};
     double x_m_ = 0.0;
     std::int64_t time_ns_ = 1;
 };
 
 TEST_F(CleanUp, WhoWalkedThroughIsGoneWithinASecond) {
-    eye_ = rig(672);
+    camera_ = rig(672);
     frames({kCrate, kTableTop}, 3);
     frames({kCrate, kTableTop, kPerson}, kSecond);
     const Found there = over(map_, kPerson);
@@ -154,7 +156,7 @@ TEST_F(CleanUp, WhoWalkedThroughIsGoneWithinASecond) {
 }
 
 TEST_F(CleanUp, WhoStoodThereFromTheStartIsGoneWithinASecond) {
-    eye_ = rig(672);
+    camera_ = rig(672);
     frames({kCrate, kPerson}, kSecond);
     ASSERT_GE(over(map_, kPerson).higher, 18);
     const FusionCounts sum = frames({kCrate}, kSecond);
@@ -180,7 +182,7 @@ int shown_higher(const ElevationMap& map, const Box& box) {
 }
 
 TEST_F(CleanUp, APersonWhoStepsOntoMappedFloorIsShownFromTheSecondFrame) {
-    eye_ = rig(672);
+    camera_ = rig(672);
     frames({}, kSecond);
     ASSERT_EQ(shown_higher(map_, kPerson), 0);
     frames({kPerson}, 2);
@@ -193,7 +195,7 @@ TEST_F(CleanUp, APersonWhoStepsOntoMappedFloorIsShownFromTheSecondFrame) {
 }
 
 TEST_F(CleanUp, OnlyWhatStandsOnTheGroundIsShownInPlaceOfIt) {
-    eye_ = rig(672);
+    camera_ = rig(672);
     const Box lamp{{1.4, -0.25, 0.6}, {1.7, 0.25, 0.7}};
     frames({}, kSecond);
     frames({lamp}, 3);
@@ -283,7 +285,7 @@ TEST_F(CleanUp, LinesOverUnknownGroundCanBeLeftOut) {
     config.visibility.drops = false;
     ElevationMap map(config);
     for (int time_ns = 1; time_ns <= 3; ++time_ns)
-        map.add(eye_, body_at(0), look(eye_, {kPlatform}, body_at(0), rng_), time_ns);
+        map.add(camera_, body_at(0), look(camera_, {kPlatform}, body_at(0), rng_), time_ns);
     EXPECT_EQ(looked_over(map), 0);
 }
 
@@ -295,8 +297,8 @@ TEST_F(CleanUp, CanBeSwitchedOff) {
     std::int64_t cleared = 0;
     for (int i = 0; i < 12; ++i) {
         const std::vector<Box> boxes = i < 3 ? std::vector<Box>{kPerson} : std::vector<Box>{};
-        cleared +=
-            map.add(eye_, body_at(0), look(eye_, boxes, body_at(0), rng_), ++time_ns).cells_cleared;
+        cleared += map.add(camera_, body_at(0), look(camera_, boxes, body_at(0), rng_), ++time_ns)
+                       .cells_cleared;
     }
     EXPECT_EQ(cleared, 0);
 }

@@ -38,7 +38,7 @@ void VisibilityConfig::describe(ConfigVisitor& visitor) {
                     "frames with such a line until a height that every look had shown is gone");
 }
 
-void LinesOfSight::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {
+void FreeSpaceRays::reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m) {
     for (std::size_t quarter = 0; quarter < used_.size(); ++quarter) {
         if (!used_[quarter]) continue;
         for (int ring = 0; ring < rings_; ++ring) {
@@ -65,12 +65,12 @@ void LinesOfSight::reset(const grid::GridGeometry& geometry, const Eigen::Vector
     if (lowest_.size() < wanted) lowest_.resize(wanted, kInfinity);
 }
 
-std::size_t LinesOfSight::quarter_of(float dx_cells, float dy_cells) noexcept {
+std::size_t FreeSpaceRays::quarter_of(float dx_cells, float dy_cells) noexcept {
     if (dx_cells < 0.0F) return dy_cells > 0.0F ? 1 : 2;
     return dy_cells < 0.0F ? 3 : 0;
 }
 
-LinesOfSight::Place LinesOfSight::place_of(float dx_cells, float dy_cells) const {
+FreeSpaceRays::Place FreeSpaceRays::place_of(float dx_cells, float dy_cells) const {
     const float distance = std::abs(dx_cells) + std::abs(dy_cells);
     // 0 along +x, 1 along +y, 2 along -x, 3 along -y.
     const float along = dy_cells / distance;
@@ -83,7 +83,7 @@ LinesOfSight::Place LinesOfSight::place_of(float dx_cells, float dy_cells) const
     return {turn * kQuarter, distance};
 }
 
-void LinesOfSight::add(grid::Cell cell, float z_m) {
+void FreeSpaceRays::add(grid::Cell cell, float z_m) {
     const float dx = static_cast<float>(cell.ix) + 0.5F - camera_x_;
     const float dy = static_cast<float>(cell.iy) + 0.5F - camera_y_;
     const Place place = place_of(dx, dy);
@@ -109,7 +109,7 @@ void LinesOfSight::add(grid::Cell cell, float z_m) {
         used_[static_cast<std::size_t>(direction & (kDirections - 1)) / kQuarter] = true;
 }
 
-void LinesOfSight::finish() {
+void FreeSpaceRays::finish() {
     for (int ring = rings_ - 2; ring >= 0; --ring) {
         float* here = lowest_.data() + static_cast<std::ptrdiff_t>(ring) * kDirections;
         const float* beyond = here + kDirections;
@@ -124,7 +124,7 @@ void LinesOfSight::finish() {
     }
 }
 
-float LinesOfSight::lowest_over(grid::Cell cell) const {
+float FreeSpaceRays::lowest_over(grid::Cell cell) const {
     const float dx = static_cast<float>(cell.ix) + 0.5F - camera_x_;
     const float dy = static_cast<float>(cell.iy) + 0.5F - camera_y_;
     // On the border of two quarters a direction may count for either.

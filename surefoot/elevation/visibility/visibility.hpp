@@ -39,7 +39,7 @@ struct VisibilityConfig {
 /// long the lines are (casting them cell by cell costs the ancestor 199 ms a frame).
 ///
 /// Directions and distances are those of the diamond |x| + |y| = 1: no square root, no angle.
-class LinesOfSight {
+class FreeSpaceRays {
   public:
     /// Starts a frame seen from a camera at `camera_m` in odom.
     void reset(const grid::GridGeometry& geometry, const Eigen::Vector3d& camera_m);

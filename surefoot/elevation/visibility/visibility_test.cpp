@@ -68,12 +68,12 @@ double cast_all(const std::vector<End>& ends,
     return lowest_m;
 }
 
-TEST(LinesOfSight, LieBetweenTheNarrowAndTheWideCast) {
+TEST(FreeSpaceRays, LieBetweenTheNarrowAndTheWideCast) {
     Rng rng(3);
     const grid::GridGeometry g = geometry();
     const Eigen::Vector3d camera_m(7.013, 0.004, 1.2);
     std::vector<End> ends;
-    LinesOfSight lines;
+    FreeSpaceRays lines;
     lines.reset(g, camera_m);
     for (int i = 0; i < 400; ++i) {
         const End end{{static_cast<int>(rng.below(160)), static_cast<int>(rng.below(160))},
@@ -109,10 +109,10 @@ TEST(LinesOfSight, LieBetweenTheNarrowAndTheWideCast) {
     EXPECT_GT(passed, 500);
 }
 
-TEST(LinesOfSight, SayNothingOfTheirEndsAndOfWhatIsBeyond) {
+TEST(FreeSpaceRays, SayNothingOfTheirEndsAndOfWhatIsBeyond) {
     const grid::GridGeometry g = geometry();
     const Eigen::Vector3d camera_m(5.0, 0.0, 1.0);
-    LinesOfSight lines;
+    FreeSpaceRays lines;
     lines.reset(g, camera_m);
     lines.add({100, 80}, 0.0F);
     lines.finish();
@@ -124,10 +124,10 @@ TEST(LinesOfSight, SayNothingOfTheirEndsAndOfWhatIsBeyond) {
     EXPECT_NEAR(lines.lowest_over({50, 80}), 0.5F, 0.01F);
 }
 
-TEST(LinesOfSight, CameraOverOrBesideTheMap) {
+TEST(FreeSpaceRays, CameraOverOrBesideTheMap) {
     const grid::GridGeometry g = geometry(8);
     for (const double x_m : {5.1, 4.0, -1e9, std::numeric_limits<double>::quiet_NaN()}) {
-        LinesOfSight lines;
+        FreeSpaceRays lines;
         lines.reset(g, {x_m, -1.9, 1.0});
         for (int iy = 0; iy < 8; ++iy) {
             for (int ix = 0; ix < 8; ++ix) lines.add({ix, iy}, 0.0F);

@@ -247,13 +247,13 @@ Result<RigFile> parse_zed_rig(std::string_view text,
     RigFile out;
     out.format = RigFormat::zed;
     out.rig.name = "zed";
-    const auto read_eye = [&](const std::string& side) {
+    const auto read_camera = [&](const std::string& side) {
         const std::string section = fmt::format("{}_CAM_{}", side, mode->name);
         return camera::Camera{
             read_lens(zed, side, section, out), mode->size.width, mode->size.height};
     };
-    out.rig.left = read_eye("LEFT");
-    out.rig.right = read_eye("RIGHT");
+    out.rig.left = read_camera("LEFT");
+    out.rig.right = read_camera("RIGHT");
     out.rig.T_left_right = read_extrinsics(zed, mode->name);
     if (zed.error()) return *zed.error();
     note_unknown(*ini, out);

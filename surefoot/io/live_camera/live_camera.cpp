@@ -110,7 +110,7 @@ Status LiveCamera::reconnect() {
         silent_ms_ += kRetry_ms;
         const Status status = connect();
         if (status) {
-            ++arrival_.reconnected;
+            ++frame_status_.reconnected;
             return {};
         }
         lost_because_ = status.error().message;
@@ -135,7 +135,7 @@ void LiveCamera::count_silence() {
 
 void LiveCamera::count_sequence(const VideoBuffer& buffer) {
     const std::uint32_t step = last_sequence_ ? buffer.sequence - *last_sequence_ : 1;  // wraps
-    if (step > 1 && step <= kMaxDropped) arrival_.dropped += static_cast<int>(step - 1);
+    if (step > 1 && step <= kMaxDropped) frame_status_.dropped += static_cast<int>(step - 1);
     last_sequence_ = buffer.sequence;
 }
 
@@ -150,12 +150,12 @@ Result<std::optional<VideoBuffer>> LiveCamera::newest() {
         if (!newer->has_value()) return buffer;
         count_sequence(**newer);
         if (Status status = device_->give_back(**buffer); !status) return status.error();
-        ++arrival_.skipped;
+        ++frame_status_.skipped;
         buffer = std::move(newer);
     }
     // The driver had no buffer left to write to: even the newest may have waited for long.
     if (Status status = device_->give_back(**buffer); !status) return status.error();
-    ++arrival_.skipped;
+    ++frame_status_.skipped;
     buffer = device_->dequeue(kSlice_ms);
     if (buffer && buffer->has_value()) count_sequence(**buffer);
     return buffer;
@@ -202,7 +202,7 @@ Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffe
             image ? split_side_by_side(*image, rig_, info_.path, frame) : Status(image.error());
     }
     if (!status) {
-        ++arrival_.damaged;
+        ++frame_status_.damaged;
         if (++damaged_in_a_row_ < config_.max_damaged) return std::optional<StereoFrame>();
         return input_error(
             fmt::format("{}: {} frames in a row cannot be used, the last because: {}; check the "
@@ -214,7 +214,7 @@ Result<std::optional<StereoFrame>> LiveCamera::frame_of(const VideoBuffer& buffe
     damaged_in_a_row_ = silent_ms_ = waited_ms_ = 0;
     last_time_ns_ = frame.time_ns;
     frame.index = index_++;
-    frame.arrival = std::exchange(arrival_, {});
+    frame.frame_status = std::exchange(frame_status_, {});
     return std::optional<StereoFrame>(std::move(frame));
 }
 

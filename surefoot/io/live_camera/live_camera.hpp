@@ -111,7 +111,7 @@ class LiveCamera final : public camera::FrameSource {
     int waited_ms_ = 0;  ///< of these, since the device was opened
     int damaged_in_a_row_ = 0;
     int index_ = 0;
-    FrameArrival arrival_;  ///< since the previous frame
+    FrameStatus frame_status_;  ///< since the previous frame
     std::optional<std::uint32_t> last_sequence_;
     std::optional<std::int64_t> last_time_ns_;
 };

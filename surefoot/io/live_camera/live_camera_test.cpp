@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "surefoot/camera/frame_watch.hpp"
+#include "surefoot/camera/frame_integrity_check.hpp"
 #include "surefoot/camera/rigs_testing.hpp"
 #include "surefoot/io/io_testing.hpp"
 #include "surefoot/io/live_camera/fake_video_device.hpp"
@@ -113,7 +113,9 @@ TEST(LiveCamera, SplitsBothEyesWithStampsInOrder) {
         }
         EXPECT_EQ(frame.index, i);
         EXPECT_EQ(frame.time_ns, 1000 * (kStart_us + i * kPeriod_us));
-        EXPECT_EQ(frame.arrival.dropped + frame.arrival.skipped + frame.arrival.damaged, 0);
+        EXPECT_EQ(
+            frame.frame_status.dropped + frame.frame_status.skipped + frame.frame_status.damaged,
+            0);
     }
 }
 
@@ -167,11 +169,11 @@ TEST(LiveCamera, ASlowConsumerGetsTheNewestFrame) {
     ASSERT_NE(live, nullptr);
     StereoFrame frame = next_of(*live);
     EXPECT_EQ(frame.left.at(0, 0), pixel(2, 0, 0));
-    EXPECT_EQ(frame.arrival.skipped, 2);
-    EXPECT_EQ(frame.arrival.dropped, 0);
+    EXPECT_EQ(frame.frame_status.skipped, 2);
+    EXPECT_EQ(frame.frame_status.dropped, 0);
     frame = next_of(*live);
     EXPECT_EQ(frame.left.at(0, 0), pixel(3, 0, 0));
-    EXPECT_EQ(frame.arrival.skipped, 0);
+    EXPECT_EQ(frame.frame_status.skipped, 0);
 }
 
 TEST(LiveCamera, FullBuffersAreOldAndAFreshFrameIsWaitedFor) {
@@ -183,8 +185,8 @@ TEST(LiveCamera, FullBuffersAreOldAndAFreshFrameIsWaitedFor) {
     ASSERT_NE(live, nullptr);
     const StereoFrame frame = next_of(*live);
     EXPECT_EQ(frame.left.at(0, 0), pixel(60, 0, 0));
-    EXPECT_EQ(frame.arrival.skipped, kFull);
-    EXPECT_EQ(frame.arrival.dropped, 60 - kFull);
+    EXPECT_EQ(frame.frame_status.skipped, kFull);
+    EXPECT_EQ(frame.frame_status.dropped, 60 - kFull);
 }
 
 TEST(LiveCamera, CountsFramesThatTheDriverLost) {
@@ -199,7 +201,8 @@ TEST(LiveCamera, CountsFramesThatTheDriverLost) {
     play(camera, last);
     const auto live = opened(camera);
     ASSERT_NE(live, nullptr);
-    for (const int dropped : {0, 0, 2, 0, 0}) EXPECT_EQ(next_of(*live).arrival.dropped, dropped);
+    for (const int dropped : {0, 0, 2, 0, 0})
+        EXPECT_EQ(next_of(*live).frame_status.dropped, dropped);
 }
 
 TEST(LiveCamera, RepeatedAndTornImagesAreFoundOut) {
@@ -216,12 +219,12 @@ TEST(LiveCamera, RepeatedAndTornImagesAreFoundOut) {
     play(camera, frame_event(3));
     const auto live = opened(camera);
     ASSERT_NE(live, nullptr);
-    camera::FrameWatch watch;
+    camera::FrameIntegrityCheck watch;
     for (int i = 0; i < 4; ++i) {
         StereoFrame frame = next_of(*live);
-        const FrameArrival arrival = watch.look(frame);
-        EXPECT_EQ(arrival.repeated, i == 1 ? 1 : 0) << i;
-        EXPECT_EQ(arrival.torn, i == 2) << i;
+        const FrameStatus frame_status = watch.look(frame);
+        EXPECT_EQ(frame_status.repeated, i == 1 ? 1 : 0) << i;
+        EXPECT_EQ(frame_status.torn, i == 2) << i;
     }
 }
 
@@ -243,9 +246,9 @@ TEST(LiveCamera, ShortAndDamagedBuffersAreCountedAndLeftOut) {
     play(camera, frame_event(5));
     const auto live = opened(camera);
     ASSERT_NE(live, nullptr);
-    EXPECT_EQ(next_of(*live).arrival.damaged, 0);
+    EXPECT_EQ(next_of(*live).frame_status.damaged, 0);
     const StereoFrame frame = next_of(*live);
-    EXPECT_EQ(frame.arrival.damaged, 4);
+    EXPECT_EQ(frame.frame_status.damaged, 4);
     EXPECT_EQ(frame.index, 1);
     EXPECT_EQ(frame.left.at(5, 5), pixel(5, 5, 5));
 }
@@ -289,7 +292,7 @@ TEST(LiveCamera, DecodesMjpegAndSurvivesDamage) {
     const StereoFrame first = next_of(*live);
     EXPECT_NEAR(first.left.at(10, 10), 60, 2);  // one quantisation step of the encoder's
     EXPECT_NEAR(first.right.at(10, 10), 180, 2);
-    EXPECT_EQ(next_of(*live).arrival.damaged, 2);
+    EXPECT_EQ(next_of(*live).frame_status.damaged, 2);
 }
 
 TEST(LiveCamera, RandomDamageToMjpegNeverCrashes) {
@@ -318,7 +321,7 @@ TEST(LiveCamera, RandomDamageToMjpegNeverCrashes) {
         const StereoFrame frame = next_of(*live);
         ASSERT_EQ(frame.left.width(), kWidth);
         ++frames;
-        damaged += frame.arrival.damaged;
+        damaged += frame.frame_status.damaged;
     }
     EXPECT_EQ(frames + damaged, 61);
     EXPECT_GT(damaged, 10);
@@ -340,13 +343,13 @@ TEST_P(Unplugging, IsFollowedByReconnection) {
     camera.script[camera.script.size() - 2].sequence = 6;
     const auto live = opened(camera);
     ASSERT_NE(live, nullptr);
-    EXPECT_EQ(next_of(*live).arrival.reconnected, 0);
+    EXPECT_EQ(next_of(*live).frame_status.reconnected, 0);
     const StereoFrame back = next_of(*live);
-    EXPECT_EQ(back.arrival.reconnected, 1);
-    EXPECT_EQ(back.arrival.dropped, 0);
+    EXPECT_EQ(back.frame_status.reconnected, 1);
+    EXPECT_EQ(back.frame_status.dropped, 0);
     EXPECT_EQ(back.index, 1);
     EXPECT_EQ(back.left.at(3, 3), pixel(90, 3, 3));
-    EXPECT_EQ(next_of(*live).arrival.reconnected, 0);
+    EXPECT_EQ(next_of(*live).frame_status.reconnected, 0);
     EXPECT_EQ(camera.opened, 2);
     EXPECT_EQ(camera.paused_ms, 8 * LiveCamera::kRetry_ms);
     EXPECT_EQ(camera.mapped, static_cast<int>(V4l2Device::kBuffers)) << "old buffers are unmapped";
@@ -384,7 +387,7 @@ TEST(LiveCamera, ASilentDeviceIsOpenedAgain) {
     const auto live = opened(camera);
     ASSERT_NE(live, nullptr);
     (void)next_of(*live);
-    EXPECT_EQ(next_of(*live).arrival.reconnected, 1);
+    EXPECT_EQ(next_of(*live).frame_status.reconnected, 1);
     EXPECT_EQ(camera.opened, 2);
 }
 

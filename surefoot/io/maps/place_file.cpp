@@ -13,9 +13,9 @@
 namespace surefoot::io {
 namespace {
 
-using places::Feature;
-using places::Keyframe;
-using places::Place;
+using place_recognition::Feature;
+using place_recognition::Keyframe;
+using place_recognition::Place;
 
 constexpr std::string_view kMagic{"SFPLACE\0", 8};
 constexpr std::size_t kHeaderBytes = 32;
@@ -97,9 +97,10 @@ Status check_sizes(const Outline& outline, std::size_t content_bytes) {
     if (auto status = size("features", outline.feature_bytes, kFeatureBytes, kMostRecordBytes);
         !status)
         return status;
-    if (outline.keyframes > static_cast<std::uint32_t>(places::kMostKeyframes))
-        return input_error(fmt::format(
-            "{} keyframes; up to {} are possible", outline.keyframes, places::kMostKeyframes));
+    if (outline.keyframes > static_cast<std::uint32_t>(place_recognition::kMostKeyframes))
+        return input_error(fmt::format("{} keyframes; up to {} are possible",
+                                       outline.keyframes,
+                                       place_recognition::kMostKeyframes));
     return {};
 }
 
@@ -151,9 +152,9 @@ Status read_keyframe(std::string_view& left, const Outline& outline, Keyframe& k
     const auto features = load_le<std::uint32_t>(at);
     const auto reserved = load_le<std::uint32_t>(at + 4);
     if (reserved != 0) return input_error(fmt::format("reserved bytes hold {}", reserved));
-    if (features > static_cast<std::uint32_t>(places::kMostFeatures))
-        return input_error(
-            fmt::format("{} features; up to {} are possible", features, places::kMostFeatures));
+    if (features > static_cast<std::uint32_t>(place_recognition::kMostFeatures))
+        return input_error(fmt::format(
+            "{} features; up to {} are possible", features, place_recognition::kMostFeatures));
     const std::size_t bytes =
         outline.keyframe_bytes + std::size_t{features} * outline.feature_bytes;
     if (left.size() < bytes) return too_short();

@@ -18,14 +18,14 @@ inline constexpr std::uint16_t kPlaceFileMinor = 0;
 
 /// A place and what its file told besides.
 struct PlaceFile {
-    places::Place place;
+    place_recognition::Place place;
     std::uint16_t minor = kPlaceFileMinor;
 };
 
 /// Fails where `place.problem()` is not empty: what is written can be read. The same place gives
 /// the same bytes.
-[[nodiscard]] Result<std::string> format_place(const places::Place& place);
-[[nodiscard]] Status write_place(const std::string& path, const places::Place& place);
+[[nodiscard]] Result<std::string> format_place(const place_recognition::Place& place);
+[[nodiscard]] Status write_place(const std::string& path, const place_recognition::Place& place);
 
 /// The place of the result has no problem.
 [[nodiscard]] Result<PlaceFile> parse_place(std::string_view bytes, const std::string& file);

@@ -29,11 +29,11 @@ constexpr std::size_t kWidthAt = kFirstKeyframeAt + 64;
 constexpr std::size_t kFeaturesAt = kFirstKeyframeAt + 168;
 constexpr std::size_t kFirstFeatureAt = kFirstKeyframeAt + 176;
 
-places::Place random_place(int keyframes, int features, std::uint64_t seed) {
+place_recognition::Place random_place(int keyframes, int features, std::uint64_t seed) {
     Rng rng(seed);
-    places::Place place;
+    place_recognition::Place place;
     for (int i = 0; i < keyframes; ++i) {
-        places::Keyframe keyframe;
+        place_recognition::Keyframe keyframe;
         keyframe.T_map_body = {exp_so3({0.0, 0.1, rng.uniform(-3.0, 3.0)}),
                                {rng.uniform(-9.0, 9.0), 1.0 / 3.0, 0.95}};
         keyframe.view.time_ns = static_cast<std::int64_t>(rng.next_u64());
@@ -41,7 +41,7 @@ places::Place random_place(int keyframes, int features, std::uint64_t seed) {
         for (int k = 0; k < features; ++k) {
             const double u_px = rng.uniform(100.0, 600.0);
             const Eigen::Vector3d px(u_px, rng.uniform(40.0, 300.0), u_px - rng.uniform(2.0, 60.0));
-            places::Feature feature{px.cast<float>(), {}};
+            place_recognition::Feature feature{px.cast<float>(), {}};
             for (auto& bits : feature.descriptor.bits) bits = rng.next_u64();
             keyframe.view.features.push_back(feature);
         }
@@ -50,7 +50,7 @@ places::Place random_place(int keyframes, int features, std::uint64_t seed) {
     return place;
 }
 
-std::string formatted(const places::Place& place) {
+std::string formatted(const place_recognition::Place& place) {
     return format_place(place).value();
 }
 

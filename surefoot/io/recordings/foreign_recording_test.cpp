@@ -182,13 +182,16 @@ TEST(PairFolders, LeftAndRightByTheirNames) {
     for (const int i : {8, 9, 10}) {
         const std::string number = std::to_string(i);
         const auto seed = static_cast<std::uint64_t>(i);
-        for (const char* eye : {"left", "right"}) {
-            const std::uint64_t own = seed + (*eye == 'r' ? 100 : 0);
-            write_image(folder / ("same/" + std::string(eye) + "/" + number + ".png"), image(own));
-            write_image(folder / ("named/" + std::string(eye) + "/" + eye + number + ".png"),
+        for (const char* this_camera : {"left", "right"}) {
+            const std::uint64_t own = seed + (*this_camera == 'r' ? 100 : 0);
+            write_image(folder / ("same/" + std::string(this_camera) + "/" + number + ".png"),
                         image(own));
-            write_image(folder / ("one/" + std::string(eye) + number + ".png"), image(own));
-            write_image(folder / ("other/" + std::string(eye) + "/" + eye[0] + number + ".png"),
+            write_image(folder / ("named/" + std::string(this_camera) + "/" + this_camera + number +
+                                  ".png"),
+                        image(own));
+            write_image(folder / ("one/" + std::string(this_camera) + number + ".png"), image(own));
+            write_image(folder / ("other/" + std::string(this_camera) + "/" + this_camera[0] +
+                                  number + ".png"),
                         image(own));
         }
     }
@@ -329,7 +332,7 @@ TEST(SkipBroken, GoesOnAndCounts) {
     EXPECT_EQ(played.errors, "");
     ASSERT_EQ(played.frames.size(), 2U);
     EXPECT_EQ(played.frames[1].index, 3);
-    EXPECT_EQ(played.frames[1].arrival.damaged, 2);
+    EXPECT_EQ(played.frames[1].frame_status.damaged, 2);
     EXPECT_EQ(played.info.broken.count, 3);
     EXPECT_TRUE(contains(played.info.broken.first, "frame 1: ")) << played.info.broken.first;
 }

@@ -117,7 +117,7 @@ struct AssociatedRow {
 /// Size that the header of an image file says; nothing where it cannot be read.
 [[nodiscard]] std::optional<ImageSize> image_size_of(const std::string& path);
 /// Half of it, for one eye of a side-by-side image; nothing for odd widths.
-[[nodiscard]] std::optional<ImageSize> one_eye(std::optional<ImageSize> both);
+[[nodiscard]] std::optional<ImageSize> one_camera(std::optional<ImageSize> both);
 /// Scales the rig to images that are binned or enlarged by a whole number (camera::scaled_to) and
 /// says so in `notes`. Any other size leaves the rig, and the frames are refused: a ratio like 2/3
 /// may as well be another cut-out of the sensor, with other angles.

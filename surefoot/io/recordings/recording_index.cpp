@@ -266,7 +266,7 @@ std::optional<ImageSize> image_size_of(const std::string& path) {
     return ImageSize{header->width, header->height};
 }
 
-std::optional<ImageSize> one_eye(std::optional<ImageSize> both) {
+std::optional<ImageSize> one_camera(std::optional<ImageSize> both) {
     if (!both || both->width % 2 != 0) return std::nullopt;
     return ImageSize{both->width / 2, both->height};
 }
@@ -325,7 +325,7 @@ Result<Recording> index_recording(const std::string& folder, const OpenOptions& 
     if (!recording || recording->frames.empty()) return recording;
     const std::optional<ImageSize> size = image_size_of(recording->frames.front().left);
     const bool side_by_side = recording->storage == Recording::Storage::side_by_side;
-    fit_rig(recording->rig, side_by_side ? one_eye(size) : size, recording->info.notes);
+    fit_rig(recording->rig, side_by_side ? one_camera(size) : size, recording->info.notes);
     if (Status status = choose_image_bits(options, *recording); !status) return status.error();
     return recording;
 }

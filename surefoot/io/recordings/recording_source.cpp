@@ -174,7 +174,7 @@ class SkippingSource final : public camera::FrameSource {
         for (int passed_over = 0;; ++passed_over) {
             Result<std::optional<StereoFrame>> frame = source_->next();
             if (frame) {
-                if (frame->has_value()) (*frame)->arrival.damaged += passed_over;
+                if (frame->has_value()) (*frame)->frame_status.damaged += passed_over;
                 return frame;
             }
             if (info_.broken.count++ == 0) info_.broken.first = frame.error().message;

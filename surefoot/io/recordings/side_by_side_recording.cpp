@@ -25,8 +25,8 @@ Result<Recording> index_side_by_side(const std::string& folder, const OpenOption
             "(.png .jpg .pgm .ppm) + rig.yaml",
             folder));
     }
-    const Result<std::optional<camera::StereoRig>> rig =
-        read_rig_beside(folder, options, one_eye(image_size_of(join_path(folder, names->front()))));
+    const Result<std::optional<camera::StereoRig>> rig = read_rig_beside(
+        folder, options, one_camera(image_size_of(join_path(folder, names->front()))));
     if (!rig) return rig.error();
     if (!rig->has_value()) {
         return input_error(fmt::format(

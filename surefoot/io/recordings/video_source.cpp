@@ -27,7 +27,7 @@ class VideoSource final : public camera::FrameSource {
                 std::optional<double> rate_hz)
         : frames_(std::move(frames)), rig_(std::move(rig)), rate_hz_(rate_hz) {
         note_rate();
-        fit_rig(rig_, one_eye(ImageSize{frames_.width(), frames_.height()}), info_.notes);
+        fit_rig(rig_, one_camera(ImageSize{frames_.width(), frames_.height()}), info_.notes);
         info_.kind = "video";
         info_.path = std::move(path);
         if (frames_.count() > 0) info_.frames = frames_.count();
@@ -113,7 +113,7 @@ Result<std::unique_ptr<camera::FrameSource>> open_video(const std::string& path,
     Result<VideoFrames> frames = VideoFrames::open(path);
     if (!frames) return frames.error();
     const Result<camera::StereoRig> rig =
-        rig_of(path, options, one_eye(ImageSize{frames->width(), frames->height()}));
+        rig_of(path, options, one_camera(ImageSize{frames->width(), frames->height()}));
     if (!rig) return rig.error();
     if (options.rate_hz) {
         if (const Result<double> checked = chosen_rate_hz(options, 0.0); !checked)

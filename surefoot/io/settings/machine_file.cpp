@@ -135,7 +135,7 @@ void read_limits(Group& group, GateLimits& limits) {
     limits.pose_age_ns = group.duration_ns("pose_age_ms", 1, 1000);
     limits.future_tolerance_ns = group.duration_ns("future_tolerance_ms", 0, 100);
     limits.verdict_ttl_ns = group.duration_ns("verdict_ttl_ms", 1, 1000);
-    limits.vouch_radius_tenth_mm = group.length("vouch_radius_m", 0.0, 2.0);
+    limits.attestation_radius_tenth_mm = group.length("vouch_radius_m", 0.0, 2.0);
 }
 
 /// What no gait of the class can do. A foot that is lifted by `swing_clearance` cannot land higher.

@@ -402,19 +402,19 @@ TEST(InertialOdometry, BadSamplesAreLeftOut) {
 /// Frames that the camera repeated or tore are not tracked, but their samples count.
 TEST(InertialOdometry, SkippedFramesLeaveTheirSamples) {
     double error_m[2] = {0.0, 0.0};
-    for (const bool told : {false, true}) {
+    for (const bool known : {false, true}) {
         Machine machine;
         Follower run(machine, true);
         Serial serial;
         for (int i = 0; i < 49; ++i) {
             StereoFrame frame = machine.frame(i);
             if (i == 40 || i == 41) {
-                if (told) run.odometry.skip(frame, {.repeated = 1});
+                if (known) run.odometry.skip(frame, {.repeated = 1});
                 continue;
             }
             if (i > 43) blacken(frame);  // before another start would be over
             const auto m = run.odometry.update(frame, serial);
-            error_m[told ? 1 : 0] = run.error_m(m, machine.truth(i));
+            error_m[known ? 1 : 0] = run.error_m(m, machine.truth(i));
         }
     }
     std::printf(

@@ -63,7 +63,7 @@ bool FrontEnd::load(const StereoFrame& frame, Executor& executor) {
     static_cast<void>(executor);
     const auto& rig = rectifier_.rig();
     tracks_.clear();
-    eyes_exchanged_ = false;
+    cameras_swapped_ = false;
     loaded_ = frame.left.width() == rig.width && frame.left.height() == rig.height;
     if (!loaded_) return false;
     left_.build(frame.left.view());
@@ -156,7 +156,7 @@ void FrontEnd::align(LandmarkMap& map, const Pose& T_odom_camera, Executor& exec
     if (!hardly_any_depth()) return;
     std::vector<Eigen::Vector2d> raw_px;
     for (const Track& track : tracks_) raw_px.push_back(track.raw_px);
-    eyes_exchanged_ = are_exchanged(raw_px, executor);
+    cameras_swapped_ = are_swapped(raw_px, executor);
 }
 
 /// The aligned track; slot -1 when the landmark is not there.
@@ -218,8 +218,8 @@ int FrontEnd::seed(LandmarkMap& map, Executor& executor) {
     std::vector<Eigen::Vector2d> corners;
     const auto left = left_.image();
     detect_corners(left, occupied, config_.corners, executor, corners);
-    eyes_exchanged_ = hardly_any_depth() && are_exchanged(corners, executor);
-    if (eyes_exchanged_) return 0;
+    cameras_swapped_ = hardly_any_depth() && are_swapped(corners, executor);
+    if (cameras_swapped_) return 0;
     std::vector<std::optional<StereoPixel>> pixels(corners.size());
     executor.parallel_for(static_cast<int>(corners.size()), [&](int index) {
         const auto i = static_cast<std::size_t>(index);
@@ -249,24 +249,23 @@ bool FrontEnd::hardly_any_depth() const {
     return static_cast<double>(measured) <= kHardlyAnyDepth * static_cast<double>(tracks_.size());
 }
 
-bool FrontEnd::are_exchanged(std::span<const Eigen::Vector2d> raw_left_px,
-                             Executor& executor) const {
+bool FrontEnd::are_swapped(std::span<const Eigen::Vector2d> raw_left_px, Executor& executor) const {
     if (rgbd() || !right_shows_something_ || !left_shows_something_) return false;
-    std::vector<std::optional<camera::Side>> eyes(raw_left_px.size());
-    executor.parallel_for(static_cast<int>(eyes.size()), [&](int index) {
+    std::vector<std::optional<camera::Side>> cameras(raw_left_px.size());
+    executor.parallel_for(static_cast<int>(cameras.size()), [&](int index) {
         const auto i = static_cast<std::size_t>(index);
-        eyes[i] = eye_of_corner(rectifier_,
-                                left_.image(),
-                                std::as_const(right_).view(),
-                                raw_left_px[i],
-                                config_.stereo);
+        cameras[i] = camera_of_corner(rectifier_,
+                                      left_.image(),
+                                      std::as_const(right_).view(),
+                                      raw_left_px[i],
+                                      config_.stereo);
     });
-    const auto of = [&](camera::Side eye) {
-        return static_cast<double>(std::count(eyes.begin(), eyes.end(), eye));
+    const auto of = [&](camera::Side camera) {
+        return static_cast<double>(std::count(cameras.begin(), cameras.end(), camera));
     };
     const double proper = of(camera::Side::left);
-    const double exchanged = of(camera::Side::right);
-    return proper + exchanged >= kEnoughTell && exchanged > kExchangedShare * (proper + exchanged);
+    const double swapped = of(camera::Side::right);
+    return proper + swapped >= kEnoughTell && swapped > kExchangedShare * (proper + swapped);
 }
 
 void FrontEnd::keep() {

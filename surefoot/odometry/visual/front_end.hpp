@@ -42,7 +42,7 @@ class FrontEnd final : public Tracks {
     [[nodiscard]] double sharpness() const override { return left_.sharpness(); }
     [[nodiscard]] const ImagePyramid& left() const noexcept { return left_; }
     [[nodiscard]] bool right_shows_something() const override { return right_shows_something_; }
-    [[nodiscard]] bool eyes_exchanged() const override { return eyes_exchanged_; }
+    [[nodiscard]] bool cameras_swapped() const override { return cameras_swapped_; }
 
   private:
     struct Job;
@@ -54,8 +54,8 @@ class FrontEnd final : public Tracks {
                        Track& track) const;
     void collect_jobs(const LandmarkMap& map, const Pose& T, std::vector<Job>& jobs);
     [[nodiscard]] bool hardly_any_depth() const;
-    [[nodiscard]] bool are_exchanged(std::span<const Eigen::Vector2d> raw_left_px,
-                                     Executor& executor) const;
+    [[nodiscard]] bool are_swapped(std::span<const Eigen::Vector2d> raw_left_px,
+                                   Executor& executor) const;
     [[nodiscard]] bool rgbd() const noexcept { return !depth_m_.empty(); }
 
     FrontEndConfig config_;
@@ -67,8 +67,8 @@ class FrontEnd final : public Tracks {
     std::vector<KltResult> results_;
     bool right_shows_something_ = false;
     bool left_shows_something_ = false;
-    bool eyes_exchanged_ = false;  ///< asked of frames that show hardly any depth
-    int next_attempt_ = 0;         ///< slot from which landmarks are looked for again
+    bool cameras_swapped_ = false;  ///< asked of frames that show hardly any depth
+    int next_attempt_ = 0;          ///< slot from which landmarks are looked for again
 };
 
 }  // namespace surefoot::odometry

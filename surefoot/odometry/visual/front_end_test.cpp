@@ -130,18 +130,18 @@ TEST(StereoPoints, CornersTellWhichEyeSawThem) {
                            ImageView<const std::uint8_t> other) {
         std::vector<Eigen::Vector2d> corners;
         detect_corners(image, {}, {}, serial, corners);
-        std::map<std::optional<camera::Side>, int> eyes;
+        std::map<std::optional<camera::Side>, int> cameras;
         for (const auto& corner : corners)
-            eyes[eye_of_corner(rectifier, image, other, corner, {})] += 1;
-        return eyes;
+            cameras[camera_of_corner(rectifier, image, other, corner, {})] += 1;
+        return cameras;
     };
     auto proper = count(left, right);
     EXPECT_GT(proper[camera::Side::left], 100);
     EXPECT_LT(proper[camera::Side::right], proper[camera::Side::left] / 10);
-    auto exchanged = count(right, left);
-    EXPECT_GT(exchanged[camera::Side::right], 100);
-    EXPECT_LT(exchanged[camera::Side::left], exchanged[camera::Side::right] / 10);
-    EXPECT_FALSE(eye_of_corner(rectifier, left, right, {1.0, 1.0}, {})) << "no window around it";
+    auto swapped = count(right, left);
+    EXPECT_GT(swapped[camera::Side::right], 100);
+    EXPECT_LT(swapped[camera::Side::left], swapped[camera::Side::right] / 10);
+    EXPECT_FALSE(camera_of_corner(rectifier, left, right, {1.0, 1.0}, {})) << "no window around it";
     GreyImage noise(frame.right.width(), frame.right.height());
     Rng rng(1);
     for (int v = 0; v < noise.height(); ++v)
@@ -153,17 +153,17 @@ TEST(StereoPoints, CornersTellWhichEyeSawThem) {
 TEST(FrontEnd, MakesNothingOfExchangedEyes) {
     const auto rectifier = small_rectifier();
     Serial serial;
-    for (const bool exchanged : {false, true}) {
+    for (const bool swapped : {false, true}) {
         StereoFrame frame = render_frame(testing::small_rig(), Pose{}, 0, 1.0);
-        if (exchanged) std::swap(frame.left, frame.right);
+        if (swapped) std::swap(frame.left, frame.right);
         LandmarkMap map({}, rectifier);
         map.add_keyframe(Pose{});
         FrontEnd front({}, rectifier);
         ASSERT_TRUE(front.load(frame, serial));
         const int added = front.seed(map, serial);
-        EXPECT_EQ(front.eyes_exchanged(), exchanged);
+        EXPECT_EQ(front.cameras_swapped(), swapped);
         EXPECT_EQ(front.tracks().size(), static_cast<std::size_t>(added));
-        if (exchanged) {
+        if (swapped) {
             EXPECT_EQ(added, 0);
         } else {
             EXPECT_GT(added, 80);
@@ -200,7 +200,7 @@ TEST(StereoPoints, RepeatingTextureIsRefused) {
     EXPECT_EQ(matched, 0);
     for (int u = 150; u < 250; u += 5) {
         const auto view = std::as_const(stripes).view();
-        EXPECT_FALSE(eye_of_corner(rectifier, view, view, Eigen::Vector2d(u, 110.0), {})) << u;
+        EXPECT_FALSE(camera_of_corner(rectifier, view, view, Eigen::Vector2d(u, 110.0), {})) << u;
     }
 }
 

@@ -59,11 +59,11 @@ using Curve = std::vector<std::optional<Eigen::Vector2d>>;
 /// Raw pixels in the other eye at disparities 0, 1, 2 ... of one rectified pixel of this `eye`, by
 /// linear pieces.
 Curve epipolar_curve(const camera::Rectifier& rectifier,
-                     camera::Side eye,
+                     camera::Side camera,
                      const Eigen::Vector2d& px,
                      double max_disparity_px) {
     const auto& rig = rectifier.rig();
-    const bool is_left = eye == camera::Side::left;
+    const bool is_left = camera == camera::Side::left;
     const auto knot = [&](double disparity) {
         const double u_left = is_left ? px.x() : px.x() + disparity;
         // Disparity 0 is infinitely far: as good as a very small one.
@@ -152,18 +152,18 @@ std::optional<StereoPixel> match_corner(const camera::Rectifier& rectifier,
     return stereo_pixel(rectifier, raw_left_px, aligned->raw_px, config);
 }
 
-std::optional<camera::Side> eye_of_corner(const camera::Rectifier& rectifier,
-                                          ImageView<const std::uint8_t> image,
-                                          ImageView<const std::uint8_t> other,
-                                          const Eigen::Vector2d& raw_px,
-                                          const StereoPointConfig& config) {
+std::optional<camera::Side> camera_of_corner(const camera::Rectifier& rectifier,
+                                             ImageView<const std::uint8_t> image,
+                                             ImageView<const std::uint8_t> other,
+                                             const Eigen::Vector2d& raw_px,
+                                             const StereoPointConfig& config) {
     Window patch;
     if (!read_nearest(image, raw_px, patch)) return std::nullopt;
-    const auto best_as = [&](camera::Side eye) {
-        const auto px = rectifier.rectified_from_raw(eye, raw_px);
+    const auto best_as = [&](camera::Side camera) {
+        const auto px = rectifier.rectified_from_raw(camera, raw_px);
         if (!px) return -1.0;
         const auto score = scores_along(
-            other, patch, epipolar_curve(rectifier, eye, *px, config.max_disparity_px));
+            other, patch, epipolar_curve(rectifier, camera, *px, config.max_disparity_px));
         // What is far lies the same way for both.
         const auto near = score.begin() + std::min<std::ptrdiff_t>(kSamePeak_px, std::ssize(score));
         return near == score.end() ? -1.0 : *std::max_element(near, score.end());

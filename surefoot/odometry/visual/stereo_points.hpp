@@ -28,11 +28,11 @@ struct StereoPointConfig {
 
 /// Which eye saw a corner of `image`, by where it is in the `other` image. Nothing where that is
 /// not beyond doubt.
-[[nodiscard]] std::optional<camera::Side> eye_of_corner(const camera::Rectifier& rectifier,
-                                                        ImageView<const std::uint8_t> image,
-                                                        ImageView<const std::uint8_t> other,
-                                                        const Eigen::Vector2d& raw_px,
-                                                        const StereoPointConfig& config);
+[[nodiscard]] std::optional<camera::Side> camera_of_corner(const camera::Rectifier& rectifier,
+                                                           ImageView<const std::uint8_t> image,
+                                                           ImageView<const std::uint8_t> other,
+                                                           const Eigen::Vector2d& raw_px,
+                                                           const StereoPointConfig& config);
 
 /// Rectified measurement from aligned raw pixels of both eyes; nothing when the rows differ more
 /// than `epipolar_px` or the disparity is out of range. v is the mean row.

@@ -51,7 +51,7 @@ class Tracks {
     /// The right eye sees about as much as the left one in the present frame.
     [[nodiscard]] virtual bool right_shows_something() const = 0;
     /// Each eye sees what the other one should, as `align` or `seed` found in the present frame.
-    [[nodiscard]] virtual bool eyes_exchanged() const { return false; }
+    [[nodiscard]] virtual bool cameras_swapped() const { return false; }
 
     /// Drops the tracks that are not marked.
     void select(std::span<const std::uint8_t> inlier);

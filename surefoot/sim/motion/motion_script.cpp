@@ -91,10 +91,13 @@ Status check_waypoint(std::size_t i, const Waypoint& stop) {
     return {};
 }
 
-Status check_slope(Carrier carrier, std::size_t i, const Waypoint& from, const Waypoint& to) {
+Status check_slope(MotionModel motion_model,
+                   std::size_t i,
+                   const Waypoint& from,
+                   const Waypoint& to) {
     const double rise_m = to.ground_z_m - from.ground_z_m;
     const double way_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
-    const double steepest = kSteepest[static_cast<std::size_t>(carrier)];
+    const double steepest = kSteepest[static_cast<std::size_t>(motion_model)];
     if (std::abs(rise_m) <= steepest * way_m) return {};
     return usage_error(fmt::format(
         "simulator: the way to waypoint {} rises by {:.3f} m over {:.3f} m, a {} takes 1:{:.0f} at "
@@ -102,15 +105,16 @@ Status check_slope(Carrier carrier, std::size_t i, const Waypoint& from, const W
         i,
         rise_m,
         way_m,
-        kCarrierNames[static_cast<std::size_t>(carrier)],
+        kMotionModelNames[static_cast<std::size_t>(motion_model)],
         1.0 / steepest));
 }
 
 Status check_height(const MotionScript& script) {
     if (script.height_m == 0.0) return {};
-    if (script.carrier != Carrier::hand) {
-        return usage_error(fmt::format("simulator: height_m is that of a hand; a {} has its own",
-                                       kCarrierNames[static_cast<std::size_t>(script.carrier)]));
+    if (script.motion_model != MotionModel::hand) {
+        return usage_error(
+            fmt::format("simulator: height_m is that of a hand; a {} has its own",
+                        kMotionModelNames[static_cast<std::size_t>(script.motion_model)]));
     }
     if (script.height_m >= kLowestHand_m && script.height_m <= kHighestHand_m) return {};
     return usage_error(
@@ -122,23 +126,23 @@ Status check_height(const MotionScript& script) {
 
 Status check(const MotionScript& script) {
     if (script.waypoints.empty()) return usage_error("simulator: a motion has no waypoint");
-    const auto carrier = static_cast<std::size_t>(script.carrier);
-    const Limits& speeds = kSpeeds[carrier];
+    const auto motion_model = static_cast<std::size_t>(script.motion_model);
+    const Limits& speeds = kSpeeds[motion_model];
     if (script.speed_m_s != 0.0 &&
         !(script.speed_m_s >= speeds.slowest_m_s && script.speed_m_s <= speeds.fastest_m_s)) {
         return usage_error(
             fmt::format("simulator: speed_m_s is {}, a {} goes {} to {} (0 = its own)",
                         script.speed_m_s,
-                        kCarrierNames[carrier],
+                        kMotionModelNames[motion_model],
                         speeds.slowest_m_s,
                         speeds.fastest_m_s));
     }
     if (Status status = check_height(script); !status) return status;
     for (std::size_t i = 0; i < script.waypoints.size(); ++i) {
         if (Status status = check_waypoint(i, script.waypoints[i]); !status) return status;
-        if (i == 0 || script.carrier == Carrier::rex) continue;
+        if (i == 0 || script.motion_model == MotionModel::rex) continue;
         if (Status status =
-                check_slope(script.carrier, i, script.waypoints[i - 1], script.waypoints[i]);
+                check_slope(script.motion_model, i, script.waypoints[i - 1], script.waypoints[i]);
             !status)
             return status;
     }
@@ -186,9 +190,9 @@ Result<ScriptedMotion> make_motion(const MotionScript& script,
     if (Status status = check(script); !status) return status.error();
     std::vector<Waypoint> stops = script.waypoints;
     vary(stops, seed);
-    if (script.carrier == Carrier::rex)
+    if (script.motion_model == MotionModel::rex)
         return carried_by_rex(stops, script.speed_m_s, seed, ground_z_m);
-    if (script.carrier == Carrier::hand) {
+    if (script.motion_model == MotionModel::hand) {
         HandConfig config;
         if (script.speed_m_s > 0.0) config.speed_m_s = script.speed_m_s;
         if (script.height_m > 0.0) config.height_m = script.height_m;

@@ -13,12 +13,12 @@
 namespace surefoot::sim {
 
 /// What carries the camera.
-enum class Carrier : std::uint8_t { trolley, rex, hand };
-inline constexpr const char* kCarrierNames[] = {"trolley", "rex", "hand"};
+enum class MotionModel : std::uint8_t { trolley, rex, hand };
+inline constexpr const char* kMotionModelNames[] = {"trolley", "rex", "hand"};
 
 /// A way through a scene as its file tells it.
 struct MotionScript {
-    Carrier carrier = Carrier::trolley;
+    MotionModel motion_model = MotionModel::trolley;
     /// 0 = the carrier's own. Of the rex: length of a step ahead by the time that a step takes.
     double speed_m_s = 0.0;
     /// Of base_link above the ground, for a hand; 0 = its own.

@@ -39,13 +39,13 @@ TEST(MotionScriptTest, ImpossibleScriptsAreRefusedInWords) {
     EXPECT_NE(refusal(script).find("waypoint 0 has pause_s -1"), std::string::npos);
     script.waypoints = {{}, {0.3, 0.0, 0.0, 0.0, 0.18}};
     EXPECT_NE(refusal(script).find("rises by 0.180 m over 0.300 m"), std::string::npos);
-    script.carrier = Carrier::hand;
+    script.motion_model = MotionModel::hand;
     EXPECT_EQ(refusal(script), "accepted") << "who carries it climbs stairs";
     script.waypoints[1].ground_z_m = 0.36;
     EXPECT_NE(refusal(script).find("rises by 0.360 m over 0.300 m, a hand takes 1:1"),
               std::string::npos);
     script.waypoints[1].ground_z_m = 0.18;
-    script.carrier = Carrier::rex;
+    script.motion_model = MotionModel::rex;
     EXPECT_EQ(refusal(script), "accepted") << "stairs are for feet";
     script.waypoints[1].ground_z_m = 0.5;
     EXPECT_NE(refusal(script).find("limit is 0.20 m"), std::string::npos);
@@ -54,7 +54,7 @@ TEST(MotionScriptTest, ImpossibleScriptsAreRefusedInWords) {
 }
 
 TEST(MotionScriptTest, StepEventsTellWhatTheMachineDoes) {
-    const ScriptedMotion walk = made(pivot_and_reverse_script(Carrier::rex, 1.0));
+    const ScriptedMotion walk = made(pivot_and_reverse_script(MotionModel::rex, 1.0));
     ASSERT_EQ(walk.steps.size(), 10U) << "six turns, four steps back";
     for (std::size_t i = 0; i < walk.steps.size(); ++i) {
         const StepEvent& step = walk.steps[i];
@@ -70,7 +70,7 @@ TEST(MotionScriptTest, StepEventsTellWhatTheMachineDoes) {
         }
     }
     EXPECT_EQ(walk.steps.front().start_s, 1.0);
-    EXPECT_TRUE(made(approach_script(Carrier::hand, 2.0)).steps.empty());
+    EXPECT_TRUE(made(approach_script(MotionModel::hand, 2.0)).steps.empty());
 }
 
 TEST(MotionScriptTest, ATrolleyStopsWhereItPauses) {
@@ -87,12 +87,12 @@ TEST(MotionScriptTest, ATrolleyStopsWhereItPauses) {
             0.0);
     }
     EXPECT_TRUE(drive.steps.empty());
-    EXPECT_TRUE(made(approach_script(Carrier::hand, 2.0)).stops.empty());
-    EXPECT_TRUE(made(approach_script(Carrier::rex, 2.0)).stops.empty());
+    EXPECT_TRUE(made(approach_script(MotionModel::hand, 2.0)).stops.empty());
+    EXPECT_TRUE(made(approach_script(MotionModel::rex, 2.0)).stops.empty());
 }
 
 TEST(MotionScriptTest, TheSpeedOfARexIsThatOfItsSteps) {
-    MotionScript script = approach_script(Carrier::rex, 0.8);
+    MotionScript script = approach_script(MotionModel::rex, 0.8);
     script.speed_m_s = 0.05;
     const ScriptedMotion walk = made(script);
     EXPECT_NEAR(walk.steps[0].end_s - walk.steps[0].start_s, 8.0, 1e-9);
@@ -107,12 +107,15 @@ TEST(MotionScriptTest, EverydayScriptsEndWhereTheySay) {
             return std::hypot(T.translation_m.x() - x_m, T.translation_m.y() - y_m) < 0.15 &&
                    std::abs(std::remainder(yaw_rad(T) - yaw, 2.0 * kPi)) < 0.14;
         };
-        EXPECT_TRUE(near(end(approach_script(Carrier::rex, 2.4)), 2.4, 0.0, 0.0));
-        EXPECT_TRUE(near(end(turn_round_script(Carrier::rex, kPi)), 0.0, 0.0, 0.0));
-        EXPECT_TRUE(near(end(back_to_table_script(Carrier::rex, 2.5, 1.5)), 2.05, 0.0, kPi));
-        EXPECT_TRUE(near(
-            end(sidestep_through_door_script(Carrier::rex, 2.5, 0.1, 0.6)), 3.1, 0.1, -0.5 * kPi));
-        EXPECT_TRUE(near(end(pivot_and_reverse_script(Carrier::rex, 1.0)), 0.0, -1.0, 0.5 * kPi));
+        EXPECT_TRUE(near(end(approach_script(MotionModel::rex, 2.4)), 2.4, 0.0, 0.0));
+        EXPECT_TRUE(near(end(turn_round_script(MotionModel::rex, kPi)), 0.0, 0.0, 0.0));
+        EXPECT_TRUE(near(end(back_to_table_script(MotionModel::rex, 2.5, 1.5)), 2.05, 0.0, kPi));
+        EXPECT_TRUE(near(end(sidestep_through_door_script(MotionModel::rex, 2.5, 0.1, 0.6)),
+                         3.1,
+                         0.1,
+                         -0.5 * kPi));
+        EXPECT_TRUE(
+            near(end(pivot_and_reverse_script(MotionModel::rex, 1.0)), 0.0, -1.0, 0.5 * kPi));
     }
 }
 
@@ -132,8 +135,9 @@ TEST(MotionScriptTest, DescendsBackwardOntoTheFirstTread) {
 }
 
 TEST(MotionScriptTest, TheSameSeedGivesTheSameMotion) {
-    for (const Carrier carrier : {Carrier::trolley, Carrier::rex, Carrier::hand}) {
-        const MotionScript script = approach_script(carrier, 1.2);
+    for (const MotionModel motion_model :
+         {MotionModel::trolley, MotionModel::rex, MotionModel::hand}) {
+        const MotionScript script = approach_script(motion_model, 1.2);
         const ScriptedMotion a = made(script, 3);
         const ScriptedMotion b = made(script, 3);
         const ScriptedMotion c = made(script, 4);

@@ -15,9 +15,9 @@ constexpr double kHalf_rad = std::numbers::pi;
 constexpr double kLook_s = 1.0;   ///< standing before the first movement
 constexpr double kPause_s = 0.5;  ///< between movements
 
-MotionScript through(Carrier carrier, std::vector<Waypoint> stops) {
+MotionScript through(MotionModel motion_model, std::vector<Waypoint> stops) {
     MotionScript script;
-    script.carrier = carrier;
+    script.motion_model = motion_model;
     script.waypoints = std::move(stops);
     return script;
 }
@@ -31,32 +31,33 @@ constexpr double kAnkleToEdge_m = 0.02;
 
 }  // namespace
 
-MotionScript approach_script(Carrier carrier, double distance_m) {
-    return through(carrier, {kStart, {distance_m, 0.0, 0.0, kPause_s, 0.0, Move::ahead}});
+MotionScript approach_script(MotionModel motion_model, double distance_m) {
+    return through(motion_model, {kStart, {distance_m, 0.0, 0.0, kPause_s, 0.0, Move::ahead}});
 }
 
-MotionScript turn_round_script(Carrier carrier, double turn_rad) {
-    return through(carrier, {kStart, {0.0, 0.0, turn_rad, kPause_s}, {0.0, 0.0, 0.0, kPause_s}});
+MotionScript turn_round_script(MotionModel motion_model, double turn_rad) {
+    return through(motion_model,
+                   {kStart, {0.0, 0.0, turn_rad, kPause_s}, {0.0, 0.0, 0.0, kPause_s}});
 }
 
-MotionScript back_to_table_script(Carrier carrier, double table_x_m, double left_m) {
+MotionScript back_to_table_script(MotionModel motion_model, double table_x_m, double left_m) {
     // The machine is 0.33 m deep behind base_link: it ends a hand's breadth before the table.
     constexpr double kBehind_m = 0.45;
-    return through(carrier,
+    return through(motion_model,
                    {kStart,
                     {table_x_m - left_m, 0.0, 0.0, kPause_s, 0.0, Move::ahead},
                     {table_x_m - left_m, 0.0, kHalf_rad, kPause_s},
                     {table_x_m - kBehind_m, 0.0, kHalf_rad, kPause_s, 0.0, Move::back}});
 }
 
-MotionScript sidestep_through_door_script(Carrier carrier,
+MotionScript sidestep_through_door_script(MotionModel motion_model,
                                           double door_x_m,
                                           double door_y_m,
                                           double beyond_m) {
     // Half the machine's depth, 0.33 m, and its sway need room to turn.
     constexpr double kBefore_m = 0.6;
     const double before_x_m = door_x_m - kBefore_m;
-    return through(carrier,
+    return through(motion_model,
                    {kStart,
                     {before_x_m, door_y_m, 0.0, kPause_s, 0.0, Move::ahead},
                     {before_x_m, door_y_m, -kQuarter_rad, kPause_s},
@@ -73,7 +74,7 @@ MotionScript descend_backwards_script(int steps_ahead, double riser_m) {
     const double turn_x_m = steps_ahead * sizes.forward_m;
     const double brink_x_m = turn_x_m + kStepsToEdge * sizes.backward_m;
     return through(
-        Carrier::rex,
+        MotionModel::rex,
         {kStart,
          {turn_x_m, 0.0, 0.0, kPause_s, 0.0, Move::ahead},
          {turn_x_m, 0.0, kHalf_rad, kPause_s},
@@ -81,8 +82,8 @@ MotionScript descend_backwards_script(int steps_ahead, double riser_m) {
          {brink_x_m + sizes.backward_m, 0.0, kHalf_rad, kPause_s, -riser_m, Move::back}});
 }
 
-MotionScript pivot_and_reverse_script(Carrier carrier, double distance_m) {
-    return through(carrier,
+MotionScript pivot_and_reverse_script(MotionModel motion_model, double distance_m) {
+    return through(motion_model,
                    {kStart,
                     {0.0, 0.0, kQuarter_rad, kPause_s},
                     {0.0, -distance_m, kQuarter_rad, kPause_s, 0.0, Move::back}});

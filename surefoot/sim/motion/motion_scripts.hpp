@@ -10,18 +10,20 @@ namespace surefoot::sim {
 /// Turns and steps of the rex come in whole numbers: it stops within half a step of what is asked.
 
 /// Straight ahead to what is looked at.
-[[nodiscard]] MotionScript approach_script(Carrier carrier, double distance_m);
+[[nodiscard]] MotionScript approach_script(MotionModel motion_model, double distance_m);
 
 /// On the spot, `turn_rad` to the left (negative: right), and back again.
-[[nodiscard]] MotionScript turn_round_script(Carrier carrier, double turn_rad);
+[[nodiscard]] MotionScript turn_round_script(MotionModel motion_model, double turn_rad);
 
 /// Sees a table ahead, walks to where it is `left_m` away, turns round there and walks backward to
 /// it, as one does to sit down or lean against it.
-[[nodiscard]] MotionScript back_to_table_script(Carrier carrier, double table_x_m, double left_m);
+[[nodiscard]] MotionScript back_to_table_script(MotionModel motion_model,
+                                                double table_x_m,
+                                                double left_m);
 
 /// Sees a door ahead in a wall across x, stops before it, turns the right side back so that the
 /// left one, with the camera, faces the door, and sidesteps through it until `beyond_m` behind it.
-[[nodiscard]] MotionScript sidestep_through_door_script(Carrier carrier,
+[[nodiscard]] MotionScript sidestep_through_door_script(MotionModel motion_model,
                                                         double door_x_m,
                                                         double door_y_m,
                                                         double beyond_m);
@@ -35,6 +37,6 @@ namespace surefoot::sim {
 
 /// Turns by 90 deg to the left and goes back by `distance_m`: onto ground that no camera has seen
 /// but in passing.
-[[nodiscard]] MotionScript pivot_and_reverse_script(Carrier carrier, double distance_m);
+[[nodiscard]] MotionScript pivot_and_reverse_script(MotionModel motion_model, double distance_m);
 
 }  // namespace surefoot::sim

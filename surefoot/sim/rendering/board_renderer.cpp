@@ -26,7 +26,7 @@ bool inside(const PrintedSheet::Rectangle& box, const Eigen::Vector2d& p_m) {
 /// know which shapes reach into them.
 class Sheet {
   public:
-    Sheet(const PrintedSheet& sheet, const BoardLook& look) : sheet_(sheet), look_(look) {
+    Sheet(const PrintedSheet& sheet, const ImagingConditions& look) : sheet_(sheet), look_(look) {
         bins_.resize(static_cast<std::size_t>(kBins) * kBins);
         for (const auto& box : sheet.rectangles) {
             for_bins(box, [&](Bin& bin) { bin.rectangles.push_back(&box); });
@@ -81,7 +81,7 @@ class Sheet {
     }
 
     const PrintedSheet& sheet_;
-    const BoardLook& look_;
+    const ImagingConditions& look_;
     std::vector<Bin> bins_;
 };
 
@@ -128,7 +128,7 @@ double mean_colour(const Sheet& sheet, const std::array<Eigen::Vector2d, 4>& cor
 Image<float> light_of(const PrintedSheet& sheet,
                       const camera::Camera& camera,
                       const Pose& T_camera_sheet,
-                      const BoardLook& look,
+                      const ImagingConditions& look,
                       Executor& executor) {
     const Sheet colours(sheet, look);
     const Pose T_sheet_camera = T_camera_sheet.inverse();
@@ -156,7 +156,7 @@ Image<float> light_of(const PrintedSheet& sheet,
 GreyImage render_board(const PrintedSheet& sheet,
                        const camera::Camera& camera,
                        const Pose& T_camera_sheet,
-                       const BoardLook& look,
+                       const ImagingConditions& look,
                        std::uint64_t seed,
                        Executor& executor) {
     Image<float> light_dn = light_of(sheet, camera, T_camera_sheet, look, executor);

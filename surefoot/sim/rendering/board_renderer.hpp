@@ -12,7 +12,7 @@
 namespace surefoot::sim {
 
 /// Light, lens and sensor of a board's picture. Grey values are linear in light, 0..255.
-struct BoardLook {
+struct ImagingConditions {
     double paper_dn = 210.0;
     double ink_dn = 30.0;
     double background_dn = 100.0;
@@ -28,7 +28,7 @@ inline constexpr int kEdgeSamples = 16;
 [[nodiscard]] GreyImage render_board(const PrintedSheet& sheet,
                                      const camera::Camera& camera,
                                      const Pose& T_camera_sheet,
-                                     const BoardLook& look,
+                                     const ImagingConditions& look,
                                      std::uint64_t seed,
                                      Executor& executor);
 

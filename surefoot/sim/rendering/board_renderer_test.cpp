@@ -31,8 +31,8 @@ PrintedSheet one_disc(double radius_m) {
     return sheet;
 }
 
-BoardLook two_colours() {
-    BoardLook look;
+ImagingConditions two_colours() {
+    ImagingConditions look;
     look.paper_dn = kPaper_dn;
     look.ink_dn = kInk_dn;
     return look;
@@ -103,7 +103,7 @@ TEST(BoardRenderer, EveryLensShowsWhatItProjects) {
 
 TEST(BoardRenderer, BehindTheCameraAndBesideThePaperIsBackground) {
     Serial serial;
-    BoardLook look = two_colours();
+    ImagingConditions look = two_colours();
     look.background_dn = 77.0;
     const GreyImage behind =
         render_board(one_disc(0.1), pinhole(), straight_ahead(-1.0), look, 1, serial);
@@ -117,7 +117,7 @@ TEST(BoardRenderer, BehindTheCameraAndBesideThePaperIsBackground) {
 
 TEST(BoardRenderer, BlurKeepsTheLightAndNoiseHasItsSize) {
     Serial serial;
-    BoardLook look = two_colours();
+    ImagingConditions look = two_colours();
     const GreyImage sharp =
         render_board(one_disc(0.1), pinhole(), straight_ahead(1.0), look, 1, serial);
     look.blur_sigma_px = 1.5;
@@ -139,7 +139,7 @@ TEST(BoardRenderer, BlurKeepsTheLightAndNoiseHasItsSize) {
 }
 
 TEST(BoardRenderer, SameSeedSameBytesForEveryExecutor) {
-    BoardLook look = two_colours();
+    ImagingConditions look = two_colours();
     look.noise_dn = 2.0;
     look.blur_sigma_px = 0.7;
     const Pose T_camera_sheet{exp_so3({0.3, -0.2, 0.1}), {0.0, 0.0, 1.0}};

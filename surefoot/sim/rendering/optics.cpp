@@ -72,7 +72,7 @@ void OpticsConfig::describe(ConfigVisitor& visitor) {
     visitor.number("smudge_x", smudge_x, 0.0, 1.0, "middle of the mark, share of the width");
     visitor.number("smudge_y", smudge_y, 0.0, 1.0, "share of the height");
     visitor.number("smudge_radius", smudge_radius, 0.01, 2.0, "share of the height");
-    visitor.enumeration("smudge_eye", smudge_eye, kEyeNames, "which lens has the mark");
+    visitor.enumeration("smudge_eye", smudge_camera, kCameraSideNames, "which lens has the mark");
 }
 
 std::vector<float> smear_kernel(double sigma_px) {
@@ -122,8 +122,8 @@ void apply_optics(const OpticsConfig& config,
                   Executor& executor,
                   Image<float>& image) {
     if (config.smear_sigma_px > 0.0) smear(smear_kernel(config.smear_sigma_px), executor, image);
-    const bool has_mark =
-        config.smudge_eye == Eye::both || (config.smudge_eye == Eye::left) == is_left;
+    const bool has_mark = config.smudge_camera == EyePoint::both ||
+                          (config.smudge_camera == EyePoint::left) == is_left;
     if (!(config.smudge_sigma_px > 0.0) || !has_mark) return;
     Image<float> greasy = image;
     smear(smear_kernel(config.smudge_sigma_px), executor, greasy);

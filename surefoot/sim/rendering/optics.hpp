@@ -10,8 +10,8 @@
 
 namespace surefoot::sim {
 
-enum class Eye : std::uint8_t { left, right, both };
-inline constexpr const char* kEyeNames[] = {"left", "right", "both"};
+enum class EyePoint : std::uint8_t { left, right, both };
+inline constexpr const char* kCameraSideNames[] = {"left", "right", "both"};
 
 /// What the lens does to the picture: less light in the corners, a point that becomes a Gaussian
 /// spot, and a greasy finger mark that makes it a larger one.
@@ -21,7 +21,7 @@ struct OpticsConfig {
     double smudge_x = 0.5;         ///< middle of the mark, share of the image's width
     double smudge_y = 0.6;         ///< share of its height
     double smudge_radius = 0.25;   ///< share of its height; fades out over the outer third
-    Eye smudge_eye = Eye::left;
+    EyePoint smudge_camera = EyePoint::left;
 
     void describe(ConfigVisitor& visitor);
 };

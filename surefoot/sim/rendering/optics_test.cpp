@@ -91,7 +91,7 @@ TEST(OpticsTest, AFingerMarkBlursItsPlaceOnOneEyeOnly) {
     Image<float> right = before;
     apply_optics(config, false, serial, right);
     EXPECT_EQ(right, before);
-    config.smudge_eye = Eye::both;
+    config.smudge_camera = EyePoint::both;
     apply_optics(config, false, serial, right);
     EXPECT_EQ(right, left);
 }

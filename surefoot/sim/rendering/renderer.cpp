@@ -130,7 +130,8 @@ void Renderer::collect(const Motion& motion,
     const Pose T_body_left = rig_.body_from_left();
     const Pose T_body_right = T_body_left * rig_.T_left_right;
     const auto look = [&](const RayField& rays, const Pose& T_body_camera, CleanImage& image) {
-        collect_eye(rays, motion, T_body_camera, stamp_s, exposure_s, executor, out.instant, image);
+        collect_camera(
+            rays, motion, T_body_camera, stamp_s, exposure_s, executor, out.instant, image);
         apply_optics(config_.optics, &rays == &left_rays_, executor, image.signal_dn);
         executor.parallel_for(rays.height(), [&](int v) {
             vignette_row(config_.imaging,
@@ -143,14 +144,14 @@ void Renderer::collect(const Motion& motion,
     look(right_rays_, T_body_right, out.right);
 }
 
-void Renderer::collect_eye(const RayField& rays,
-                           const Motion& motion,
-                           const Pose& T_body_camera,
-                           double stamp_s,
-                           double exposure_s,
-                           Executor& executor,
-                           CleanImage& instant,
-                           CleanImage& out) const {
+void Renderer::collect_camera(const RayField& rays,
+                              const Motion& motion,
+                              const Pose& T_body_camera,
+                              double stamp_s,
+                              double exposure_s,
+                              Executor& executor,
+                              CleanImage& instant,
+                              CleanImage& out) const {
     const double readout_s = config_.shutter.rolling ? rig_.readout_s : 0.0;
     const auto views_at = [&](double offset_s) {
         return ImageViews(motion, T_body_camera, stamp_s + offset_s, readout_s, rays.height());
@@ -320,19 +321,19 @@ void Renderer::expose(const CleanPair& clean,
                       Executor& executor,
                       RenderedPair& out) const {
     const auto stream = 2U * static_cast<std::uint64_t>(frame);
-    expose_eye(clean.left, shot, stream, executor, out.left);
+    expose_camera(clean.left, shot, stream, executor, out.left);
     Shot right = shot;
     right.gain *= config_.exposure.right_gain;
     right.light *= config_.exposure.right_gain;
-    expose_eye(clean.right, right, stream + 1U, executor, out.right);
+    expose_camera(clean.right, right, stream + 1U, executor, out.right);
     out.depth_m = clean.left.depth_m;
 }
 
-void Renderer::expose_eye(const CleanImage& clean,
-                          const Shot& shot,
-                          std::uint64_t stream,
-                          Executor& executor,
-                          GreyImage& out) const {
+void Renderer::expose_camera(const CleanImage& clean,
+                             const Shot& shot,
+                             std::uint64_t stream,
+                             Executor& executor,
+                             GreyImage& out) const {
     const int width = clean.signal_dn.width();
     const auto pixels = static_cast<std::size_t>(width);
     out.resize(width, clean.signal_dn.height());

@@ -96,14 +96,14 @@ class Renderer {
              const camera::StereoRig& rig,
              const CameraConfig& config,
              std::uint64_t seed);
-    void collect_eye(const RayField& rays,
-                     const Motion& motion,
-                     const Pose& T_body_camera,
-                     double stamp_s,
-                     double exposure_s,
-                     Executor& executor,
-                     CleanImage& instant,
-                     CleanImage& out) const;
+    void collect_camera(const RayField& rays,
+                        const Motion& motion,
+                        const Pose& T_body_camera,
+                        double stamp_s,
+                        double exposure_s,
+                        Executor& executor,
+                        CleanImage& instant,
+                        CleanImage& out) const;
     void blur(const RayField& rays,
               const ImageViews& middle,
               std::span<const ImageViews> moving,
@@ -135,11 +135,11 @@ class Renderer {
                                            int height,
                                            std::uint64_t stream,
                                            Executor& executor) const;
-    void expose_eye(const CleanImage& clean,
-                    const Shot& shot,
-                    std::uint64_t stream,
-                    Executor& executor,
-                    GreyImage& out) const;
+    void expose_camera(const CleanImage& clean,
+                       const Shot& shot,
+                       std::uint64_t stream,
+                       Executor& executor,
+                       GreyImage& out) const;
 
     const Scene* scene_;
     camera::StereoRig rig_;

@@ -94,7 +94,7 @@ ScriptedScene build(SceneReader& reader,
                     const SceneNode& root,
                     const Entry& entry,
                     std::uint64_t seed,
-                    std::optional<Carrier> carrier) {
+                    std::optional<MotionModel> motion_model) {
     ScriptedScene out;
     out.info = entry.info;
     reader.only_keys(root,
@@ -125,8 +125,8 @@ ScriptedScene build(SceneReader& reader,
         out.stations_m = read_stations(reader, *scan, builder.scene());
     out.script = read_motion(reader, *motion);
     if (reader.error()) return out;
-    if (carrier && *carrier != out.script.carrier) {
-        out.script.carrier = *carrier;
+    if (motion_model && *motion_model != out.script.motion_model) {
+        out.script.motion_model = *motion_model;
         out.script.speed_m_s = 0.0;  // the other carrier's own
         out.script.height_m = 0.0;
     }
@@ -182,7 +182,7 @@ Result<std::vector<SceneInfo>> read_scene_infos(const SceneFile& file) {
 Result<ScriptedScene> read_scene(const SceneFile& file,
                                  const std::string& name,
                                  std::uint64_t seed,
-                                 std::optional<Carrier> carrier) {
+                                 std::optional<MotionModel> motion_model) {
     const auto root = parse_scene_node(file.text, file.file);
     if (!root) return root.error();
     SceneReader reader(file.file);
@@ -192,7 +192,7 @@ Result<ScriptedScene> read_scene(const SceneFile& file,
     if (entry == nullptr) return *reader.error();
     // One seed must not draw the same light and the same distance in every scene.
     const std::uint64_t scene_seed = mix_seed(seed, fnv1a(entry->info.name));
-    ScriptedScene scene = build(reader, *root, *entry, scene_seed, carrier);
+    ScriptedScene scene = build(reader, *root, *entry, scene_seed, motion_model);
     if (reader.error()) return *reader.error();
     return scene;
 }

@@ -64,6 +64,6 @@ inline constexpr int kMaxPrimitives = 2000;
 [[nodiscard]] Result<ScriptedScene> read_scene(const SceneFile& file,
                                                const std::string& name,
                                                std::uint64_t seed,
-                                               std::optional<Carrier> carrier = {});
+                                               std::optional<MotionModel> motion_model = {});
 
 }  // namespace surefoot::sim

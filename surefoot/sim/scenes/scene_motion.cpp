@@ -35,12 +35,12 @@ constexpr const char* kScriptNames[] = {"approach",
                                         "pivot_and_reverse"};
 
 /// What every motion may say.
-struct CarrierSpec {
-    Carrier carrier = Carrier::trolley;
+struct MotionModelSpec {
+    MotionModel motion_model = MotionModel::trolley;
     double speed_m_s = 0.0;
     double height_m = 0.0;
     void describe(ConfigVisitor& visitor) {
-        visitor.enumeration("carrier", carrier, kCarrierNames, "what carries the camera");
+        visitor.enumeration("carrier", motion_model, kMotionModelNames, "what carries the camera");
         visitor.number("speed_m_s", speed_m_s, 0.0, 2.0, "0 = the carrier's own");
         visitor.number("height_m", height_m, 0.0, 3.0, "of base_link in a hand; 0 = its own");
     }
@@ -65,7 +65,7 @@ struct WaypointSpec {
 
 /// One of the scripts; which keys there are depends on `script`.
 struct ScriptSpec {
-    CarrierSpec carried;
+    MotionModelSpec carried;
     int script = kRequiredChoice;
     double distance_m = kRequired;
     double turn_deg = kRequired;
@@ -122,21 +122,23 @@ std::optional<std::string> ScriptSpec::problem() const {
     }
     if (which != Script::descend_backwards) return std::nullopt;
     if (steps_ahead < 1) return "key 'steps_ahead' is missing";
-    if (carried.carrier == Carrier::rex) return std::nullopt;
+    if (carried.motion_model == MotionModel::rex) return std::nullopt;
     return fmt::format("script descend_backwards is for feet: carrier must be rex, not {}",
-                       kCarrierNames[static_cast<int>(carried.carrier)]);
+                       kMotionModelNames[static_cast<int>(carried.motion_model)]);
 }
 
 MotionScript ScriptSpec::made() const {
     switch (static_cast<Script>(script)) {
-        case Script::approach: return approach_script(carried.carrier, distance_m);
-        case Script::turn_round: return turn_round_script(carried.carrier, turn_deg * kRadPerDeg);
-        case Script::back_to_table: return back_to_table_script(carried.carrier, table_x_m, left_m);
+        case Script::approach: return approach_script(carried.motion_model, distance_m);
+        case Script::turn_round:
+            return turn_round_script(carried.motion_model, turn_deg * kRadPerDeg);
+        case Script::back_to_table:
+            return back_to_table_script(carried.motion_model, table_x_m, left_m);
         case Script::sidestep_through_door:
-            return sidestep_through_door_script(carried.carrier, door_x_m, door_y_m, beyond_m);
+            return sidestep_through_door_script(carried.motion_model, door_x_m, door_y_m, beyond_m);
         case Script::descend_backwards: return descend_backwards_script(steps_ahead, riser_m);
         case Script::pivot_and_reverse:
-            return pivot_and_reverse_script(carried.carrier, distance_m);
+            return pivot_and_reverse_script(carried.motion_model, distance_m);
     }
     return {};
 }
@@ -156,10 +158,10 @@ MotionScript read_script(SceneReader& reader, const SceneNode& group) {
 }
 
 MotionScript read_waypoints(SceneReader& reader, const SceneNode& group) {
-    CarrierSpec carried;
+    MotionModelSpec carried;
     reader.read(group, carried, {"waypoints"});
     MotionScript script;
-    script.carrier = carried.carrier;
+    script.motion_model = carried.motion_model;
     script.speed_m_s = carried.speed_m_s;
     script.height_m = carried.height_m;
     const SceneNode* stops = reader.required(group, "waypoints", SceneNode::Kind::list);

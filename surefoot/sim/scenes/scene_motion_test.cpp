@@ -47,24 +47,24 @@ std::string refusal(const std::string& motion, const std::string& solids = "") {
 TEST(SceneMotionTest, AFileNamesAScriptWithItsFigures) {
     const std::vector<std::pair<std::string, MotionScript>> motions{
         {"script: approach, carrier: rex, distance_m: 2 * half_m",
-         approach_script(Carrier::rex, 1.2)},
+         approach_script(MotionModel::rex, 1.2)},
         {"script: turn_round, carrier: rex, turn_deg: -30 * three",
-         turn_round_script(Carrier::rex, -0.5 * 3.14159265358979323846)},
+         turn_round_script(MotionModel::rex, -0.5 * 3.14159265358979323846)},
         {"script: back_to_table, carrier: rex, table_x_m: 2.1, left_m: 0.9",
-         back_to_table_script(Carrier::rex, 2.1, 0.9)},
+         back_to_table_script(MotionModel::rex, 2.1, 0.9)},
         {"script: sidestep_through_door, carrier: hand, door_x_m: 1.4, door_y_m: -0.1, "
          "beyond_m: half_m",
-         sidestep_through_door_script(Carrier::hand, 1.4, -0.1, 0.6)},
+         sidestep_through_door_script(MotionModel::hand, 1.4, -0.1, 0.6)},
         {"script: descend_backwards, carrier: rex, steps_ahead: three - 1, riser_m: 0.17",
          descend_backwards_script(2, 0.17)},
         {"script: pivot_and_reverse, distance_m: 1",
-         pivot_and_reverse_script(Carrier::trolley, 1.0)}};
+         pivot_and_reverse_script(MotionModel::trolley, 1.0)}};
     const std::string flight =
         "  - floor: {min_x_m: -4, min_y_m: -4, max_x_m: 9, max_y_m: 4, z_m: -0.17, "
         "material: stone}\n";
     for (const auto& [text, expected] : motions) {
         const MotionScript script = read(text, flight).script;
-        EXPECT_EQ(script.carrier, expected.carrier) << text;
+        EXPECT_EQ(script.motion_model, expected.motion_model) << text;
         ASSERT_EQ(script.waypoints.size(), expected.waypoints.size()) << text;
         for (std::size_t i = 0; i < script.waypoints.size(); ++i) {
             const Waypoint& a = script.waypoints[i];

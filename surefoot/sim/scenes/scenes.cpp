@@ -39,10 +39,10 @@ const std::vector<Entry>& index() {
 Result<ScriptedScene> scene_of_file(const std::string& path,
                                     const std::string& name,
                                     std::uint64_t seed,
-                                    std::optional<Carrier> carrier) {
+                                    std::optional<MotionModel> motion_model) {
     const Result<std::string> text = files::read_file(path, files::limits::kSettingsBytes);
     if (!text) return text.error();
-    return read_scene({path, *text}, name, seed, carrier);
+    return read_scene({path, *text}, name, seed, motion_model);
 }
 
 }  // namespace
@@ -55,15 +55,16 @@ std::vector<SceneInfo> list_scenes() {
 
 Result<ScriptedScene> make_scene(const std::string& name,
                                  std::uint64_t seed,
-                                 std::optional<Carrier> carrier) {
+                                 std::optional<MotionModel> motion_model) {
     const std::size_t hash = name.find('#');
     const std::string path = name.substr(0, hash);
     if (path.ends_with(kExtension)) {
-        return scene_of_file(path, hash == name.npos ? "" : name.substr(hash + 1), seed, carrier);
+        return scene_of_file(
+            path, hash == name.npos ? "" : name.substr(hash + 1), seed, motion_model);
     }
     std::vector<std::string> names;
     for (const Entry& entry : index()) {
-        if (entry.info.name == name) return read_scene(*entry.file, name, seed, carrier);
+        if (entry.info.name == name) return read_scene(*entry.file, name, seed, motion_model);
         names.push_back(entry.info.name);
     }
     // A hundred names would bury the likely one.

@@ -54,7 +54,7 @@ struct ScriptedScene {
 /// one; a way that it cannot go (a walking machine's steps are limited) is an error.
 [[nodiscard]] Result<ScriptedScene> make_scene(const std::string& name,
                                                std::uint64_t seed,
-                                               std::optional<Carrier> carrier = {});
+                                               std::optional<MotionModel> motion_model = {});
 
 /// A number that the seed has drawn, by its name in the scene file ("edge_x_m"): where things
 /// stand, for tests and experiments. Precondition: the file has a parameter of that name.

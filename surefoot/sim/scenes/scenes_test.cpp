@@ -415,9 +415,10 @@ TEST(ScenesTest, ThePlacesOfTheThesisHaveTheirSizeAndManyThings) {
 TEST(ScenesTest, EveryCarrierCanGoThroughThePlacesOfTheThesis) {
     for (const SceneInfo& info : list_scenes()) {
         if (!info.name.starts_with("thesis_") || info.name.ends_with("_climbed")) continue;
-        for (const Carrier carrier : {Carrier::trolley, Carrier::rex, Carrier::hand}) {
+        for (const MotionModel motion_model :
+             {MotionModel::trolley, MotionModel::rex, MotionModel::hand}) {
             for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-                const auto script = make_scene(info.name, seed, carrier);
+                const auto script = make_scene(info.name, seed, motion_model);
                 EXPECT_TRUE(script)
                     << info.name << " seed " << seed << ": " << script.error().message;
             }

@@ -16,53 +16,54 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSelf_m = 1e-6;
 
 /// A camera at one moment.
-struct Eye {
+struct EyePoint {
     const camera::Camera* camera = nullptr;
     Pose T_world_camera;
     Pose T_camera_world;
 };
 
-Eye make_eye(const camera::Camera& camera, const Pose& T_world_camera) {
+EyePoint make_camera(const camera::Camera& camera, const Pose& T_world_camera) {
     return {&camera, T_world_camera, T_world_camera.inverse()};
 }
 
-bool in_image(const Eye& eye, const Vector3d& point_m, double margin_px) {
-    const auto pixel = camera::project(eye.camera->model, eye.T_camera_world * point_m);
+bool in_image(const EyePoint& this_camera, const Vector3d& point_m, double margin_px) {
+    const auto pixel =
+        camera::project(this_camera.camera->model, this_camera.T_camera_world * point_m);
     // Pixel centres are at integers: the image ends half a pixel beyond the outer ones.
     return pixel && pixel->x() >= margin_px - 0.5 && pixel->y() >= margin_px - 0.5 &&
-           pixel->x() <= eye.camera->width - 0.5 - margin_px &&
-           pixel->y() <= eye.camera->height - 0.5 - margin_px;
+           pixel->x() <= this_camera.camera->width - 0.5 - margin_px &&
+           pixel->y() <= this_camera.camera->height - 0.5 - margin_px;
 }
 
-bool unobstructed(const Scene& scene, const Eye& eye, const Vector3d& point_m) {
-    const Vector3d way_m = point_m - eye.T_world_camera.translation_m;
+bool unobstructed(const Scene& scene, const EyePoint& this_camera, const Vector3d& point_m) {
+    const Vector3d way_m = point_m - this_camera.T_world_camera.translation_m;
     const double distance_m = way_m.norm();
     return !scene.blocked(
-        eye.T_world_camera.translation_m, way_m / distance_m, distance_m - kSelf_m);
+        this_camera.T_world_camera.translation_m, way_m / distance_m, distance_m - kSelf_m);
 }
 
-struct EyePair {
-    Eye left;
-    Eye right;
+struct CameraPair {
+    EyePoint left;
+    EyePoint right;
 };
 
-std::vector<EyePair> eyes_along(const SceneTruth& truth, int stride) {
-    std::vector<EyePair> pairs;
+std::vector<CameraPair> cameras_along(const SceneTruth& truth, int stride) {
+    std::vector<CameraPair> pairs;
     for (std::size_t i = 0; i < truth.trajectory.size(); i += static_cast<std::size_t>(stride)) {
         const Pose T_world_left = truth.trajectory[i].T_world_body * truth.rig.body_from_left();
-        pairs.push_back({make_eye(truth.rig.left, T_world_left),
-                         make_eye(truth.rig.right ? *truth.rig.right : truth.rig.left,
-                                  T_world_left * truth.rig.T_left_right)});
+        pairs.push_back({make_camera(truth.rig.left, T_world_left),
+                         make_camera(truth.rig.right ? *truth.rig.right : truth.rig.left,
+                                     T_world_left * truth.rig.T_left_right)});
     }
     return pairs;
 }
 
 bool seen(const Scene& scene,
-          const std::vector<EyePair>& pairs,
+          const std::vector<CameraPair>& pairs,
           const Vector3d& point_m,
           const VisibilityConfig& config) {
     int frames = 0;
-    for (const EyePair& pair : pairs) {
+    for (const CameraPair& pair : pairs) {
         const double distance_m = (point_m - pair.left.T_world_camera.translation_m).norm();
         if (distance_m > config.range_m || distance_m <= kSelf_m) continue;
         if (!in_image(pair.left, point_m, config.margin_px) ||
@@ -168,7 +169,7 @@ Image<std::uint8_t> visibility_mask(const SceneTruth& truth,
                                     const VisibilityConfig& config,
                                     Executor& executor) {
     Image<std::uint8_t> mask(lattice.nx, lattice.ny);
-    const auto pairs = eyes_along(truth, std::max(config.frame_stride, 1));
+    const auto pairs = cameras_along(truth, std::max(config.frame_stride, 1));
     executor.parallel_for(lattice.ny, [&](int iy) {
         for (int ix = 0; ix < lattice.nx; ++ix) {
             const Eigen::Vector2d center_m = lattice.center_m(ix, iy);

@@ -164,15 +164,15 @@ TEST(WalkingScenesTest, ARampIsASafeWayWhereTheMachineMayStand) {
 
 TEST(WalkingScenesTest, AHandTakesNoSteps) {
     const ScriptedScene scene = make_scene("hand_held", 1).value();
-    EXPECT_EQ(scene.script.carrier, Carrier::hand);
+    EXPECT_EQ(scene.script.motion_model, MotionModel::hand);
     EXPECT_TRUE(scene.steps.empty());
     EXPECT_LT(scene.motion->duration_s(), 30.0);
 }
 
 TEST(WalkingScenesTest, AnotherCarrierGoesTheSameWayThroughTheSamePlace) {
     const ScriptedScene driven = make_scene("kerb_down_100", 3).value();
-    const ScriptedScene walked = make_scene("kerb_down_100", 3, Carrier::rex).value();
-    const ScriptedScene carried = make_scene("kerb_down_100", 3, Carrier::hand).value();
+    const ScriptedScene walked = make_scene("kerb_down_100", 3, MotionModel::rex).value();
+    const ScriptedScene carried = make_scene("kerb_down_100", 3, MotionModel::hand).value();
     EXPECT_TRUE(driven.steps.empty());
     EXPECT_TRUE(carried.steps.empty());
     EXPECT_FALSE(walked.steps.empty());
@@ -183,7 +183,7 @@ TEST(WalkingScenesTest, AnotherCarrierGoesTheSameWayThroughTheSamePlace) {
     EXPECT_NEAR(end_x_m(walked), end_x_m(driven), 0.25);  // whole steps
     EXPECT_NEAR(end_x_m(carried), end_x_m(driven), 0.1);
     EXPECT_GT(walked.motion->duration_s(), 3.0 * driven.motion->duration_s());
-    EXPECT_FALSE(make_scene("walk_descend_backwards", 3, Carrier::trolley).ok());
+    EXPECT_FALSE(make_scene("walk_descend_backwards", 3, MotionModel::trolley).ok());
 }
 
 }  // namespace

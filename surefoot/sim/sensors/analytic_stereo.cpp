@@ -246,11 +246,8 @@ double AnalyticStereo::missing_chance(double known, double cosine) const {
     return 1.0 - known;
 }
 
-void AnalyticStereo::measure(const Pose& T_world_body,
-                             int frame,
-                             Executor& executor,
-                             View& view,
-                             camera::DepthImage& out) const {
+void AnalyticStereo::measure(
+    const Pose& T_world_body, int frame, Executor& executor, View& view, DepthImage& out) const {
     cast(T_world_body, executor, view);
     find_shadows(
         view.disparity_px, view.surface, config_.shadow, config_.stride, executor, view.shadows);
@@ -303,7 +300,7 @@ void AnalyticStereo::measure_row(const View& view,
                                  std::span<const float> whites,
                                  std::span<const float> errors,
                                  std::span<const float> luck,
-                                 camera::DepthImage& out) const {
+                                 DepthImage& out) const {
     constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
     const Scales scale(config_);
     for (int u = 0; u < rig_.width; ++u) {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "surefoot/camera/depth_image.hpp"
 #include "surefoot/camera/stereo_rig.hpp"
 #include "surefoot/core/config.hpp"
+#include "surefoot/core/depth_image.hpp"
 #include "surefoot/core/executor.hpp"
 #include "surefoot/core/result.hpp"
 #include "surefoot/sim/rendering/ray_field.hpp"
@@ -82,11 +82,8 @@ class AnalyticStereo {
         ShadowMap shadows;
     };
     /// `frame` selects the noise.
-    void measure(const Pose& T_world_body,
-                 int frame,
-                 Executor& executor,
-                 View& view,
-                 camera::DepthImage& out) const;
+    void measure(
+        const Pose& T_world_body, int frame, Executor& executor, View& view, DepthImage& out) const;
 
   private:
     AnalyticStereo(const Scene& scene,
@@ -114,7 +111,7 @@ class AnalyticStereo {
                      std::span<const float> whites,
                      std::span<const float> errors,
                      std::span<const float> luck,
-                     camera::DepthImage& out) const;
+                     DepthImage& out) const;
     [[nodiscard]] double known_share(const Material& material) const;
     [[nodiscard]] double missing_chance(double known, double cosine) const;
 

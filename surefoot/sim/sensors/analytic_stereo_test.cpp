@@ -54,14 +54,14 @@ Pose body_at_height(double height_m) {
     return T_world_body;
 }
 
-camera::DepthImage measured(const Scene& scene,
+DepthImage measured(const Scene& scene,
                             const camera::RectifiedRig& rig,
                             const AnalyticStereoConfig& config,
                             double height_m = 1.0,
                             int frame = 0) {
     Serial serial;
     AnalyticStereo::View view;
-    camera::DepthImage out;
+    DepthImage out;
     AnalyticStereo::make(scene, rig, config, 11)
         .value()
         .measure(body_at_height(height_m), frame, serial, view, out);
@@ -74,10 +74,10 @@ Image<float> exact(const Scene& scene, const camera::RectifiedRig& rig, double h
 }
 
 /// Whether the right eye sees what the left one sees in a pixel, by rays.
-bool right_eye_sees(const Scene& scene,
-                    const camera::RectifiedRig& rig,
-                    const Pose& T_world_body,
-                    const Vector3d& p_left_m) {
+bool right_camera_sees(const Scene& scene,
+                       const camera::RectifiedRig& rig,
+                       const Pose& T_world_body,
+                       const Vector3d& p_left_m) {
     const Pose T_world_left = T_world_body * rig.T_body_camera;
     const Vector3d right_m = T_world_left * Vector3d(rig.baseline_m, 0.0, 0.0);
     const Vector3d to_point = T_world_left * p_left_m - right_m;
@@ -89,7 +89,7 @@ TEST(AnalyticStereoTest, WithoutErrorsItIsTheExactDisparityWhereBothEyesSee) {
     const Scene scene = test::scene_with_box();
     const camera::RectifiedRig rig = mounted_rig();
     const Image<float> truth_px = exact(scene, rig, kBodyHeight_m);
-    const camera::DepthImage depth = measured(scene, rig, errorless(), kBodyHeight_m);
+    const DepthImage depth = measured(scene, rig, errorless(), kBodyHeight_m);
     int known = 0;
     int disagree = 0;
     for (int v = 0; v < rig.height; ++v) {
@@ -103,7 +103,7 @@ TEST(AnalyticStereoTest, WithoutErrorsItIsTheExactDisparityWhereBothEyesSee) {
             const auto d = static_cast<double>(truth);
             const bool seen =
                 u - d >= -0.5 &&
-                right_eye_sees(scene, rig, body_at_height(kBodyHeight_m), rig.point(u, v, d));
+                right_camera_sees(scene, rig, body_at_height(kBodyHeight_m), rig.point(u, v, d));
             disagree += seen == std::isnan(measured_px) ? 1 : 0;
             if (std::isnan(measured_px)) {
                 EXPECT_EQ(depth.outlier_probability.row(v)[u], 1.0F);
@@ -130,7 +130,7 @@ TEST(AnalyticStereoTest, StrideGivesTheSamePixelsInUnitsOfItsOwn) {
     EXPECT_EQ(stereo.rig().height, 94);
     const Image<float> truth_px = exact(scene, full, kBodyHeight_m);
     Serial serial;
-    camera::DepthImage depth;
+    DepthImage depth;
     AnalyticStereo::View view;
     stereo.measure(body_at_height(kBodyHeight_m), 0, serial, view, depth);
     int known = 0;
@@ -169,7 +169,7 @@ Errors wall_errors(const AnalyticStereoConfig& config, int frames) {
                config.stride;
     };
     for (int frame = 0; frame < frames; ++frame) {
-        const camera::DepthImage depth = measured(scene, rig, config, 1.0, frame);
+        const DepthImage depth = measured(scene, rig, config, 1.0, frame);
         const Image<float>& now = depth.disparity_px;
         if (frame > 0) {
             for (int v = 0; v < now.height(); v += 3) {
@@ -222,7 +222,7 @@ TEST(AnalyticStereoTest, ReportedSigmaIsHonestUnlessToldOtherwise) {
     const camera::RectifiedRig rig = mounted_rig();
     const Image<float> truth_px = exact(scene, rig, kBodyHeight_m);
     const auto normalised = [&](int frame) {
-        const camera::DepthImage depth = measured(scene, rig, config, kBodyHeight_m, frame);
+        const DepthImage depth = measured(scene, rig, config, kBodyHeight_m, frame);
         double squares = 0.0;
         double count = 0.0;
         for (std::size_t i = 0; i < truth_px.size(); ++i) {
@@ -248,7 +248,7 @@ TEST(AnalyticStereoTest, LockingIsASineOfTheFraction) {
     const Scene scene = test::floor_only();
     const camera::RectifiedRig rig = mounted_rig();
     const Image<float> truth_px = exact(scene, rig, kBodyHeight_m);
-    const camera::DepthImage depth = measured(scene, rig, config, kBodyHeight_m);
+    const DepthImage depth = measured(scene, rig, config, kBodyHeight_m);
     for (int v = 0; v < rig.height; v += 7) {
         const auto d = static_cast<double>(truth_px.at(400, v));
         const auto error = static_cast<double>(depth.disparity_px.at(400, v)) - d;
@@ -261,7 +261,7 @@ TEST(AnalyticStereoTest, OccludedStripIsAsWideAsGeometrySaysAndBridgedAsOftenAsA
     const Scene scene = test::plate_before_wall(1.0, 2.0, 0.5);
     const double width_px = 342.0 * 0.12 * (1.0 - 0.5);  // 20.5
     const camera::RectifiedRig rig = level_rig();
-    const camera::DepthImage none = measured(scene, rig, errorless());
+    const DepthImage none = measured(scene, rig, errorless());
     int first = 0;
     while (!(none.disparity_px.at(first, 187) > 30.0F)) ++first;
     int unknown = 0;
@@ -274,7 +274,7 @@ TEST(AnalyticStereoTest, OccludedStripIsAsWideAsGeometrySaysAndBridgedAsOftenAsA
     // Bridged all: a straight ramp from wall (20.5 px) to plate (41 px).
     AnalyticStereoConfig config = errorless();
     config.invented_share = 1.0;
-    const camera::DepthImage all = measured(scene, rig, config);
+    const DepthImage all = measured(scene, rig, config);
     for (int i = 1; i <= unknown; ++i) {
         const double share = static_cast<double>(i) / (unknown + 1);
         EXPECT_NEAR(
@@ -287,7 +287,7 @@ TEST(AnalyticStereoTest, OccludedStripIsAsWideAsGeometrySaysAndBridgedAsOftenAsA
     double bridged = 0.0;
     double strip = 0.0;
     for (int frame = 0; frame < 8; ++frame) {
-        const camera::DepthImage some = measured(scene, rig, config, 1.0, frame);
+        const DepthImage some = measured(scene, rig, config, 1.0, frame);
         for (int v = 0; v < rig.height; ++v) {
             if (std::isnan(all.disparity_px.at(first - 1, v))) continue;
             for (int i = 1; i <= unknown; ++i) {
@@ -309,7 +309,7 @@ TEST(AnalyticStereoTest, RampsAreInventedBehindADropEdge) {
     config.shadow.fattening_px = 2.0;
     config.shadow.ramp_px = 8.0;
     config.invented_share = 1.0;
-    const camera::DepthImage depth = measured(scene, rig, config, kBodyHeight_m);
+    const DepthImage depth = measured(scene, rig, config, kBodyHeight_m);
     int edge = 0;  // first row that shows the upper floor
     constexpr int kColumn = 400;
     while (truth_px.at(kColumn, edge + 1) - truth_px.at(kColumn, edge) < 0.7F) ++edge;
@@ -339,7 +339,7 @@ TEST(AnalyticStereoTest, MissingSharesAreThoseOfTheModel) {
         double count = 0.0;
         double all = 0.0;
         for (int frame = 0; frame < 4; ++frame) {
-            const camera::DepthImage depth = measured(scene, level_rig(), config, 1.0, frame);
+            const DepthImage depth = measured(scene, level_rig(), config, 1.0, frame);
             for (int v = 0; v < 376; ++v) {
                 for (int u = 30; u < 672; ++u) {  // the right eye sees them
                     count += std::isnan(depth.disparity_px.at(u, v)) ? 0.0 : 1.0;
@@ -373,7 +373,7 @@ TEST(AnalyticStereoTest, GrazingFloorIsLost) {
     AnalyticStereoConfig config = errorless();
     config.fade_incidence_deg = 70.0;
     config.max_incidence_deg = 80.0;
-    const camera::DepthImage depth = measured(test::floor_only(), level_rig(), config);
+    const DepthImage depth = measured(test::floor_only(), level_rig(), config);
     const auto known_in_row = [&](double incidence_deg) {
         const double z_m = std::tan(incidence_deg * std::numbers::pi / 180.0);
         const int v = static_cast<int>(std::lround(187.5 + 342.0 / z_m));
@@ -393,10 +393,10 @@ TEST(AnalyticStereoTest, SameBytesForAnyExecutorAndOtherNoiseInAnotherFrame) {
     Serial serial;
     Backwards backwards;
     Threads threads(3);
-    camera::DepthImage a;
-    camera::DepthImage b;
-    camera::DepthImage c;
-    camera::DepthImage d;
+    DepthImage a;
+    DepthImage b;
+    DepthImage c;
+    DepthImage d;
     AnalyticStereo::View view;  // used again and again: old contents must not show
     stereo.measure(body_at_height(2.0), 1, serial, view, a);
     stereo.measure(body_at_height(kBodyHeight_m), 5, serial, view, a);

@@ -8,7 +8,7 @@
 namespace surefoot::sim {
 namespace {
 
-constexpr double kEye_m = 2.0;  ///< height of the camera: half of the largest board is below it
+constexpr double kCamera_m = 2.0;  ///< height of the camera: half of the largest board is below it
 constexpr double kThickness_m = 0.02;
 constexpr double kWallBehind_m = 1.5;
 constexpr double kWallHalf_m = 20.0;
@@ -19,8 +19,8 @@ void add_slab(double near_x_m, double half_m, int material, Label label, Scene& 
     const double far_x_m = near_x_m + kThickness_m;
     scene.add(
         Prism({{near_x_m, -half_m}, {far_x_m, -half_m}, {far_x_m, half_m}, {near_x_m, half_m}},
-              kEye_m - half_m,
-              {.top_m = kEye_m + half_m}),
+              kCamera_m - half_m,
+              {.top_m = kCamera_m + half_m}),
         material,
         label);
 }
@@ -58,7 +58,7 @@ Result<SeenBoard> see_board(const BoardView& view,
     const auto renderer = Renderer::make(scene, real, camera, mix_seed(view.seed, kNoiseStream));
     if (!renderer) return renderer.error();
     const Pose T_world_body =
-        looking_down({0.0, 0.0, kEye_m}, 0.0) * rig.body_from_left().inverse();
+        looking_down({0.0, 0.0, kCamera_m}, 0.0) * rig.body_from_left().inverse();
     RenderedPair pair;
     renderer->render(T_world_body, 0, executor, pair);
     SeenBoard seen;

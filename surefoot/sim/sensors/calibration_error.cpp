@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surefoot/sim/sensors/calibration_error.hpp"
 
-#include "surefoot/camera/right_eye.hpp"
+#include "surefoot/camera/right_camera_correction.hpp"
 
 namespace surefoot::sim {
 
@@ -13,11 +13,11 @@ void CalibrationError::describe(ConfigVisitor& visitor) {
 }
 
 camera::StereoRig with_error(const camera::StereoRig& nominal, const CalibrationError& error) {
-    return camera::with_right_eye(nominal,
-                                  {error.right_roll_rad,
-                                   error.right_pitch_rad,
-                                   error.right_yaw_rad,
-                                   error.right_focal_share});
+    return camera::with_right_camera(nominal,
+                                     {error.right_roll_rad,
+                                      error.right_pitch_rad,
+                                      error.right_yaw_rad,
+                                      error.right_focal_share});
 }
 
 }  // namespace surefoot::sim

@@ -39,8 +39,8 @@ void KnockConfig::describe(ConfigVisitor& visitor) {
 
 KnockedMotion::KnockedMotion(std::shared_ptr<const Motion> machine,
                              const KnockConfig& knock,
-                             const Vector3d& left_eye_body_m)
-    : machine_(std::move(machine)), at_s_(knock.at_s), pivot_m_(left_eye_body_m) {
+                             const Vector3d& left_camera_body_m)
+    : machine_(std::move(machine)), at_s_(knock.at_s), pivot_m_(left_camera_body_m) {
     const Eigen::AngleAxisd turn(
         Eigen::AngleAxisd(knock.yaw_deg * kRadPerDeg, Vector3d::UnitZ()) *
         Eigen::AngleAxisd(knock.pitch_deg * kRadPerDeg, Vector3d::UnitY()) *

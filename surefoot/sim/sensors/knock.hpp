@@ -32,7 +32,7 @@ class KnockedMotion final : public Motion {
   public:
     KnockedMotion(std::shared_ptr<const Motion> machine,
                   const KnockConfig& knock,
-                  const Eigen::Vector3d& left_eye_body_m);
+                  const Eigen::Vector3d& left_camera_body_m);
     [[nodiscard]] MotionState at(double time_s) const override;
     [[nodiscard]] double duration_s() const override { return machine_->duration_s(); }
 

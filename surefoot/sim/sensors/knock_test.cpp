@@ -10,7 +10,7 @@ namespace surefoot::sim {
 namespace {
 
 constexpr double kRadPerDeg = M_PI / 180.0;
-const Eigen::Vector3d kEye_m(0.075, 0.06, 0.05);
+const Eigen::Vector3d kCamera_m(0.075, 0.06, 0.05);
 const KnockConfig kKnock{2.0, 1.0, -3.0, 2.0};
 
 std::shared_ptr<const Motion> walk() {
@@ -19,7 +19,7 @@ std::shared_ptr<const Motion> walk() {
 }
 
 TEST(KnockedMotion, DerivativesMatchFiniteDifferences) {
-    const KnockedMotion motion(walk(), kKnock, kEye_m);
+    const KnockedMotion motion(walk(), kKnock, kCamera_m);
     const DerivativeErrors worst = derivative_errors(motion, 1.9, 2.2);
     // 3.7 deg in 0.1 s: snap 60 angle / T^4 * step^2 / 6 and jerks at both ends, 60 angle / T^3.
     EXPECT_LT(worst.velocity_m_s, 2e-5);
@@ -30,7 +30,7 @@ TEST(KnockedMotion, DerivativesMatchFiniteDifferences) {
 
 TEST(KnockedMotion, TurnsTheCameraWhereItIsAndLeavesTheMachineAlone) {
     const auto machine = walk();
-    const KnockedMotion motion(machine, kKnock, kEye_m);
+    const KnockedMotion motion(machine, kKnock, kCamera_m);
     const double before_s = kKnock.at_s - 0.01;
     EXPECT_EQ(
         difference(machine->at(before_s).T_world_body, motion.at(before_s).T_world_body).norm(),
@@ -38,7 +38,7 @@ TEST(KnockedMotion, TurnsTheCameraWhereItIsAndLeavesTheMachineAlone) {
     for (const double after_s : {kKnock.at_s + kKnockDuration_s, kKnock.at_s + 5.0}) {
         const Pose T_machine_camera_body =
             machine->at(after_s).T_world_body.inverse() * motion.at(after_s).T_world_body;
-        EXPECT_LT((T_machine_camera_body * kEye_m - kEye_m).norm(), 1e-12);
+        EXPECT_LT((T_machine_camera_body * kCamera_m - kCamera_m).norm(), 1e-12);
         const Eigen::Quaterniond expected(
             Eigen::AngleAxisd(kKnock.yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitZ()) *
             Eigen::AngleAxisd(kKnock.pitch_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *

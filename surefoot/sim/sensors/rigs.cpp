@@ -40,11 +40,11 @@ constexpr double kZedBaseline_m = 0.12;
 constexpr const char* kRolling = "_rolling";
 
 /// The rig on the armrest with an IMU beside its cameras.
-camera::StereoRig mounted(const char* name, const camera::Camera& eye, double baseline_m) {
+camera::StereoRig mounted(const char* name, const camera::Camera& camera, double baseline_m) {
     camera::StereoRig rig;
     rig.name = name;
-    rig.left = eye;
-    rig.right = eye;
+    rig.left = camera;
+    rig.right = camera;
     rig.T_left_right.translation_m = {baseline_m, 0.0, 0.0};
     rig.T_body_left = looking_down(armrest_m(), kPitchDown_rad);
     camera::ImuMount imu;

@@ -69,17 +69,17 @@ TEST(StereoShadowsTest, SeamsAndRampsLieWhereEachPixelByItselfSeesAJump) {
                     if (steps > 0 && (nearest == 0 || steps < nearest)) nearest = steps;
                 }
                 const Shadow shadow = map.shadow.at(u, v);
-                const bool right_eye = shadow == Shadow::occluded || shadow == Shadow::outside;
+                const bool right_camera = shadow == Shadow::occluded || shadow == Shadow::outside;
                 if (nearest == 0) {
-                    ASSERT_TRUE(shadow == Shadow::none || right_eye) << u << " " << v;
+                    ASSERT_TRUE(shadow == Shadow::none || right_camera) << u << " " << v;
                 } else if (nearest <= 2) {
                     const bool beyond =
                         static_cast<float>(u) - picture.disparity_px.at(u, v) < -0.5F;
-                    ASSERT_TRUE(shadow == Shadow::fattened || (beyond && right_eye))
+                    ASSERT_TRUE(shadow == Shadow::fattened || (beyond && right_camera))
                         << round << ": " << u << " " << v;
                     ++seams;
                 } else {
-                    ASSERT_TRUE(shadow == Shadow::ramp || right_eye) << u << " " << v;
+                    ASSERT_TRUE(shadow == Shadow::ramp || right_camera) << u << " " << v;
                     ++ramps;
                 }
             }

@@ -171,7 +171,7 @@ void PatchWalk::link_flight(const grid::GridGeometry& grid,
     if (flight.steps < 2) return;  // one step says no more than the planes on both sides of it
     const bool up = flight.kind == FlightKind::up;
     std::int32_t last = kNone;
-    const auto follow = [&](std::int32_t id) {
+    const auto update = [&](std::int32_t id) {
         if (id == kNone) return;
         if (last != kNone && id != last) {
             links_.push_back({last, id, true});
@@ -180,8 +180,8 @@ void PatchWalk::link_flight(const grid::GridGeometry& grid,
         last = id;
     };
     for (const Edge& edge : flight.edges) {
-        follow(patch_beside(grid, edge, !up, patches));
-        if (edge.lower_seen || up) follow(patch_beside(grid, edge, up, patches));
+        update(patch_beside(grid, edge, !up, patches));
+        if (edge.lower_seen || up) update(patch_beside(grid, edge, up, patches));
     }
 }
 
@@ -226,7 +226,7 @@ void PatchWalk::find_near_ground(const PatchMap& patches) {
                     own = {0.0F, static_cast<float>(height_m)};
                     continue;
                 }
-                const auto look = [&](int dx, int dy, float step_m) {
+                const auto observation = [&](int dx, int dy, float step_m) {
                     const int x = bx + dx, y = by + dy;
                     if (x < 0 || y < 0 || x >= nbx || y >= nby) return;
                     const NearGround& other = near_[static_cast<std::size_t>(y * nbx + x)];
@@ -234,10 +234,10 @@ void PatchWalk::find_near_ground(const PatchMap& patches) {
                     if (distance_m < own.distance_m && distance_m <= reach_m)
                         own = {distance_m, other.height_m};
                 };
-                look(-way, 0, straight_m);
-                look(-1, -way, diagonal_m);
-                look(0, -way, straight_m);
-                look(1, -way, diagonal_m);
+                observation(-way, 0, straight_m);
+                observation(-1, -way, diagonal_m);
+                observation(0, -way, straight_m);
+                observation(1, -way, diagonal_m);
             }
         }
     };

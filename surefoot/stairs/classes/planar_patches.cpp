@@ -243,15 +243,15 @@ void PatchFinder::grow(std::int32_t seed, const Plane& start, PatchMap& out) {
     for (std::size_t next = 0; next < waiting_.size(); ++next) {
         const std::int32_t block = waiting_[next];
         const int bx = block % nbx_, by = block / nbx_;
-        const auto look = [&](bool inside, std::int32_t other) {
+        const auto observation = [&](bool inside, std::int32_t other) {
             if (!inside || of_block[other] != kNone) return;
             const Sums& sums = blocks_[static_cast<std::size_t>(other)];
             if (sums.cells > 0.0 && lies_on(sums, region.plane)) take(other);
         };
-        look(bx > 0, block - 1);
-        look(bx + 1 < nbx_, block + 1);
-        look(by > 0, block - nbx_);
-        look(by + 1 < nby_, block + nbx_);
+        observation(bx > 0, block - 1);
+        observation(bx + 1 < nbx_, block + 1);
+        observation(by > 0, block - nbx_);
+        observation(by + 1 < nby_, block + nbx_);
         if (region.sums.cells >= refit_at) {
             region.plane = fit(region.sums);
             refit_at = kMore * region.sums.cells;
@@ -310,7 +310,7 @@ void PatchFinder::settle_borders(PatchMap& out) {
             std::int32_t best = kNone;
             std::int32_t tried = kNone;
             double least_m2 = std::numeric_limits<double>::infinity();
-            const auto look = [&](std::int32_t id) {
+            const auto observation = [&](std::int32_t id) {
                 if (id == kNone || id == tried) return;
                 tried = id;
                 const Plane& plane = regions_[static_cast<std::size_t>(id)].plane;
@@ -324,10 +324,10 @@ void PatchFinder::settle_borders(PatchMap& out) {
                 for (int x = std::max(0, bx - 1); x <= std::min(nbx_ - 1, bx + 1); ++x)
                     alike = alike && out.of_block.row(y)[x] == own;
             if (alike) continue;
-            look(own);
+            observation(own);
             for (int y = std::max(0, by - 1); y <= std::min(nby_ - 1, by + 1); ++y)
                 for (int x = std::max(0, bx - 1); x <= std::min(nbx_ - 1, bx + 1); ++x)
-                    look(out.of_block.row(y)[x]);
+                    observation(out.of_block.row(y)[x]);
             own = best;
         }
     }

@@ -67,7 +67,7 @@ struct DoorFinder::Jamb {
 
 /// Frame: across to the left, along away from the stance.
 struct DoorFinder::Opening {
-    Vector2d neck_m;
+    Vector2d bottleneck_m;
     Vector2d across;
     double width_m = 0.0;
     double middle_m = 0.0;  ///< across, from the neck
@@ -109,14 +109,14 @@ void DoorFinder::find(const Terrain& terrain,
     doors.clear();
     sills.clear();
     cell_m_ = terrain.geometry.resolution_m;
-    const NeckLimits limits{
+    const BottleneckLimits limits{
         config_.min_width_m, config_.max_width_m, config_.max_depth_m, config_.rise_m};
-    for (const Neck& neck : necks_.find(terrain, limits)) {
+    for (const Bottleneck& bottleneck : bottlenecks_.find(terrain, limits)) {
         Opening opening;
-        opening.neck_m = neck.middle_m;
-        opening.width_m = neck.width_m;
-        opening.across = neck.across;
-        if (opening.along().dot(neck.middle_m - terrain.stance_m) < 0.0)
+        opening.bottleneck_m = bottleneck.middle_m;
+        opening.width_m = bottleneck.width_m;
+        opening.across = bottleneck.across;
+        if (opening.along().dot(bottleneck.middle_m - terrain.stance_m) < 0.0)
             opening.across = -opening.across;
         if (!measure(terrain, opening)) continue;
         if (const auto ridge = sill(opening)) report(opening, *ridge, doors, sills);
@@ -128,7 +128,7 @@ void DoorFinder::report(const Opening& opening,
                         std::vector<Door>& doors,
                         std::vector<LineFeature>& sills) {
     const Vector2d along = opening.along();
-    const Vector2d axis_m = opening.neck_m + opening.middle_m * opening.across;
+    const Vector2d axis_m = opening.bottleneck_m + opening.middle_m * opening.across;
     const Vector2d middle_m = axis_m + 0.5 * (opening.front_m + opening.back_m) * along;
     Door door;
     door.pose.p_m = {middle_m.x(), middle_m.y(), opening.before_m};
@@ -183,22 +183,25 @@ void DoorFinder::gather(const Terrain& terrain, const Opening& opening) {
     const Vector2d along = opening.along();
     const double across_m = 0.5 * opening.width_m + config_.wall_length_m + 0.3;
     const double rows_m = across_m * std::abs(across.y()) + kHalfProfile_m * std::abs(along.y());
-    const Vector2d neck = (opening.neck_m - g.origin_m) / cell_m_;
-    const int last_y = std::min(g.ny - 1, grid::whole_cells(neck.y() + rows_m / cell_m_));
+    const Vector2d bottleneck = (opening.bottleneck_m - g.origin_m) / cell_m_;
+    const int last_y = std::min(g.ny - 1, grid::whole_cells(bottleneck.y() + rows_m / cell_m_));
     near_.clear();
-    for (int iy = std::max(0, grid::whole_cells(neck.y() - rows_m / cell_m_)); iy <= last_y; ++iy) {
-        const double y_m = (iy + 0.5 - neck.y()) * cell_m_;
+    for (int iy = std::max(0, grid::whole_cells(bottleneck.y() - rows_m / cell_m_)); iy <= last_y;
+         ++iy) {
+        const double y_m = (iy + 0.5 - bottleneck.y()) * cell_m_;
         Range x_m{-g.nx * cell_m_, g.nx * cell_m_};
         x_m.cut(across.x(), across.y() * y_m, across_m);
         x_m.cut(along.x(), along.y() * y_m, kHalfProfile_m);
         // Where the opening lies almost along the rows the range may end beyond all integers.
-        const auto cell_at = [&](double offset_m) { return neck.x() + offset_m / cell_m_ - 0.5; };
+        const auto cell_at = [&](double offset_m) {
+            return bottleneck.x() + offset_m / cell_m_ - 0.5;
+        };
         const int last_x = std::min(g.nx - 1, grid::whole_cells(std::floor(cell_at(x_m.to))));
         for (int ix = std::max(0, grid::whole_cells(std::ceil(cell_at(x_m.from)))); ix <= last_x;
              ++ix) {
             if (!terrain.known(ix, iy)) continue;
             Near cell;
-            cell.offset_m = {(ix + 0.5 - neck.x()) * cell_m_, y_m};
+            cell.offset_m = {(ix + 0.5 - bottleneck.x()) * cell_m_, y_m};
             cell.height_m = terrain.height_m.row(iy)[ix];
             cell.var_m2 = terrain.height_var_m2.empty() ? 0.0F : terrain.height_var_m2.row(iy)[ix];
             cell.clearance_m = terrain.clearance_m.empty() ? static_cast<float>(kNan)
@@ -220,7 +223,7 @@ std::optional<double> DoorFinder::ground_m(const Terrain& terrain,
     for (double along_m = from_m + 0.5 * apart_m; along_m < to_m; along_m += apart_m) {
         for (double across_m = -half_m; across_m <= half_m; across_m += apart_m) {
             const Vector2d place_m =
-                opening.neck_m + across_m * opening.across + along_m * opening.along();
+                opening.bottleneck_m + across_m * opening.across + along_m * opening.along();
             const auto cell = terrain.geometry.cell_at(place_m.x(), place_m.y());
             ++places;
             if (cell && terrain.known(cell->ix, cell->iy))
@@ -281,20 +284,20 @@ void DoorFinder::find_row_ends(const Terrain& terrain, const Opening& opening, d
     const double depth_m = 0.5 * config_.max_depth_m + 0.1;
     const double reach_m = 0.5 * config_.max_width_m + 0.2;
     const double lines_m = depth_m * std::abs(along[other]) + reach_m * std::abs(along[axis]);
-    const double begin = (opening.neck_m[other] - g.origin_m[other] - lines_m) / cell_m_;
+    const double begin = (opening.bottleneck_m[other] - g.origin_m[other] - lines_m) / cell_m_;
     const double end = begin + 2.0 * lines_m / cell_m_;
     ends_.clear();
     for (int line = std::max(0, grid::whole_cells(begin));
          line <= std::min((rows_along_x ? g.ny : g.nx) - 1, grid::whole_cells(end));
          ++line) {
         const double line_m = g.origin_m[other] + (line + 0.5) * cell_m_;
-        const double at_m = (line_m - opening.neck_m[other]) / along[other];
-        const double start_m = opening.neck_m[axis] + at_m * along[axis] - g.origin_m[axis];
+        const double at_m = (line_m - opening.bottleneck_m[other]) / along[other];
+        const double start_m = opening.bottleneck_m[axis] + at_m * along[axis] - g.origin_m[axis];
         int unknown = 0;
         for (int i = grid::whole_cells(std::floor(start_m / cell_m_));; i += step) {
             const grid::Cell cell = rows_along_x ? grid::Cell{i, line} : grid::Cell{line, i};
             if (!g.contains(cell)) break;
-            const Vector2d offset_m = g.center_m(cell) - opening.neck_m;
+            const Vector2d offset_m = g.center_m(cell) - opening.bottleneck_m;
             const double across_m = side * offset_m.dot(opening.across);
             if (across_m > reach_m) break;
             if (std::abs(offset_m.dot(along)) > depth_m) continue;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "surefoot/core/config.hpp"
-#include "surefoot/stairs/doors/necks.hpp"
+#include "surefoot/stairs/doors/bottlenecks.hpp"
 #include "surefoot/stairs/features.hpp"
 #include "surefoot/stairs/terrain.hpp"
 
@@ -39,7 +39,7 @@ struct DoorConfig {
 /// Finds doorways and their sills: an opening between two walls in one line, with known ground
 /// before, in and behind it.
 ///
-/// Openings are looked for as necks of the free ground (see NeckFinder). On the cells follow
+/// Openings are looked for as necks of the free ground (see BottleneckFinder). On the cells follow
 /// - yaw: the line through both walls. The noise of a wall lies along the line of sight, so that
 ///   all cells that stand in a band count, not the first of them;
 /// - jambs: each row of cells across the opening (along the nearer axis of the grid) ends at the
@@ -108,7 +108,7 @@ class DoorFinder {
     [[nodiscard]] double clearance_m(const Opening& opening);
 
     DoorConfig config_;
-    NeckFinder necks_;
+    BottleneckFinder bottlenecks_;
     double cell_m_ = 0.0;
     std::vector<Near> near_;
     std::vector<RowEnd> ends_;

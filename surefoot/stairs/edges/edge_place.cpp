@@ -59,7 +59,7 @@ PlaceOfEdge place_of(const Edge& edge, const Terrain& terrain) {
     return level >= kMinLevel * known ? PlaceOfEdge::level : PlaceOfEdge::uneven;
 }
 
-bool is_looked_at(const Terrain& terrain, const Eigen::Vector3d& p_m) {
+bool is_observed(const Terrain& terrain, const Eigen::Vector3d& p_m) {
     if (terrain.view) return terrain.view->shows(p_m);
     const auto cell = terrain.geometry.cell_at(p_m.x(), p_m.y());
     return cell && terrain.known(cell->ix, cell->iy);

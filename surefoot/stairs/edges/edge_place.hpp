@@ -18,7 +18,7 @@ enum class PlaceOfEdge : std::uint8_t {
 [[nodiscard]] PlaceOfEdge place_of(const Edge& edge, const Terrain& terrain);
 
 /// The camera sees the place; without a camera: the map knows it.
-[[nodiscard]] bool is_looked_at(const Terrain& terrain, const Eigen::Vector3d& p_m);
+[[nodiscard]] bool is_observed(const Terrain& terrain, const Eigen::Vector3d& p_m);
 
 /// Some of the edge is in the map.
 [[nodiscard]] bool is_in_window(const Edge& edge, const Terrain& terrain);

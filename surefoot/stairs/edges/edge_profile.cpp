@@ -207,8 +207,8 @@ bool EdgeProfiler::ground_ends(const Terrain& terrain,
         return false;
     // Seen from the front: what ends along the line of sight is the end of the view.
     const Vector2d middle_m = 0.5 * (line.from_m + line.to_m);
-    const Vector2d look_m = middle_m - terrain.view->T_map_camera.translation_m.head<2>();
-    if (look_m.dot(line.down()) < 0.7 * look_m.norm()) return false;
+    const Vector2d observed_m = middle_m - terrain.view->T_map_camera.translation_m.head<2>();
+    if (observed_m.dot(line.down()) < 0.7 * observed_m.norm()) return false;
     const int cells = grid::whole_cells(kEnd_m / resolution_m_);
     const int ragged = grid::whole_cells(kRagged_m / resolution_m_);
     for (int k = ragged; k < cells; ++k) {

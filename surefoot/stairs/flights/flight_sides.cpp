@@ -110,7 +110,7 @@ Strip strip_beside(const Terrain& terrain, const Tread& tread) {
 
 }  // namespace
 
-FlightSide FlightSides::look_beside(const Terrain& terrain, const Flight& flight, bool left) {
+FlightSide FlightSides::observe_beside(const Terrain& terrain, const Flight& flight, bool left) {
     // In the order of danger.
     constexpr std::array kKinds = {SideKind::open, SideKind::level, SideKind::wall};
     std::array<int, kKinds.size()> votes{};
@@ -137,8 +137,8 @@ FlightSide FlightSides::look_beside(const Terrain& terrain, const Flight& flight
 }
 
 void FlightSides::find(const Terrain& terrain, Flight& flight) {
-    flight.left = look_beside(terrain, flight, true);
-    flight.right = look_beside(terrain, flight, false);
+    flight.left = observe_beside(terrain, flight, true);
+    flight.right = observe_beside(terrain, flight, false);
 }
 
 }  // namespace surefoot::stairs

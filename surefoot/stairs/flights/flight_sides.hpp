@@ -24,7 +24,7 @@ class FlightSides {
     void find(const Terrain& terrain, Flight& flight);
 
   private:
-    FlightSide look_beside(const Terrain& terrain, const Flight& flight, bool left);
+    FlightSide observe_beside(const Terrain& terrain, const Flight& flight, bool left);
 
     std::vector<double> rails_m_;  ///< heights above the noses, one a step
 };

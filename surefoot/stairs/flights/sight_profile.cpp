@@ -95,7 +95,7 @@ void SightProfile::measure_bins() {
     }
 }
 
-std::span<const SightBin> SightProfile::look(const Terrain& terrain, const Edge& edge) {
+std::span<const SightBin> SightProfile::observation(const Terrain& terrain, const Edge& edge) {
     bins_.clear();
     if (!terrain.view || terrain.disparity_px.empty()) return {};
     const Vector3d& camera_m = terrain.view->T_map_camera.translation_m;

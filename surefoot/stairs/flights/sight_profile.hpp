@@ -29,7 +29,7 @@ class SightProfile {
     /// Half a pixel a bin. Nothing without `Terrain::view` and `Terrain::disparity_px`, for an edge
     /// that the camera is not above and before, or where little of it is in sight. Valid until the
     /// next call.
-    [[nodiscard]] std::span<const SightBin> look(const Terrain& terrain, const Edge& edge);
+    [[nodiscard]] std::span<const SightBin> observation(const Terrain& terrain, const Edge& edge);
     /// Angle between the lines of sight of neighbouring bins, at the edge.
     [[nodiscard]] double bin_rad() const noexcept { return bin_rad_; }
 

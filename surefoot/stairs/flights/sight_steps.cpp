@@ -217,7 +217,7 @@ Edge SightSteps::with_lower(Edge edge, std::size_t step) const {
 void SightSteps::find(const Terrain& terrain, std::span<const Edge> known, std::vector<Edge>& out) {
     out.clear();
     const Edge& first = known.front();
-    const std::span<const SightBin> bins = profile_.look(terrain, first);
+    const std::span<const SightBin> bins = profile_.observation(terrain, first);
     if (bins.empty()) return;
     bin_rad_ = profile_.bin_rad();
     find_levels(bins);

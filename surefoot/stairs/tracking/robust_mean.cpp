@@ -12,25 +12,29 @@ constexpr double kSame_sigma = 3.0;
 
 }  // namespace
 
-void RobustMean::add(double value, double sigma, int most_looks) {
-    most_looks = std::clamp(most_looks, 1, kMostLooks);
-    if (const int surplus = count_ + 1 - most_looks; surplus > 0) {
-        std::copy(looks_.begin() + surplus, looks_.begin() + count_, looks_.begin());
+void RobustMean::add(double value, double sigma, int most_observations) {
+    most_observations = std::clamp(most_observations, 1, kMostObservations);
+    if (const int surplus = count_ + 1 - most_observations; surplus > 0) {
+        std::copy(
+            observations_.begin() + surplus, observations_.begin() + count_, observations_.begin());
         count_ -= surplus;
     }
-    looks_[static_cast<std::size_t>(count_++)] = {value, sigma};
+    observations_[static_cast<std::size_t>(count_++)] = {value, sigma};
 }
 
 double RobustMean::median() const {
-    std::array<Look, kMostLooks> sorted = looks_;
+    std::array<Observation, kMostObservations> sorted = observations_;
     auto* const end = sorted.begin() + count_;
-    std::sort(sorted.begin(), end, [](const Look& a, const Look& b) { return a.value < b.value; });
+    std::sort(sorted.begin(), end, [](const Observation& a, const Observation& b) {
+        return a.value < b.value;
+    });
     double weight = 0.0;
-    for (auto* look = sorted.begin(); look != end; ++look) weight += 1.0 / look->sigma;
+    for (auto* observation = sorted.begin(); observation != end; ++observation)
+        weight += 1.0 / observation->sigma;
     double so_far = 0.0;
-    for (auto* look = sorted.begin(); look != end; ++look) {
-        so_far += 1.0 / look->sigma;
-        if (so_far >= 0.5 * weight) return look->value;
+    for (auto* observation = sorted.begin(); observation != end; ++observation) {
+        so_far += 1.0 / observation->sigma;
+        if (so_far >= 0.5 * weight) return observation->value;
     }
     return std::numeric_limits<double>::quiet_NaN();
 }
@@ -40,10 +44,10 @@ RobustMean::Mean RobustMean::mean(double shared) const {
     double w = 0.0, wx = 0.0, wxx = 0.0;
     int used = 0;
     for (int i = 0; i < count_; ++i) {
-        const Look& look = looks_[static_cast<std::size_t>(i)];
-        const double off = look.value - middle;
-        if (std::abs(off) > kSame_sigma * std::hypot(look.sigma, shared)) continue;
-        const double weight = 1.0 / (look.sigma * look.sigma);
+        const Observation& observation = observations_[static_cast<std::size_t>(i)];
+        const double off = observation.value - middle;
+        if (std::abs(off) > kSame_sigma * std::hypot(observation.sigma, shared)) continue;
+        const double weight = 1.0 / (observation.sigma * observation.sigma);
         w += weight;
         wx += weight * off;
         wxx += weight * off * off;

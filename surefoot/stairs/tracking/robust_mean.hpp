@@ -10,32 +10,33 @@ namespace surefoot::stairs {
 ///
 /// About the weighted median (weights 1 / sigma) those looks count that lie within three of their
 /// sigmas, as they are sure: the mean of least variance. One bad look does not move it, and five in
-/// thirty hardly do. Unlike LookWeight it is surer than its looks: its sigma is the larger one of
-/// what theirs leave and of what their scatter leaves, with what all looks share beside it.
+/// thirty hardly do. Unlike ObservationWeight it is surer than its looks: its sigma is the larger
+/// one of what theirs leave and of what their scatter leaves, with what all looks share beside it.
 class RobustMean {
   public:
-    static constexpr int kMostLooks = 31;
+    static constexpr int kMostObservations = 31;
 
     struct Mean {
         double value = 0.0;
         double sigma = 0.0;
     };
 
-    /// `sigma`: positive. Of more than `most_looks` (at most kMostLooks) the oldest is forgotten.
-    void add(double value, double sigma, int most_looks);
+    /// `sigma`: positive. Of more than `most_observations` (at most kMostObservations) the oldest
+    /// is forgotten.
+    void add(double value, double sigma, int most_observations);
     [[nodiscard]] bool empty() const { return count_ == 0; }
     /// `shared`: one sigma of the errors that all looks share. NaN of nothing.
     [[nodiscard]] Mean mean(double shared) const;
 
   private:
-    struct Look {
+    struct Observation {
         double value = 0.0;
         double sigma = 0.0;
     };
 
     [[nodiscard]] double median() const;
 
-    std::array<Look, kMostLooks> looks_{};  ///< oldest first
+    std::array<Observation, kMostObservations> observations_{};  ///< oldest first
     int count_ = 0;
 };
 

@@ -10,7 +10,7 @@
 namespace surefoot::stairs {
 namespace {
 
-constexpr int kMost = RobustMean::kMostLooks;
+constexpr int kMost = RobustMean::kMostObservations;
 
 TEST(RobustMean, nothing_has_no_mean) {
     const RobustMean mean;

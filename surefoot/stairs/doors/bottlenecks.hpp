@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "surefoot/core/views.hpp"
+#include "surefoot/grid/grid_geometry.hpp"
+#include "surefoot/stairs/terrain.hpp"
+
+namespace surefoot::stairs {
+
+struct BottleneckLimits {
+    double min_width_m = 0.0;
+    double max_width_m = 0.0;
+    double max_depth_m = 0.0;
+    double rise_m = 0.0;  ///< what stands so high above the ground beside it is a wall
+};
+
+/// A place at which free ground is narrowest between two walls, to within a block or two.
+struct Bottleneck {
+    Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
+    Eigen::Vector2d across = Eigen::Vector2d::UnitX();  ///< unit vector from wall to wall
+    double width_m = 0.0;
+};
+
+/// Finds necks on blocks of about 50 mm. A block lies in a neck when the circle about it that
+/// reaches to the nearest wall touches wall on its other side as well. Such circles follow each
+/// other along the middle of a passage; one that is longer than `max_depth_m` is a corridor and no
+/// neck.
+///
+/// A wall is what stands `rise_m` above the lowest level block within kReach_m.
+///
+/// Nearest walls by the distance transform of Meijster, Roerdink and Hesselink (2000), whose cost
+/// is linear in the number of blocks. Holds the working memory.
+class BottleneckFinder {
+  public:
+    static constexpr double kBlock_m = 0.05;
+    static constexpr double kReach_m = 0.15;
+
+    /// Nearest to the stance first. Valid until the next call.
+    const std::vector<Bottleneck>& find(const Terrain& terrain, const BottleneckLimits& limits);
+
+  private:
+    struct Parabola {
+        int bx = 0;
+        double from = 0.0;  ///< lowest of all from here on
+    };
+
+    void measure_blocks(const Terrain& terrain);
+    void spread_ground();
+    void mark_walls(double rise_m);
+    void find_walls_in_columns();
+    void find_nearest_walls(int by);
+    void mark_bottlenecks(const BottleneckLimits& limits);
+    [[nodiscard]] bool in_bottleneck(int bx, int by, const BottleneckLimits& limits) const;
+    /// The neck of marked blocks that hang together with this one; takes their marks away.
+    void collect(grid::Cell first,
+                 const grid::GridGeometry& geometry,
+                 const BottleneckLimits& limits);
+    /// From the block to its nearest wall block; precondition: has one.
+    [[nodiscard]] Eigen::Vector2i to_wall(int bx, int by) const;
+
+    int cells_ = 0;  ///< side of a block in cells
+    double block_m_ = 0.0;
+    int reach_ = 0;  ///< kReach_m in blocks
+    int range_ = 0;  ///< half the width of the widest neck in blocks, and one
+    /// Lowest of a level block, then of a square that begins there; +inf = none. With a margin of
+    /// `reach_` blocks, so that the square of a block's reach begins at its own index.
+    Image<float> low_m_;
+    Image<float> high_m_;  ///< highest; -inf = unknown
+    // Of the cells of one row of blocks that lie in one column.
+    std::vector<float> column_low_m_;
+    std::vector<float> column_high_m_;
+    std::vector<int> column_known_;
+    Image<std::uint8_t> wall_;
+    Image<std::uint8_t> bottleneck_;
+    Image<std::int16_t> wall_by_;  ///< row of the nearest wall block in the column; < 0 = none
+    Image<std::int16_t> wall_bx_;  ///< column of the nearest wall block; < 0 = none
+    std::vector<Parabola> envelope_;
+    std::vector<grid::Cell> members_;
+    std::vector<Bottleneck> bottlenecks_;
+};
+
+}  // namespace surefoot::stairs

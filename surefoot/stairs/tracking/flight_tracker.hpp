@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "surefoot/stairs/features.hpp"
+#include "surefoot/stairs/terrain.hpp"
+#include "surefoot/stairs/tracking/edge_tracker.hpp"
+#include "surefoot/stairs/tracking/observation_weight.hpp"
+#include "surefoot/stairs/tracking/robust_mean.hpp"
+#include "surefoot/stairs/tracking/tracking_config.hpp"
+
+namespace surefoot::stairs {
+
+/// A flight over several looks.
+struct FlightTrack {
+    static constexpr int kMaxSteps = 64;
+
+    /// As the last look that found `flight.steps` steps has it, with the means of all looks.
+    Flight flight;
+    ObservationWeight riser;
+    RobustMean going;
+    ObservationWeight width;
+    /// How often each number of steps was found, the last looks counting most.
+    std::array<float, kMaxSteps + 1> votes{};
+    bool shown = false;
+    int missed = 0;
+    int place_seen = 0;  ///< of the looks in a row that did not find it, those that see its place
+};
+
+/// Follows flights: two are the same where most of their edges are. Rules: FeatureTracker.
+class FlightTracker {
+  public:
+    explicit FlightTracker(const TrackingConfig& config) : config_(config) {}
+    /// Edges of `seen` have the ids of `edges`.
+    void update(std::span<const Flight> seen,
+                const EdgeTracker& edges,
+                const Terrain& terrain,
+                std::int64_t time_ns,
+                bool first,
+                IdCounter& ids);
+    void forget();
+    /// Those that are shown, nearest first; `out` keeps its memory. What was seen of a flight's far
+    /// end apart from it is a part of it.
+    void write(const Eigen::Vector2d& stance_m, std::vector<Flight>& out);
+
+  private:
+    struct Pair {
+        int common = 0;
+        std::size_t track = 0;
+        std::size_t seen = 0;
+    };
+
+    /// A track that is the far end of another one's flight.
+    struct FarEnd {
+        std::size_t track = 0;
+        std::size_t host = 0;
+    };
+
+    void pair_up(std::span<const Flight> seen);
+    void take(const Flight& seen, std::int64_t time_ns, FlightTrack& track) const;
+    [[nodiscard]] bool is_over(int edges_left, const Terrain& terrain, FlightTrack& track) const;
+    /// Tracks keep the memory of their edges when they go.
+    void remove(std::size_t track);
+    FlightTrack& add();
+
+    TrackingConfig config_;
+    std::vector<FlightTrack> tracks_;
+    std::vector<FlightTrack> spare_;
+    std::vector<Flight> spare_flights_;
+    std::vector<Pair> pairs_;
+    std::vector<int> track_of_seen_;
+    std::vector<bool> track_seen_;
+    std::vector<std::size_t> order_;
+    std::vector<FarEnd> far_ends_;
+};
+
+}  // namespace surefoot::stairs
